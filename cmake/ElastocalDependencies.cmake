@@ -1,0 +1,12 @@
+# The packages that the library needs, in one list for this build and for the installed
+# elastocalConfig.cmake: each entry is a name and, where it matters, the least version.
+set(ELASTOCAL_DEPENDENCIES
+  "Eigen3 3.4"
+  "Boost"
+  "Ceres 2.1"
+  "urdfdom"
+  "console_bridge"
+  "tinyxml2"
+  "yaml-cpp"
+  "nlohmann_json"
+  "fmt")

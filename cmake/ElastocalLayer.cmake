@@ -1,0 +1,67 @@
+# Warnings are errors in our code; headers of packages are SYSTEM and exempt. -Wnull-dereference and
+# -Wrestrict are left out: GCC 12 finds both in the standard library's own vectors and strings.
+add_library(elastocal_warnings INTERFACE)
+target_compile_options(elastocal_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual
+  -Wunused -Werror $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+
+# elastocal_layer(NAME [USES layer...] [LIBS public...] [PRIVATE_LIBS private...])
+#
+# One static library elastocal::NAME from src/elastocal/NAME/*.cpp, and one test program from the
+# *_test.cpp beside them. What a layer may include is what it USES, transitively.
+#
+# No precompiled headers: they save little here, hide missing includes, and defeat ccache.
+function(elastocal_layer name)
+  cmake_parse_arguments(ARG "" "" "USES;LIBS;PRIVATE_LIBS" ${ARGN})
+  set(folder ${PROJECT_SOURCE_DIR}/src/elastocal/${name})
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS ${folder}/*_test.cpp)
+  if(tests)
+    list(REMOVE_ITEM sources ${tests})
+  endif()
+  set_property(GLOBAL APPEND PROPERTY ELASTOCAL_LAYERS ${name})
+  string(JOIN " " uses ${ARG_USES})
+  set_property(GLOBAL APPEND_STRING PROPERTY ELASTOCAL_LAYER_RULES "${name}: ${uses}\n")
+
+  add_library(elastocal_${name} STATIC ${sources})
+  add_library(elastocal::${name} ALIAS elastocal_${name})
+  set_target_properties(elastocal_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(elastocal_${name} PUBLIC cxx_std_20)
+  target_include_directories(elastocal_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  list(TRANSFORM ARG_USES PREPEND elastocal_)
+  target_link_libraries(elastocal_${name} PUBLIC ${ARG_USES} ${ARG_LIBS} PRIVATE ${ARG_PRIVATE_LIBS}
+    $<BUILD_INTERFACE:elastocal_warnings>)
+
+  if(ELASTOCAL_TESTS AND tests)
+    elastocal_test(${name}_test SOURCES ${tests} LIBS elastocal_${name} ${ARG_PRIVATE_LIBS})
+  endif()
+endfunction()
+
+# elastocal_test(NAME SOURCES file... [LIBS library...])
+#
+# A GoogleTest program; each of its cases is a test of ctest. It can find the repository's files and
+# the shared data by tests/test_files.hpp.
+function(elastocal_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS} elastocal_test_support elastocal_warnings
+    GTest::gtest_main)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+endfunction()
+
+# The test `layers`: no layer includes what it does not USE. Call it after the last layer.
+function(elastocal_layer_test)
+  get_property(rules GLOBAL PROPERTY ELASTOCAL_LAYER_RULES)
+  file(WRITE ${PROJECT_BINARY_DIR}/layers.txt "${rules}")
+  add_test(NAME layers COMMAND ${CMAKE_COMMAND} -DRULES=${PROJECT_BINARY_DIR}/layers.txt
+    -DSOURCES=${PROJECT_SOURCE_DIR}/src/elastocal -P ${PROJECT_SOURCE_DIR}/cmake/check_layers.cmake)
+  # The check itself, on a folder with one wrong inclusion of each sort.
+  add_test(NAME layers_finds_violations COMMAND ${CMAKE_COMMAND}
+    -DRULES=${PROJECT_SOURCE_DIR}/tests/bad_layers/layers.txt
+    -DSOURCES=${PROJECT_SOURCE_DIR}/tests/bad_layers
+    -P ${PROJECT_SOURCE_DIR}/cmake/check_layers.cmake)
+  file(READ ${PROJECT_SOURCE_DIR}/tests/bad_layers/expected.txt expected)
+  string(STRIP "${expected}" expected)
+  set_tests_properties(layers_finds_violations PROPERTIES PASS_REGULAR_EXPRESSION "${expected}")
+endfunction()

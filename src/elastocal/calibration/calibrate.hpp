@@ -1,0 +1,103 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/options.hpp"
+#include "elastocal/calibration/outliers.hpp"
+#include "elastocal/calibration/posterior.hpp"
+#include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/optim/least_squares.hpp"
+#include "elastocal/robot/error_model.hpp"
+
+namespace elastocal {
+
+/// Which parameters are estimated, the others being nominal (paper section 6.1.4).
+enum class ModelKind {
+  kUncalibrated,  ///< waist and marker positions only (NCM)
+  kOffsetsOnly,   ///< and joint offsets theta
+  kGeometric,     ///< all identifiable geometric parameters (GCM)
+};
+
+inline constexpr ModelKind kModelKinds[] = {ModelKind::kUncalibrated, ModelKind::kOffsetsOnly,
+                                            ModelKind::kGeometric};
+
+/// uncalibrated, offsets_only, geometric
+const char* ModelKindName(ModelKind kind);
+
+/// What became of a parameter.
+enum class ParameterStatus {
+  kEstimated,
+  kUnsupported,  ///< the data hardly tell more than the prior: held at nominal
+  kDropped,      ///< not identifiable beside others, into which it is regrouped
+  kHeld,         ///< held at nominal by the user's setting
+  kNotInModel,   ///< not of the kinds that this ModelKind estimates
+};
+
+/// estimated, unsupported, dropped, held, not_in_model
+const char* StatusName(ParameterStatus status);
+
+struct CalibrationResult {
+  ModelKind kind = ModelKind::kGeometric;
+  /// The error model with the nominal pose of the waist that T0 deviates from (found by
+  /// registration), in the reference frame of the recording.
+  ErrorModel model;
+  Eigen::VectorXd delta;                 ///< errors, one a parameter of `model`; rad and m
+  std::vector<ParameterStatus> status;   ///< one a parameter
+  /// Posterior standard deviation, one a parameter; for an unsupported one it says how little is
+  /// known; NaN where none applies.
+  Eigen::VectorXd sd;
+  /// Half width of a 95 % interval in standard deviations (Student's t).
+  double interval_factor = 1.96;
+  Posterior posterior;                   ///< of estimated and unsupported parameters together
+  std::vector<Correlation> correlations;
+
+  ObservationMask used;                  ///< observations that took part
+  std::vector<Outlier> outliers;         ///< those that did not, and why
+  double marker_sd = 0.0;                ///< of one coordinate, m; estimated unless given
+  double prior_scale = 1.0;              ///< factor by which the prior was widened
+  int equations = 0;                     ///< 3 a used observation
+
+  Termination termination = Termination::kFailure;
+  std::string message;
+  int iterations = 0;                    ///< of all solves together
+  double initial_cost = 0.0, final_cost = 0.0;  ///< of the last solve
+  double solve_seconds = 0.0;
+};
+
+/// Estimates the parameters of one kind of model from a recording (paper section 5):
+///
+/// 1. waist pose by registration, then waist and marker positions alone;
+/// 2. all parameters of the kind under Cauchy's loss; observations beyond what noise and
+///    uncertainty explain are named outliers and left out;
+/// 3. least squares with Gaussian prior on the rest; the noise of a marker coordinate (unless it is
+///    given) follows from the residuals, and the factor that widens the prior from the estimates;
+/// 4. parameters that the data do not support are held at nominal, and the others estimated again.
+///    Their uncertainty is still counted in that of the others.
+///
+/// Steps 3 and 4 are repeated until the verdict on outliers stands.
+///
+/// `base` holds the identifiable parameters of `model` for this kind. `fixed_mask`, where given,
+/// says which observations to use, instead of looking for outliers.
+/// Throws InputError when there are fewer equations than parameters. Non-convergence is told by
+/// `termination`.
+CalibrationResult Calibrate(const ErrorModel& model, const Recording& recording,
+                            const BaseParameters& base, ModelKind kind,
+                            const CalibrationOptions& options,
+                            const ObservationMask* fixed_mask = nullptr);
+
+/// Fits only waist and marker positions to a recording, the joints' errors being given by name
+/// [rad or m]: what it takes to use a calibration on another day. Names of joints that move no
+/// marker of this recording are passed over. Result of kind kUncalibrated with the joints' errors in
+/// `delta`.
+CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recording,
+                                 const BaseParameters& base, const CalibrationOptions& options,
+                                 const std::map<std::string, double>& joint_errors,
+                                 const ObservationMask* fixed_mask = nullptr);
+
+/// Whether an estimated parameter differs from nominal by more than its 95 % interval.
+bool Significant(const CalibrationResult& result, int parameter);
+
+}  // namespace elastocal

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "elastocal/robot/parameters.hpp"
+
+namespace elastocal {
+
+/// Standard deviation of the Gaussian prior on each kind of parameter, around nominal: rad or m;
+/// infinite for none. T0 and marker positions have none: nobody knows them beforehand.
+struct Prior {
+  std::array<double, kParameterKindCount> sd;
+
+  Prior();  ///< 0.5 degrees and 1 mm on joints, none on T0 and markers
+  /// The prior with all standard deviations multiplied by `factor`.
+  Prior Scaled(double factor) const;
+  double& operator[](ParameterKind kind) { return sd[static_cast<int>(kind)]; }
+  double operator[](ParameterKind kind) const { return sd[static_cast<int>(kind)]; }
+};
+
+struct CalibrationOptions {
+  Prior prior;
+  /// Widen the whole prior by one factor, at least 1 and at most 10, where the estimates say that
+  /// the robot is further from nominal than the prior expects (evidence approximation, MacKay 1992).
+  /// A prior that is too narrow biases the estimates and makes their uncertainty too small.
+  bool widen_prior = true;
+  /// Standard deviation of one marker coordinate, m. Zero: estimated from the residuals.
+  double marker_sd = 0.0;
+  /// Chance that a recording without a single outlier has one named all the same.
+  double outlier_probability = 0.01;
+  /// A parameter whose posterior standard deviation stays above this part of its prior one is not
+  /// supported by the data: held at nominal and listed.
+  double support_threshold = 0.9;
+  /// Correlations at or above this are reported.
+  double correlation_threshold = 0.9;
+  int max_iterations = 100;
+};
+
+}  // namespace elastocal

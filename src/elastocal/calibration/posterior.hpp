@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/calibration/residuals.hpp"
+
+namespace elastocal {
+
+/// Uncertainty of estimated parameters around a solution, to first order.
+struct Posterior {
+  std::vector<int> parameters;  ///< indices into the model's, ascending
+  Eigen::MatrixXd covariance;   ///< of these; rad^2, rad m, m^2
+  /// Number of parameters that the data, rather than the prior, determine: trace of the share of
+  /// the data in the information. What is left of the number of equations after subtracting it is
+  /// the degrees of freedom of the residuals.
+  double effective_parameters = 0.0;
+
+  Eigen::VectorXd StandardDeviations() const { return covariance.diagonal().cwiseSqrt(); }
+};
+
+/// Inverse of the information J^T J / marker_sd^2 + prior at `delta`, over the observations in
+/// `mask`. A parameter without prior gets one of 1 m or 1 rad here (not in the estimate), so that
+/// one that was never excited has a large uncertainty instead of none.
+Posterior ComputePosterior(const ErrorModel& model, const Recording& recording,
+                           const ObservationMask& mask, const std::vector<int>& parameters,
+                           const Eigen::VectorXd& delta, const Prior& prior, double marker_sd);
+
+/// Two parameters that the data can hardly tell apart.
+struct Correlation {
+  int first = 0, second = 0;  ///< indices into the model's parameters
+  double coefficient = 0.0;
+};
+
+/// Pairs with an absolute correlation of at least `threshold`, the strongest first.
+std::vector<Correlation> StrongCorrelations(const Posterior& posterior, double threshold);
+
+}  // namespace elastocal

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/robot/error_model.hpp"
+
+namespace elastocal {
+
+/// Pose of the waist in the reference frame that brings the nominal marker positions closest to the
+/// measured ones (least squares over all postures, closed form): the starting point for T0, about
+/// which nothing is known beforehand. As good as the nominal marker positions are.
+Transform RegisterWaist(const ErrorModel& model, const Recording& recording);
+
+}  // namespace elastocal

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/io/summary.hpp"
+
+namespace elastocal::cli {
+
+struct CalibrateOptions {
+  CommonOptions common;
+  std::string project, recording, output;
+  int folds = 0;
+  std::string zero_offsets = "origin";
+};
+
+/// Calibrates, prints the tables and writes the output folder; nothing is written before everything
+/// has been computed. The run is returned through `run` where that is not null.
+int RunCalibration(const CalibrateOptions& options, CalibrationRun* run = nullptr);
+
+}  // namespace elastocal::cli

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace elastocal::cli {
+
+/// Exit codes of the program.
+enum ExitCode {
+  kFine = 0,
+  kUsage = 2,
+  kBadInput = 3,
+  kNotConverged = 4,  ///< or infeasible
+  kInternal = 1,      ///< a defect of the program
+};
+
+/// Options that every command has.
+struct CommonOptions {
+  std::string json_file;
+  std::uint64_t seed = 1;
+  bool quiet = false;
+};
+
+void AddCommonOptions(CLI::App& command, CommonOptions& options);
+
+/// What a parsed command line is to do; the result is the exit code.
+using Action = std::function<int()>;
+
+/// Each adds its command; `action` is set when the command is on the command line.
+void AddInspect(CLI::App& app, Action& action);
+void AddCalibrate(CLI::App& app, Action& action);
+void AddValidate(CLI::App& app, Action& action);
+void AddDemo(CLI::App& app, Action& action);
+
+}  // namespace elastocal::cli

@@ -1,0 +1,59 @@
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "elastocal/cli/commands.hpp"
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal::cli {
+
+void AddCommonOptions(CLI::App& command, CommonOptions& options) {
+  command.add_option("--json", options.json_file, "Also write the results to this file, as JSON");
+  command.add_option("--seed", options.seed, "Seed of everything that is drawn at random")
+      ->capture_default_str();
+  command.add_flag("--quiet,-q", options.quiet, "Print nothing but errors");
+}
+
+namespace {
+
+int Run(int argc, char** argv) {
+  CLI::App app("Elasto-geometric calibration of humanoid robots from marker positions.");
+  app.name("elastocal");
+  app.set_version_flag("--version", ELASTOCAL_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 fine, 2 usage, 3 bad input, 4 not converged or infeasible.\n"
+      "Example: elastocal demo");
+  Action action;
+  AddInspect(app, action);
+  AddCalibrate(app, action);
+  AddValidate(app, action);
+  AddDemo(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kFine : kUsage;
+  }
+  try {
+    return action();
+  } catch (const InputError& error) {
+    spdlog::error("{}", error.what());
+    return kBadInput;
+  }
+}
+
+}  // namespace
+}  // namespace elastocal::cli
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("elastocal"));
+  spdlog::set_pattern("elastocal: %^%l%$: %v");
+  try {
+    return elastocal::cli::Run(argc, argv);
+  } catch (const std::exception& error) {
+    spdlog::critical("{}", error.what());
+    return elastocal::cli::kInternal;
+  }
+}

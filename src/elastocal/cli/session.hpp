@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/posture_table.hpp"
+#include "elastocal/io/project.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+
+namespace elastocal::cli {
+
+/// A project with a recording: what calibrate, validate and demo begin with.
+struct Session {
+  Project project;
+  Recording recording;   ///< without markers that were never seen
+  ErrorModel model;      ///< with the recording's markers
+  BaseParameters base;
+  std::vector<std::string> warnings;  ///< of reading, and of special marker positions
+};
+
+/// Reads both and decides the base parameters. Throws InputError.
+Session OpenSession(const std::filesystem::path& project, const std::filesystem::path& recording);
+
+/// Shows progress on stderr where that is a terminal and the user does not want quiet.
+Progress TerminalProgress(const std::string& what, bool quiet);
+
+/// Prints to stdout unless quiet.
+void Print(bool quiet, const std::string& text);
+
+/// Prints warnings to stderr unless quiet.
+void PrintWarnings(bool quiet, const std::vector<std::string>& warnings);
+
+/// A parameter in the units that people use: mm and deg.
+double InUserUnits(const Parameter& parameter, double value);
+const char* UserUnit(const Parameter& parameter);
+
+/// "a, b, c" of parameter names, the coordinates of a marker and the constants of a joint together:
+/// "arm_left_7_joint.{theta,r}".
+std::string JoinNames(const std::vector<Parameter>& parameters, const std::vector<int>& which);
+
+}  // namespace elastocal::cli

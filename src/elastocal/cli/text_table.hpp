@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace elastocal::cli {
+
+/// A table for a terminal: the first column to the left, the others to the right.
+class TextTable {
+ public:
+  explicit TextTable(std::vector<std::string> header);
+  void Add(std::vector<std::string> row);
+  /// Rows indented by two spaces, each ended by a line feed.
+  std::string Render() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace elastocal::cli

@@ -1,0 +1,112 @@
+#include "elastocal/identifiability/base_parameters.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "elastocal/identifiability/regressor.hpp"
+#include "elastocal/math/priority_qr.hpp"
+#include "elastocal/math/random.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Rank of a kind in the paper's order; lower comes first.
+int PriorityClass(ParameterKind kind, ExternalPriority external) {
+  switch (kind) {
+    case ParameterKind::kTheta:
+      return 0;
+    case ParameterKind::kR:
+    case ParameterKind::kD:
+    case ParameterKind::kB:
+      return 1;
+    case ParameterKind::kAlpha:
+    case ParameterKind::kBeta:
+    case ParameterKind::kGamma:
+      return 2;
+    case ParameterKind::kBase:
+      return external == ExternalPriority::kFirst ? -2 : 3;
+    default:
+      return external == ExternalPriority::kFirst ? -1 : 4;
+  }
+}
+
+int TheoreticalCount(const ErrorModel& model) {
+  int count = 3 * model.marker_count();
+  for (int joint : model.active_joints) {
+    count += model.tree.joints[joint].type == JointType::kRevolute ? 4 : 2;
+  }
+  return count;
+}
+
+std::vector<int> Sorted(std::vector<int> values) {
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+/// Positions of `values` after sorting, so that a matrix can be put into the same order.
+std::vector<int> SortingOrder(const std::vector<int>& values) {
+  std::vector<int> order(values.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return values[a] < values[b]; });
+  return order;
+}
+
+}  // namespace
+
+Eigen::MatrixXd NominalFactor(const ErrorModel& model, const IdentifiabilityOptions& options) {
+  Random random(options.seed);
+  Eigen::MatrixXd q(options.postures, model.tree.coordinate_count());
+  for (int i = 0; i < options.postures; ++i) q.row(i) = RandomPosture(model.tree, random);
+  const Eigen::VectorXd nominal = Eigen::VectorXd::Zero(model.parameter_count());
+  return RegressorFactor(model, ApplyErrors(model, nominal), q, {});
+}
+
+BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd& factor,
+                                  const IdentifiabilityOptions& options) {
+  BaseParameters base;
+  base.held = MatchParameters(model.parameters, options.hold);
+  std::vector<int> order;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (!std::binary_search(base.held.begin(), base.held.end(), i)) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return PriorityClass(model.parameters[a].kind, options.external) <
+           PriorityClass(model.parameters[b].kind, options.external);
+  });
+
+  const PriorityQrResult qr = PriorityQr(factor(Eigen::all, order), options.tolerance);
+  std::vector<int> kept, dropped;
+  for (int i : qr.kept) {
+    kept.push_back(order[i]);
+    base.smallest_kept = std::min(base.smallest_kept, qr.remainder[i]);
+  }
+  for (int i : qr.dropped) {
+    dropped.push_back(order[i]);
+    base.largest_dropped = std::max(base.largest_dropped, qr.remainder[i]);
+  }
+  base.regrouping = qr.regrouping(SortingOrder(kept), SortingOrder(dropped));
+  base.kept = Sorted(kept);
+  base.dropped = Sorted(dropped);
+  base.theoretical_count = TheoreticalCount(model);
+  return base;
+}
+
+BaseParameters FindBaseParameters(const ErrorModel& model, const IdentifiabilityOptions& options) {
+  return FindBaseParameters(model, NominalFactor(model, options), options);
+}
+
+std::vector<int> LostBySpecialMarkers(const ErrorModel& model,
+                                      const IdentifiabilityOptions& options) {
+  ErrorModel generic = model;
+  Random random(options.seed);
+  const double shift = 0.05 * RobotSize(model.tree);
+  for (Marker& marker : generic.markers) marker.p_link_marker += random.NormalVector(3, shift);
+  const std::vector<int> with_special = FindBaseParameters(model, options).kept;
+  const std::vector<int> with_generic = FindBaseParameters(generic, options).kept;
+  std::vector<int> lost;
+  std::set_difference(with_generic.begin(), with_generic.end(), with_special.begin(),
+                      with_special.end(), std::back_inserter(lost));
+  return lost;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace elastocal {
+
+/// Observability indices of a set of postures from the singular values sigma_1 >= ... >= sigma_Nb
+/// of its regressor's identifiable columns. O1 is the paper's eq. 12; the others as numbered by Sun
+/// and Hollerbach (2008), without division by the number of postures.
+struct ObservabilityIndices {
+  double o1 = 0.0;  ///< (sigma_1 ... sigma_Nb)^(1/Nb) / sqrt(postures)
+  double o2 = 0.0;  ///< sigma_Nb / sigma_1
+  double o3 = 0.0;  ///< sigma_Nb
+  double o4 = 0.0;  ///< sigma_Nb^2 / sigma_1
+  double o5 = 0.0;  ///< 1 / (1 / sigma_1 + ... + 1 / sigma_Nb)
+};
+
+/// `singular_values` in any order, none negative; zero ones (rank lost) make all indices zero.
+ObservabilityIndices ComputeObservability(const Eigen::VectorXd& singular_values, int postures);
+
+/// How well a recording excites the parameters. In columns of unit norm: a condition number says
+/// how nearly dependent they are, not which units they are given in.
+struct Excitation {
+  double condition_all = 0.0;   ///< of all columns; infinite where they are dependent
+  double condition_base = 0.0;  ///< of the identifiable ones
+  ObservabilityIndices indices; ///< of the identifiable columns as they are (m/rad, m/m)
+  /// For each identifiable parameter the standard deviation that it would have from this recording
+  /// alone if one marker coordinate had `marker_sd`: rad or m; infinite where it is not excited.
+  Eigen::VectorXd parameter_sd;
+};
+
+/// `factor` as RegressorFactor returns it; `base` the identifiable columns.
+Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int>& base,
+                            int postures, double marker_sd);
+
+}  // namespace elastocal

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/robot/error_model.hpp"
+#include "elastocal/robot/kinematics.hpp"
+
+namespace elastocal {
+
+/// Upper-triangular (or shorter) matrix R with R^T R = Psi^T Psi, where Psi stacks the generalized
+/// Jacobians (eq. 4) of all markers over the postures in the rows of `q`, for all parameters of the
+/// model. Linear relations between columns of Psi are those of R, at R's small size.
+///
+/// By Householder QR, first marker by marker (each depends on few columns), then of what remains:
+/// the condition number is not squared.
+///
+/// `seen(i, m)` false leaves marker m out of posture i; an empty array means all are seen.
+Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometry,
+                                const Eigen::MatrixXd& q,
+                                const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& seen);
+
+}  // namespace elastocal

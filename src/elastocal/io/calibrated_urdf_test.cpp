@@ -1,0 +1,163 @@
+#include "elastocal/io/calibrated_urdf.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+using Kind = ParameterKind;
+
+const std::map<Kind, double> kErrors = {{Kind::kTheta, 0.02}, {Kind::kR, 2e-3},
+                                        {Kind::kD, 2e-3},     {Kind::kB, 2e-3},
+                                        {Kind::kAlpha, 0.01}, {Kind::kBeta, 0.01},
+                                        {Kind::kGamma, 0.01}};
+
+/// A "calibration" with drawn errors on every joint parameter: nothing needs to be estimated here.
+CalibrationResult WithErrors(const RobotTree& tree, std::uint64_t seed) {
+  std::vector<Marker> markers;  // one on every link: all joints are in the model
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    markers.push_back({"m" + std::to_string(i), static_cast<int>(i), {0.1, 0.02, -0.03}});
+  }
+  CalibrationResult result;
+  result.model = MakeErrorModel(tree, markers);
+  std::vector<int> all;
+  for (int i = 0; i < result.model.parameter_count(); ++i) all.push_back(i);
+  result.delta = DrawErrors(result.model, all, kErrors, seed);
+  return result;
+}
+
+class CalibratedUrdfOf : public ::testing::TestWithParam<const char*> {
+ protected:
+  std::string urdf_ = ReadFile(SourceFile(GetParam()));
+  RobotTree tree_ = ParseUrdf(urdf_, "urdf");
+};
+
+/// Poses of the links, waist to link, differ by less than rounding over a chain of ten joints.
+void ExpectSamePoses(const CalibrationResult& calibration, const RobotTree& written,
+                     const std::map<std::string, double>& encoder_offsets) {
+  const ErrorModel& model = calibration.model;
+  const Geometry geometry = ApplyErrors(model, calibration.delta);
+  Random random(4);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Eigen::VectorXd q = RandomPosture(model.tree, random);
+    Eigen::VectorXd q_written = q;
+    for (const auto& [joint, offset] : encoder_offsets) {
+      q_written[model.tree.joints[FindJoint(model.tree, joint)].coordinate] += offset;
+    }
+    const auto T_ref_body = BodyTransforms(model, geometry, q);
+    const auto T_root_link = LinkTransforms(written, q_written);
+    for (std::size_t i = 0; i < written.links.size(); ++i) {
+      const Transform expected = T_ref_body[0].inverse() * T_ref_body[written.links[i].body] *
+                                 model.tree.links[i].T_body_link;
+      EXPECT_LT((expected.matrix() - T_root_link[i].matrix()).cwiseAbs().maxCoeff(), 1e-12)
+          << written.links[i].name;
+    }
+  }
+}
+
+TEST_P(CalibratedUrdfOf, EqualsTheCalibratedModel) {
+  const CalibrationResult calibration = WithErrors(tree_, 1);
+  const CalibratedUrdf calibrated =
+      MakeCalibratedUrdf(urdf_, "urdf", calibration, ZeroOffsets::kOrigin);
+  EXPECT_TRUE(calibrated.encoder_offsets.empty());
+  ExpectSamePoses(calibration, ParseUrdf(calibrated.text, "written"), {});
+}
+
+TEST_P(CalibratedUrdfOf, NoErrorsNoChange) {
+  CalibrationResult calibration = WithErrors(tree_, 1);
+  calibration.delta.setZero();
+  const CalibratedUrdf calibrated =
+      MakeCalibratedUrdf(urdf_, "urdf", calibration, ZeroOffsets::kOrigin);
+  EXPECT_EQ(calibrated.text, urdf_);
+  EXPECT_TRUE(calibrated.warnings.empty());
+}
+
+TEST_P(CalibratedUrdfOf, XacroOffsetsAddUpToTheCalibratedOrigins) {
+  const CalibratedUrdf calibrated =
+      MakeCalibratedUrdf(urdf_, "urdf", WithErrors(tree_, 2), ZeroOffsets::kOrigin);
+  const std::string xacro = MakeXacroOffsets(calibrated);
+  for (const auto& [joint, origin] : calibrated.calibrated) {
+    const auto& nominal = calibrated.nominal.at(joint);
+    // Small changes of the origin are small changes of each component.
+    EXPECT_LT((origin.xyz - nominal.xyz).norm(), 0.05) << joint;
+    EXPECT_LT((origin.rpy - nominal.rpy).cwiseAbs().maxCoeff(), 0.3) << joint;
+    const std::string property = "name=\"" + joint + "_yaw_offset\" value=\"";
+    const std::size_t at = xacro.find(property);
+    ASSERT_NE(at, std::string::npos) << joint;
+    EXPECT_EQ(std::stod(xacro.substr(at + property.size())), origin.rpy.z() - nominal.rpy.z());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, CalibratedUrdfOf,
+                         ::testing::Values("models/talos/talos.urdf", "tests/robots/arm6.urdf",
+                                           "tests/robots/mini_humanoid.urdf"),
+                         [](const auto& robot) { return std::to_string(robot.index); });
+
+TEST(CalibratedUrdf, EncoderOffsetsCompleteTheOrigins) {
+  const std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  const RobotTree tree = ParseUrdf(urdf, "urdf");
+  const CalibrationResult calibration = WithErrors(tree, 3);
+  const CalibratedUrdf calibrated =
+      MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kEncoder);
+  EXPECT_EQ(calibrated.encoder_offsets.size(), 30u);
+  const int theta = FindParameter(calibration.model.parameters, "arm_left_4_joint.theta");
+  EXPECT_EQ(calibrated.encoder_offsets.at("arm_left_4_joint"), calibration.delta[theta]);
+  ExpectSamePoses(calibration, ParseUrdf(calibrated.text, "written"), calibrated.encoder_offsets);
+  EXPECT_NE(MakeXacroOffsets(calibrated).find("name=\"arm_left_4_joint_offset\""),
+            std::string::npos);
+}
+
+TEST(CalibratedUrdf, OnlyOriginsOfJointsWithErrorsChange) {
+  const std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  CalibrationResult calibration = WithErrors(ParseUrdf(urdf, "urdf"), 3);
+  calibration.delta.setZero();
+  calibration.delta[FindParameter(calibration.model.parameters, "leg_left_3_joint.theta")] = 0.01;
+  const CalibratedUrdf calibrated =
+      MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin);
+  ASSERT_EQ(calibrated.calibrated.size(), 1u);
+  // An offset of a joint about its own axis, the URDF's y: pitch, and nothing else.
+  const UrdfOrigin& origin = calibrated.calibrated.at("leg_left_3_joint");
+  EXPECT_LT((origin.rpy - Eigen::Vector3d(0.0, 0.01, 0.0)).norm(), 1e-15);
+  EXPECT_LT((origin.xyz - calibrated.nominal.at("leg_left_3_joint").xyz).norm(), 1e-15);
+  EXPECT_TRUE(calibrated.warnings.empty());
+}
+
+TEST(CalibratedUrdf, BrokenWristAndParallelAxesAreWarnedOf) {
+  const std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  CalibrationResult calibration = WithErrors(ParseUrdf(urdf, "urdf"), 3);
+  calibration.delta.setZero();
+  const auto& parameters = calibration.model.parameters;
+  calibration.delta[FindParameter(parameters, "arm_left_6_joint.d")] = 1e-3;
+  calibration.delta[FindParameter(parameters, "leg_left_4_joint.beta")] = 0.01;
+  const CalibratedUrdf calibrated =
+      MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin);
+  ASSERT_EQ(calibrated.warnings.size(), 2u);
+  std::string all = calibrated.warnings[0] + calibrated.warnings[1];
+  EXPECT_NE(all.find("arm_left_5_joint, arm_left_6_joint, arm_left_7_joint"), std::string::npos);
+  EXPECT_NE(all.find("1.000 mm"), std::string::npos) << all;
+  EXPECT_NE(all.find("leg_left_3_joint, leg_left_4_joint"), std::string::npos);
+  EXPECT_NE(all.find("0.573 deg"), std::string::npos) << all;
+}
+
+// The gate: a text that is not the one that the model was read from must not pass.
+TEST(CalibratedUrdf, ADifferenceToTheModelIsAnError) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  const CalibrationResult calibration = WithErrors(ParseUrdf(urdf, "urdf"), 3);
+  const std::size_t at = urdf.find("<axis xyz=\"0 1 0\"/>");
+  ASSERT_NE(at, std::string::npos);
+  urdf.replace(at, 19, "<axis xyz=\"0 1 1e-6\"/>");
+  EXPECT_THROW(MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,82 @@
+#include "elastocal/io/calibration_file.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class CalibrationFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const RobotTree tree = ReadUrdf(SourceFile("tests/robots/arm6.urdf"));
+    const int tool = FindLink(tree, "tool");
+    const ErrorModel model = MakeErrorModel(tree, {{"A", tool, {0.05, 0.02, 0.03}},
+                                                   {"B", tool, {-0.04, 0.05, 0.06}}});
+    base_ = FindBaseParameters(model, {});
+    const Eigen::VectorXd truth =
+        DrawErrors(model, base_.kept, {{ParameterKind::kTheta, 0.01}, {ParameterKind::kD, 1e-3}}, 1);
+    result_ = Calibrate(model, MakeSyntheticRecording(model, truth, {.postures = 40}), base_,
+                        ModelKind::kGeometric, {});
+    file_ = std::filesystem::path(::testing::TempDir()) / "calibration_file_test.yaml";
+  }
+  void TearDown() override { std::filesystem::remove(file_); }
+
+  void Write(const std::string& text) { std::ofstream(file_) << text; }
+
+  BaseParameters base_;
+  CalibrationResult result_;
+  std::filesystem::path file_;
+};
+
+TEST_F(CalibrationFile, ReadsBackWhatWasWrittenToTheLastBit) {
+  Write(MakeCalibrationYaml(result_, base_, "there.csv", ZeroOffsets::kOrigin));
+  const StoredCalibration stored = ReadCalibration(file_);
+  EXPECT_EQ(stored.robot, result_.model.tree.name);
+  EXPECT_EQ(stored.recording, "there.csv");
+  int joint_parameters = 0;
+  for (int i = 0; i < result_.model.parameter_count(); ++i) {
+    const Parameter& parameter = result_.model.parameters[i];
+    if (IsExternal(parameter.kind)) continue;
+    EXPECT_EQ(stored.joint_errors.at(parameter.name), result_.delta[i]) << parameter.name;
+    ++joint_parameters;
+  }
+  EXPECT_EQ(stored.joint_errors.size(), static_cast<std::size_t>(joint_parameters));
+}
+
+TEST_F(CalibrationFile, EveryParameterHasAUnitAndAStatus) {
+  const std::string text = MakeCalibrationYaml(result_, base_, "there.csv", ZeroOffsets::kOrigin);
+  for (const Parameter& parameter : result_.model.parameters) {
+    const char* unit = parameter.unit == ParameterUnit::kRadian ? "rad" : "m";
+    EXPECT_NE(text.find("name: " + parameter.name + ", unit: " + unit + ", value: "),
+              std::string::npos)
+        << parameter.name;
+  }
+  EXPECT_NE(text.find("status: dropped, regrouped_into: {"), std::string::npos);
+}
+
+TEST_F(CalibrationFile, BadFilesAreNamedByLine) {
+  ExpectInputError([&] { ReadCalibration("no/such/file.yaml"); }, {"no/such/file.yaml"});
+  Write("format: [1\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":"});
+  Write("- 1\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "format"});
+  Write("format: something-else\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "something-else"});
+  Write("format: elastocal-calibration-1\nrobot: r\nrecording: f\nparameters:\n"
+        "  - {name: a.theta, value: much}\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":5", "number"});
+  Write("format: elastocal-calibration-1\nrobot: [r]\nrecording: f\nparameters: []\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":2"});
+}
+
+}  // namespace
+}  // namespace elastocal

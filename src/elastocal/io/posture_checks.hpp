@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+
+namespace elastocal {
+
+/// Checks that a recording can be what it says it is: throws InputError for two markers with
+/// identical numbers, for positions that look like millimetres (they range over more than three
+/// times the robot's size) and joints that look like degrees (beyond two turns).
+void CheckPlausible(const Recording& recording, const RobotTree& tree);
+
+/// One sentence for each recorded joint that is beyond its limits by more than a degree or 5 mm,
+/// naming the worst line and how many there are.
+std::vector<std::string> LimitWarnings(const Recording& recording, const RobotTree& tree);
+
+}  // namespace elastocal

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/measurement/recording.hpp"
+
+namespace elastocal {
+
+/// A recording with what is odd about it but no reason to refuse it.
+struct PostureTable {
+  Recording recording;
+  std::vector<std::string> markers_not_recorded;  ///< markers of the project without columns
+  std::vector<std::string> warnings;              ///< joints beyond their limits, by line
+};
+
+/// Reads a table of static postures: CSV with a header row; one row a posture; columns named by the
+/// project (default: URDF joint names and NAME_x, NAME_y, NAME_z); m and rad. An empty marker cell
+/// means not seen. Throws InputError naming file, line and column: missing or unknown column (with
+/// the nearest known one), text or NaN where a number belongs, no rows, a line above 1 MiB, two
+/// markers with identical columns, millimetres given as metres (judged by the robot's size).
+PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project);
+
+/// The same from a stream; `source` names it in messages.
+PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
+                              const Project& project);
+
+/// Writes a recording as such a table, under the default column names.
+void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
+                       const RobotTree& tree);
+
+}  // namespace elastocal

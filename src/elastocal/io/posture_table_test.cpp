@@ -1,0 +1,214 @@
+#include "elastocal/io/posture_table.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Markers A and B on the forearm, which rail, turret, shoulder and elbow move, T on the tool.
+Project ArmProject(const std::string& recording = "{}") {
+  return ParseProject(
+      "robot: {urdf: arm6.urdf}\n"
+      "markers:\n"
+      "  single:\n"
+      "    - {name: A, link: forearm, position_mm: [10, 20, 30]}\n"
+      "    - {name: B, link: forearm, position_mm: [-10, 20, 30]}\n"
+      "    - {name: T, link: tool, position_mm: [50, 20, 30]}\n"
+      "recording: " +
+          recording,
+      SourceFile("tests/robots/p.yaml"));
+}
+
+const std::string kHeader = "t,A_x,A_y,A_z,rail_joint,turret_joint,shoulder_joint,elbow_joint\n";
+
+PostureTable Read(const std::string& text, const Project& project = ArmProject()) {
+  std::istringstream stream(text);
+  return ReadPostureTable(stream, "t.csv", project);
+}
+
+void ExpectError(const std::string& text, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { Read(text); }, parts);
+}
+
+TEST(PostureTable, ReadsPostures) {
+  const PostureTable table =
+      Read(kHeader + "1.5,1,2,3,0.1,0.2,0.3,0.4\n2.5,1.5,2.5,-3e-1,-0.1,-0.2,-0.3,-0.4\n");
+  const Recording& recording = table.recording;
+  EXPECT_EQ(recording.source, "t.csv");
+  EXPECT_EQ(recording.marker_names, std::vector<std::string>{"A"});
+  ASSERT_EQ(recording.posture_count(), 2);
+  EXPECT_EQ(MarkerPosition(recording, 1, 0), Eigen::Vector3d(1.5, 2.5, -0.3));
+  const RobotTree tree = ArmProject().tree;
+  const int elbow = tree.joints[FindJoint(tree, "elbow_joint")].coordinate;
+  EXPECT_EQ(recording.q(0, elbow), 0.4);
+  EXPECT_EQ(recording.q.cols(), tree.coordinate_count());
+  EXPECT_EQ(recording.time_s, Eigen::Vector2d(1.5, 2.5));
+  EXPECT_EQ(recording.line, (std::vector<int>{2, 3}));
+  EXPECT_EQ(table.markers_not_recorded, (std::vector<std::string>{"B", "T"}));
+  EXPECT_EQ(
+      recording.joints_not_recorded,
+      (std::vector<std::string>{"roll_joint", "bend_joint", "flange_joint", "finger_left_joint"}));
+  EXPECT_TRUE(table.warnings.empty());
+}
+
+TEST(PostureTable, ReadsRenamedColumnsInAnyOrder) {
+  const Project project = ArmProject(
+      "{columns: {time: stamp, markers: {A: [x, y, z]}, joints: {elbow_joint: q4}}, "
+      "ignore: [note, B_x], not_recorded_mm: {rail_joint: 250}}");
+  const PostureTable table = Read(
+      "\xEF\xBB\xBF"
+      "\"q4\";note;z;y;x;turret_joint;shoulder_joint;B_x\r\n"
+      "0.4;any text;3;2;1;0.2;0.3;\r\n\r\n",
+      project);
+  EXPECT_EQ(MarkerPosition(table.recording, 0, 0), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(table.recording.time_s.size(), 0);
+  const auto q = [&](const std::string& joint) {
+    return table.recording.q(0, project.tree.joints[FindJoint(project.tree, joint)].coordinate);
+  };
+  EXPECT_EQ(q("elbow_joint"), 0.4);
+  EXPECT_EQ(q("rail_joint"), 0.25);
+  EXPECT_EQ(table.recording.joints_not_recorded[0], "rail_joint");
+}
+
+TEST(PostureTable, EmptyMarkerCellsMeanNotSeen) {
+  const std::string header =
+      "A_x,A_y,A_z,B_x,B_y,B_z,rail_joint,turret_joint,shoulder_joint,"
+      "elbow_joint,finger_right_joint\n";
+  const PostureTable table = Read(header + ",,,,,,0,0,0,0,0\n1,2,3,,,,0,0,0,0,0\n");
+  EXPECT_EQ(table.recording.marker_names, std::vector<std::string>{"A"});
+  EXPECT_FALSE(Seen(table.recording, 0, 0));
+  EXPECT_TRUE(Seen(table.recording, 1, 0));
+  EXPECT_EQ(table.markers_not_recorded, (std::vector<std::string>{"B", "T"}));
+  ExpectError(header + ",,,,,,0,0,0,0,0\n", {"t.csv", "no marker was seen"});
+  ExpectError(header + "1,,3,,,,0,0,0,0,0\n", {"t.csv:2: ", "'A_y'", "found nothing"});
+}
+
+TEST(PostureTable, NamesWrongColumns) {
+  ExpectError("", {"t.csv", "empty"});
+  ExpectError("A_x,A_y,A_zz\n", {"t.csv:1: ", "'A_zz'", "did you mean 'A_z'", "recording.ignore"});
+  ExpectError("A_x,A_y,A_x,A_z\n", {"t.csv:1: ", "'A_x' comes twice"});
+  ExpectError("A_x,A_z,rail_joint\n", {"t.csv:1: ", "'A_y' of marker 'A' is missing"});
+  ExpectError("t,rail_joint\n", {"t.csv:1: ", "no column of any marker", "'A_x'"});
+  ExpectError("A_x,A_y,A_z,rail_joint,turret_joint,shoulder_joint\n",
+              {"t.csv:1: ", "'elbow_joint'", "moves marker 'A'", "not_recorded_deg"});
+  ExpectError("A_x,A_y,A_z\n", {"'rail_joint'", "not_recorded_mm"});
+  ExpectError("0.1,0.2\n", {"t.csv:1: ", "number '0.1'", "header row"});
+  ExpectInputError([] { Read("x\n", ArmProject("{columns: {time: A_x}}")); },
+                   {"p.yaml", "'A_x' stands for two things"});
+}
+
+TEST(PostureTable, NamesWrongCells) {
+  ExpectError(kHeader, {"t.csv", "no row"});
+  ExpectError(kHeader + "1,1,2,3,0.1,0.2,0.3\n", {"t.csv:2: ", "7 cells", "8"});
+  const auto row = [](const std::string& x, const std::string& q) {
+    return kHeader + "1,1,2,3,0,0,0,0\n1," + x + ",2,3,0,0,0," + q + "\n";
+  };
+  ExpectError(row("abc", "0"), {"t.csv:3: ", "'A_x'", "'abc'", "finite number"});
+  ExpectError(row("nan", "0"), {"t.csv:3: ", "'A_x'", "'nan'"});
+  ExpectError(row("1", "NaN"), {"t.csv:3: ", "'elbow_joint'", "'NaN'"});
+  ExpectError(row("1", "inf"), {"t.csv:3: ", "'elbow_joint'", "'inf'"});
+  ExpectError(row("1", ""), {"t.csv:3: ", "'elbow_joint'", "found nothing"});
+  ExpectError(row("\"1,5\"", "0"), {"t.csv:3: ", "'1,5'", "decimal point"});
+}
+
+TEST(PostureTable, SuspectsMillimetresAndDegrees) {
+  // The arm reaches less than 2 m; a hand that moves by 400 mm is not 400 m away.
+  ExpectError(kHeader + "1,100,2,3,0,0,0,0\n1,500,2,3,0,0,0,0.1\n",
+              {"t.csv", "marker 'A'", "400 m along x", "millimetres"});
+  EXPECT_NO_THROW(Read(kHeader + "1,1000,2,3,0,0,0,0\n1,1000.4,2,3,0,0,0,0.1\n"));
+  ExpectError(kHeader + "1,1,2,3,0,0,0,0\n1,1,2,3,0,0,0,-45\n",
+              {"t.csv:3: ", "'elbow_joint'", "-45", "degrees"});
+}
+
+TEST(PostureTable, WarnsOfJointsBeyondTheirLimits) {
+  // elbow: +-2.3 rad; rail: -0.5 to 0.6 m. A degree and 5 mm are allowed.
+  const PostureTable table =
+      Read(kHeader + "1,1,2,3,0.604,0,0,2.31\n1,1,2,3,0.7,0,0,2.4\n1,1,2,3,0,0,0,-2.5\n");
+  ASSERT_EQ(table.warnings.size(), 2u);
+  EXPECT_EQ(table.warnings[0],
+            "t.csv:3: joint 'rail_joint' is at 0.7 m, 100 mm beyond its limit of 0.6 m");
+  EXPECT_EQ(table.warnings[1],
+            "t.csv:4: joint 'elbow_joint' is at -2.5 rad, 11.4592 degrees beyond its limit of -2.3 "
+            "rad (the worst of 2 postures beyond it)");
+}
+
+TEST(PostureTable, RefusesIdenticalMarkers) {
+  const std::string header =
+      "A_x,A_y,A_z,B_x,B_y,B_z,rail_joint,turret_joint,shoulder_joint,elbow_joint\n";
+  ExpectError(header + "1,2,3,1,2,3,0,0,0,0\n4,2,3,4,2,3,0,0,0,1\n,,,,,,0,0,0,1\n",
+              {"t.csv", "'A' and 'B'", "identical"});
+  EXPECT_NO_THROW(Read(header + "1,2,3,1,2,3,0,0,0,0\n4,2,3,4,2,3.1,0,0,0,1\n"));
+}
+
+/// Zeros without end, in a few shapes: each is refused by what comes first.
+TEST(PostureTable, RefusesALargeFileOfZeros) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "zeros.csv";
+  const auto write = [&](const std::string& head, const std::string& piece) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << head;
+    std::string block;
+    while (block.size() < 1 << 20) block += piece;
+    for (int i = 0; i < 200; ++i) stream << block;
+  };
+  const auto read = [&] { ReadPostureTable(file, ArmProject()); };
+  write("", "0");
+  ExpectInputError(read, {"zeros.csv:1: ", "1 MiB"});
+  write("", std::string(1, '\0'));
+  ExpectInputError(read, {"zeros.csv:1: ", "NUL"});
+  write("", "0\n");
+  ExpectInputError(read, {"zeros.csv:1: ", "header row"});
+  write(kHeader, "0\n");
+  ExpectInputError(read, {"zeros.csv:2: ", "1 cells"});
+  write(kHeader, "0,0,0,0,0,0,0,0\n");
+  ExpectInputError(read, {"zeros.csv:100002: ", "more than 100000 rows"});
+  std::filesystem::remove(file);
+}
+
+TEST(PostureTable, NamesAFileThatCannotBeRead) {
+  ExpectInputError([] { ReadPostureTable("nowhere/t.csv", ArmProject()); },
+                   {"nowhere/t.csv", "there is no such file"});
+  ExpectInputError(
+      [] { ReadPostureTable(std::filesystem::path(testing::TempDir()), ArmProject()); },
+      {"cannot be read"});
+}
+
+TEST(PostureTable, WritesWhatItReads) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "written.csv";
+  const Project project = ArmProject();
+  const Recording first =
+      Read(kHeader + "1.5,,,,0.1,0.2,0.3,0.4\n2.5,0.1,0.333333333333333315,-3e-1,-0.1,0,0,0\n")
+          .recording;
+  WritePostureTable(file, first, project.tree);
+  const Recording second = ReadPostureTable(file, project).recording;
+  EXPECT_EQ(second.marker_names, first.marker_names);
+  EXPECT_EQ(second.q, first.q);
+  EXPECT_EQ(second.time_s, first.time_s);
+  EXPECT_EQ(second.joints_not_recorded, first.joints_not_recorded);
+  EXPECT_FALSE(Seen(second, 0, 0));
+  EXPECT_EQ(second.markers.row(1), first.markers.row(1));
+  std::filesystem::remove(file);
+}
+
+TEST(PostureTable, ReadsTheMeasuredRecording) {
+  const auto file = SharedFile("data/talos_left_arm_mocap/talos_left_arm_02_10_contact.csv");
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+  const Project project = ReadProject(SourceFile("examples/talos_left_arm/project.yaml"));
+  const PostureTable table = ReadPostureTable(file, project);
+  EXPECT_EQ(table.recording.posture_count(), 61);
+  EXPECT_EQ(table.recording.marker_count(), 1);
+  EXPECT_EQ(table.recording.joints_not_recorded.size(), 21u);
+  EXPECT_TRUE(table.warnings.empty());
+}
+
+}  // namespace
+}  // namespace elastocal

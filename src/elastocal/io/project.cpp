@@ -1,0 +1,149 @@
+#include "elastocal/io/project.hpp"
+
+#include <algorithm>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/project_sections.hpp"
+#include "elastocal/io/text.hpp"
+#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+bool Contains(const std::vector<int>& values, int value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+/// The path that a file names, as seen from the project file.
+std::filesystem::path Resolve(const std::filesystem::path& project_file, const std::string& path) {
+  return (project_file.parent_path() / path).lexically_normal();
+}
+
+void ReadRobot(const YamlValue& section, Project& project) {
+  section.ExpectKeys({"urdf"});
+  const YamlValue urdf = section.Get("urdf");
+  project.urdf = Resolve(project.file, urdf.Text());
+  std::error_code error;
+  if (!std::filesystem::exists(project.urdf, error)) {
+    urdf.Fail("there is no file " + project.urdf.string());
+  }
+  project.tree = ReadUrdf(project.urdf);
+}
+
+void CheckChain(const YamlValue& value, const Chain& chain, const RobotTree& tree) {
+  const Link& from = tree.links[chain.from_link];
+  const Link& tip = tree.links[chain.tip_link];
+  if (from.body == tip.body) {
+    value.Fail("no joint moves link " + Quote(tip.name) + " against link " + Quote(from.name));
+  }
+  if (from.body > 0 && !Contains(JointsToBody(tree, tip.body), from.body - 1)) {
+    value.Fail("link " + Quote(from.name) + " does not carry link " + Quote(tip.name));
+  }
+}
+
+void ReadChains(const YamlValue& section, Project& project) {
+  for (const YamlValue& value : section.Items()) {
+    value.ExpectKeys({"name", "from", "tip"});
+    Chain chain;
+    chain.name = value.Get("name").Text();
+    for (const Chain& other : project.chains) {
+      if (other.name == chain.name) value.Fail("a second chain of the name " + Quote(chain.name));
+    }
+    if (const auto from = value.Find("from")) chain.from_link = LinkNamedBy(*from, project.tree);
+    chain.tip_link = LinkNamedBy(value.Get("tip"), project.tree);
+    CheckChain(value, chain, project.tree);
+    project.chains.push_back(std::move(chain));
+  }
+}
+
+void ReadTorqueSensors(const YamlValue& section, Project& project) {
+  for (const YamlValue& value : section.Items()) {
+    const int joint = JointNamedBy(value, project.tree);
+    if (Contains(project.torque_sensors, joint)) value.Fail("the joint comes twice");
+    project.torque_sensors.push_back(joint);
+  }
+}
+
+/// Patterns can only be checked when joints and markers are known.
+void CheckHeld(const YamlValue& section, const Project& project) {
+  const auto hold = section.Find("hold");
+  if (!hold || project.identifiability.hold.empty()) return;
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  for (const YamlValue& pattern : hold->Items()) {
+    const std::string text = pattern.Text();
+    pattern.Expect(std::count(text.begin(), text.end(), '*') <= 4, "a pattern of at most four *");
+    try {
+      MatchParameters(model.parameters, {text});
+    } catch (const InputError& error) {
+      pattern.Fail(error.what());
+    }
+  }
+}
+
+void ReadSettings(const YamlValue& root, Project& project) {
+  if (const auto section = root.Find("placement")) {
+    ReadPlacementOptions(*section, project.placement);
+  }
+  if (const auto section = root.Find("identifiability")) {
+    ReadIdentifiabilityOptions(*section, project.identifiability);
+    CheckHeld(*section, project);
+  }
+  if (const auto section = root.Find("calibration")) {
+    ReadCalibrationOptions(*section, project.calibration);
+  }
+}
+
+}  // namespace
+
+int LinkNamedBy(const YamlValue& value, const RobotTree& tree) {
+  const std::string name = value.Text();
+  try {
+    return FindLink(tree, name);
+  } catch (const InputError& error) {
+    value.Fail(error.what());
+  }
+}
+
+int JointNamedBy(const YamlValue& value, const RobotTree& tree) {
+  const std::string name = value.Text();
+  try {
+    return FindJoint(tree, name);
+  } catch (const InputError& error) {
+    value.Fail(error.what());
+  }
+}
+
+Project ReadProject(const std::filesystem::path& file) {
+  return ParseProject(ReadFile(file), file);
+}
+
+Project ParseProject(const std::string& text, const std::filesystem::path& file) {
+  const YamlValue root = YamlValue::Parse(text, file.string());
+  root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "recording", "placement",
+                   "identifiability", "calibration"});
+  Project project;
+  project.file = file;
+  ReadRobot(root.Get("robot"), project);
+  if (const auto section = root.Find("chains")) ReadChains(*section, project);
+  ReadMarkers(root.Get("markers"), project);
+  if (const auto section = root.Find("torque_sensors")) ReadTorqueSensors(*section, project);
+  if (const auto section = root.Find("recording")) ReadRecordingColumns(*section, project);
+  ReadSettings(root, project);
+  return project;
+}
+
+std::vector<std::string> ChainMarkers(const Project& project, const Chain& chain) {
+  const RobotTree& tree = project.tree;
+  std::vector<int> joints = JointsToBody(tree, tree.links[chain.tip_link].body);
+  // Of the joints to the tip those count that come after the body of `from`.
+  const auto from = std::find(joints.begin(), joints.end(), tree.links[chain.from_link].body - 1);
+  if (from != joints.end()) joints.erase(joints.begin(), from + 1);
+  std::vector<std::string> names;
+  for (const Marker& marker : project.markers) {
+    if (Contains(joints, tree.links[marker.link].body - 1)) names.push_back(marker.name);
+  }
+  return names;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/options.hpp"
+#include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/robot/error_model.hpp"
+
+namespace elastocal {
+
+/// A chain of the robot, from a link (default: the waist) to a tip link.
+struct Chain {
+  std::string name;
+  int from_link = 0, tip_link = 0;
+};
+
+/// Three (or more) markers on one link that are seen together.
+struct MarkerCluster {
+  std::string name;
+  int link = 0;
+  std::vector<int> markers;  ///< indices into Project::markers
+};
+
+/// How a posture table names what the robot description calls otherwise.
+struct RecordingColumns {
+  std::string time = "t";                     ///< optional in the file
+  std::map<std::string, std::string> joints;  ///< joint -> column; default: the joint's name
+  std::map<std::string, std::array<std::string, 3>> markers;  ///< default NAME_x, NAME_y, NAME_z
+  std::vector<std::string> ignore;                            ///< columns that are not read
+  /// Joint -> position [rad or m] where the file has none.
+  std::map<std::string, double> not_recorded;
+};
+
+/// Everything a project file says, checked and in SI units.
+struct Project {
+  std::filesystem::path file, urdf;
+  RobotTree tree;
+  std::vector<Chain> chains;
+  std::vector<Marker> markers;
+  std::vector<MarkerCluster> clusters;
+  std::string reference_cluster;    ///< on the waist; empty where there is none
+  std::vector<int> torque_sensors;  ///< joints
+  RecordingColumns recording;
+  PlacementOptions placement;
+  IdentifiabilityOptions identifiability;
+  CalibrationOptions calibration;
+};
+
+/// Reads a project file and the URDF that it names (docs/formats.md).
+/// Throws InputError naming file, line and key: missing file, malformed YAML or URDF, unknown key
+/// (with the nearest known one), wrong type, unknown link or joint, value out of range.
+Project ReadProject(const std::filesystem::path& file);
+
+/// The same from the text of the file; paths in it are seen from the folder of `file`.
+Project ParseProject(const std::string& text, const std::filesystem::path& file);
+
+/// Markers carried by the links of a chain, beyond its `from` link up to and including its tip.
+std::vector<std::string> ChainMarkers(const Project& project, const Chain& chain);
+
+}  // namespace elastocal

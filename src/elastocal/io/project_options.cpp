@@ -1,0 +1,107 @@
+#include <cmath>
+#include <limits>
+
+#include "elastocal/io/project_sections.hpp"
+#include "elastocal/io/text.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kRadiansPerDegree = M_PI / 180.0;
+constexpr double kMetresPerMm = 1e-3;
+
+/// A number above 0 and below 1.
+double Fraction(const YamlValue& value) {
+  const double fraction = value.Number();
+  value.Expect(fraction > 0.0 && fraction < 1.0, "a number above 0 and below 1");
+  return fraction;
+}
+
+/// A number above 0 and at most 1.
+double Threshold(const YamlValue& value) {
+  const double threshold = value.Number();
+  value.Expect(threshold > 0.0 && threshold <= 1.0, "a number above 0 and at most 1");
+  return threshold;
+}
+
+void ReadPrior(const YamlValue& section, Prior& prior) {
+  struct Entry {
+    const char* key;
+    ParameterKind kind;
+    double unit;
+  };
+  static constexpr Entry kEntries[] = {
+      {"theta_deg", ParameterKind::kTheta, kRadiansPerDegree},
+      {"gamma_deg", ParameterKind::kGamma, kRadiansPerDegree},
+      {"alpha_deg", ParameterKind::kAlpha, kRadiansPerDegree},
+      {"beta_deg", ParameterKind::kBeta, kRadiansPerDegree},
+      {"r_mm", ParameterKind::kR, kMetresPerMm},
+      {"d_mm", ParameterKind::kD, kMetresPerMm},
+      {"b_mm", ParameterKind::kB, kMetresPerMm},
+      {"marker_mm", ParameterKind::kMarker, kMetresPerMm},
+  };
+  std::vector<std::string> keys;
+  for (const Entry& entry : kEntries) keys.push_back(entry.key);
+  section.ExpectKeys(keys);
+  for (const Entry& entry : kEntries) {
+    if (const auto sd = section.Find(entry.key)) {
+      prior[entry.kind] = entry.unit * sd->PositiveOrInfinity();
+    }
+  }
+}
+
+}  // namespace
+
+void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {
+  section.ExpectKeys({"parallel_tolerance_deg"});
+  if (const auto tolerance = section.Find("parallel_tolerance_deg")) {
+    const double degrees = tolerance->Number();
+    tolerance->Expect(degrees > 0.0 && degrees < 45.0, "an angle above 0 and below 45 degrees");
+    options.parallel_tolerance_rad = kRadiansPerDegree * degrees;
+  }
+}
+
+void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options) {
+  section.ExpectKeys({"postures", "tolerance", "seed", "external", "hold"});
+  if (const auto postures = section.Find("postures")) {
+    options.postures = static_cast<int>(postures->Integer(1, 1000000));
+  }
+  if (const auto tolerance = section.Find("tolerance")) options.tolerance = Fraction(*tolerance);
+  if (const auto seed = section.Find("seed")) {
+    options.seed =
+        static_cast<std::uint64_t>(seed->Integer(0, std::numeric_limits<std::int64_t>::max()));
+  }
+  if (const auto external = section.Find("external")) {
+    const std::string choice = external->Text();
+    external->Expect(choice == "first" || choice == "last", "first or last");
+    options.external = choice == "first" ? ExternalPriority::kFirst : ExternalPriority::kLast;
+  }
+  if (const auto hold = section.Find("hold")) {
+    for (const YamlValue& pattern : hold->Items()) options.hold.push_back(pattern.Text());
+  }
+}
+
+void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options) {
+  section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "outlier_probability",
+                      "support_threshold", "correlation_threshold", "max_iterations"});
+  if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
+  if (const auto widen = section.Find("widen_prior")) options.widen_prior = widen->Boolean();
+  if (const auto sd = section.Find("marker_sd_mm")) {
+    sd->Expect(sd->Number() >= 0.0, "a number of at least 0");
+    options.marker_sd = kMetresPerMm * sd->Number();
+  }
+  if (const auto probability = section.Find("outlier_probability")) {
+    options.outlier_probability = Fraction(*probability);
+  }
+  if (const auto threshold = section.Find("support_threshold")) {
+    options.support_threshold = Threshold(*threshold);
+  }
+  if (const auto threshold = section.Find("correlation_threshold")) {
+    options.correlation_threshold = Threshold(*threshold);
+  }
+  if (const auto iterations = section.Find("max_iterations")) {
+    options.max_iterations = static_cast<int>(iterations->Integer(1, 1000000));
+  }
+}
+
+}  // namespace elastocal

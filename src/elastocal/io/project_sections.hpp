@@ -1,0 +1,20 @@
+#pragma once
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/io/yaml_value.hpp"
+
+namespace elastocal {
+
+/// Parts of a project file, in the order in which they are read: each reads the section of its name
+/// into `project` and needs those before it. All throw InputError naming file, line and key.
+void ReadMarkers(const YamlValue& section, Project& project);
+void ReadRecordingColumns(const YamlValue& section, Project& project);
+void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options);
+void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options);
+void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options);
+
+/// The link or movable joint that a value names.
+int LinkNamedBy(const YamlValue& value, const RobotTree& tree);
+int JointNamedBy(const YamlValue& value, const RobotTree& tree);
+
+}  // namespace elastocal

@@ -1,0 +1,255 @@
+#include "elastocal/io/project.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+/// A small project on the arm of the tests: robot on line 1, markers on line 2, `more` from line 3.
+Project Parse(
+    const std::string& more = "",
+    const std::string& markers = "{single: [{name: M, link: tool, position_mm: [1, 2, 3]}]}") {
+  return ParseProject("robot: {urdf: arm6.urdf}\nmarkers: " + markers + "\n" + more,
+                      SourceFile("tests/robots/p.yaml"));
+}
+
+void ExpectError(const std::string& more, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { Parse(more); }, parts);
+}
+
+void ExpectMarkerError(const std::string& markers, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { Parse("", markers); }, parts);
+}
+
+TEST(Project, ReadsRobotMarkersAndRecording) {
+  const Project project = Parse(
+      "chains:\n"
+      "  - {name: arm, tip: tool}\n"
+      "  - {name: wrist, from: forearm, tip: tool}\n"
+      "torque_sensors: [turret_joint, elbow_joint]\n"
+      "recording:\n"
+      "  columns: {time: stamp, markers: {WRIST: [wx, wy, wz]}, joints: {rail_joint: rail}}\n"
+      "  ignore: [operator]\n"
+      "  not_recorded_deg: {roll_joint: 30}\n",
+      "{reference: P, clusters: [\n"
+      "  {name: P, link: pedestal, positions_mm: [[1, 2, 3], [4, 5, 6], [7, 8, 0]]},\n"
+      "  {name: F, link: forearm, positions_mm: [[1, 2, 3], [-20, 130, 21], [7, 8, 0]]}],\n"
+      "  single: [{name: WRIST, link: wrist, position_mm: [35, 40, 45]}]}");
+  EXPECT_EQ(project.urdf, SourceFile("tests/robots/arm6.urdf"));
+  EXPECT_EQ(project.tree.name, "arm6");
+  ASSERT_EQ(project.chains.size(), 2u);
+  EXPECT_EQ(project.chains[0].from_link, 0);
+  EXPECT_EQ(project.tree.links[project.chains[1].from_link].name, "forearm");
+  EXPECT_EQ(project.reference_cluster, "P");
+  ASSERT_EQ(project.clusters.size(), 2u);
+  ASSERT_EQ(project.markers.size(), 7u);
+  const Marker& second = project.markers[project.clusters[1].markers[1]];
+  EXPECT_EQ(second.name, "F_2");
+  EXPECT_EQ(project.tree.links[second.link].name, "forearm");
+  EXPECT_TRUE(second.p_link_marker.isApprox(Eigen::Vector3d(-0.02, 0.13, 0.021), 1e-15));
+  EXPECT_EQ(project.markers[6].name, "WRIST");
+  ASSERT_EQ(project.torque_sensors.size(), 2u);
+  EXPECT_EQ(project.tree.joints[project.torque_sensors[0]].name, "turret_joint");
+  EXPECT_EQ(project.recording.time, "stamp");
+  EXPECT_EQ(project.recording.markers.at("WRIST")[2], "wz");
+  EXPECT_EQ(project.recording.joints.at("rail_joint"), "rail");
+  EXPECT_EQ(project.recording.ignore, std::vector<std::string>{"operator"});
+  // 30 degrees, up to rounding.
+  EXPECT_NEAR(project.recording.not_recorded.at("roll_joint"), M_PI / 6.0, 1e-15);
+}
+
+TEST(Project, ReadsTheProjectsOfTheRepository) {
+  const Project talos = ReadProject(SourceFile("models/talos/project.yaml"));
+  EXPECT_EQ(talos.markers.size(), 63u);
+  EXPECT_EQ(talos.torque_sensors.size(), 24u);
+  for (const char* robot : {"arm6", "mini_humanoid"}) {
+    const std::string file = std::string("tests/robots/") + robot + "_project.yaml";
+    EXPECT_EQ(ReadProject(SourceFile(file)).tree.name, robot);
+  }
+  const Project arm = ReadProject(SourceFile("examples/talos_left_arm/project.yaml"));
+  EXPECT_EQ(arm.markers.size(), 1u);
+  EXPECT_EQ(arm.urdf, talos.urdf);
+}
+
+TEST(Project, LeavesDefaultsWhereTheFileSaysNothing) {
+  const Project project = Parse();
+  const CalibrationOptions calibration;
+  EXPECT_EQ(project.calibration.prior.sd, calibration.prior.sd);
+  EXPECT_EQ(project.calibration.max_iterations, calibration.max_iterations);
+  EXPECT_EQ(project.identifiability.postures, IdentifiabilityOptions().postures);
+  EXPECT_EQ(project.placement.parallel_tolerance_rad, PlacementOptions().parallel_tolerance_rad);
+  EXPECT_EQ(project.recording.time, RecordingColumns().time);
+  EXPECT_EQ(Parse("calibration:\nchains:\nrecording:\n").calibration.marker_sd,
+            calibration.marker_sd);
+}
+
+TEST(Project, ReadsSettingsInTheirUnits) {
+  const Project project = Parse(
+      "placement: {parallel_tolerance_deg: 2}\n"
+      "identifiability: {postures: 50, tolerance: 1e-5, seed: 9, external: last,\n"
+      "  hold: ['*_joint.theta', waist.T0.b]}\n"
+      "calibration:\n"
+      "  marker_sd_mm: 0.2\n"
+      "  prior: {theta_deg: 90, r_mm: 3, marker_mm: 20, beta_deg: .inf}\n"
+      "  widen_prior: false\n"
+      "  outlier_probability: 0.05\n"
+      "  support_threshold: 0.8\n"
+      "  correlation_threshold: 1\n"
+      "  max_iterations: 7\n");
+  EXPECT_NEAR(project.placement.parallel_tolerance_rad, M_PI / 90.0, 1e-15);
+  EXPECT_EQ(project.identifiability.postures, 50);
+  EXPECT_EQ(project.identifiability.tolerance, 1e-5);
+  EXPECT_EQ(project.identifiability.seed, 9u);
+  EXPECT_EQ(project.identifiability.external, ExternalPriority::kLast);
+  EXPECT_EQ(project.identifiability.hold,
+            (std::vector<std::string>{"*_joint.theta", "waist.T0.b"}));
+  const CalibrationOptions& calibration = project.calibration;
+  EXPECT_NEAR(calibration.marker_sd, 2e-4, 1e-18);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kTheta], M_PI / 2.0, 1e-15);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kR], 3e-3, 1e-17);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kMarker], 0.02, 1e-16);
+  EXPECT_EQ(calibration.prior[ParameterKind::kBeta], std::numeric_limits<double>::infinity());
+  EXPECT_EQ(calibration.prior[ParameterKind::kD], CalibrationOptions().prior[ParameterKind::kD]);
+  EXPECT_FALSE(calibration.widen_prior);
+  EXPECT_EQ(calibration.outlier_probability, 0.05);
+  EXPECT_EQ(calibration.support_threshold, 0.8);
+  EXPECT_EQ(calibration.correlation_threshold, 1.0);
+  EXPECT_EQ(calibration.max_iterations, 7);
+}
+
+TEST(Project, ChainMarkersAreThoseBeyondItsFirstLink) {
+  const std::string single = ", position_mm: [1, 2, 3]}";
+  const Project project =
+      Parse("chains: [{name: arm, tip: tool}, {name: wrist, from: forearm, tip: hand}]\n",
+            "{single: [{name: P, link: pedestal" + single + ", {name: F, link: forearm" + single +
+                ", {name: W, link: wrist" + single + ", {name: T, link: tool" + single + "]}");
+  EXPECT_EQ(ChainMarkers(project, project.chains[0]), (std::vector<std::string>{"F", "W", "T"}));
+  EXPECT_EQ(ChainMarkers(project, project.chains[1]), std::vector<std::string>{"W"});
+}
+
+TEST(Project, NamesAMissingFile) {
+  ExpectInputError([] { ReadProject("nowhere/p.yaml"); },
+                   {"nowhere/p.yaml", "there is no such file"});
+  ExpectInputError(
+      [] {
+        ParseProject("markers: {}\nrobot:\n  urdf: no.urdf", SourceFile("tests/robots/p.yaml"));
+      },
+      {"p.yaml:3: robot.urdf: ", "no.urdf"});
+}
+
+TEST(Project, NamesMalformedRobot) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "project_names_malformed_robot";
+  WriteFile(folder / "bad.urdf", "<robot name='r'>\n<link>\n</robot>");
+  ExpectInputError([&] { ParseProject("robot: {urdf: bad.urdf}", folder / "p.yaml"); },
+                   {"bad.urdf:2: ", "malformed XML"});
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Project, NamesUnknownKeysOfEverySection) {
+  ExpectError("marker: {}", {"p.yaml:3: ", "'marker'", "did you mean 'markers'"});
+  ExpectError("chains:\n  - {name: arm, tipp: tool}", {"p.yaml:4: chains[0]", "'tip'"});
+  ExpectMarkerError("{singel: []}", {"p.yaml:2: markers: ", "'single'"});
+  ExpectMarkerError("{single: [{name: M, link: tool, position: [1, 2, 3]}]}",
+                    {"p.yaml:2: markers.single[0]: ", "'position_mm'"});
+  ExpectMarkerError("{clusters: [{nam: M}]}", {"markers.clusters[0]", "'name'"});
+  ExpectError("recording: {colums: {}}", {"p.yaml:3: recording: ", "'columns'"});
+  ExpectError("recording: {columns: {times: t}}", {"recording.columns: ", "'time'"});
+  ExpectError("placement: {parallel_tolerance: 1}", {"placement: ", "'parallel_tolerance_deg'"});
+  ExpectError("identifiability: {posture: 1}", {"identifiability: ", "'postures'"});
+  ExpectError("calibration: {prio: {}}", {"calibration: ", "'prior'"});
+  ExpectError("calibration: {prior: {theta_dg: 1}}", {"calibration.prior: ", "'theta_deg'"});
+  ExpectInputError([] { ParseProject("robot: {urd: x}", "p.yaml"); },
+                   {"p.yaml:1: robot: ", "'urdf'"});
+}
+
+TEST(Project, NamesMissingKeys) {
+  ExpectInputError([] { ParseProject("", "p.yaml"); }, {"p.yaml:1: ", "'robot' is missing"});
+  ExpectInputError(
+      [] { ParseProject("robot: {urdf: arm6.urdf}", SourceFile("tests/robots/p.yaml")); },
+      {"p.yaml:1: ", "'markers' is missing"});
+  ExpectError("chains: [{name: arm}]", {"p.yaml:3: chains[0]: ", "'tip' is missing"});
+}
+
+TEST(Project, NamesUnknownLinksAndJoints) {
+  ExpectError("chains: [{name: arm, tip: tol}]", {"p.yaml:3: chains[0].tip: ", "'tool'"});
+  ExpectError("chains: [{name: arm, from: rial, tip: tool}]", {"chains[0].from: ", "'rail'"});
+  ExpectMarkerError("{single: [{name: M, link: tol, position_mm: [1, 2, 3]}]}",
+                    {"p.yaml:2: markers.single[0].link: ", "did you mean 'tool'"});
+  ExpectError("torque_sensors: [elbow]", {"p.yaml:3: torque_sensors[0]: ", "'elbow'"});
+  ExpectError("recording: {columns: {joints: {elbw_joint: q}}}",
+              {"p.yaml:3: recording.columns.joints.elbw_joint: ", "'elbow_joint'"});
+  ExpectError("recording: {columns: {markers: {N: [x, y, z]}}}", {"no marker 'N'"});
+  ExpectError("recording: {not_recorded_deg: {elbw_joint: 0}}", {"'elbow_joint'"});
+  ExpectError("identifiability:\n  hold: ['elbow_joint.thet']",
+              {"p.yaml:4: identifiability.hold[0]: ", "'elbow_joint.theta'"});
+  ExpectError("identifiability: {hold: ['*a*b*c*d*e']}", {"hold[0]", "at most four *"});
+}
+
+TEST(Project, ChecksChains) {
+  ExpectError("chains: [{name: a, tip: tool}, {name: a, tip: tool}]", {"second chain", "'a'"});
+  ExpectError("chains: [{name: a, tip: rail}]", {"chains[0]", "no joint", "'rail'"});
+  ExpectError("chains: [{name: a, from: tool, tip: forearm}]",
+              {"'tool' does not carry link 'forearm'"});
+  ExpectError("torque_sensors: [elbow_joint, elbow_joint]", {"torque_sensors[1]", "twice"});
+}
+
+TEST(Project, ChecksMarkers) {
+  ExpectMarkerError("{}", {"p.yaml:2: markers: ", "no marker"});
+  ExpectMarkerError("{single: [{name: M, link: tool, position_mm: [1, 2]}]}",
+                    {"position_mm", "three coordinates"});
+  ExpectMarkerError("{single: [{name: M, link: tool, position_mm: [1, 2, x]}]}",
+                    {"position_mm[2]: found 'x'"});
+  ExpectMarkerError("{clusters: [{name: C, link: tool, positions_mm: [[1, 2, 3]]}]}",
+                    {"positions_mm", "at least three"});
+  const std::string cluster =
+      "{name: C, link: tool, positions_mm: [[1, 2, 3], [4, 5, 6], [7, 8, 0]]}";
+  ExpectMarkerError("{clusters: [" + cluster + ",\n  " + cluster + "]}",
+                    {"p.yaml:3: ", "second cluster", "'C'"});
+  ExpectMarkerError(
+      "{clusters: [" + cluster + "],\n  single: [{name: C_2, link: tool, position_mm: [1, 2, 3]}]}",
+      {"p.yaml:3: ", "second marker", "'C_2'"});
+  ExpectMarkerError("{reference: CC, clusters: [" + cluster + "]}",
+                    {"markers.reference", "did you mean 'C'"});
+  ExpectMarkerError("{reference: C, clusters: [" + cluster + "]}",
+                    {"markers.reference", "'tool'", "root link 'pedestal'"});
+}
+
+TEST(Project, ChecksRecordingColumns) {
+  ExpectError("recording: {columns: {markers: {M: [x, y]}}}", {"three columns"});
+  ExpectError("recording: {not_recorded_deg: {rail_joint: 0}}", {"rail_joint", "not_recorded_mm"});
+  ExpectError("recording: {not_recorded_mm: {elbow_joint: 0}}", {"not_recorded_deg"});
+  ExpectError("recording: {not_recorded_mm: {finger_right_joint: 0}}",
+              {"'finger_right_joint' follows joint 'finger_left_joint'"});
+  EXPECT_EQ(Parse("recording: {not_recorded_mm: {rail_joint: 250}}")
+                .recording.not_recorded.at("rail_joint"),
+            0.25);
+}
+
+TEST(Project, NamesValuesOutOfRange) {
+  for (const char* setting :
+       {"placement: {parallel_tolerance_deg: 0}", "placement: {parallel_tolerance_deg: 90}",
+        "identifiability: {postures: 0}", "identifiability: {postures: 1.5}",
+        "identifiability: {tolerance: 1}", "identifiability: {seed: -1}",
+        "identifiability: {external: middle}", "calibration: {marker_sd_mm: -1}",
+        "calibration: {outlier_probability: 0}", "calibration: {support_threshold: 1.1}",
+        "calibration: {correlation_threshold: 0}", "calibration: {max_iterations: 0}",
+        "calibration: {widen_prior: 2}"}) {
+    const std::string text = setting;
+    const std::size_t open = text.find('{'), colon = text.find(": ", open);
+    const std::string key =
+        text.substr(0, text.find(':')) + "." + text.substr(open + 1, colon - open - 1);
+    ExpectError(text, {"p.yaml:3: " + key + ": found '", "expected"});
+  }
+  ExpectError("calibration: {prior: {d_mm: 0}}", {"p.yaml:3: calibration.prior.d_mm: found '0'"});
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace elastocal {
+
+/// A value of a YAML file that knows its line and the keys that lead to it. Every method that asks
+/// for something the file does not hold throws InputError naming file, line and key, what was
+/// found and what was expected.
+class YamlValue {
+ public:
+  /// Reads one document. Anchors, aliases, twice given keys, keys that are not text, more than one
+  /// document, more than 1 MiB and nesting beyond 20 levels are errors, as is malformed YAML.
+  static YamlValue Parse(const std::string& text, const std::string& source);
+
+  [[noreturn]] void Fail(const std::string& message) const;
+  /// Fails with what stands there and `expected` unless `fine`.
+  void Expect(bool fine, const std::string& expected) const;
+
+  int line() const { return line_; }
+
+  /// Of a mapping. Nothing at all (`key:` and the end of the line) is an empty one.
+  void ExpectKeys(const std::vector<std::string>& known) const;
+  std::optional<YamlValue> Find(const std::string& key) const;
+  YamlValue Get(const std::string& key) const;
+  const std::vector<std::pair<std::string, YamlValue>>& Entries() const;
+
+  /// Of a list. Nothing at all is an empty one.
+  std::vector<YamlValue> Items() const;
+
+  /// Text that is not empty and not unreasonably long.
+  std::string Text() const;
+  /// A finite number.
+  double Number() const;
+  /// A number above zero, or .inf.
+  double PositiveOrInfinity() const;
+  /// A whole number of at least `least` and at most `most`.
+  std::int64_t Integer(std::int64_t least, std::int64_t most) const;
+  bool Boolean() const;
+
+ private:
+  friend class YamlBuilder;
+  enum class Kind { kNothing, kScalar, kList, kMapping };
+
+  std::string Shown() const;
+
+  Kind kind_ = Kind::kNothing;
+  int line_ = 1;
+  std::string source_, path_;
+  std::string scalar_;
+  std::vector<std::pair<std::string, YamlValue>> entries_;  ///< of a list: with empty keys
+};
+
+}  // namespace elastocal

@@ -1,0 +1,50 @@
+#include "elastocal/math/priority_qr.hpp"
+
+#include <stdexcept>
+
+#include <Eigen/QR>
+
+namespace elastocal {
+
+PriorityQrResult PriorityQr(const Eigen::MatrixXd& A, double tolerance) {
+  if (!(tolerance > 0.0 && tolerance < 1.0)) {
+    throw std::invalid_argument("PriorityQr: the tolerance must lie between 0 and 1");
+  }
+  // Columns at unit norm make one tolerance fit all; R has the same column relations as A.
+  const Eigen::VectorXd norms = A.colwise().norm();
+  const Eigen::VectorXd inverse_norms =
+      norms.unaryExpr([](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
+  const Eigen::Index size = std::min(A.rows(), A.cols());
+  Eigen::MatrixXd R = Eigen::HouseholderQR<Eigen::MatrixXd>(A * inverse_norms.asDiagonal())
+                          .matrixQR()
+                          .topRows(size)
+                          .triangularView<Eigen::Upper>();
+
+  // Orthonormal basis of the kept columns, grown one by one; projecting twice keeps it orthogonal.
+  PriorityQrResult result;
+  result.remainder.resize(A.cols());
+  Eigen::MatrixXd basis(size, size);
+  for (int column = 0; column < A.cols(); ++column) {
+    const auto Q = basis.leftCols(static_cast<Eigen::Index>(result.kept.size()));
+    Eigen::VectorXd rest = R.col(column);
+    for (int pass = 0; pass < 2; ++pass) rest -= Q * (Q.transpose() * rest);
+    result.remainder[column] = rest.norm();
+    if (rest.norm() > tolerance && Q.cols() < size) {
+      basis.col(Q.cols()) = rest.normalized();
+      result.kept.push_back(column);
+    } else {
+      result.dropped.push_back(column);
+    }
+  }
+
+  const auto kept_count = static_cast<Eigen::Index>(result.kept.size());
+  const Eigen::MatrixXd Q = basis.leftCols(kept_count);
+  const Eigen::MatrixXd R_kept = Q.transpose() * R(Eigen::all, result.kept);
+  const Eigen::MatrixXd scaled = R_kept.triangularView<Eigen::Upper>().solve(
+      Eigen::MatrixXd(Q.transpose() * R(Eigen::all, result.dropped)));
+  result.regrouping = inverse_norms(result.kept).asDiagonal() * scaled *
+                      norms(result.dropped).asDiagonal();
+  return result;
+}
+
+}  // namespace elastocal

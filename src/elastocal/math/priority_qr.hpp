@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace elastocal {
+
+/// Which columns of a matrix are linearly independent of those before them, and how the others
+/// follow from these.
+struct PriorityQrResult {
+  /// Kept and dropped columns, each in ascending order; together all columns.
+  std::vector<int> kept, dropped;
+  /// kept x dropped: A(:, dropped) = A(:, kept) * regrouping, so that the combination
+  /// x(kept) + regrouping * x(dropped) is what the matrix determines of x.
+  Eigen::MatrixXd regrouping;
+  /// Norm of what is left of each column after projection on the kept columns before it, relative
+  /// to the column's own norm (0 for a zero column).
+  Eigen::VectorXd remainder;
+};
+
+/// QR decomposition without pivoting, column by column (Gautier 1990; paper section 2.1): the
+/// first columns have priority. A column is kept when its `remainder` exceeds `tolerance`.
+/// Throws std::invalid_argument for a tolerance outside (0, 1).
+PriorityQrResult PriorityQr(const Eigen::MatrixXd& A, double tolerance);
+
+}  // namespace elastocal

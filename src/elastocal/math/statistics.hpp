@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace elastocal {
+
+/// Quantile of Student's t distribution with `degrees_of_freedom` > 0 at `probability` in (0, 1).
+double StudentQuantile(double probability, double degrees_of_freedom);
+
+/// Quantile of the chi-square distribution with `degrees_of_freedom` > 0.
+double ChiSquareQuantile(double probability, double degrees_of_freedom);
+
+/// Median (mean of the two middle values for an even count); NaN for no values.
+double Median(Eigen::VectorXd values);
+
+/// Root of the mean square; NaN for no values.
+double RootMeanSquare(const Eigen::VectorXd& values);
+
+}  // namespace elastocal

@@ -1,0 +1,68 @@
+#include "elastocal/math/transform.hpp"
+
+#include <cmath>
+
+namespace elastocal {
+
+Transform RotX(double angle) { return RotAxis(Eigen::Vector3d::UnitX(), angle); }
+Transform RotY(double angle) { return RotAxis(Eigen::Vector3d::UnitY(), angle); }
+Transform RotZ(double angle) { return RotAxis(Eigen::Vector3d::UnitZ(), angle); }
+
+Transform TrX(double distance) {
+  return Transform(Eigen::Translation3d(distance, 0.0, 0.0));
+}
+
+Transform TrZ(double distance) {
+  return Transform(Eigen::Translation3d(0.0, 0.0, distance));
+}
+
+Transform RotAxis(const Eigen::Vector3d& axis, double angle) {
+  Transform T = Transform::Identity();
+  T.linear() = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  return T;
+}
+
+Transform FromXyzRpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
+  Transform T = RotZ(rpy.z()) * RotY(rpy.y()) * RotX(rpy.x());
+  T.translation() = xyz;
+  return T;
+}
+
+namespace {
+
+double NearestTurn(double angle, double near) {
+  return angle + 2.0 * M_PI * std::round((near - angle) / (2.0 * M_PI));
+}
+
+Eigen::Vector3d NearestTurns(const Eigen::Vector3d& rpy, const Eigen::Vector3d& near) {
+  return {NearestTurn(rpy.x(), near.x()), NearestTurn(rpy.y(), near.y()),
+          NearestTurn(rpy.z(), near.z())};
+}
+
+}  // namespace
+
+Eigen::Vector3d ToRpy(const Eigen::Matrix3d& R, const Eigen::Vector3d& near) {
+  const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
+  const double pitch = std::atan2(-R(2, 0), cos_pitch);
+  // At pitch = +-90 degrees any roll does, as long as yaw is what is left; within the limit that
+  // stands for it here, to 2e-12 rad. Outside, roll is good to 1e-4 rad and yaw makes up for it.
+  const double roll = cos_pitch < 1e-12 ? near.x() : std::atan2(R(2, 1), R(2, 2));
+  const Eigen::Matrix3d R_yaw = R * (RotY(pitch) * RotX(roll)).linear().transpose();
+  const double yaw = std::atan2(R_yaw(1, 0), R_yaw(0, 0));
+  const Eigen::Vector3d first = NearestTurns({roll, pitch, yaw}, near);
+  const Eigen::Vector3d second = NearestTurns({roll + M_PI, M_PI - pitch, yaw + M_PI}, near);
+  return (first - near).norm() <= (second - near).norm() ? first : second;
+}
+
+double RotationAngle(const Eigen::Matrix3d& R) {
+  const Eigen::Vector3d twice_sine_axis(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  return std::atan2(0.5 * twice_sine_axis.norm(), 0.5 * (R.trace() - 1.0));
+}
+
+Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d S;
+  S << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return S;
+}
+
+}  // namespace elastocal

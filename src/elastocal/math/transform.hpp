@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace elastocal {
+
+/// Rigid transform. `T_a_b` maps coordinates in frame b to coordinates in frame a; metres.
+using Transform = Eigen::Isometry3d;
+
+/// Elementary rotations (rad) and translations (m) about and along a frame's own axes.
+Transform RotX(double angle);
+Transform RotY(double angle);
+Transform RotZ(double angle);
+Transform TrX(double distance);
+Transform TrZ(double distance);
+
+/// Rotation of `angle` about the unit vector `axis`.
+Transform RotAxis(const Eigen::Vector3d& axis, double angle);
+
+/// URDF origin: translation `xyz` [m] and fixed-axis roll, pitch, yaw `rpy` [rad], R = Rz Ry Rx.
+Transform FromXyzRpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy);
+
+/// Roll, pitch, yaw of a rotation matrix. Of the two (at pitch = +-90 degrees: infinitely many)
+/// representations, and their multiples of a turn, the one nearest to `near` component by component.
+Eigen::Vector3d ToRpy(const Eigen::Matrix3d& R, const Eigen::Vector3d& near);
+
+/// Angle of the rotation R, in [0, pi]; exact near zero, where acos of the trace is not.
+double RotationAngle(const Eigen::Matrix3d& R);
+
+/// Matrix of the cross product, [v]x w = v x w.
+Eigen::Matrix3d Skew(const Eigen::Vector3d& v);
+
+}  // namespace elastocal

@@ -1,0 +1,25 @@
+#include "elastocal/measurement/recording.hpp"
+
+namespace elastocal {
+
+bool Seen(const Recording& recording, int posture, int marker) {
+  return MarkerPosition(recording, posture, marker).allFinite();
+}
+
+Eigen::Vector3d MarkerPosition(const Recording& recording, int posture, int marker) {
+  return recording.markers.block<1, 3>(posture, 3 * marker).transpose();
+}
+
+Recording SelectPostures(const Recording& recording, const std::vector<int>& postures) {
+  Recording selected = recording;
+  selected.q = recording.q(postures, Eigen::all);
+  selected.markers = recording.markers(postures, Eigen::all);
+  if (recording.time_s.size() > 0) selected.time_s = recording.time_s(postures);
+  if (!recording.line.empty()) {
+    selected.line.clear();
+    for (int posture : postures) selected.line.push_back(recording.line[posture]);
+  }
+  return selected;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,144 @@
+#include "elastocal/optim/least_squares.hpp"
+
+#include <memory>
+
+#include <ceres/ceres.h>
+
+namespace elastocal {
+namespace {
+
+/// Tells the problem of every new point before Ceres asks for residuals.
+class PointCallback : public ceres::EvaluationCallback {
+ public:
+  PointCallback(LeastSquaresProblem& problem, const Eigen::VectorXd& x)
+      : problem_(problem), x_(x) {}
+
+  void PrepareForEvaluation(bool with_jacobians, bool new_point) override {
+    if (new_point || (with_jacobians && !has_jacobians_)) problem_.Evaluate(x_, with_jacobians);
+    has_jacobians_ = with_jacobians || (has_jacobians_ && !new_point);
+  }
+
+ private:
+  LeastSquaresProblem& problem_;
+  const Eigen::VectorXd& x_;
+  bool has_jacobians_ = false;
+};
+
+class BlockCost : public ceres::CostFunction {
+ public:
+  BlockCost(const LeastSquaresProblem& problem, int block) : problem_(problem), block_(block) {
+    const auto& shape = problem.residual_blocks[block];
+    set_num_residuals(shape.size);
+    for (int k : shape.parameter_blocks) {
+      mutable_parameter_block_sizes()->push_back(problem.parameter_blocks[k]);
+    }
+  }
+
+  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::VectorXd> residual(residuals, num_residuals());
+    problem_.Residual(block_, residual);
+    if (!residual.allFinite()) return false;
+    if (jacobians == nullptr) return true;
+    for (std::size_t k = 0; k < parameter_block_sizes().size(); ++k) {
+      if (jacobians[k] == nullptr) continue;
+      problem_.Jacobian(block_, static_cast<int>(k),
+                        Eigen::Map<LeastSquaresProblem::RowMajorMatrix>(
+                            jacobians[k], num_residuals(), parameter_block_sizes()[k]));
+    }
+    return true;
+  }
+
+ private:
+  const LeastSquaresProblem& problem_;
+  int block_;
+};
+
+/// The parameter blocks as Ceres addresses them: pointers into one vector.
+std::vector<double*> AddParameterBlocks(const LeastSquaresProblem& problem, Eigen::VectorXd& x,
+                                        ceres::Problem& ceres_problem) {
+  std::vector<double*> blocks;
+  double* at = x.data();
+  for (int size : problem.parameter_blocks) {
+    ceres_problem.AddParameterBlock(at, size);
+    blocks.push_back(at);
+    at += size;
+  }
+  return blocks;
+}
+
+ceres::Solver::Options SolverOptions(const LeastSquaresProblem& problem,
+                                     const std::vector<double*>& blocks,
+                                     const LeastSquaresOptions& options) {
+  ceres::Solver::Options solver;
+  solver.num_threads = 1;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.parameter_tolerance = options.parameter_tolerance;
+  solver.gradient_tolerance = 0.0;
+  solver.logging_type = ceres::SILENT;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  if (!problem.eliminated_blocks.empty()) {
+    solver.linear_solver_type = ceres::DENSE_SCHUR;
+    auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (double* block : blocks) ordering->AddElementToGroup(block, 1);
+    for (int k : problem.eliminated_blocks) ordering->AddElementToGroup(blocks[k], 0);
+    solver.linear_solver_ordering = ordering;
+  }
+  return solver;
+}
+
+Termination Translate(ceres::TerminationType type) {
+  switch (type) {
+    case ceres::CONVERGENCE:
+    case ceres::USER_SUCCESS:
+      return Termination::kConverged;
+    case ceres::NO_CONVERGENCE:
+      return Termination::kNoConvergence;
+    default:
+      return Termination::kFailure;
+  }
+}
+
+}  // namespace
+
+const char* TerminationName(Termination termination) {
+  switch (termination) {
+    case Termination::kConverged: return "converged";
+    case Termination::kNoConvergence: return "not converged";
+    default: return "failed";
+  }
+}
+
+LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0,
+                         const LeastSquaresOptions& options) {
+  LeastSquaresResult result;
+  result.x = x0;
+
+  PointCallback callback(problem, result.x);
+  ceres::CauchyLoss loss(options.cauchy_scale > 0.0 ? options.cauchy_scale : 1.0);
+  ceres::Problem::Options problem_options;
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  problem_options.evaluation_callback = &callback;
+  problem_options.disable_all_safety_checks = true;
+  ceres::Problem ceres_problem(problem_options);
+  const std::vector<double*> blocks = AddParameterBlocks(problem, result.x, ceres_problem);
+  for (std::size_t i = 0; i < problem.residual_blocks.size(); ++i) {
+    const auto& shape = problem.residual_blocks[i];
+    std::vector<double*> used;
+    for (int k : shape.parameter_blocks) used.push_back(blocks[k]);
+    const bool robust = shape.robust && options.cauchy_scale > 0.0;
+    ceres_problem.AddResidualBlock(new BlockCost(problem, static_cast<int>(i)),
+                                   robust ? &loss : nullptr, used);
+  }
+
+  ceres::Solver::Summary summary;
+  ceres::Solve(SolverOptions(problem, blocks, options), &ceres_problem, &summary);
+  result.initial_cost = summary.initial_cost;
+  result.final_cost = summary.final_cost;
+  result.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  result.termination = Translate(summary.termination_type);
+  result.message = summary.message;
+  return result;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/robot/error_model.hpp"
+#include "elastocal/robot/kinematics.hpp"
+
+namespace elastocal {
+
+/// Generalized Jacobian of the marker positions (eq. 4, after Khalil): derivatives with respect to
+/// every error parameter, for all chains at once. A marker depends on T0, on the joints between the
+/// waist and itself and on its own position; only these columns are computed.
+///
+/// A displacement of any parameter moves the bodies beyond it as a screw, so that every column is
+/// a x p + m: for a rotation, a is its axis and m = o x a with o on the axis; for a translation a
+/// is zero and m its direction. The structure is laid out once; Evaluate allocates nothing.
+class GeneralizedJacobian {
+ public:
+  /// Keeps a reference: the model must outlive it.
+  explicit GeneralizedJacobian(const ErrorModel& model);
+
+  /// Positions and derivatives for one posture.
+  void Evaluate(const Geometry& geometry, const Eigen::VectorXd& q);
+
+  /// Position of a marker in the reference frame, m; of the last evaluation, as all below.
+  auto Position(int marker) const { return positions_.col(marker); }
+
+  /// Indices of the parameters a marker depends on, ascending.
+  const std::vector<int>& Columns(int marker) const { return layout_[marker].columns; }
+
+  using BlockMap =
+      Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>;
+  /// 3 x Columns(marker).size(), m/rad and m/m.
+  BlockMap Block(int marker) const {
+    const MarkerLayout& layout = layout_[marker];
+    return {values_.data() + layout.offset, 3, static_cast<Eigen::Index>(layout.columns.size())};
+  }
+
+  /// The whole matrix, 3 N_M x parameters, zeros included.
+  Eigen::MatrixXd Dense() const;
+
+ private:
+  struct Segment {
+    int begin, size;  // run of consecutive parameters
+  };
+  struct MarkerLayout {
+    int body;
+    std::vector<Segment> segments;  // T0 and joint parameters
+    std::vector<int> columns;
+    Eigen::Index offset;  // of the block in values_
+  };
+
+  void EvaluateFrames(const Geometry& geometry, const Eigen::VectorXd& q);
+  void EvaluateMarker(int marker);
+
+  const ErrorModel& model_;
+  std::vector<int> first_parameter_;      // by joint
+  std::vector<MarkerLayout> layout_;      // by marker
+  std::vector<Eigen::Matrix3d> R_;        // by body: MDH frame in the reference frame
+  std::vector<Eigen::Vector3d> p_;
+  Eigen::Array<double, Eigen::Dynamic, 6> screws_;  // parameters (T0, joints) x [a, m]
+  Eigen::Matrix3Xd positions_;
+  Eigen::VectorXd values_;
+};
+
+}  // namespace elastocal

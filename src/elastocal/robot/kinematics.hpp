@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/robot/error_model.hpp"
+
+namespace elastocal {
+
+/// The error model with a vector of errors applied: all of eq. 1-3 that does not depend on posture.
+/// Cheap to make (a few trigonometric functions a joint), cheaper to use many times.
+struct Geometry {
+  /// A joint between its parent's MDH frame (the root link's frame for joints on the waist) and its
+  /// own; directions and points in the parent frame.
+  struct JointConstants {
+    Eigen::Matrix3d R_parent_twisted;  ///< T_parent_pre Rotz(gamma) Trz(b) Roty(beta) Rotx(alpha) Trx(d)
+    Eigen::Vector3d p_parent_twisted;
+    Eigen::Vector3d z_pre, p_pre;    ///< axis of gamma and b
+    Eigen::Vector3d y_beta, p_beta;  ///< axis of beta
+    double theta, r;                 ///< without the joint's position
+  };
+  std::vector<JointConstants> joints;  ///< one a joint of the tree; only active ones are filled
+  JointConstants base;                 ///< eq. 2 as if it were a joint at position 0
+  Transform T_joint_waist;             ///< constant that ends eq. 2, see ApplyErrors
+  std::vector<Eigen::Vector3d> p_joint_marker;    ///< by marker, in its body's MDH frame
+  std::vector<Eigen::Matrix3d> R_joint_link;      ///< by marker: axes of its x, y, z
+};
+
+/// Applies errors `delta` (one a parameter of the model, rad and m).
+///
+/// The waist (eq. 2): T_ref_waist Rotz(gamma) Trz(b) Rotx(pi/2 + alpha) Trx(d) Rotz(theta) Trz(r)
+/// Rotx(-pi/2): the intermediate frame makes nominal alpha 90 degrees, where eq. 2 is regular.
+Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta);
+
+/// Forward kinematics (eq. 3): positions of all markers in the reference frame for one posture of
+/// the tree, 3 x N_M, m.
+Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geometry,
+                                 const Eigen::VectorXd& q);
+
+/// Poses of the bodies in the reference frame: the root's, then those that active joints move
+/// (others are identity). Body frames, as in RobotTree.
+std::vector<Transform> BodyTransforms(const ErrorModel& model, const Geometry& geometry,
+                                      const Eigen::VectorXd& q);
+
+}  // namespace elastocal

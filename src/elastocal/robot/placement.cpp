@@ -1,0 +1,154 @@
+#include "elastocal/robot/placement.hpp"
+
+#include <cmath>
+
+namespace elastocal {
+namespace {
+
+using Eigen::Vector3d;
+
+/// An axis of rotation or sliding at zero positions, in the root link's frame.
+struct Axis {
+  Vector3d point, direction;
+};
+
+/// Where the common normal (or, for parallel axes, a perpendicular) from one axis to the next
+/// leaves and arrives, and its direction.
+struct Normal {
+  Vector3d start, end, x;
+};
+
+constexpr double kSameLength = 1e-9;  // m; axes closer than this meet
+
+Vector3d ClosestPoint(const Axis& axis, const Vector3d& p) {
+  return axis.point + axis.direction * axis.direction.dot(p - axis.point);
+}
+
+Vector3d AnyPerpendicular(const Vector3d& z, const Transform& T_root_body) {
+  const Vector3d x = T_root_body.linear().col(0);
+  const Vector3d candidate = std::abs(x.dot(z)) < 0.9 ? x : Vector3d(T_root_body.linear().col(1));
+  return (candidate - z * z.dot(candidate)).normalized();
+}
+
+bool Parallel(const Axis& a, const Axis& b, double tolerance_rad) {
+  return a.direction.cross(b.direction).norm() < std::sin(tolerance_rad);
+}
+
+/// Hayati: the perpendicular from `start`, a point of the first axis, to the second axis. `x_in` is
+/// the direction where the two axes are one.
+Normal PerpendicularFrom(const Vector3d& start, const Axis& to, const Vector3d& x_in) {
+  const Vector3d end = ClosestPoint(to, start);
+  const Vector3d offset = end - start;
+  const Vector3d x = offset.norm() > kSameLength
+                         ? Vector3d(offset.normalized())
+                         : Vector3d((x_in - to.direction * to.direction.dot(x_in)).normalized());
+  return {start, end, x};
+}
+
+Normal CommonNormal(const Axis& from, const Axis& to) {
+  const Vector3d across = from.direction.cross(to.direction);
+  const Vector3d between = to.point - from.point;
+  const double s = between.cross(to.direction).dot(across) / across.squaredNorm();
+  const double t = between.cross(from.direction).dot(across) / across.squaredNorm();
+  const Vector3d start = from.point + s * from.direction;
+  const Vector3d end = to.point + t * to.direction;
+  const double distance = between.dot(across) / across.norm();
+  const double sign = std::abs(distance) > kSameLength && distance < 0.0 ? -1.0 : 1.0;
+  return {start, end, sign * across.normalized()};
+}
+
+Transform Frame(const Vector3d& origin, const Vector3d& z, const Vector3d& x) {
+  Transform T;
+  T.linear().col(2) = z;
+  T.linear().col(0) = (x - z * z.dot(x)).normalized();
+  T.linear().col(1) = T.linear().col(2).cross(T.linear().col(0));
+  T.translation() = origin;
+  T.makeAffine();
+  return T;
+}
+
+/// All that placing a joint needs to know of the tree at zero joint positions.
+struct ZeroPose {
+  std::vector<Transform> T_root_body;
+  std::vector<Axis> axes;       // by joint
+  std::vector<int> main_child;  // by body: the joint that continues the chain, or -1
+};
+
+ZeroPose MakeZeroPose(const RobotTree& tree) {
+  ZeroPose zero;
+  zero.T_root_body.assign(tree.body_count(), Transform::Identity());
+  zero.main_child.assign(tree.body_count(), -1);
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const Joint& joint = tree.joints[k];
+    const Transform T = zero.T_root_body[joint.parent_body] *
+                        tree.links[joint.parent_link].T_body_link * joint.T_parent_child;
+    zero.T_root_body[k + 1] = T;
+    zero.axes.push_back({T.translation(), T.linear() * joint.axis});
+    int& main_child = zero.main_child[joint.parent_body];
+    if (joint.parent_body > 0 && main_child < 0) main_child = static_cast<int>(k);
+  }
+  return zero;
+}
+
+/// Constants of eq. 1 between two MDH frames, given where the normal between their axes arrives.
+void MeasureConstants(const Transform& T_root_parent, const Transform& T_root_joint,
+                      const Normal& normal, JointPlacement& placement) {
+  const Eigen::Matrix3d R = T_root_parent.linear().transpose();
+  const Vector3d x = R * normal.x;
+  const Vector3d z = R * T_root_joint.linear().col(2);
+  placement.beta = placement.parallel ? std::atan2(-x.z(), x.x()) : 0.0;
+  placement.alpha = std::atan2(-z.y(), z.dot(RotY(placement.beta).linear().col(2)));
+  placement.d = (normal.end - T_root_parent.translation()).dot(normal.x);
+  const Vector3d x_joint = T_root_joint.linear().col(0);
+  const Vector3d z_joint = T_root_joint.linear().col(2);
+  placement.theta = std::atan2(normal.x.cross(x_joint).dot(z_joint), normal.x.dot(x_joint));
+  placement.r = (T_root_joint.translation() - normal.end).dot(z_joint);
+}
+
+}  // namespace
+
+std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOptions& options) {
+  const ZeroPose zero = MakeZeroPose(tree);
+  std::vector<JointPlacement> placements(tree.joints.size());
+  std::vector<Transform> T_root_mdh(tree.body_count(), Transform::Identity());
+  std::vector<Normal> outgoing(tree.body_count());  // from each body's axis to its main child's
+
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const int parent = tree.joints[k].parent_body;
+    const Axis& axis = zero.axes[k];
+    JointPlacement& placement = placements[k];
+    placement.general = zero.main_child[parent] != static_cast<int>(k);
+    placement.parallel =
+        !placement.general && Parallel(zero.axes[parent - 1], axis, options.parallel_tolerance_rad);
+
+    // Where the chain arrives on this axis, and where it leaves it again.
+    const Normal incoming =
+        placement.general
+            ? Normal{axis.point, axis.point,
+                     AnyPerpendicular(axis.direction, zero.T_root_body[k + 1])}
+            : outgoing[parent];
+    const int next = zero.main_child[k + 1];
+    Normal& leaving = outgoing[k + 1];
+    if (next < 0) {
+      leaving = incoming;
+      leaving.start = incoming.end;
+    } else if (Parallel(axis, zero.axes[next], options.parallel_tolerance_rad)) {
+      leaving = PerpendicularFrom(incoming.end, zero.axes[next], incoming.x);
+    } else {
+      leaving = CommonNormal(axis, zero.axes[next]);
+    }
+
+    const Transform T_root_joint = Frame(leaving.start, axis.direction, leaving.x);
+    T_root_mdh[k + 1] = T_root_joint;
+    if (placement.general) {
+      placement.alpha = 0.5 * M_PI;
+      placement.T_parent_pre = T_root_mdh[parent].inverse() * T_root_joint * RotX(-0.5 * M_PI);
+    } else {
+      MeasureConstants(T_root_mdh[parent], T_root_joint, incoming, placement);
+    }
+    placement.T_joint_body = T_root_joint.inverse() * zero.T_root_body[k + 1];
+  }
+  return placements;
+}
+
+}  // namespace elastocal

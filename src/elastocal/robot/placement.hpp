@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "elastocal/math/transform.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+
+namespace elastocal {
+
+struct PlacementOptions {
+  /// Consecutive axes closer to parallel than this need `beta` (Hayati), rad.
+  double parallel_tolerance_rad = 0.02;
+};
+
+/// Nominal placement of a joint in the modified Denavit-Hartenberg convention with beta and, where
+/// `general`, with the two more constants of Khalil and Kleinfinger (paper eq. 1):
+///
+///   T_parent_joint = T_parent_pre Rotz(gamma) Trz(b)
+///                    Roty(beta) Rotx(alpha) Trx(d) Rotz(theta + position) Trz(r)
+///
+/// `parent` and `joint` are MDH frames: z along the joint's axis, x along the common normal with
+/// the axis of the joint that continues the chain (for the body of the root: the root link's
+/// frame). They are not the URDF's link frames; `T_joint_body` leads from one to the other, so that
+/// nominal kinematics equal the URDF's.
+///
+/// Eq. 1 alone has no displacement along y, so it cannot place the first joint after the waist or
+/// after a branch. Such a joint is `general`: T_parent_pre is a constant frame on its axis with z
+/// across it, nominal alpha is 90 degrees and the other constants are zero. There the six
+/// displacements are along and about three orthogonal axes: never singular.
+struct JointPlacement {
+  bool general = false;
+  bool parallel = false;  ///< the axis is parallel to the one before it: beta is in use
+  Transform T_parent_pre = Transform::Identity();
+  double gamma = 0.0, b = 0.0, beta = 0.0, alpha = 0.0, d = 0.0, theta = 0.0, r = 0.0;
+  Transform T_joint_body = Transform::Identity();
+};
+
+/// Placement of every joint of the tree, in its order. At a branch the first joint in the file
+/// continues the chain and the others are general; it is decided on the whole tree, so that a
+/// parameter means the same whichever markers are recorded.
+std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOptions& options);
+
+}  // namespace elastocal

@@ -1,0 +1,98 @@
+#include "elastocal/robot/robot_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/random.hpp"
+
+namespace elastocal {
+namespace {
+
+template <typename Item>
+int FindByName(const std::vector<Item>& items, const std::string& name, const char* what,
+               const std::string& robot) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].name == name) return static_cast<int>(i);
+    names.push_back(items[i].name);
+  }
+  throw InputError("robot '" + robot + "' has no " + what + " '" + name + "'" +
+                   DidYouMean(name, names));
+}
+
+Transform JointMotion(const Joint& joint, double position) {
+  return joint.type == JointType::kRevolute
+             ? RotAxis(joint.axis, position)
+             : Transform(Eigen::Translation3d(position * joint.axis));
+}
+
+}  // namespace
+
+int FindLink(const RobotTree& tree, const std::string& name) {
+  return FindByName(tree.links, name, "link", tree.name);
+}
+
+int FindJoint(const RobotTree& tree, const std::string& name) {
+  return FindByName(tree.joints, name, "movable joint", tree.name);
+}
+
+double JointPosition(const Joint& joint, const Eigen::VectorXd& q) {
+  return joint.multiplier * q[joint.coordinate] + joint.offset;
+}
+
+std::vector<Transform> LinkTransforms(const RobotTree& tree, const Eigen::VectorXd& q) {
+  std::vector<Transform> T_root_body(tree.body_count(), Transform::Identity());
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const Joint& joint = tree.joints[k];
+    T_root_body[k + 1] = T_root_body[joint.parent_body] *
+                         tree.links[joint.parent_link].T_body_link * joint.T_parent_child *
+                         JointMotion(joint, JointPosition(joint, q));
+  }
+  std::vector<Transform> T_root_link;
+  T_root_link.reserve(tree.links.size());
+  for (const Link& link : tree.links) {
+    T_root_link.push_back(T_root_body[link.body] * link.T_body_link);
+  }
+  return T_root_link;
+}
+
+std::vector<int> JointsToBody(const RobotTree& tree, int body) {
+  std::vector<int> joints;
+  for (; body > 0; body = tree.joints[body - 1].parent_body) joints.push_back(body - 1);
+  std::reverse(joints.begin(), joints.end());
+  return joints;
+}
+
+double RobotSize(const RobotTree& tree) {
+  std::vector<double> reach(tree.body_count(), 0.0);
+  double longest = 0.0;
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const Joint& joint = tree.joints[k];
+    double stroke = 0.0;
+    if (joint.type == JointType::kPrismatic && std::isfinite(joint.limits.upper)) {
+      stroke = std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
+    }
+    const Transform T_body_child =
+        tree.links[joint.parent_link].T_body_link * joint.T_parent_child;
+    reach[k + 1] = reach[joint.parent_body] + T_body_child.translation().norm() + stroke;
+  }
+  for (const Link& link : tree.links) {
+    longest = std::max(longest, reach[link.body] + link.T_body_link.translation().norm());
+  }
+  return 2.0 * longest;
+}
+
+Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random) {
+  Eigen::VectorXd q(tree.coordinate_count());
+  for (int i = 0; i < q.size(); ++i) {
+    const Joint& joint = tree.joints[tree.coordinate_joint[i]];
+    const double range = joint.type == JointType::kRevolute ? M_PI : 0.5;
+    const double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -range;
+    const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : range;
+    q[i] = random.Uniform(lower, upper);
+  }
+  return q;
+}
+
+}  // namespace elastocal

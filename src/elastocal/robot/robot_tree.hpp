@@ -1,0 +1,82 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/math/transform.hpp"
+
+namespace elastocal {
+
+class Random;
+
+/// Limits of a joint: rad and rad/s and N.m, or m, m/s and N for a prismatic joint. Infinite where
+/// the URDF gives none.
+struct JointLimits {
+  double lower, upper, velocity, effort;
+};
+
+enum class JointType { kRevolute, kPrismatic };
+
+/// A movable joint. It moves the body of the same index plus one: joint k moves body k + 1.
+struct Joint {
+  std::string name;
+  JointType type = JointType::kRevolute;
+  int parent_link = 0, child_link = 0;  ///< links of the URDF
+  int parent_body = 0;                  ///< body the joint is mounted on
+  Transform T_parent_child;             ///< URDF origin: parent link to child link at position 0
+  Eigen::Vector3d axis;                 ///< unit vector in the child link's frame
+  JointLimits limits;
+  /// Entry of the position vector q that drives the joint; position = multiplier * q + offset.
+  /// A mimic joint shares the entry of the joint it follows; all others have (1, 0).
+  int coordinate = 0;
+  double multiplier = 1.0, offset = 0.0;
+  bool mimic = false;
+};
+
+/// A link of the URDF. Links joined by fixed joints form one body.
+struct Link {
+  std::string name;
+  int body = 0;
+  Transform T_body_link;  ///< the body's frame is that of the link its joint moves (root: the root link)
+  double mass = 0.0;      ///< kg
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< centre of mass in the link's frame, m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass, link's axes, kg.m^2
+};
+
+/// A robot as a tree of bodies joined by revolute and prismatic joints, as a URDF describes it.
+/// Body 0 is the root (the waist of a humanoid). Joints stand in an order in which every joint
+/// comes after those that carry it, and otherwise in the order of the file.
+struct RobotTree {
+  std::string name;
+  std::vector<Link> links;  ///< links[0] is the root link
+  std::vector<Joint> joints;
+  std::vector<int> coordinate_joint;  ///< for each entry of q, its joint
+
+  int body_count() const { return static_cast<int>(joints.size()) + 1; }
+  int coordinate_count() const { return static_cast<int>(coordinate_joint.size()); }
+};
+
+/// Index of a link or joint. Throws InputError with the nearest known name where there is none.
+int FindLink(const RobotTree& tree, const std::string& name);
+int FindJoint(const RobotTree& tree, const std::string& name);
+
+/// Position of a joint [rad or m] for the position vector `q` of the whole tree.
+double JointPosition(const Joint& joint, const Eigen::VectorXd& q);
+
+/// Pose of every link in the root link's frame, straight from the URDF's own origins and axes.
+std::vector<Transform> LinkTransforms(const RobotTree& tree, const Eigen::VectorXd& q);
+
+/// Joints from the root to a body, the first at the root.
+std::vector<int> JointsToBody(const RobotTree& tree, int body);
+
+/// A length that no two points of the robot exceed by much: twice the sum of the offsets along its
+/// longest branch, m.
+double RobotSize(const RobotTree& tree);
+
+/// A posture drawn uniformly within the position limits (infinite limits: half a turn or 0.5 m to
+/// either side). Size `coordinate_count()`.
+Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random);
+
+}  // namespace elastocal

@@ -1,0 +1,78 @@
+#include "elastocal/robot/special_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace elastocal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kExact = 1e-6;  // m and rad
+
+struct Axis {
+  Vector3d point, direction;
+};
+
+Axis AxisAtZero(const RobotTree& tree, const std::vector<Transform>& T_root_link, int joint) {
+  const Transform& T = T_root_link[tree.joints[joint].child_link];
+  return {T.translation(), T.linear() * tree.joints[joint].axis};
+}
+
+/// Point of axis `a` closest to axis `b`; only for axes that are not parallel.
+Vector3d ClosestPoint(const Axis& a, const Axis& b) {
+  const Vector3d across = a.direction.cross(b.direction);
+  const double s = (b.point - a.point).cross(b.direction).dot(across) / across.squaredNorm();
+  return a.point + s * a.direction;
+}
+
+double AngleBetween(const Axis& a, const Axis& b) {
+  return std::atan2(a.direction.cross(b.direction).norm(), std::abs(a.direction.dot(b.direction)));
+}
+
+/// Diameter of the points where neighbouring axes come closest.
+double WristSpread(const Axis& a, const Axis& b, const Axis& c) {
+  const Vector3d points[] = {ClosestPoint(a, b), ClosestPoint(b, a), ClosestPoint(b, c),
+                             ClosestPoint(c, b)};
+  double spread = 0.0;
+  for (const Vector3d& p : points) {
+    for (const Vector3d& q : points) spread = std::max(spread, (p - q).norm());
+  }
+  return spread;
+}
+
+/// The joint before on the way from the root, or -1.
+int Previous(const RobotTree& tree, int joint) { return tree.joints[joint].parent_body - 1; }
+
+}  // namespace
+
+double Deviation(const RobotTree& tree, const SpecialGeometry& group) {
+  const Eigen::VectorXd q = Eigen::VectorXd::Zero(tree.coordinate_count());
+  const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
+  const auto axis = [&](int i) { return AxisAtZero(tree, T_root_link, group.joints[i]); };
+  if (group.kind == SpecialGeometry::Kind::kParallelAxes) return AngleBetween(axis(0), axis(1));
+  return WristSpread(axis(0), axis(1), axis(2));
+}
+
+std::vector<SpecialGeometry> FindSpecialGeometry(const RobotTree& tree) {
+  using Kind = SpecialGeometry::Kind;
+  std::vector<SpecialGeometry> groups;
+  const auto revolute = [&](int k) {
+    return k >= 0 && tree.joints[k].type == JointType::kRevolute;
+  };
+  const auto angle = [&](int a, int b) {
+    return Deviation(tree, {Kind::kParallelAxes, {a, b}});
+  };
+  for (int c = 0; c < static_cast<int>(tree.joints.size()); ++c) {
+    const int b = Previous(tree, c);
+    if (!revolute(c) || !revolute(b)) continue;
+    if (angle(b, c) < kExact) groups.push_back({Kind::kParallelAxes, {b, c}});
+    const int a = Previous(tree, b);
+    if (!revolute(a) || angle(b, c) < 0.1 || angle(a, b) < 0.1) continue;
+    const SpecialGeometry wrist{Kind::kSphericalWrist, {a, b, c}};
+    if (Deviation(tree, wrist) < kExact) groups.push_back(wrist);
+  }
+  return groups;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,2 @@
+#include "elastocal/high/relative.hpp"
+#include "elastocal/low/upwards.hpp"

@@ -1,0 +1,4 @@
+#include "relative.hpp"
+
+#include "elastocal/low/transitive_and_allowed.hpp"
+#include "elastocal/unknown/header.hpp"

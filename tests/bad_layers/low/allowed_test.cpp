@@ -1,0 +1,3 @@
+#include "elastocal/low/allowed.hpp"
+
+#include "tests/test_files.hpp"

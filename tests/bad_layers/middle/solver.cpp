@@ -1,0 +1,3 @@
+#include <ceres/ceres.h>
+
+#include "elastocal/low/upwards.hpp"

@@ -1,0 +1,267 @@
+// The program as its users run it: commands, files, exit codes and messages.
+
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/posture_table.hpp"
+#include "elastocal/io/project.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/run_program.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+/// A small arm with a recording of it, to break in one place or another.
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Project project = ReadProject(SourceFile(kProject));
+    const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+    const BaseParameters base = FindBaseParameters(model, project.identifiability);
+    truth_ = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+    const Recording recording = MakeSyntheticRecording(model, truth_, {.postures = 30});
+    WritePostureTable(scratch_.path() / "recording.csv", recording, project.tree);
+    project_ = SourceFile(kProject).string();
+    recording_ = (scratch_.path() / "recording.csv").string();
+    out_ = (scratch_.path() / "out").string();
+  }
+
+  ProgramResult Calibrate(const std::string& project, const std::string& recording,
+                          const std::string& more = "") {
+    return RunProgram("calibrate " + project + " --recording " + recording + " -o " + out_ + " " +
+                      more);
+  }
+
+  /// The recording with the cell of a row (0: header) and column replaced.
+  std::string WithCell(int row, int column, const std::string& text) {
+    std::ifstream stream(recording_);
+    std::string line, changed;
+    for (int r = 0; std::getline(stream, line); ++r) {
+      if (r == row) {
+        std::size_t begin = 0;
+        for (int c = 0; c < column; ++c) begin = line.find(',', begin) + 1;
+        line.replace(begin, line.find(',', begin) - begin, text);
+      }
+      changed += line + "\n";
+    }
+    return scratch_.Write("changed.csv", changed);
+  }
+
+  /// Bad input: exit code 3, all parts in the message, and no output at all.
+  void ExpectRefused(const ProgramResult& result, std::initializer_list<std::string> parts) {
+    EXPECT_EQ(result.exit_code, 3) << result.out << result.err;
+    for (const std::string& part : parts) {
+      EXPECT_NE(result.err.find(part), std::string::npos) << part << " not in: " << result.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  }
+
+  static constexpr const char* kProject = "tests/robots/arm6_project.yaml";
+  ScratchFolder scratch_;
+  Eigen::VectorXd truth_;
+  std::string project_, recording_, out_;
+};
+
+TEST_F(Program, HelpHasAnExampleForEveryCommand) {
+  EXPECT_EQ(RunProgram("--help").exit_code, 0);
+  for (const char* command : {"inspect", "calibrate", "validate", "demo"}) {
+    const ProgramResult help = RunProgram(std::string(command) + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.out.find("Example: elastocal " + std::string(command)), std::string::npos);
+    for (const char* option : {"--json", "--seed", "--quiet"}) {
+      EXPECT_NE(help.out.find(option), std::string::npos) << command << option;
+    }
+  }
+}
+
+TEST_F(Program, WrongUsageEndsWithTwo) {
+  EXPECT_EQ(RunProgram("").exit_code, 2);
+  EXPECT_EQ(RunProgram("calibrat").exit_code, 2);
+  EXPECT_EQ(RunProgram("calibrate " + project_).exit_code, 2);
+  EXPECT_EQ(Calibrate(project_, recording_, "--kfold one").exit_code, 2);
+  EXPECT_EQ(Calibrate(project_, recording_, "--no-such-option").exit_code, 2);
+}
+
+TEST_F(Program, CalibrateWritesAllResults) {
+  const std::string json_file = (scratch_.path() / "copy.json").string();
+  const ProgramResult result = Calibrate(project_, recording_, "--kfold 5 --json " + json_file);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const char* file :
+       {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro", "summary.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(out_) / file)) << file;
+  }
+  const std::string text = ReadFile(std::filesystem::path(out_) / "summary.json");
+  EXPECT_EQ(text, ReadFile(json_file));
+  const nlohmann::json summary = nlohmann::json::parse(text);
+  EXPECT_EQ(summary["status"], "converged");
+  EXPECT_EQ(summary["postures"], 30);
+  EXPECT_EQ(summary["kfold"]["folds"], 5);
+  EXPECT_EQ(summary["identifiable"], summary["identifiable_theory"]);
+  EXPECT_TRUE(summary["outliers"].empty());
+  EXPECT_GT(summary["solve_seconds"], 0.0);
+  for (const char* model : {"uncalibrated", "offsets_only", "geometric"}) {
+    EXPECT_GT(summary["rmse_3d_mm"][model], 0.0);
+    EXPECT_NEAR(summary["rmse_coordinate_mm"][model].get<double>() * std::sqrt(3.0),
+                summary["rmse_3d_mm"][model].get<double>(), 1e-12);
+    EXPECT_GT(summary["kfold"]["rmse_3d_mm"][model], 0.0);
+  }
+  // Noise of 0.2 mm a coordinate is 0.35 mm in 3-D; the fit takes a part of it away.
+  EXPECT_LT(summary["rmse_3d_mm"]["geometric"], 0.35);
+  EXPECT_GT(summary["kfold"]["rmse_3d_mm"]["geometric"], 0.34);
+}
+
+TEST_F(Program, SameInputSameFiles) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const auto files = {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro"};
+  std::vector<std::string> first;
+  for (const char* file : files) first.push_back(ReadFile(std::filesystem::path(out_) / file));
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  std::size_t i = 0;
+  for (const char* file : files) {
+    EXPECT_EQ(ReadFile(std::filesystem::path(out_) / file), first[i++]) << file;
+  }
+}
+
+TEST_F(Program, QuietPrintsNothing) {
+  const ProgramResult result = Calibrate(project_, recording_, "--quiet");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out + result.err, "");
+}
+
+// A project whose URDF is the calibrated one has nothing left to calibrate: offsets vanish.
+TEST_F(Program, CalibratedUrdfNeedsNoCalibration) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  std::string project = ReadFile(project_);
+  project.replace(project.find("arm6.urdf"), 9, "arm6_calibrated.urdf");
+  const std::string again = out_ + "/project.yaml";
+  std::ofstream(again) << project;
+  const std::string json_file = (scratch_.path() / "again.json").string();
+  ASSERT_EQ(RunProgram("calibrate " + again + " --recording " + recording_ + " -o " + out_ +
+                       "/again --json " + json_file).exit_code, 0);
+  const nlohmann::json summary = nlohmann::json::parse(ReadFile(json_file));
+  const double before = nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["rmse_3d_mm"]
+                                             ["geometric"];
+  // Uncalibrated now means with the calibrated URDF: as good as the calibration was, but for marker
+  // positions refitted.
+  EXPECT_LT(summary["rmse_3d_mm"]["uncalibrated"], 1.05 * before);
+}
+
+TEST_F(Program, ValidateAppliesACalibrationToAnotherRecording) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  ErrorModel elsewhere = model;
+  elsewhere.T_ref_waist = Transform(Eigen::Translation3d(0.3, 0.2, -0.1)) * RotY(1.0);
+  WritePostureTable(scratch_.path() / "other.csv",
+                    MakeSyntheticRecording(elsewhere, truth_, {.postures = 25, .seed = 9}),
+                    project.tree);
+  const std::string json_file = (scratch_.path() / "validate.json").string();
+  const ProgramResult result =
+      RunProgram("validate " + project_ + " --calibration " + out_ + "/calibration.yaml" +
+                 " --recording " + (scratch_.path() / "other.csv").string() + " --json " +
+                 json_file);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(ReadFile(json_file));
+  EXPECT_LT(json["rmse_3d_mm"]["calibrated"], 0.4);
+  EXPECT_GT(json["rmse_3d_mm"]["uncalibrated"], 3.0);
+}
+
+TEST_F(Program, EncoderOffsetsAreWrittenApart) {
+  ASSERT_EQ(Calibrate(project_, recording_, "--zero-offsets encoder").exit_code, 0);
+  const std::string xacro = ReadFile(out_ + "/offsets.xacro");
+  EXPECT_NE(xacro.find("NOT in these origins"), std::string::npos);
+  EXPECT_NE(xacro.find("name=\"elbow_joint_offset\""), std::string::npos) << xacro;
+  EXPECT_NE(ReadFile(out_ + "/calibration.yaml").find("zero_offsets: encoder"), std::string::npos);
+}
+
+TEST_F(Program, MissingFilesAreNamed) {
+  ExpectRefused(Calibrate("no_such.yaml", recording_), {"no_such.yaml"});
+  ExpectRefused(Calibrate(project_, "no_such.csv"), {"no_such.csv"});
+  ExpectRefused(RunProgram("validate " + project_ + " --calibration no.yaml --recording " +
+                           recording_), {"no.yaml"});
+}
+
+TEST_F(Program, MalformedProjectAndUrdfAreNamedByLine) {
+  ExpectRefused(Calibrate(scratch_.Write("bad.yaml", "robot: {urdf: [\n"), recording_),
+                {"bad.yaml:"});
+  scratch_.Write("bad.urdf", "<robot name='r'>\n<link name='a'>\n</robot>\n");
+  ExpectRefused(
+      Calibrate(scratch_.Write("p.yaml", "robot: {urdf: bad.urdf}\n"
+                                         "markers: {single: [{name: M, link: a, position_mm: "
+                                         "[0, 0, 0]}]}\n"), recording_),
+      {"bad.urdf:"});
+}
+
+TEST_F(Program, UnknownKeyJointAndMarkerComeWithTheNearestKnownName) {
+  const std::string urdf = SourceFile("tests/robots/arm6.urdf").string();
+  const std::string begin = "robot: {urdf: " + urdf + "}\n";
+  const std::string marker = "markers: {single: [{name: M, link: tool, position_mm: [9, 9, 9]}]}\n";
+  ExpectRefused(Calibrate(scratch_.Write("p.yaml", begin + marker + "recordin: {}\n"), recording_),
+                {"p.yaml:3", "recordin", "did you mean 'recording'"});
+  ExpectRefused(Calibrate(scratch_.Write("p.yaml", begin + marker +
+                                                       "recording: {columns: {joints: {elbow_joit: "
+                                                       "a}}}\n"), recording_),
+                {"p.yaml:3", "elbow_joit", "did you mean 'elbow_joint'"});
+  ExpectRefused(Calibrate(scratch_.Write("p.yaml", begin + marker +
+                                                       "recording: {columns: {markers: {N: "
+                                                       "[a, b, c]}}}\n"), recording_),
+                {"p.yaml:3", "'N'"});
+}
+
+TEST_F(Program, BadCellsAreNamedByLineAndColumn) {
+  ExpectRefused(Calibrate(project_, WithCell(5, 2, "oops")), {"changed.csv:6", "oops"});
+  ExpectRefused(Calibrate(project_, WithCell(5, 2, "nan")), {"changed.csv:6", "nan"});
+  ExpectRefused(Calibrate(project_, WithCell(0, 2, "no_such_column")),
+                {"changed.csv", "no_such_column"});
+}
+
+TEST_F(Program, TooFewOrNoPosturesAreRefused) {
+  std::ifstream stream(recording_);
+  std::string header, row;
+  std::getline(stream, header);
+  ExpectRefused(Calibrate(project_, scratch_.Write("empty.csv", header + "\n")), {"empty.csv"});
+  std::getline(stream, row);
+  ExpectRefused(Calibrate(project_, scratch_.Write("few.csv", header + "\n" + row + "\n")),
+                {"few.csv", "equations", "parameters"});
+}
+
+TEST_F(Program, NothingIsLeftWhenTheOutputCannotBeWritten) {
+  const std::string file = scratch_.Write("file", "");
+  const ProgramResult result = RunProgram("calibrate " + project_ + " --recording " + recording_ +
+                                          " -o " + file + "/out");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("file"), std::string::npos);
+}
+
+TEST_F(Program, InspectShowsCountsThatAgreeWithTheTheory) {
+  const std::string json_file = (scratch_.path() / "inspect.json").string();
+  const ProgramResult result = RunProgram(
+      "inspect " + SourceFile("models/talos/project.yaml").string() + " --json " + json_file);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("torso_2_joint / head_1_joint"), std::string::npos);
+  std::map<std::string, int> identifiable;
+  const nlohmann::json json = nlohmann::json::parse(ReadFile(json_file));
+  for (const auto& chain : json["chains"]) {
+    EXPECT_EQ(chain["identifiable"], chain["identifiable_theory"]) << chain["chain"];
+    identifiable[chain["chain"]] = chain["identifiable"];
+  }
+  EXPECT_EQ(identifiable["leg_left"], 51);
+  EXPECT_EQ(identifiable["head_trunk"], 34);
+  EXPECT_EQ(identifiable["arm_left"], 82);
+}
+
+TEST_F(Program, DemoFindsTheTruth) {
+  const ProgramResult result = RunProgram("demo --postures 25 -o " + out_);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("Truth against estimate"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/recording.csv"));
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/talos_calibrated.urdf"));
+}
+
+}  // namespace
+}  // namespace elastocal

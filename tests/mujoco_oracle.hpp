@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <Eigen/Geometry>
+#include <mujoco/mujoco.h>
+
+namespace elastocal {
+
+/// MuJoCo's opinion of a URDF, for comparison: kinematics, point Jacobians and gravity torques by
+/// names of the URDF. Shares no code with the library.
+///
+/// MuJoCo's URDF reader welds the root link to the world and drops its mass, so the root is joined
+/// to a link `world` by a floating joint, which stays at the identity: the frame of the root link
+/// is the world's. Constraints (limits, contacts) and passive forces (damping) are disabled.
+///
+/// MuJoCo 2.2.2 knows no mimic joints: each is a joint of its own here, and the caller sets its
+/// position and sums its torque or Jacobian column by the chain rule.
+class MujocoOracle {
+ public:
+  /// Throws std::runtime_error with MuJoCo's message where it does not take the file.
+  MujocoOracle(const std::filesystem::path& urdf, const std::string& root_link);
+
+  /// Position of a joint, rad or m. `Update` after the last one.
+  void SetPosition(const std::string& joint, double position);
+  /// Acceleration of gravity in the root link's frame, m/s^2. `Update` afterwards.
+  void SetGravity(const Eigen::Vector3d& gravity);
+  /// Evaluates the model at rest.
+  void Update();
+
+  /// Pose of a link in the root link's frame.
+  Eigen::Isometry3d LinkPose(const std::string& link) const;
+  /// Torque (or force) by which the joint's motor holds the robot still, N.m or N.
+  double GravityTorque(const std::string& joint) const;
+  /// Derivative of a point fixed to a link [its position in the root's frame, m] with respect to
+  /// the position of a joint.
+  Eigen::Vector3d PointDerivative(const std::string& joint, const std::string& link,
+                                  const Eigen::Vector3d& p_root_point) const;
+  double TotalMass() const;
+
+  /// For benchmarks.
+  const mjModel* model() const { return model_.get(); }
+  mjData* data() { return data_.get(); }
+  int LinkId(const std::string& link) const;
+
+ private:
+  int JointId(const std::string& joint) const;
+
+  std::unique_ptr<mjModel, decltype(&mj_deleteModel)> model_;
+  std::unique_ptr<mjData, decltype(&mj_deleteData)> data_;
+};
+
+}  // namespace elastocal

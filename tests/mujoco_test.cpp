@@ -1,0 +1,127 @@
+// Kinematics, Jacobian and statics of the robot layer against MuJoCo, an independent
+// implementation.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/robot/jacobian.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+#include "elastocal/robot/statics.hpp"
+#include "tests/mujoco_oracle.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class AgainstMujoco : public testing::TestWithParam<const char*> {
+ protected:
+  AgainstMujoco()
+      : file_(SourceFile(GetParam())),
+        tree_(ReadUrdf(file_)),
+        mujoco_(file_, tree_.links[0].name) {}
+
+  /// Puts both models into a random posture.
+  Eigen::VectorXd NextPosture() {
+    const Eigen::VectorXd q = RandomPosture(tree_, random_);
+    for (const Joint& joint : tree_.joints) {
+      mujoco_.SetPosition(joint.name, JointPosition(joint, q));
+    }
+    return q;
+  }
+
+  /// MuJoCo's torques by coordinate: a mimic joint's counts with its multiplier (chain rule).
+  Eigen::VectorXd MujocoTorques() const {
+    Eigen::VectorXd torques = Eigen::VectorXd::Zero(tree_.coordinate_count());
+    for (const Joint& joint : tree_.joints) {
+      torques[joint.coordinate] += joint.multiplier * mujoco_.GravityTorque(joint.name);
+    }
+    return torques;
+  }
+
+  std::filesystem::path file_;
+  RobotTree tree_;
+  MujocoOracle mujoco_;
+  Random random_{1};
+};
+
+constexpr int kPostures = 100;
+
+TEST_P(AgainstMujoco, LinkPoses) {
+  // Both work in double precision on a robot of a metre or two: rounding is near 1e-15, so 1e-9 m
+  // and rad leave no room for a different model.
+  for (int i = 0; i < kPostures; ++i) {
+    const std::vector<Transform> T_root_link = LinkTransforms(tree_, NextPosture());
+    mujoco_.Update();
+    for (std::size_t k = 0; k < tree_.links.size(); ++k) {
+      const Transform expected = mujoco_.LinkPose(tree_.links[k].name);
+      EXPECT_LT((T_root_link[k].translation() - expected.translation()).norm(), 1e-9)
+          << tree_.links[k].name;
+      EXPECT_LT(RotationAngle(T_root_link[k].linear().transpose() * expected.linear()), 1e-9)
+          << tree_.links[k].name;
+    }
+  }
+}
+
+TEST_P(AgainstMujoco, JacobianOfJointPositions) {
+  // An error of theta (r where the joint slides) moves a marker as the joint itself does: the only
+  // columns that MuJoCo knows. A marker on every moving link.
+  std::vector<Marker> markers;
+  for (std::size_t k = 0; k < tree_.links.size(); ++k) {
+    if (tree_.links[k].body == 0) continue;
+    markers.push_back({"M_" + tree_.links[k].name, static_cast<int>(k), {0.03, -0.02, 0.05}});
+  }
+  const ErrorModel model = MakeErrorModel(tree_, markers);
+  const Geometry nominal = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
+  GeneralizedJacobian jacobian(model);
+  for (int i = 0; i < kPostures; ++i) {
+    jacobian.Evaluate(nominal, NextPosture());
+    mujoco_.Update();
+    const Eigen::MatrixXd dense = jacobian.Dense();
+    for (const Joint& joint : tree_.joints) {
+      const bool slides = joint.type == JointType::kPrismatic;
+      const int column = FindParameter(model.parameters, joint.name + (slides ? ".r" : ".theta"));
+      for (int m = 0; m < model.marker_count(); ++m) {
+        const Eigen::Vector3d expected = mujoco_.PointDerivative(
+            joint.name, tree_.links[markers[m].link].name, jacobian.Position(m));
+        // Levers of a metre: rounding near 1e-15 m/rad.
+        EXPECT_LT((dense.block<3, 1>(3 * m, column) - expected).norm(), 1e-9)
+            << joint.name << ", " << markers[m].name;
+      }
+    }
+  }
+}
+
+TEST_P(AgainstMujoco, GravityTorques) {
+  // Torques reach some 100 N.m, where rounding is near 1e-13.
+  for (int i = 0; i < kPostures; ++i) {
+    const Eigen::VectorXd torques = GravityTorques(tree_, NextPosture());
+    mujoco_.Update();
+    EXPECT_LT((torques - MujocoTorques()).lpNorm<Eigen::Infinity>(), 1e-8);
+  }
+}
+
+TEST_P(AgainstMujoco, GravityTorquesOfALeaningWaist) {
+  const Eigen::Vector3d gravity(3.0, -4.0, -8.0);
+  mujoco_.SetGravity(gravity);
+  for (int i = 0; i < kPostures; ++i) {
+    const Eigen::VectorXd torques = GravityTorques(tree_, NextPosture(), gravity);
+    mujoco_.Update();
+    EXPECT_LT((torques - MujocoTorques()).lpNorm<Eigen::Infinity>(), 1e-8);
+  }
+}
+
+TEST_P(AgainstMujoco, TotalMass) { EXPECT_NEAR(TotalMass(tree_), mujoco_.TotalMass(), 1e-9); }
+
+INSTANTIATE_TEST_SUITE_P(Robots, AgainstMujoco,
+                         testing::Values("models/talos/talos.urdf", "tests/robots/arm6.urdf",
+                                         "tests/robots/mini_humanoid.urdf"),
+                         [](const auto& robot) {
+                           return std::filesystem::path(robot.param).stem().string();
+                         });
+
+}  // namespace
+}  // namespace elastocal
