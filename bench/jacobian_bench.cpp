@@ -15,7 +15,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kPostures = 20;
+constexpr int kPostures = 50;
 
 std::vector<Eigen::VectorXd> RandomPostures(const RobotTree& tree) {
   Random random(1);
@@ -136,9 +136,9 @@ class MujocoJacobians {
 
  private:
   MujocoOracle mujoco_;
-  std::vector<int> bodies_;                // by marker
-  std::vector<Eigen::VectorXd> qpos_;      // by posture
-  std::vector<Eigen::Matrix3Xd> points_;   // by posture
+  std::vector<int> bodies_;               // by marker
+  std::vector<Eigen::VectorXd> qpos_;     // by posture
+  std::vector<Eigen::Matrix3Xd> points_;  // by posture
   Eigen::VectorXd jacobian_;
 };
 

@@ -142,10 +142,12 @@ TEST_F(Program, CalibratedUrdfNeedsNoCalibration) {
   std::ofstream(again) << project;
   const std::string json_file = (scratch_.path() / "again.json").string();
   ASSERT_EQ(RunProgram("calibrate " + again + " --recording " + recording_ + " -o " + out_ +
-                       "/again --json " + json_file).exit_code, 0);
+                       "/again --json " + json_file)
+                .exit_code,
+            0);
   const nlohmann::json summary = nlohmann::json::parse(ReadFile(json_file));
-  const double before = nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["rmse_3d_mm"]
-                                             ["geometric"];
+  const double before =
+      nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["rmse_3d_mm"]["geometric"];
   // Uncalibrated now means with the calibrated URDF: as good as the calibration was, but for marker
   // positions refitted.
   EXPECT_LT(summary["rmse_3d_mm"]["uncalibrated"], 1.05 * before);
@@ -161,10 +163,9 @@ TEST_F(Program, ValidateAppliesACalibrationToAnotherRecording) {
                     MakeSyntheticRecording(elsewhere, truth_, {.postures = 25, .seed = 9}),
                     project.tree);
   const std::string json_file = (scratch_.path() / "validate.json").string();
-  const ProgramResult result =
-      RunProgram("validate " + project_ + " --calibration " + out_ + "/calibration.yaml" +
-                 " --recording " + (scratch_.path() / "other.csv").string() + " --json " +
-                 json_file);
+  const ProgramResult result = RunProgram(
+      "validate " + project_ + " --calibration " + out_ + "/calibration.yaml" + " --recording " +
+      (scratch_.path() / "other.csv").string() + " --json " + json_file);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json json = nlohmann::json::parse(ReadFile(json_file));
   EXPECT_LT(json["rmse_3d_mm"]["calibrated"], 0.4);
@@ -182,19 +183,21 @@ TEST_F(Program, EncoderOffsetsAreWrittenApart) {
 TEST_F(Program, MissingFilesAreNamed) {
   ExpectRefused(Calibrate("no_such.yaml", recording_), {"no_such.yaml"});
   ExpectRefused(Calibrate(project_, "no_such.csv"), {"no_such.csv"});
-  ExpectRefused(RunProgram("validate " + project_ + " --calibration no.yaml --recording " +
-                           recording_), {"no.yaml"});
+  ExpectRefused(
+      RunProgram("validate " + project_ + " --calibration no.yaml --recording " + recording_),
+      {"no.yaml"});
 }
 
 TEST_F(Program, MalformedProjectAndUrdfAreNamedByLine) {
   ExpectRefused(Calibrate(scratch_.Write("bad.yaml", "robot: {urdf: [\n"), recording_),
                 {"bad.yaml:"});
   scratch_.Write("bad.urdf", "<robot name='r'>\n<link name='a'>\n</robot>\n");
-  ExpectRefused(
-      Calibrate(scratch_.Write("p.yaml", "robot: {urdf: bad.urdf}\n"
+  ExpectRefused(Calibrate(scratch_.Write("p.yaml",
+                                         "robot: {urdf: bad.urdf}\n"
                                          "markers: {single: [{name: M, link: a, position_mm: "
-                                         "[0, 0, 0]}]}\n"), recording_),
-      {"bad.urdf:"});
+                                         "[0, 0, 0]}]}\n"),
+                          recording_),
+                {"bad.urdf:"});
 }
 
 TEST_F(Program, UnknownKeyJointAndMarkerComeWithTheNearestKnownName) {
@@ -205,11 +208,13 @@ TEST_F(Program, UnknownKeyJointAndMarkerComeWithTheNearestKnownName) {
                 {"p.yaml:3", "recordin", "did you mean 'recording'"});
   ExpectRefused(Calibrate(scratch_.Write("p.yaml", begin + marker +
                                                        "recording: {columns: {joints: {elbow_joit: "
-                                                       "a}}}\n"), recording_),
+                                                       "a}}}\n"),
+                          recording_),
                 {"p.yaml:3", "elbow_joit", "did you mean 'elbow_joint'"});
   ExpectRefused(Calibrate(scratch_.Write("p.yaml", begin + marker +
                                                        "recording: {columns: {markers: {N: "
-                                                       "[a, b, c]}}}\n"), recording_),
+                                                       "[a, b, c]}}}\n"),
+                          recording_),
                 {"p.yaml:3", "'N'"});
 }
 
@@ -232,8 +237,8 @@ TEST_F(Program, TooFewOrNoPosturesAreRefused) {
 
 TEST_F(Program, NothingIsLeftWhenTheOutputCannotBeWritten) {
   const std::string file = scratch_.Write("file", "");
-  const ProgramResult result = RunProgram("calibrate " + project_ + " --recording " + recording_ +
-                                          " -o " + file + "/out");
+  const ProgramResult result =
+      RunProgram("calibrate " + project_ + " --recording " + recording_ + " -o " + file + "/out");
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_NE(result.err.find("file"), std::string::npos);
 }

@@ -10,7 +10,14 @@
 namespace elastocal {
 
 /// How the axis of a joint lies to that of the joint before it.
-enum class AxisRelation { kAny, kIntersecting, kParallel, kAntiparallel, kNearlyParallel, kCoaxial };
+enum class AxisRelation {
+  kAny,
+  kIntersecting,
+  kParallel,
+  kAntiparallel,
+  kNearlyParallel,
+  kCoaxial
+};
 
 /// A rotation and a translation of up to 0.3 m along each axis.
 inline Transform RandomTransform(Random& random) {
@@ -30,11 +37,20 @@ inline int AddRelatedJoint(RobotTree& tree, const std::string& name, int parent_
   Transform T = RandomTransform(random);
   Eigen::Vector3d axis = random.NormalVector(3, 1.0).normalized();
   switch (relation) {
-    case AxisRelation::kAny: break;
-    case AxisRelation::kIntersecting: T.translation() = on_axis + 0.2 * axis; break;
-    case AxisRelation::kParallel: axis = along; break;
-    case AxisRelation::kAntiparallel: axis = -along; break;
-    case AxisRelation::kNearlyParallel: axis = RotAxis(along.unitOrthogonal(), 0.01) * along; break;
+    case AxisRelation::kAny:
+      break;
+    case AxisRelation::kIntersecting:
+      T.translation() = on_axis + 0.2 * axis;
+      break;
+    case AxisRelation::kParallel:
+      axis = along;
+      break;
+    case AxisRelation::kAntiparallel:
+      axis = -along;
+      break;
+    case AxisRelation::kNearlyParallel:
+      axis = RotAxis(along.unitOrthogonal(), 0.01) * along;
+      break;
     case AxisRelation::kCoaxial:
       axis = along;
       T.translation() = on_axis;

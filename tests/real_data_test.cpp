@@ -32,10 +32,9 @@ class LeftArm : public ::testing::Test {
 TEST_F(LeftArm, ErrorsAreAsSmallAsPromised) {
   EXPECT_EQ(recording_.posture_count(), 61);
   EXPECT_EQ(base_.kept.size(), 39u);
-  const ModelComparison comparison =
-      CompareModels(model_, recording_, base_, project_.calibration);
-  const CrossValidation folds = CrossValidate(comparison, model_, recording_, base_,
-                                              project_.calibration, 10, 1);
+  const ModelComparison comparison = CompareModels(model_, recording_, base_, project_.calibration);
+  const CrossValidation folds =
+      CrossValidate(comparison, model_, recording_, base_, project_.calibration, 10, 1);
   EXPECT_EQ(comparison.geometric().termination, Termination::kConverged);
   EXPECT_TRUE(comparison.geometric().outliers.empty());
   EXPECT_LE(comparison.metrics[0].rmse_3d, 5.2e-3);
@@ -44,8 +43,8 @@ TEST_F(LeftArm, ErrorsAreAsSmallAsPromised) {
   EXPECT_LE(folds.metrics[2].rmse_3d, 0.80e-3);
 }
 
-// The shoulder's offset is the largest of the arm in the paper's Table 1 as well: 1.73 degrees, found
-// on the same robot with other markers and another recording.
+// The shoulder's offset is the largest of the arm in the paper's Table 1 as well: 1.73 degrees,
+// found on the same robot with other markers and another recording.
 TEST_F(LeftArm, ShoulderOffsetAgreesWithThePaper) {
   const CalibrationResult result =
       Calibrate(model_, recording_, base_, ModelKind::kGeometric, project_.calibration);

@@ -27,9 +27,8 @@ ChainModel MakeChainModel(const std::string& project_file, const std::string& ch
   for (const Chain& chain : project.chains) {
     if (chain.name != chain_name) continue;
     ChainModel setup;
-    setup.model = SelectMarkers(
-        MakeErrorModel(project.tree, project.markers, project.placement),
-        ChainMarkers(project, chain));
+    setup.model = SelectMarkers(MakeErrorModel(project.tree, project.markers, project.placement),
+                                ChainMarkers(project, chain));
     setup.base = FindBaseParameters(setup.model, project.identifiability);
     return setup;
   }
@@ -40,8 +39,9 @@ ChainModel MakeChainModel(const std::string& project_file, const std::string& ch
 std::map<Kind, double> RealisticErrors(double factor = 1.0) {
   const double angle = factor * 0.5 * M_PI / 180.0;
   const double length = factor * 1e-3;
-  return {{Kind::kTheta, angle}, {Kind::kAlpha, angle}, {Kind::kBeta, angle},
-          {Kind::kGamma, angle}, {Kind::kR, length},    {Kind::kD, length},
+  return {{Kind::kTheta, angle}, {Kind::kAlpha, angle},
+          {Kind::kBeta, angle},  {Kind::kGamma, angle},
+          {Kind::kR, length},    {Kind::kD, length},
           {Kind::kB, length},    {Kind::kMarker, 10.0 * length}};
 }
 
@@ -56,13 +56,14 @@ ErrorModel SeenFromAfar(ErrorModel model) {
   return model;
 }
 
-class Recovery : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+class Recovery : public ::testing::TestWithParam<std::pair<std::string, std::string>> {};
 
 TEST_P(Recovery, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
   const auto [project, chain] = GetParam();
   const ChainModel chain_model = MakeChainModel(project, chain);
   const ErrorModel truth_model = SeenFromAfar(chain_model.model);
-  const Eigen::VectorXd truth = DrawErrors(truth_model, chain_model.base.kept, RealisticErrors(), 7);
+  const Eigen::VectorXd truth =
+      DrawErrors(truth_model, chain_model.base.kept, RealisticErrors(), 7);
   const Recording recording =
       MakeSyntheticRecording(truth_model, truth, {.postures = 40, .marker_sd = 0.0});
   const CalibrationResult result =
@@ -97,7 +98,8 @@ TEST_P(Recovery, DroppedParametersAreRegroupedAsReported) {
   for (std::size_t i = 0; i < chain_model.base.kept.size(); ++i) {
     const Parameter& parameter = chain_model.model.parameters[chain_model.base.kept[i]];
     if (parameter.kind == Kind::kBase) continue;
-    EXPECT_NEAR(result.delta[chain_model.base.kept[i]], combined[static_cast<Eigen::Index>(i)], 1e-8)
+    EXPECT_NEAR(result.delta[chain_model.base.kept[i]], combined[static_cast<Eigen::Index>(i)],
+                1e-8)
         << parameter.name;
   }
 }
@@ -109,10 +111,10 @@ TEST_P(Recovery, ErrorsOnAllParametersAreExplainedExactly) {
   const ChainModel chain_model = MakeChainModel(project, chain);
   const Eigen::VectorXd truth =
       DrawErrors(chain_model.model, AllParameters(chain_model.model), RealisticErrors(), 5);
-  const Recording seen =
-      MakeSyntheticRecording(chain_model.model, truth, {.postures = 60, .marker_sd = 0.0, .seed = 1});
-  const Recording unseen =
-      MakeSyntheticRecording(chain_model.model, truth, {.postures = 20, .marker_sd = 0.0, .seed = 2});
+  const Recording seen = MakeSyntheticRecording(chain_model.model, truth,
+                                                {.postures = 60, .marker_sd = 0.0, .seed = 1});
+  const Recording unseen = MakeSyntheticRecording(chain_model.model, truth,
+                                                  {.postures = 20, .marker_sd = 0.0, .seed = 2});
   const CalibrationResult result =
       Calibrate(chain_model.model, seen, chain_model.base, ModelKind::kGeometric, {});
   EXPECT_LT(ResidualNorms(result.model, unseen, result.delta).maxCoeff(), 1e-8);
@@ -120,12 +122,13 @@ TEST_P(Recovery, ErrorsOnAllParametersAreExplainedExactly) {
 
 INSTANTIATE_TEST_SUITE_P(
     Robots, Recovery,
-    ::testing::Values(std::pair{"models/talos/project.yaml", "leg_left"},
-                      std::pair{"models/talos/project.yaml", "arm_left"},
-                      std::pair{"tests/robots/arm6_project.yaml", "arm"},
-                      std::pair{"tests/robots/mini_humanoid_project.yaml", "left_leg"}),
+    ::testing::Values(std::pair<std::string, std::string>{"models/talos/project.yaml", "leg_left"},
+                      std::pair<std::string, std::string>{"models/talos/project.yaml", "arm_left"},
+                      std::pair<std::string, std::string>{"tests/robots/arm6_project.yaml", "arm"},
+                      std::pair<std::string, std::string>{"tests/robots/mini_humanoid_project.yaml",
+                                                          "left_leg"}),
     [](const auto& chain) {
-      const std::string project = chain.param.first;
+      const std::string& project = chain.param.first;
       const std::size_t slash = project.rfind('/');
       std::string name = project.find("talos") != std::string::npos
                              ? "talos"
@@ -133,9 +136,10 @@ INSTANTIATE_TEST_SUITE_P(
       return name + "_" + chain.param.second;
     });
 
-// 95 % intervals must contain the truth in 95 % of cases: truth from the prior, noise of 0.2 mm, 100
-// seeds. Over some 1800 joint parameters the fraction found has a standard deviation of half a per
-// cent (more where errors of one seed are correlated), so 93-97 % is four of them to either side.
+// 95 % intervals must contain the truth in 95 % of cases: truth from the prior, noise of 0.2 mm,
+// 100 seeds. Over some 1800 joint parameters the fraction found has a standard deviation of half a
+// per cent (more where errors of one seed are correlated), so 93-97 % is four of them to either
+// side.
 TEST(Coverage, IntervalsHoldWhatTheyPromise) {
   const ChainModel chain_model = MakeChainModel("models/talos/project.yaml", "leg_left");
   int inside = 0;
@@ -143,7 +147,8 @@ TEST(Coverage, IntervalsHoldWhatTheyPromise) {
   double mean_marker_sd = 0.0;
   constexpr int kSeeds = 100;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    const Eigen::VectorXd truth = DrawErrors(chain_model.model, chain_model.base.kept, RealisticErrors(), seed);
+    const Eigen::VectorXd truth =
+        DrawErrors(chain_model.model, chain_model.base.kept, RealisticErrors(), seed);
     const Recording recording =
         MakeSyntheticRecording(chain_model.model, truth, {.postures = 24, .seed = 1000u + seed});
     const CalibrationResult result =
@@ -166,7 +171,8 @@ TEST(Coverage, IntervalsHoldWhatTheyPromise) {
 
 TEST(Repeatability, SameInputSameBits) {
   const ChainModel chain_model = MakeChainModel("models/talos/project.yaml", "leg_left");
-  const Eigen::VectorXd truth = DrawErrors(chain_model.model, chain_model.base.kept, RealisticErrors(), 1);
+  const Eigen::VectorXd truth =
+      DrawErrors(chain_model.model, chain_model.base.kept, RealisticErrors(), 1);
   const Recording recording = MakeSyntheticRecording(chain_model.model, truth, {.postures = 20});
   const auto calibrate = [&] {
     return Calibrate(chain_model.model, recording, chain_model.base, ModelKind::kGeometric, {});
@@ -180,7 +186,8 @@ TEST(Repeatability, SameInputSameBits) {
 // Sums are taken in another order, and nothing else: far below any standard deviation (1e-5).
 TEST(Repeatability, OrderOfPosturesDoesNotMatter) {
   const ChainModel chain_model = MakeChainModel("models/talos/project.yaml", "leg_left");
-  const Eigen::VectorXd truth = DrawErrors(chain_model.model, chain_model.base.kept, RealisticErrors(), 1);
+  const Eigen::VectorXd truth =
+      DrawErrors(chain_model.model, chain_model.base.kept, RealisticErrors(), 1);
   const Recording recording = MakeSyntheticRecording(chain_model.model, truth, {.postures = 20});
   std::vector<int> reversed;
   for (int i = 19; i >= 0; --i) reversed.push_back(i);

@@ -16,8 +16,8 @@ namespace {
 constexpr double kSmallestMarkerSd = 1e-9;  // m: of noise-free data
 constexpr double kCauchyScale = 3.0;        // of a residual in standard deviations of the noise
 constexpr double kMaxPriorScale = 10.0;
-constexpr double kRoughTolerance = 1e-8;    // of the cost, while noise and prior are being found
-constexpr double kHyperTolerance = 1e-3;    // of noise and prior scale, relative
+constexpr double kRoughTolerance = 1e-8;  // of the cost, while noise and prior are being found
+constexpr double kHyperTolerance = 1e-3;  // of noise and prior scale, relative
 constexpr int kMaxNoiseUpdates = 50;
 constexpr int kMaxVerdicts = 5;
 
@@ -123,8 +123,7 @@ class Estimator {
                                               static_cast<Eigen::Index>(squares.size()));
     const double equations = 3.0 * static_cast<double>(squares.size());
     const double freedom = std::max(1.0, equations - fit.posterior.effective_parameters);
-    const double total =
-        robust ? equations * Median(s) / ChiSquareQuantile(0.5, 3.0) : s.sum();
+    const double total = robust ? equations * Median(s) / ChiSquareQuantile(0.5, 3.0) : s.sum();
     return std::max(kSmallestMarkerSd, std::sqrt(total / freedom));
   }
 
@@ -237,8 +236,8 @@ void EstimateAll(const Recording& recording, const BaseParameters& base,
   result.marker_sd = fit.marker_sd;
   result.prior_scale = fit.prior_scale;
   result.posterior = fit.posterior;
-  result.interval_factor = StudentQuantile(
-      0.975, std::max(1.0, result.equations - fit.posterior.effective_parameters));
+  result.interval_factor =
+      StudentQuantile(0.975, std::max(1.0, result.equations - fit.posterior.effective_parameters));
   result.correlations = StrongCorrelations(fit.posterior, options.correlation_threshold);
   FillStatus(base, free, unsupported, result);
   result.sd.setConstant(result.model.parameter_count(), std::numeric_limits<double>::quiet_NaN());
@@ -256,9 +255,10 @@ Fit FitExternals(const ErrorModel& model, const Recording& recording, const Base
   CheckEquations(recording, mask, externals);
   Estimator estimator(recording, options, result);
   const double rough_sd = std::max(
-      kSmallestMarkerSd, Median(ResidualNorms(result.model, recording, delta)
-                                    .reshaped()
-                                    .unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; })));
+      kSmallestMarkerSd,
+      Median(ResidualNorms(result.model, recording, delta).reshaped().unaryExpr([](double v) {
+        return std::isnan(v) ? 0.0 : v;
+      })));
   return estimator.Solve(mask, externals, {delta, rough_sd, 1.0, {}}, fixed_mask == nullptr);
 }
 
@@ -277,19 +277,27 @@ CalibrationResult Timed(ModelKind kind, Work work) {
 
 const char* ModelKindName(ModelKind kind) {
   switch (kind) {
-    case ModelKind::kUncalibrated: return "uncalibrated";
-    case ModelKind::kOffsetsOnly: return "offsets_only";
-    default: return "geometric";
+    case ModelKind::kUncalibrated:
+      return "uncalibrated";
+    case ModelKind::kOffsetsOnly:
+      return "offsets_only";
+    default:
+      return "geometric";
   }
 }
 
 const char* StatusName(ParameterStatus status) {
   switch (status) {
-    case ParameterStatus::kEstimated: return "estimated";
-    case ParameterStatus::kUnsupported: return "unsupported";
-    case ParameterStatus::kDropped: return "dropped";
-    case ParameterStatus::kHeld: return "held";
-    default: return "not_in_model";
+    case ParameterStatus::kEstimated:
+      return "estimated";
+    case ParameterStatus::kUnsupported:
+      return "unsupported";
+    case ParameterStatus::kDropped:
+      return "dropped";
+    case ParameterStatus::kHeld:
+      return "held";
+    default:
+      return "not_in_model";
   }
 }
 

@@ -44,25 +44,25 @@ struct CalibrationResult {
   /// The error model with the nominal pose of the waist that T0 deviates from (found by
   /// registration), in the reference frame of the recording.
   ErrorModel model;
-  Eigen::VectorXd delta;                 ///< errors, one a parameter of `model`; rad and m
-  std::vector<ParameterStatus> status;   ///< one a parameter
+  Eigen::VectorXd delta;                ///< errors, one a parameter of `model`; rad and m
+  std::vector<ParameterStatus> status;  ///< one a parameter
   /// Posterior standard deviation, one a parameter; for an unsupported one it says how little is
   /// known; NaN where none applies.
   Eigen::VectorXd sd;
   /// Half width of a 95 % interval in standard deviations (Student's t).
   double interval_factor = 1.96;
-  Posterior posterior;                   ///< of estimated and unsupported parameters together
+  Posterior posterior;  ///< of estimated and unsupported parameters together
   std::vector<Correlation> correlations;
 
-  ObservationMask used;                  ///< observations that took part
-  std::vector<Outlier> outliers;         ///< those that did not, and why
-  double marker_sd = 0.0;                ///< of one coordinate, m; estimated unless given
-  double prior_scale = 1.0;              ///< factor by which the prior was widened
-  int equations = 0;                     ///< 3 a used observation
+  ObservationMask used;           ///< observations that took part
+  std::vector<Outlier> outliers;  ///< those that did not, and why
+  double marker_sd = 0.0;         ///< of one coordinate, m; estimated unless given
+  double prior_scale = 1.0;       ///< factor by which the prior was widened
+  int equations = 0;              ///< 3 a used observation
 
   Termination termination = Termination::kFailure;
   std::string message;
-  int iterations = 0;                    ///< of all solves together
+  int iterations = 0;                           ///< of all solves together
   double initial_cost = 0.0, final_cost = 0.0;  ///< of the last solve
   double solve_seconds = 0.0;
 };
@@ -90,8 +90,8 @@ CalibrationResult Calibrate(const ErrorModel& model, const Recording& recording,
 
 /// Fits only waist and marker positions to a recording, the joints' errors being given by name
 /// [rad or m]: what it takes to use a calibration on another day. Names of joints that move no
-/// marker of this recording are passed over. Result of kind kUncalibrated with the joints' errors in
-/// `delta`.
+/// marker of this recording are passed over. Result of kind kUncalibrated with the joints' errors
+/// in `delta`.
 CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recording,
                                  const BaseParameters& base, const CalibrationOptions& options,
                                  const std::map<std::string, double>& joint_errors,

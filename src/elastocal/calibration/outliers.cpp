@@ -66,8 +66,7 @@ std::vector<Outlier> FindOutliers(const ErrorModel& model, const Recording& reco
       const Eigen::Matrix3d explained = J * by_marker[m] * J.transpose();
       const Eigen::Matrix3d noise = marker_sd * marker_sd * Eigen::Matrix3d::Identity();
       const double distance = SquaredDistance(
-          residual, used(i, m) ? Eigen::Matrix3d(noise - explained) : noise + explained,
-          marker_sd);
+          residual, used(i, m) ? Eigen::Matrix3d(noise - explained) : noise + explained, marker_sd);
       if (distance > threshold) {
         outliers.push_back({i, m, residual.norm(), std::sqrt(distance)});
       }

@@ -20,12 +20,12 @@ Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recordin
                               const Eigen::VectorXd& delta);
 
 /// Observations whose squared Mahalanobis distance exceeds the chi-square quantile (3 degrees of
-/// freedom) that a clean recording exceeds anywhere with `probability`. The covariance of a residual
-/// is marker_sd^2 I - J C J^T where the observation took part in the estimate (`used`), and
+/// freedom) that a clean recording exceeds anywhere with `probability`. The covariance of a
+/// residual is marker_sd^2 I - J C J^T where the observation took part in the estimate (`used`),
+/// and
 /// + J C J^T where it did not.
 std::vector<Outlier> FindOutliers(const ErrorModel& model, const Recording& recording,
                                   const ObservationMask& used, const Eigen::VectorXd& delta,
-                                  const Posterior& posterior, double marker_sd,
-                                  double probability);
+                                  const Posterior& posterior, double marker_sd, double probability);
 
 }  // namespace elastocal

@@ -22,8 +22,7 @@ double ParameterScale(const Parameter& parameter, const Prior& prior) {
 
 MarkerResiduals::MarkerResiduals(const ErrorModel& model, const Recording& recording,
                                  const ObservationMask& mask, const std::vector<int>& free,
-                                 const Eigen::VectorXd& fixed, const Prior& prior,
-                                 double marker_sd)
+                                 const Eigen::VectorXd& fixed, const Prior& prior, double marker_sd)
     : model_(model),
       recording_(recording),
       fixed_(fixed),
@@ -52,8 +51,10 @@ void MarkerResiduals::MakeParameterBlocks(const std::vector<int>& free, const Pr
     block_of_.push_back(static_cast<int>(parameter_blocks.size()) - 1);
     previous = &parameter;
   }
-  // Elimination needs something to eliminate from.
-  if (eliminated_blocks.size() == parameter_blocks.size()) eliminated_blocks.clear();
+  // Elimination needs something to eliminate from, and gains nothing for a single block.
+  if (eliminated_blocks.size() == parameter_blocks.size() || eliminated_blocks.size() < 2) {
+    eliminated_blocks.clear();
+  }
 
   for (int m = 0; m < model_.marker_count(); ++m) {
     const std::vector<int>& columns = jacobian_.Columns(m);
@@ -114,8 +115,10 @@ void MarkerResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobians) {
     if (observation.posture != posture) {
       posture = observation.posture;
       const Eigen::VectorXd q = recording_.q.row(posture).transpose();
-      if (with_jacobians) jacobian_.Evaluate(geometry, q);
-      else predicted = MarkerPositions(model_, geometry, q);
+      if (with_jacobians)
+        jacobian_.Evaluate(geometry, q);
+      else
+        predicted = MarkerPositions(model_, geometry, q);
     }
     const int m = observation.marker;
     const Eigen::Vector3d position =
@@ -140,7 +143,9 @@ void MarkerResiduals::Jacobian(int block, int k, Eigen::Map<RowMajorMatrix> jaco
   const int observation_count = static_cast<int>(observations_.size());
   if (block < observation_count) {
     const BlockColumns& columns = marker_columns_[observations_[block].marker][k];
-    jacobian = jacobians_[block](Eigen::all, columns.source) * columns.scale.asDiagonal();
+    for (Eigen::Index c = 0; c < jacobian.cols(); ++c) {
+      jacobian.col(c) = columns.scale[c] * jacobians_[block].col(columns.source[c]);
+    }
     return;
   }
   const int unknown = prior_unknowns_[block - observation_count];

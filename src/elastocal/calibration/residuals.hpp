@@ -61,16 +61,16 @@ class MarkerResiduals : public LeastSquaresProblem {
   const Recording& recording_;
   Eigen::VectorXd fixed_;
   double marker_sd_;
-  std::vector<int> free_;     // by unknown: parameter
-  Eigen::VectorXd scale_;     // by unknown
+  std::vector<int> free_;      // by unknown: parameter
+  Eigen::VectorXd scale_;      // by unknown
   std::vector<int> block_of_;  // by unknown
   GeneralizedJacobian jacobian_;
   std::vector<std::vector<BlockColumns>> marker_columns_;  // by marker
   std::vector<Observation> observations_;
   std::vector<int> prior_unknowns_;  // by prior residual block
   Eigen::VectorXd x_;
-  Eigen::Matrix3Xd residuals_;                   // by observation
-  std::vector<RowMajorMatrix> jacobians_;        // by observation
+  Eigen::Matrix3Xd residuals_;             // by observation
+  std::vector<RowMajorMatrix> jacobians_;  // by observation
 };
 
 }  // namespace elastocal

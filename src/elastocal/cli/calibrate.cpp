@@ -26,8 +26,8 @@ CalibrationRun Calculate(const Session& session, const CalibrateOptions& options
   run.recording = session.recording;
   run.base = session.base;
   run.warnings = session.warnings;
-  run.comparison = CompareModels(session.model, session.recording, session.base,
-                                 session.project.calibration);
+  run.comparison =
+      CompareModels(session.model, session.recording, session.base, session.project.calibration);
   if (options.folds > 0) {
     run.cross_validation =
         CrossValidate(run.comparison, session.model, session.recording, session.base,
@@ -41,8 +41,8 @@ CalibrationRun Calculate(const Session& session, const CalibrateOptions& options
 void WriteResults(const CalibrateOptions& options, const Session& session,
                   const CalibrationRun& run, const CalibratedUrdf& urdf, ZeroOffsets zero_offsets) {
   const std::filesystem::path folder = options.output;
-  const std::string calibration = MakeCalibrationYaml(run.comparison.geometric(), run.base,
-                                                      run.recording.source, zero_offsets);
+  const std::string calibration =
+      MakeCalibrationYaml(run.comparison.geometric(), run.base, run.recording.source, zero_offsets);
   const std::string offsets = MakeXacroOffsets(urdf);
   WriteFile(folder / (session.project.urdf.stem().string() + "_calibrated.urdf"), urdf.text);
   WriteFile(folder / "calibration.yaml", calibration);
@@ -67,8 +67,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
     run.warnings.insert(run.warnings.end(), urdf.warnings.begin(), urdf.warnings.end());
     WriteResults(options, session, run, urdf, zero_offsets);
   } else {
-    run.warnings.push_back("not converged (" + result.message +
-                           "): no calibrated URDF is written");
+    run.warnings.push_back("not converged (" + result.message + "): no calibrated URDF is written");
   }
   const std::string summary = MakeSummaryJson(run);
   WriteFile(folder / "summary.json", summary);

@@ -57,16 +57,21 @@ struct Truth {
 Truth DrawTruth(const Project& project, std::uint64_t seed) {
   constexpr double kDegree = M_PI / 180.0;
   Truth truth;
-  truth.model = SelectMarkers(
-      MakeErrorModel(project.tree, project.markers, project.placement), UpperBodyMarkers(project));
+  truth.model = SelectMarkers(MakeErrorModel(project.tree, project.markers, project.placement),
+                              UpperBodyMarkers(project));
   truth.model.T_ref_waist = Transform(Eigen::Translation3d(1.2, -0.8, 1.0)) * RotZ(2.0);
   using Kind = ParameterKind;
-  truth.delta = DrawErrors(
-      truth.model, FindBaseParameters(truth.model, project.identifiability).kept,
-      {{Kind::kTheta, 1.0 * kDegree}, {Kind::kR, 1e-3}, {Kind::kD, 1e-3}, {Kind::kB, 1e-3},
-       {Kind::kAlpha, 0.3 * kDegree}, {Kind::kBeta, 0.3 * kDegree}, {Kind::kGamma, 0.3 * kDegree},
-       {Kind::kMarker, 5e-3}},
-      seed);
+  truth.delta =
+      DrawErrors(truth.model, FindBaseParameters(truth.model, project.identifiability).kept,
+                 {{Kind::kTheta, 1.0 * kDegree},
+                  {Kind::kR, 1e-3},
+                  {Kind::kD, 1e-3},
+                  {Kind::kB, 1e-3},
+                  {Kind::kAlpha, 0.3 * kDegree},
+                  {Kind::kBeta, 0.3 * kDegree},
+                  {Kind::kGamma, 0.3 * kDegree},
+                  {Kind::kMarker, 5e-3}},
+                 seed);
   return truth;
 }
 
@@ -97,16 +102,17 @@ int Demo(const DemoOptions& options) {
   const Project project = ReadProject(source);
   const Truth truth = DrawTruth(project, options.common.seed);
   const Recording recording = MakeSyntheticRecording(
-      truth.model, truth.delta,
-      {.postures = options.postures, .seed = options.common.seed + 1});
+      truth.model, truth.delta, {.postures = options.postures, .seed = options.common.seed + 1});
   WritePostureTable(folder / "recording.csv", recording, project.tree);
-  Print(options.common.quiet,
-        fmt::format("A TALOS with known errors, {} random postures of its upper body, 0.2 mm marker "
-                    "noise: {}\n\n",
-                    options.postures, (folder / "recording.csv").string()));
+  Print(
+      options.common.quiet,
+      fmt::format("A TALOS with known errors, {} random postures of its upper body, 0.2 mm marker "
+                  "noise: {}\n\n",
+                  options.postures, (folder / "recording.csv").string()));
 
-  CalibrateOptions calibrate{options.common, source.string(), (folder / "recording.csv").string(),
-                             folder.string(), 5, "origin"};
+  CalibrateOptions calibrate{
+      options.common, source.string(), (folder / "recording.csv").string(), folder.string(), 5,
+      "origin"};
   CalibrationRun run;
   const int exit_code = RunCalibration(calibrate, &run);
   Print(options.common.quiet, TruthTable(truth, run.comparison.geometric()));

@@ -53,9 +53,16 @@ Json MdhJson(const RobotTree& tree, const std::vector<JointPlacement>& placement
   Json json = Json::array();
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     const JointPlacement& p = placements[k];
-    json.push_back({{"joint", tree.joints[k].name}, {"general", p.general},
-                    {"parallel", p.parallel}, {"gamma", p.gamma}, {"b", p.b}, {"beta", p.beta},
-                    {"alpha", p.alpha}, {"d", p.d}, {"theta", p.theta}, {"r", p.r}});
+    json.push_back({{"joint", tree.joints[k].name},
+                    {"general", p.general},
+                    {"parallel", p.parallel},
+                    {"gamma", p.gamma},
+                    {"b", p.b},
+                    {"beta", p.beta},
+                    {"alpha", p.alpha},
+                    {"d", p.d},
+                    {"theta", p.theta},
+                    {"r", p.r}});
   }
   return json;
 }
@@ -113,25 +120,23 @@ std::vector<ChainReport> InspectChains(const Project& project,
     }
     if (markers.empty()) continue;
     const RobotTree tree = Subtree(project.tree, chain.from_link);
-    reports.push_back(InspectChain(chain.name, tree,
-                                   SubtreeMarkers(project.tree, tree, markers), project, options));
+    reports.push_back(InspectChain(chain.name, tree, SubtreeMarkers(project.tree, tree, markers),
+                                   project, options));
   }
-  reports.push_back(
-      InspectChain("(all markers)", project.tree, project.markers, project, options));
+  reports.push_back(InspectChain("(all markers)", project.tree, project.markers, project, options));
   return reports;
 }
 
 std::string CountTable(const std::vector<ChainReport>& reports) {
-  TextTable table({"chain", "joints", "markers", "parameters", "held", "identifiable",
-                   "4R+2P+3N_M", "smallest kept", "largest dropped"});
+  TextTable table({"chain", "joints", "markers", "parameters", "held", "identifiable", "4R+2P+3N_M",
+                   "smallest kept", "largest dropped"});
   for (const ChainReport& report : reports) {
-    table.Add({report.name, std::to_string(report.joints),
-               std::to_string(report.model.marker_count()),
-               std::to_string(report.model.parameter_count()),
-               std::to_string(report.base.held.size()), std::to_string(report.base.kept.size()),
-               std::to_string(report.base.theoretical_count),
-               fmt::format("{:.1e}", report.base.smallest_kept),
-               fmt::format("{:.1e}", report.base.largest_dropped)});
+    table.Add(
+        {report.name, std::to_string(report.joints), std::to_string(report.model.marker_count()),
+         std::to_string(report.model.parameter_count()), std::to_string(report.base.held.size()),
+         std::to_string(report.base.kept.size()), std::to_string(report.base.theoretical_count),
+         fmt::format("{:.1e}", report.base.smallest_kept),
+         fmt::format("{:.1e}", report.base.largest_dropped)});
   }
   return table.Render();
 }
@@ -142,8 +147,8 @@ std::string RegroupingText(const ChainReport& report) {
   for (std::size_t d = 0; d < report.base.dropped.size(); ++d) {
     text += "  " + parameters[report.base.dropped[d]].name + " ->";
     for (std::size_t i = 0; i < report.base.kept.size(); ++i) {
-      const double c = report.base.regrouping(static_cast<Eigen::Index>(i),
-                                              static_cast<Eigen::Index>(d));
+      const double c =
+          report.base.regrouping(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(d));
       if (std::abs(c) < 1e-9) continue;
       text += fmt::format(" {:+.4g} {}", c, parameters[report.base.kept[i]].name);
     }
@@ -162,20 +167,23 @@ Json ChainJson(const ChainReport& report) {
   for (std::size_t d = 0; d < report.base.dropped.size(); ++d) {
     Json into = Json::object();
     for (std::size_t i = 0; i < report.base.kept.size(); ++i) {
-      const double c = report.base.regrouping(static_cast<Eigen::Index>(i),
-                                              static_cast<Eigen::Index>(d));
+      const double c =
+          report.base.regrouping(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(d));
       if (std::abs(c) >= 1e-9) into[report.model.parameters[report.base.kept[i]].name] = c;
     }
     regrouping[report.model.parameters[report.base.dropped[d]].name] = into;
   }
-  return {{"chain", report.name}, {"joints", report.joints},
+  return {{"chain", report.name},
+          {"joints", report.joints},
           {"markers", report.model.marker_count()},
           {"parameters", report.model.parameter_count()},
           {"identifiable", report.base.kept.size()},
           {"identifiable_theory", report.base.theoretical_count},
           {"smallest_kept", report.base.smallest_kept},
-          {"largest_dropped", report.base.largest_dropped}, {"held", names(report.base.held)},
-          {"kept", names(report.base.kept)}, {"dropped_regrouped_into", regrouping},
+          {"largest_dropped", report.base.largest_dropped},
+          {"held", names(report.base.held)},
+          {"kept", names(report.base.kept)},
+          {"dropped_regrouped_into", regrouping},
           {"lost_by_special_markers", names(report.lost)}};
 }
 
@@ -194,13 +202,15 @@ int Inspect(const InspectOptions& options) {
   const std::vector<JointPlacement> placements = PlaceJoints(project.tree, project.placement);
   const std::vector<ChainReport> reports = InspectChains(project, identifiability);
   const bool quiet = options.common.quiet;
-  Print(quiet, fmt::format("Robot {}: {} links, {} movable joints, {:.3f} kg\n\n", project.tree.name,
-                           project.tree.links.size(), project.tree.joints.size(),
+  Print(quiet, fmt::format("Robot {}: {} links, {} movable joints, {:.3f} kg\n\n",
+                           project.tree.name, project.tree.links.size(), project.tree.joints.size(),
                            TotalMass(project.tree)));
-  Print(quiet, "Modified Denavit-Hartenberg constants (eq. 1; gamma and b after the waist and after "
-               "branches)\n" + MdhTable(project.tree, placements));
-  Print(quiet, "\nParallel consecutive axes (beta in use)\n" +
-                   ParallelAxes(project.tree, placements));
+  Print(quiet,
+        "Modified Denavit-Hartenberg constants (eq. 1; gamma and b after the waist and after "
+        "branches)\n" +
+            MdhTable(project.tree, placements));
+  Print(quiet,
+        "\nParallel consecutive axes (beta in use)\n" + ParallelAxes(project.tree, placements));
   Print(quiet, "\nIdentifiable parameters\n" + CountTable(reports));
   std::vector<std::string> warnings;
   Json chains = Json::array();
@@ -216,9 +226,12 @@ int Inspect(const InspectOptions& options) {
   }
   PrintWarnings(quiet, warnings);
   if (!options.common.json_file.empty()) {
-    const Json json = {{"robot", project.tree.name}, {"links", project.tree.links.size()},
-                       {"joints", project.tree.joints.size()}, {"mass_kg", TotalMass(project.tree)},
-                       {"mdh", MdhJson(project.tree, placements)}, {"chains", chains},
+    const Json json = {{"robot", project.tree.name},
+                       {"links", project.tree.links.size()},
+                       {"joints", project.tree.joints.size()},
+                       {"mass_kg", TotalMass(project.tree)},
+                       {"mdh", MdhJson(project.tree, placements)},
+                       {"chains", chains},
                        {"warnings", warnings}};
     WriteFile(options.common.json_file, json.dump(2) + "\n");
   }

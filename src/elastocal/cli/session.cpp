@@ -1,12 +1,11 @@
 #include "elastocal/cli/session.hpp"
 
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 namespace elastocal::cli {
 namespace {
@@ -60,8 +59,8 @@ Session OpenSession(const std::filesystem::path& project, const std::filesystem:
   session.recording = std::move(table.recording);
   session.warnings = std::move(table.warnings);
   LeaveOutUnseen(session.recording, session.warnings);
-  const ErrorModel all = MakeErrorModel(session.project.tree, session.project.markers,
-                                        session.project.placement);
+  const ErrorModel all =
+      MakeErrorModel(session.project.tree, session.project.markers, session.project.placement);
   session.model = SelectMarkers(all, session.recording.marker_names);
   const IdentifiabilityOptions& options = session.project.identifiability;
   session.base = FindBaseParameters(session.model, options);

@@ -13,8 +13,8 @@ namespace elastocal::cli {
 /// A project with a recording: what calibrate, validate and demo begin with.
 struct Session {
   Project project;
-  Recording recording;   ///< without markers that were never seen
-  ErrorModel model;      ///< with the recording's markers
+  Recording recording;  ///< without markers that were never seen
+  ErrorModel model;     ///< with the recording's markers
   BaseParameters base;
   std::vector<std::string> warnings;  ///< of reading, and of special marker positions
 };

@@ -62,8 +62,8 @@ int Validate(const ValidateOptions& options) {
 
   const bool quiet = options.common.quiet;
   const auto millimetres = [](double value) { return fmt::format("{:.3f}", 1e3 * value); };
-  TextTable table({"model (waist and markers refitted)", "RMSE 3-D mm", "RMSE coordinate mm",
-                   "max mm"});
+  TextTable table(
+      {"model (waist and markers refitted)", "RMSE 3-D mm", "RMSE coordinate mm", "max mm"});
   Json rmse_3d, rmse_coordinate, maximum;
   for (const auto& [name, refit] :
        {std::pair{"uncalibrated", &nominal}, std::pair{"calibrated", &calibrated}}) {
@@ -95,9 +95,12 @@ int Validate(const ValidateOptions& options) {
                        {"calibration", options.calibration},
                        {"recording", session.recording.source},
                        {"postures", session.recording.posture_count()},
-                       {"markers", session.recording.marker_count()}, {"rmse_3d_mm", rmse_3d},
-                       {"rmse_coordinate_mm", rmse_coordinate}, {"max_mm", maximum},
-                       {"outliers", outliers}, {"warnings", session.warnings}};
+                       {"markers", session.recording.marker_count()},
+                       {"rmse_3d_mm", rmse_3d},
+                       {"rmse_coordinate_mm", rmse_coordinate},
+                       {"max_mm", maximum},
+                       {"outliers", outliers},
+                       {"warnings", session.warnings}};
     WriteFile(options.common.json_file, json.dump(2) + "\n");
   }
   return converged ? kFine : kNotConverged;
@@ -108,7 +111,8 @@ int Validate(const ValidateOptions& options) {
 void AddValidate(CLI::App& app, Action& action) {
   auto options = std::make_shared<ValidateOptions>();
   CLI::App* command = app.add_subcommand(
-      "validate", "Apply a calibration to another recording: waist and markers refitted, joints not");
+      "validate",
+      "Apply a calibration to another recording: waist and markers refitted, joints not");
   command->add_option("project", options->project, "Project file (YAML)")->required();
   command->add_option("--calibration", options->calibration, "calibration.yaml of a calibration")
       ->required();

@@ -28,7 +28,7 @@ struct IdentifiabilityOptions {
   std::uint64_t seed = 1;
   ExternalPriority external = ExternalPriority::kFirst;
   /// Name patterns of parameters held at nominal, `*` standing for anything.
-  std::vector<std::string> hold;
+  std::vector<std::string> hold = {};
 };
 
 /// The identifiable (base) parameters of an error model: decided at nominal geometry, then frozen.

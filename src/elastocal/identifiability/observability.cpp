@@ -6,22 +6,42 @@
 
 #include <Eigen/SVD>
 
+#include "elastocal/math/priority_qr.hpp"
+
 namespace elastocal {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Eigen::VectorXd InverseNorms(const Eigen::MatrixXd& A) {
-  return A.colwise().norm().unaryExpr([](double n) { return n > 0.0 ? 1.0 / n : 0.0; });
+/// Singular values up to this are zero but for rounding.
+double SingularFloor(const Eigen::VectorXd& sigma) {
+  return 1e-14 * sigma[0] * static_cast<double>(sigma.size());
 }
 
 /// Largest over smallest singular value; infinite below machine precision or where rows are short.
 double ConditionNumber(const Eigen::MatrixXd& A) {
   if (A.cols() == 0 || A.rows() < A.cols()) return kInfinity;
   const Eigen::VectorXd sigma = Eigen::BDCSVD<Eigen::MatrixXd>(A).singularValues();
-  const double floor = sigma[0] * 1e-14 * static_cast<double>(A.cols());
   const double smallest = sigma[sigma.size() - 1];
-  return smallest > floor ? sigma[0] / smallest : kInfinity;
+  return smallest > SingularFloor(sigma) ? sigma[0] / smallest : kInfinity;
+}
+
+/// Diagonal of (A^T A)^-1, by singular vectors; infinite for columns that depend on others.
+Eigen::VectorXd InverseDiagonal(const Eigen::MatrixXd& A) {
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinV);
+  const Eigen::VectorXd sigma = svd.singularValues();
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(A.cols());
+  for (Eigen::Index k = 0; k < sigma.size(); ++k) {
+    for (Eigen::Index i = 0; i < A.cols(); ++i) {
+      const double v = svd.matrixV()(i, k);
+      if (sigma[k] > SingularFloor(sigma)) {
+        diagonal[i] += v * v / (sigma[k] * sigma[k]);
+      } else if (std::abs(v) > 1e-8) {  // takes part in the dependence by more than rounding
+        diagonal[i] = kInfinity;
+      }
+    }
+  }
+  return diagonal;
 }
 
 }  // namespace
@@ -43,24 +63,17 @@ Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int
                             int postures, double marker_sd) {
   Excitation excitation;
   const Eigen::MatrixXd R_base = factor(Eigen::all, base);
-  const Eigen::VectorXd scale = InverseNorms(R_base);
-  excitation.condition_all = ConditionNumber(factor * InverseNorms(factor).asDiagonal());
+  const Eigen::VectorXd scale = InverseColumnNorms(R_base);
+  excitation.condition_all = ConditionNumber(factor * InverseColumnNorms(factor).asDiagonal());
   excitation.condition_base = ConditionNumber(R_base * scale.asDiagonal());
   excitation.parameter_sd.setConstant(static_cast<Eigen::Index>(base.size()), kInfinity);
-  if (R_base.rows() < R_base.cols()) return excitation;
+  if (base.empty() || R_base.rows() < R_base.cols()) return excitation;
 
-  excitation.indices = ComputeObservability(
-      Eigen::BDCSVD<Eigen::MatrixXd>(R_base).singularValues(), postures);
-  // Diagonal of (Psi^T Psi)^-1 from the singular vectors of the scaled columns.
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(R_base * scale.asDiagonal(), Eigen::ComputeThinV);
-  const Eigen::ArrayXd sigma = svd.singularValues();
-  for (Eigen::Index i = 0; i < scale.size(); ++i) {
-    const Eigen::ArrayXd v = svd.matrixV().row(i).transpose();
-    const double floor = sigma[0] * 1e-14;
-    const double variance =
-        (sigma > floor).select(v / sigma.max(floor), v.abs() / floor).square().sum();
-    if (scale[i] > 0.0) excitation.parameter_sd[i] = marker_sd * scale[i] * std::sqrt(variance);
-  }
+  excitation.indices =
+      ComputeObservability(Eigen::BDCSVD<Eigen::MatrixXd>(R_base).singularValues(), postures);
+  const Eigen::ArrayXd variance = InverseDiagonal(R_base * scale.asDiagonal());
+  excitation.parameter_sd =
+      marker_sd * variance.sqrt() / R_base.colwise().norm().transpose().array();
   return excitation;
 }
 

@@ -23,9 +23,9 @@ ObservabilityIndices ComputeObservability(const Eigen::VectorXd& singular_values
 /// How well a recording excites the parameters. In columns of unit norm: a condition number says
 /// how nearly dependent they are, not which units they are given in.
 struct Excitation {
-  double condition_all = 0.0;   ///< of all columns; infinite where they are dependent
-  double condition_base = 0.0;  ///< of the identifiable ones
-  ObservabilityIndices indices; ///< of the identifiable columns as they are (m/rad, m/m)
+  double condition_all = 0.0;    ///< of all columns; infinite where they are dependent
+  double condition_base = 0.0;   ///< of the identifiable ones
+  ObservabilityIndices indices;  ///< of the identifiable columns as they are (m/rad, m/m)
   /// For each identifiable parameter the standard deviation that it would have from this recording
   /// alone if one marker coordinate had `marker_sd`: rad or m; infinite where it is not excited.
   Eigen::VectorXd parameter_sd;

@@ -11,8 +11,10 @@ namespace {
 
 Eigen::MatrixXd TriangularFactor(const Eigen::MatrixXd& A) {
   const Eigen::Index size = std::min(A.rows(), A.cols());
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(A).matrixQR().topRows(size).triangularView<
-      Eigen::Upper>();
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(A)
+      .matrixQR()
+      .topRows(size)
+      .triangularView<Eigen::Upper>();
 }
 
 }  // namespace

@@ -16,10 +16,9 @@ namespace {
 
 using Kind = ParameterKind;
 
-const std::map<Kind, double> kErrors = {{Kind::kTheta, 0.02}, {Kind::kR, 2e-3},
-                                        {Kind::kD, 2e-3},     {Kind::kB, 2e-3},
-                                        {Kind::kAlpha, 0.01}, {Kind::kBeta, 0.01},
-                                        {Kind::kGamma, 0.01}};
+const std::map<Kind, double> kErrors = {
+    {Kind::kTheta, 0.02}, {Kind::kR, 2e-3},    {Kind::kD, 2e-3},    {Kind::kB, 2e-3},
+    {Kind::kAlpha, 0.01}, {Kind::kBeta, 0.01}, {Kind::kGamma, 0.01}};
 
 /// A "calibration" with drawn errors on every joint parameter: nothing needs to be estimated here.
 CalibrationResult WithErrors(const RobotTree& tree, std::uint64_t seed) {
@@ -35,7 +34,7 @@ CalibrationResult WithErrors(const RobotTree& tree, std::uint64_t seed) {
   return result;
 }
 
-class CalibratedUrdfOf : public ::testing::TestWithParam<const char*> {
+class CalibratedUrdfOf : public ::testing::TestWithParam<std::string> {
  protected:
   std::string urdf_ = ReadFile(SourceFile(GetParam()));
   RobotTree tree_ = ParseUrdf(urdf_, "urdf");

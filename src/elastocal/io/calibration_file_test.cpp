@@ -19,11 +19,11 @@ class CalibrationFile : public ::testing::Test {
   void SetUp() override {
     const RobotTree tree = ReadUrdf(SourceFile("tests/robots/arm6.urdf"));
     const int tool = FindLink(tree, "tool");
-    const ErrorModel model = MakeErrorModel(tree, {{"A", tool, {0.05, 0.02, 0.03}},
-                                                   {"B", tool, {-0.04, 0.05, 0.06}}});
+    const ErrorModel model =
+        MakeErrorModel(tree, {{"A", tool, {0.05, 0.02, 0.03}}, {"B", tool, {-0.04, 0.05, 0.06}}});
     base_ = FindBaseParameters(model, {});
-    const Eigen::VectorXd truth =
-        DrawErrors(model, base_.kept, {{ParameterKind::kTheta, 0.01}, {ParameterKind::kD, 1e-3}}, 1);
+    const Eigen::VectorXd truth = DrawErrors(
+        model, base_.kept, {{ParameterKind::kTheta, 0.01}, {ParameterKind::kD, 1e-3}}, 1);
     result_ = Calibrate(model, MakeSyntheticRecording(model, truth, {.postures = 40}), base_,
                         ModelKind::kGeometric, {});
     file_ = std::filesystem::path(::testing::TempDir()) / "calibration_file_test.yaml";
@@ -68,11 +68,12 @@ TEST_F(CalibrationFile, BadFilesAreNamedByLine) {
   Write("format: [1\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":"});
   Write("- 1\n");
-  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "format"});
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "mapping"});
   Write("format: something-else\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "something-else"});
-  Write("format: elastocal-calibration-1\nrobot: r\nrecording: f\nparameters:\n"
-        "  - {name: a.theta, value: much}\n");
+  Write(
+      "format: elastocal-calibration-1\nrobot: r\nrecording: f\nparameters:\n"
+      "  - {name: a.theta, value: much}\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":5", "number"});
   Write("format: elastocal-calibration-1\nrobot: [r]\nrecording: f\nparameters: []\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":2"});

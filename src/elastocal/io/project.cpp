@@ -72,7 +72,6 @@ void CheckHeld(const YamlValue& section, const Project& project) {
   const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   for (const YamlValue& pattern : hold->Items()) {
     const std::string text = pattern.Text();
-    pattern.Expect(std::count(text.begin(), text.end(), '*') <= 4, "a pattern of at most four *");
     try {
       MatchParameters(model.parameters, {text});
     } catch (const InputError& error) {

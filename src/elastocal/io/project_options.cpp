@@ -62,7 +62,7 @@ void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {
 }
 
 void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options) {
-  section.ExpectKeys({"postures", "tolerance", "seed", "external", "hold"});
+  section.ExpectKeys({"postures", "tolerance", "seed", "hold"});
   if (const auto postures = section.Find("postures")) {
     options.postures = static_cast<int>(postures->Integer(1, 1000000));
   }
@@ -70,11 +70,6 @@ void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions
   if (const auto seed = section.Find("seed")) {
     options.seed =
         static_cast<std::uint64_t>(seed->Integer(0, std::numeric_limits<std::int64_t>::max()));
-  }
-  if (const auto external = section.Find("external")) {
-    const std::string choice = external->Text();
-    external->Expect(choice == "first" || choice == "last", "first or last");
-    options.external = choice == "first" ? ExternalPriority::kFirst : ExternalPriority::kLast;
   }
   if (const auto hold = section.Find("hold")) {
     for (const YamlValue& pattern : hold->Items()) options.hold.push_back(pattern.Text());

@@ -37,7 +37,7 @@ void ParseXml(const std::string& text, const std::string& source, tinyxml2::XMLD
 class CanonicalUrdf {
  public:
   std::string Write(const UrdfOutline& outline, const UrdfDocument& document) {
-    out_.OpenElement("robot");
+    Open("robot");
     out_.PushAttribute("name", outline.robot.c_str());
     for (const std::string& name : document.links) {
       WriteLink(outline.links[outline.link_index.at(name)]);
@@ -45,11 +45,14 @@ class CanonicalUrdf {
     for (const UrdfJointEntry& entry : outline.joints) {
       if (!entry.joint.dropped) WriteJoint(entry);
     }
-    out_.CloseElement();
+    Close();
     return out_.CStr();
   }
 
  private:
+  void Open(const char* element) { out_.OpenElement(element, true); }
+  void Close() { out_.CloseElement(true); }
+
   void PushNumber(const char* attribute, double value) {
     out_.PushAttribute(attribute, FormatNumber(value).c_str());
   }
@@ -69,42 +72,42 @@ class CanonicalUrdf {
   }
 
   void WriteOrigin(const UrdfOrigin& origin) {
-    out_.OpenElement("origin");
+    Open("origin");
     PushVector("xyz", origin.xyz);
     PushVector("rpy", origin.rpy);
-    out_.CloseElement();
+    Close();
   }
 
   void WriteLink(const UrdfLinkEntry& link) {
-    out_.OpenElement("link");
+    Open("link");
     out_.PushAttribute("name", link.name.c_str());
     if (const auto inertial = link.element.Find("inertial")) {
-      out_.OpenElement("inertial");
+      Open("inertial");
       WriteOrigin(ReadUrdfOrigin(*inertial));
       WriteMass(inertial->Get("mass"));
       const UrdfElement inertia = inertial->Get("inertia");
-      out_.OpenElement("inertia");
+      Open("inertia");
       for (const char* entry : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}) {
         CopyNumber(inertia, entry);
       }
-      out_.CloseElement();
-      out_.CloseElement();
+      Close();
+      Close();
     }
-    out_.CloseElement();
+    Close();
   }
 
   void WriteMass(const UrdfElement& mass) {
     const double value = mass.Number("value");
     if (value < 0.0)
       mass.Fail("found a mass of " + FormatNumber(value) + " kg; at least 0 was expected");
-    out_.OpenElement("mass");
+    Open("mass");
     PushNumber("value", value);
-    out_.CloseElement();
+    Close();
   }
 
   void WriteJoint(const UrdfJointEntry& entry) {
     const UrdfJoint& joint = entry.joint;
-    out_.OpenElement("joint");
+    Open("joint");
     out_.PushAttribute("name", joint.name.c_str());
     out_.PushAttribute("type", joint.type.c_str());
     WriteOrigin(joint.origin);
@@ -115,13 +118,13 @@ class CanonicalUrdf {
       WriteLimit(entry);
       WriteMimic(entry);
     }
-    out_.CloseElement();
+    Close();
   }
 
   void WriteLinkReference(const char* element, const std::string& link) {
-    out_.OpenElement(element);
+    Open(element);
     out_.PushAttribute("link", link.c_str());
-    out_.CloseElement();
+    Close();
   }
 
   void WriteAxis(const UrdfElement& joint) {
@@ -129,21 +132,21 @@ class CanonicalUrdf {
     if (!axis) return;
     const Eigen::Vector3d xyz = axis->Vector("xyz");
     if (xyz.stableNorm() < kShortestAxis) axis->Fail("the axis is zero; a direction was expected");
-    out_.OpenElement("axis");
+    Open("axis");
     PushVector("xyz", xyz.stableNormalized());
-    out_.CloseElement();
+    Close();
   }
 
   void WriteLimit(const UrdfJointEntry& entry) {
     const bool required = entry.joint.type != "continuous";
     if (!required && !entry.element.Find("limit")) return;
     const UrdfElement limit = entry.element.Get("limit");
-    out_.OpenElement("limit");
+    Open("limit");
     CopyOptionalNumber(limit, "lower");
     CopyOptionalNumber(limit, "upper");
     CopyNumber(limit, "effort");
     CopyNumber(limit, "velocity");
-    out_.CloseElement();
+    Close();
     const double lower = limit.Has("lower") ? limit.Number("lower") : 0.0;
     const double upper = limit.Has("upper") ? limit.Number("upper") : 0.0;
     if (required && lower > upper) {
@@ -155,11 +158,11 @@ class CanonicalUrdf {
   void WriteMimic(const UrdfJointEntry& entry) {
     const auto mimic = entry.element.Find("mimic");
     if (!mimic) return;
-    out_.OpenElement("mimic");
+    Open("mimic");
     out_.PushAttribute("joint", entry.mimic.c_str());
     CopyOptionalNumber(*mimic, "multiplier");
     CopyOptionalNumber(*mimic, "offset");
-    out_.CloseElement();
+    Close();
   }
 
   tinyxml2::XMLPrinter out_{nullptr, true};

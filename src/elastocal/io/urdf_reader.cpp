@@ -83,6 +83,12 @@ JointLimits ToLimits(const urdf::Joint& source) {
   return limits;
 }
 
+/// How a joint moves: position = multiplier * q[coordinate] + offset.
+struct Motion {
+  double multiplier, offset;
+  int coordinate;
+};
+
 /// Builds the tree of bodies outwards from the root.
 class TreeBuilder {
  public:
@@ -179,31 +185,37 @@ class TreeBuilder {
   }
 
   void AssignCoordinates() {
-    std::map<std::string, int> coordinates;
     for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
       if (tree_.joints[k].mimic) continue;
-      coordinates[tree_.joints[k].name] = tree_.coordinate_count();
-      tree_.joints[k].coordinate = tree_.coordinate_count();
+      motions_[tree_.joints[k].name] = Motion{1.0, 0.0, tree_.coordinate_count()};
       tree_.coordinate_joint.push_back(static_cast<int>(k));
     }
     for (Joint& joint : tree_.joints) {
-      if (joint.mimic) FollowMimic(joint, coordinates);
+      const Motion motion = FollowMimic(joint.name);
+      if (!std::isfinite(motion.offset) || !std::isfinite(motion.multiplier)) {
+        throw InputError(source_ + ": joint " + Quote(joint.name) +
+                         " mimics others with a multiplier or offset that is not finite");
+      }
+      joint.multiplier = motion.multiplier;
+      joint.offset = motion.offset;
+      joint.coordinate = motion.coordinate;
     }
   }
 
   /// Along a line of mimic joints: position = m (m' q + o') + o.
-  void FollowMimic(Joint& joint, const std::map<std::string, int>& coordinates) const {
-    std::string name = joint.name;
-    while (const auto mimic = Source(name).mimic) {
-      joint.offset += joint.multiplier * mimic->offset;
-      joint.multiplier *= mimic->multiplier;
-      name = mimic->joint_name;
+  Motion FollowMimic(std::string name) {
+    std::vector<std::string> followers;
+    for (; motions_.count(name) == 0; name = Source(name).mimic->joint_name) {
+      followers.push_back(name);
     }
-    joint.coordinate = coordinates.at(name);
-    if (!std::isfinite(joint.offset) || !std::isfinite(joint.multiplier)) {
-      throw InputError(source_ + ": joint " + Quote(joint.name) +
-                       " mimics others with a multiplier or offset that is not finite");
+    Motion motion = motions_.at(name);
+    for (auto follower = followers.rbegin(); follower != followers.rend(); ++follower) {
+      const auto mimic = Source(*follower).mimic;
+      motion.offset = mimic->multiplier * motion.offset + mimic->offset;
+      motion.multiplier *= mimic->multiplier;
+      motions_[*follower] = motion;
     }
+    return motion;
   }
 
   const UrdfDocument& document_;
@@ -212,6 +224,7 @@ class TreeBuilder {
   RobotTree tree_;
   std::map<std::string, int> link_index_;
   std::vector<std::vector<int>> child_joints_;  ///< of every link, in the order of the file
+  std::map<std::string, Motion> motions_;       ///< of the joints done so far
   std::set<int> ready_;                         ///< movable joints whose parent link is placed
 };
 

@@ -271,6 +271,20 @@ TEST(UrdfReader, ReadsTheModelsOfTheTests) {
   EXPECT_EQ(ReadUrdf(SourceFile("models/talos/talos.urdf")).coordinate_count(), 30);
 }
 
+/// The most links that are read, in one chain, each joint following the one before: nothing in it
+/// may take time or stack that grows out of hand.
+TEST(UrdfReader, ReadsTheLongestChain) {
+  std::string contents = Link("0");
+  for (int i = 1; i < 5000; ++i) {
+    const std::string name = std::to_string(i), last = std::to_string(i - 1);
+    contents += Link(name) + Joint(name, "continuous", last, name,
+                                   i == 1 ? "" : "<mimic joint='" + last + "'/>");
+  }
+  const RobotTree tree = Parse(contents);
+  EXPECT_EQ(tree.joints.size(), 4999u);
+  EXPECT_EQ(tree.coordinate_count(), 1);
+}
+
 TEST(UrdfReader, NamesAMissingFile) {
   ExpectInputError([] { ReadUrdf("nowhere/robot.urdf"); },
                    {"nowhere/robot.urdf", "there is no such file"});

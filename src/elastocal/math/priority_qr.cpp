@@ -6,14 +6,19 @@
 
 namespace elastocal {
 
+Eigen::VectorXd InverseColumnNorms(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXd norms = A.colwise().norm();
+  const double floor = norms.size() > 0 ? 1e-12 * norms.maxCoeff() : 0.0;
+  return norms.unaryExpr([&](double norm) { return norm > floor ? 1.0 / norm : 0.0; });
+}
+
 PriorityQrResult PriorityQr(const Eigen::MatrixXd& A, double tolerance) {
   if (!(tolerance > 0.0 && tolerance < 1.0)) {
     throw std::invalid_argument("PriorityQr: the tolerance must lie between 0 and 1");
   }
   // Columns at unit norm make one tolerance fit all; R has the same column relations as A.
   const Eigen::VectorXd norms = A.colwise().norm();
-  const Eigen::VectorXd inverse_norms =
-      norms.unaryExpr([](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
+  const Eigen::VectorXd inverse_norms = InverseColumnNorms(A);
   const Eigen::Index size = std::min(A.rows(), A.cols());
   Eigen::MatrixXd R = Eigen::HouseholderQR<Eigen::MatrixXd>(A * inverse_norms.asDiagonal())
                           .matrixQR()
@@ -42,8 +47,8 @@ PriorityQrResult PriorityQr(const Eigen::MatrixXd& A, double tolerance) {
   const Eigen::MatrixXd R_kept = Q.transpose() * R(Eigen::all, result.kept);
   const Eigen::MatrixXd scaled = R_kept.triangularView<Eigen::Upper>().solve(
       Eigen::MatrixXd(Q.transpose() * R(Eigen::all, result.dropped)));
-  result.regrouping = inverse_norms(result.kept).asDiagonal() * scaled *
-                      norms(result.dropped).asDiagonal();
+  result.regrouping =
+      inverse_norms(result.kept).asDiagonal() * scaled * norms(result.dropped).asDiagonal();
   return result;
 }
 

@@ -15,9 +15,13 @@ struct PriorityQrResult {
   /// x(kept) + regrouping * x(dropped) is what the matrix determines of x.
   Eigen::MatrixXd regrouping;
   /// Norm of what is left of each column after projection on the kept columns before it, relative
-  /// to the column's own norm (0 for a zero column).
+  /// to the column's own norm (0 for a column that is zero but for rounding).
   Eigen::VectorXd remainder;
 };
+
+/// 1 / norm of each column, to scale columns to unit norm; 0 for a column shorter than 1e-12 of the
+/// longest. Such a column is zero but for rounding, which must not be scaled up to look like one.
+Eigen::VectorXd InverseColumnNorms(const Eigen::MatrixXd& A);
 
 /// QR decomposition without pivoting, column by column (Gautier 1990; paper section 2.1): the
 /// first columns have priority. A column is kept when its `remainder` exceeds `tolerance`.

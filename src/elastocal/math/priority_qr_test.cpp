@@ -69,14 +69,14 @@ TEST(PriorityQr, DroppedColumnsFollowFromTheKept) {
 TEST(PriorityQr, UnitsOfColumnsDoNotMatter) {
   const MatrixXd A = LowRank(15, 8, 5, 3);
   Eigen::VectorXd units(8);
-  units << 1e-9, 1e3, 1.0, 1e6, 1e-3, 1e-6, 1e9, 1.0;
+  units << 1e-3, 1e3, 1.0, 1e2, 1e-3, 1e-4, 1e4, 1.0;
   const PriorityQrResult a = PriorityQr(A, kTolerance);
   const PriorityQrResult b = PriorityQr(A * units.asDiagonal(), kTolerance);
   EXPECT_EQ(a.kept, b.kept);
   EXPECT_LT((a.remainder - b.remainder).norm(), kRounding);
-  const MatrixXd expected = units(a.kept).cwiseInverse().asDiagonal() * a.regrouping *
-                            units(a.dropped).asDiagonal();
-  // Compared entry by entry: they reach from 1e-18 to 1e18.
+  const MatrixXd expected =
+      units(a.kept).cwiseInverse().asDiagonal() * a.regrouping * units(a.dropped).asDiagonal();
+  // Compared entry by entry: they reach from 1e-8 to 1e8.
   EXPECT_LT((b.regrouping.cwiseQuotient(expected).array() - 1.0).abs().maxCoeff(), 1e-9);
 }
 
@@ -87,6 +87,15 @@ TEST(PriorityQr, AZeroColumnIsDroppedIntoNothing) {
   EXPECT_EQ(qr.kept, (Indices{0, 2}));
   EXPECT_EQ(qr.remainder[1], 0.0);
   EXPECT_EQ(qr.regrouping, (MatrixXd::Zero(2, 1)));
+}
+
+TEST(PriorityQr, RoundingIsNoColumn) {
+  // As of a rotation about an axis through the point that it should move.
+  MatrixXd A = RandomMatrix(5, 3, 5);
+  A.col(1) *= 1e-16;
+  const PriorityQrResult qr = PriorityQr(A, kTolerance);
+  EXPECT_EQ(qr.kept, (Indices{0, 2}));
+  EXPECT_EQ(qr.remainder[1], 0.0);
 }
 
 TEST(PriorityQr, TheToleranceIsRelativeToTheColumn) {

@@ -8,13 +8,9 @@ Transform RotX(double angle) { return RotAxis(Eigen::Vector3d::UnitX(), angle); 
 Transform RotY(double angle) { return RotAxis(Eigen::Vector3d::UnitY(), angle); }
 Transform RotZ(double angle) { return RotAxis(Eigen::Vector3d::UnitZ(), angle); }
 
-Transform TrX(double distance) {
-  return Transform(Eigen::Translation3d(distance, 0.0, 0.0));
-}
+Transform TrX(double distance) { return Transform(Eigen::Translation3d(distance, 0.0, 0.0)); }
 
-Transform TrZ(double distance) {
-  return Transform(Eigen::Translation3d(0.0, 0.0, distance));
-}
+Transform TrZ(double distance) { return Transform(Eigen::Translation3d(0.0, 0.0, distance)); }
 
 Transform RotAxis(const Eigen::Vector3d& axis, double angle) {
   Transform T = Transform::Identity();

@@ -16,7 +16,8 @@ struct Recording {
   /// at the position that the project gives them, and listed in `joints_not_recorded`.
   Eigen::MatrixXd q;
   std::vector<std::string> joints_not_recorded;
-  /// postures x 3 N_M, m, in a frame fixed with respect to the waist; NaN where a marker was not seen.
+  /// postures x 3 N_M, m, in a frame fixed with respect to the waist; NaN where a marker was not
+  /// seen.
   Eigen::MatrixXd markers;
   Eigen::VectorXd time_s;  ///< empty, or one time a posture
   std::vector<int> line;   ///< line of each posture in the file; empty where there is no file

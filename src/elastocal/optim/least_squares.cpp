@@ -1,11 +1,16 @@
 #include "elastocal/optim/least_squares.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include <ceres/ceres.h>
 
 namespace elastocal {
 namespace {
+
+/// Where Levenberg-Marquardt starts: all but undamped, as Gauss-Newton. From Ceres' default of 1e4
+/// weakly determined directions crept for as many steps as it took the radius to grow.
+constexpr double kInitialTrustRegionRadius = 1e8;
 
 /// Tells the problem of every new point before Ceres asks for residuals.
 class PointCallback : public ceres::EvaluationCallback {
@@ -75,8 +80,9 @@ ceres::Solver::Options SolverOptions(const LeastSquaresProblem& problem,
   solver.function_tolerance = options.function_tolerance;
   solver.parameter_tolerance = options.parameter_tolerance;
   solver.gradient_tolerance = 0.0;
+  solver.initial_trust_region_radius = kInitialTrustRegionRadius;
   solver.logging_type = ceres::SILENT;
-  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   if (!problem.eliminated_blocks.empty()) {
     solver.linear_solver_type = ceres::DENSE_SCHUR;
     auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
@@ -103,9 +109,12 @@ Termination Translate(ceres::TerminationType type) {
 
 const char* TerminationName(Termination termination) {
   switch (termination) {
-    case Termination::kConverged: return "converged";
-    case Termination::kNoConvergence: return "not converged";
-    default: return "failed";
+    case Termination::kConverged:
+      return "converged";
+    case Termination::kNoConvergence:
+      return "not converged";
+    default:
+      return "failed";
   }
 }
 
@@ -135,7 +144,8 @@ LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0
   ceres::Solve(SolverOptions(problem, blocks, options), &ceres_problem, &summary);
   result.initial_cost = summary.initial_cost;
   result.final_cost = summary.final_cost;
-  result.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  // The first entry is the starting point; there is none where that could not be evaluated.
+  result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   result.termination = Translate(summary.termination_type);
   result.message = summary.message;
   return result;

@@ -44,7 +44,7 @@ struct LeastSquaresOptions {
   double cauchy_scale = 0.0;
   int max_iterations = 100;
   /// Ends when the cost changes relatively by less than this in a step ...
-  double function_tolerance = 1e-14;
+  double function_tolerance = 1e-12;
   /// ... or when the step is relatively smaller than this.
   double parameter_tolerance = 1e-12;
 };

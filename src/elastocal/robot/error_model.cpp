@@ -64,21 +64,27 @@ void CheckMarkers(const RobotTree& tree, const std::vector<Marker>& markers) {
   }
 }
 
+/// Gives the model its markers, and the parameters of these and of the joints that move them.
+void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
+  CheckMarkers(model.tree, markers);
+  model.active_joints = ActiveJoints(model.tree, markers);
+  model.parameters.clear();
+  AddBaseParameters(model.parameters);
+  for (int joint : model.active_joints) {
+    AddJointParameters(model.tree, joint, model.placements[joint], model.parameters);
+  }
+  AddMarkerParameters(markers, model.parameters);
+  model.markers = std::move(markers);
+}
+
 }  // namespace
 
 ErrorModel MakeErrorModel(RobotTree tree, std::vector<Marker> markers,
                           const PlacementOptions& options) {
-  CheckMarkers(tree, markers);
   ErrorModel model;
   model.placements = PlaceJoints(tree, options);
-  model.active_joints = ActiveJoints(tree, markers);
-  AddBaseParameters(model.parameters);
-  for (int joint : model.active_joints) {
-    AddJointParameters(tree, joint, model.placements[joint], model.parameters);
-  }
-  AddMarkerParameters(markers, model.parameters);
   model.tree = std::move(tree);
-  model.markers = std::move(markers);
+  SetMarkers(model, std::move(markers));
   return model;
 }
 
@@ -93,17 +99,8 @@ ErrorModel SelectMarkers(const ErrorModel& model, const std::vector<std::string>
     }
     selected.push_back(model.markers[found - known.begin()]);
   }
-  ErrorModel result;
-  result.tree = model.tree;
-  result.placements = model.placements;
-  result.T_ref_waist = model.T_ref_waist;
-  result.active_joints = ActiveJoints(model.tree, selected);
-  AddBaseParameters(result.parameters);
-  for (int joint : result.active_joints) {
-    AddJointParameters(model.tree, joint, model.placements[joint], result.parameters);
-  }
-  AddMarkerParameters(selected, result.parameters);
-  result.markers = std::move(selected);
+  ErrorModel result = model;
+  SetMarkers(result, std::move(selected));
   return result;
 }
 

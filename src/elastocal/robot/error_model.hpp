@@ -25,7 +25,7 @@ struct ErrorModel {
   std::vector<JointPlacement> placements;  ///< one a joint of the tree
   std::vector<Marker> markers;
   Transform T_ref_waist = Transform::Identity();  ///< nominal pose of the root link, eq. 2
-  std::vector<int> active_joints;     ///< joints that move a marker, ascending
+  std::vector<int> active_joints;                 ///< joints that move a marker, ascending
   std::vector<Parameter> parameters;  ///< T0, then joints from the waist outwards, then markers
 
   int parameter_count() const { return static_cast<int>(parameters.size()); }
@@ -37,7 +37,8 @@ struct ErrorModel {
 ErrorModel MakeErrorModel(RobotTree tree, std::vector<Marker> markers,
                           const PlacementOptions& options = {});
 
-/// The same model with the markers of the given names only, in their order.
+/// The same model with the markers of the given names only, in their order. Throws InputError with
+/// the nearest known name for one that it has not, std::invalid_argument for a name given twice.
 ErrorModel SelectMarkers(const ErrorModel& model, const std::vector<std::string>& names);
 
 }  // namespace elastocal

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "elastocal/robot/error_model.hpp"
-#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/robot/mdh_frames.hpp"
 
 namespace elastocal {
 
@@ -30,8 +30,7 @@ class GeneralizedJacobian {
   /// Indices of the parameters a marker depends on, ascending.
   const std::vector<int>& Columns(int marker) const { return layout_[marker].columns; }
 
-  using BlockMap =
-      Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>;
+  using BlockMap = Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>;
   /// 3 x Columns(marker).size(), m/rad and m/m.
   BlockMap Block(int marker) const {
     const MarkerLayout& layout = layout_[marker];
@@ -52,14 +51,13 @@ class GeneralizedJacobian {
     Eigen::Index offset;  // of the block in values_
   };
 
-  void EvaluateFrames(const Geometry& geometry, const Eigen::VectorXd& q);
+  void EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q);
   void EvaluateMarker(int marker);
 
   const ErrorModel& model_;
-  std::vector<int> first_parameter_;      // by joint
-  std::vector<MarkerLayout> layout_;      // by marker
-  std::vector<Eigen::Matrix3d> R_;        // by body: MDH frame in the reference frame
-  std::vector<Eigen::Vector3d> p_;
+  std::vector<int> first_parameter_;                // by joint
+  std::vector<MarkerLayout> layout_;                // by marker
+  std::vector<MdhFrame> frames_;                    // by body
   Eigen::Array<double, Eigen::Dynamic, 6> screws_;  // parameters (T0, joints) x [a, m]
   Eigen::Matrix3Xd positions_;
   Eigen::VectorXd values_;

@@ -14,7 +14,8 @@ struct Geometry {
   /// A joint between its parent's MDH frame (the root link's frame for joints on the waist) and its
   /// own; directions and points in the parent frame.
   struct JointConstants {
-    Eigen::Matrix3d R_parent_twisted;  ///< T_parent_pre Rotz(gamma) Trz(b) Roty(beta) Rotx(alpha) Trx(d)
+    Eigen::Matrix3d
+        R_parent_twisted;  ///< T_parent_pre Rotz(gamma) Trz(b) Roty(beta) Rotx(alpha) Trx(d)
     Eigen::Vector3d p_parent_twisted;
     Eigen::Vector3d z_pre, p_pre;    ///< axis of gamma and b
     Eigen::Vector3d y_beta, p_beta;  ///< axis of beta
@@ -23,9 +24,11 @@ struct Geometry {
   std::vector<JointConstants> joints;  ///< one a joint of the tree; only active ones are filled
   JointConstants base;                 ///< eq. 2 as if it were a joint at position 0
   Transform T_joint_waist;             ///< constant that ends eq. 2, see ApplyErrors
-  std::vector<Eigen::Vector3d> p_joint_marker;    ///< by marker, in its body's MDH frame
-  std::vector<Eigen::Matrix3d> R_joint_link;      ///< by marker: axes of its x, y, z
+  std::vector<Eigen::Vector3d> p_joint_marker;  ///< by marker, in its body's MDH frame
+  std::vector<Eigen::Matrix3d> R_joint_link;    ///< by marker: axes of its x, y, z
 };
+
+inline constexpr int kBaseParameterCount = 6;  ///< of eq. 2; the first of the model's parameters
 
 /// Applies errors `delta` (one a parameter of the model, rad and m).
 ///

@@ -15,14 +15,25 @@ std::vector<std::string> Names(const std::vector<Parameter>& parameters) {
   return names;
 }
 
+/// Whether `name` is `pattern` with some run of characters for each `*`.
 bool Matches(std::string_view pattern, std::string_view name) {
-  const std::size_t star = pattern.find('*');
-  if (star == std::string_view::npos) return pattern == name;
-  if (name.substr(0, star) != pattern.substr(0, star)) return false;
-  for (std::size_t i = star; i <= name.size(); ++i) {
-    if (Matches(pattern.substr(star + 1), name.substr(i))) return true;
+  const std::size_t first = pattern.find('*');
+  if (first == std::string_view::npos) return pattern == name;
+  const std::size_t last = pattern.rfind('*');
+  const std::string_view head = pattern.substr(0, first);
+  const std::string_view tail = pattern.substr(last + 1);
+  if (name.size() < head.size() + tail.size()) return false;
+  if (!name.starts_with(head) || !name.ends_with(tail)) return false;
+
+  // What stands between two stars is taken where it occurs first: that leaves most for the rest.
+  std::string_view rest = name.substr(head.size(), name.size() - head.size() - tail.size());
+  for (std::size_t at = first + 1; at <= last; at = pattern.find('*', at) + 1) {
+    const std::string_view piece = pattern.substr(at, pattern.find('*', at) - at);
+    const std::size_t found = rest.find(piece);
+    if (found == std::string_view::npos) return false;
+    rest.remove_prefix(found + piece.size());
   }
-  return false;
+  return true;
 }
 
 }  // namespace

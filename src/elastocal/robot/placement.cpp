@@ -19,6 +19,7 @@ struct Normal {
 };
 
 constexpr double kSameLength = 1e-9;  // m; axes closer than this meet
+constexpr double kCoaxial = 1e-3;     // m; parallel axes closer than this have no common normal
 
 Vector3d ClosestPoint(const Axis& axis, const Vector3d& p) {
   return axis.point + axis.direction * axis.direction.dot(p - axis.point);
@@ -32,6 +33,10 @@ Vector3d AnyPerpendicular(const Vector3d& z, const Transform& T_root_body) {
 
 bool Parallel(const Axis& a, const Axis& b, double tolerance_rad) {
   return a.direction.cross(b.direction).norm() < std::sin(tolerance_rad);
+}
+
+bool Coaxial(const Axis& a, const Axis& b, double tolerance_rad) {
+  return Parallel(a, b, tolerance_rad) && (ClosestPoint(b, a.point) - a.point).norm() < kCoaxial;
 }
 
 /// Hayati: the perpendicular from `start`, a point of the first axis, to the second axis. `x_in` is
@@ -117,16 +122,16 @@ std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOp
     const int parent = tree.joints[k].parent_body;
     const Axis& axis = zero.axes[k];
     JointPlacement& placement = placements[k];
-    placement.general = zero.main_child[parent] != static_cast<int>(k);
+    placement.general = zero.main_child[parent] != static_cast<int>(k) ||
+                        Coaxial(zero.axes[parent - 1], axis, options.parallel_tolerance_rad);
     placement.parallel =
         !placement.general && Parallel(zero.axes[parent - 1], axis, options.parallel_tolerance_rad);
 
     // Where the chain arrives on this axis, and where it leaves it again.
-    const Normal incoming =
-        placement.general
-            ? Normal{axis.point, axis.point,
-                     AnyPerpendicular(axis.direction, zero.T_root_body[k + 1])}
-            : outgoing[parent];
+    const Normal incoming = placement.general
+                                ? Normal{axis.point, axis.point,
+                                         AnyPerpendicular(axis.direction, zero.T_root_body[k + 1])}
+                                : outgoing[parent];
     const int next = zero.main_child[k + 1];
     Normal& leaving = outgoing[k + 1];
     if (next < 0) {

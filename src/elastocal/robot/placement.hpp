@@ -24,9 +24,11 @@ struct PlacementOptions {
 /// nominal kinematics equal the URDF's.
 ///
 /// Eq. 1 alone has no displacement along y, so it cannot place the first joint after the waist or
-/// after a branch. Such a joint is `general`: T_parent_pre is a constant frame on its axis with z
-/// across it, nominal alpha is 90 degrees and the other constants are zero. There the six
-/// displacements are along and about three orthogonal axes: never singular.
+/// after a branch, nor one whose axis is the same as the one before it (within 1 mm): there d has
+/// only one of the two directions in which the axes can part. Such a joint is `general`:
+/// T_parent_pre is a constant frame on its axis with z across it, nominal alpha is 90 degrees and
+/// the other constants are zero. There the six displacements are along and about three orthogonal
+/// axes: never singular.
 struct JointPlacement {
   bool general = false;
   bool parallel = false;  ///< the axis is parallel to the one before it: beta is in use

@@ -73,8 +73,7 @@ double RobotSize(const RobotTree& tree) {
     if (joint.type == JointType::kPrismatic && std::isfinite(joint.limits.upper)) {
       stroke = std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
     }
-    const Transform T_body_child =
-        tree.links[joint.parent_link].T_body_link * joint.T_parent_child;
+    const Transform T_body_child = tree.links[joint.parent_link].T_body_link * joint.T_parent_child;
     reach[k + 1] = reach[joint.parent_body] + T_body_child.translation().norm() + stroke;
   }
   for (const Link& link : tree.links) {

@@ -39,10 +39,12 @@ struct Joint {
 struct Link {
   std::string name;
   int body = 0;
-  Transform T_body_link;  ///< the body's frame is that of the link its joint moves (root: the root link)
-  double mass = 0.0;      ///< kg
-  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< centre of mass in the link's frame, m
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass, link's axes, kg.m^2
+  Transform
+      T_body_link;  ///< the body's frame is that of the link its joint moves (root: the root link)
+  double mass = 0.0;                              ///< kg
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();  ///< centre of mass in the link's frame, m
+  Eigen::Matrix3d inertia =
+      Eigen::Matrix3d::Zero();  ///< about the centre of mass, link's axes, kg.m^2
 };
 
 /// A robot as a tree of bodies joined by revolute and prismatic joints, as a URDF describes it.

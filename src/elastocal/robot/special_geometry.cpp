@@ -60,9 +60,7 @@ std::vector<SpecialGeometry> FindSpecialGeometry(const RobotTree& tree) {
   const auto revolute = [&](int k) {
     return k >= 0 && tree.joints[k].type == JointType::kRevolute;
   };
-  const auto angle = [&](int a, int b) {
-    return Deviation(tree, {Kind::kParallelAxes, {a, b}});
-  };
+  const auto angle = [&](int a, int b) { return Deviation(tree, {Kind::kParallelAxes, {a, b}}); };
   for (int c = 0; c < static_cast<int>(tree.joints.size()); ++c) {
     const int b = Previous(tree, c);
     if (!revolute(c) || !revolute(b)) continue;

@@ -22,9 +22,8 @@ Eigen::VectorXd GravityTorques(const RobotTree& tree, const Eigen::VectorXd& q,
     const Transform& T_root_child = T_root_link[joint.child_link];
     const Eigen::Vector3d axis = T_root_child.linear() * joint.axis;
     const Eigen::Vector3d lever = moment[k + 1] - mass[k + 1] * T_root_child.translation();
-    const double load = joint.type == JointType::kRevolute
-                            ? axis.dot(lever.cross(gravity_waist))
-                            : mass[k + 1] * axis.dot(gravity_waist);
+    const double load = joint.type == JointType::kRevolute ? axis.dot(lever.cross(gravity_waist))
+                                                           : mass[k + 1] * axis.dot(gravity_waist);
     torques[joint.coordinate] -= joint.multiplier * load;
     mass[joint.parent_body] += mass[k + 1];
     moment[joint.parent_body] += moment[k + 1];

@@ -34,7 +34,9 @@ RobotTree Subtree(const RobotTree& tree, int link) {
     joint.parent_body = body_of.at(joint.parent_body);
     const auto [entry, is_new] =
         coordinate_of.try_emplace(joint.coordinate, subtree.coordinate_count());
-    if (is_new) subtree.coordinate_joint.push_back(static_cast<int>(subtree.joints.size()));
+    const int index = static_cast<int>(subtree.joints.size());
+    if (is_new) subtree.coordinate_joint.push_back(index);
+    if (!joint.mimic) subtree.coordinate_joint[entry->second] = index;
     joint.coordinate = entry->second;
     subtree.joints.push_back(joint);
   }

@@ -11,7 +11,7 @@ namespace elastocal {
 
 /// What a recording of static postures is generated with.
 struct SyntheticOptions {
-  int postures = 60;         ///< drawn uniformly within the joint limits
+  int postures = 60;          ///< drawn uniformly within the joint limits
   double marker_sd = 0.2e-3;  ///< noise of a marker coordinate, m (paper section 1: about 0.2 mm)
   std::uint64_t seed = 1;
 };

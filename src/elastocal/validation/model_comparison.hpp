@@ -12,7 +12,7 @@ namespace elastocal {
 /// The models of paper section 6.1.4 on one recording, by ModelKind.
 struct ModelComparison {
   std::array<CalibrationResult, 3> results;
-  std::array<ErrorMetrics, 3> metrics;  ///< over the observations that the geometric model kept
+  std::array<ErrorMetrics, 3> metrics;      ///< over the observations that the geometric model kept
   std::array<ErrorMetrics, 3> metrics_all;  ///< over all, outliers included
 
   const CalibrationResult& geometric() const { return results[2]; }
@@ -32,9 +32,9 @@ struct CrossValidation {
 };
 
 /// k-fold cross-validation by posture: every posture is predicted once by models calibrated without
-/// it (waist and markers included), over the observations that `comparison` kept. Postures are dealt
-/// to the folds at random, by `seed`. Throws InputError when folds are fewer than 2 or more than
-/// the postures.
+/// it (waist and markers included), over the observations that `comparison` kept. Postures are
+/// dealt to the folds at random, by `seed`. Throws InputError when folds are fewer than 2 or more
+/// than the postures.
 CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
                               const CalibrationOptions& options, int folds, std::uint64_t seed,

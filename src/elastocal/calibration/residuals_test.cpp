@@ -1,0 +1,117 @@
+#include "elastocal/calibration/residuals.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/math/random.hpp"
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+/// A leg's recording with gaps; the measured positions need not make sense.
+Recording RecordingWithGaps(const ErrorModel& model) {
+  Random random(5);
+  Recording recording;
+  for (const Marker& marker : model.markers) recording.marker_names.push_back(marker.name);
+  recording.q.resize(4, model.tree.coordinate_count());
+  for (int i = 0; i < 4; ++i) recording.q.row(i) = RandomPosture(model.tree, random);
+  recording.markers.resize(4, 3 * model.marker_count());
+  for (double& value : recording.markers.reshaped()) value = random.Normal(1.0);
+  recording.markers.block<1, 3>(2, 3).setConstant(std::numeric_limits<double>::quiet_NaN());
+  return recording;
+}
+
+class Residuals : public ::testing::Test {
+ protected:
+  ErrorModel model_ = TalosLegModel();
+  Recording recording_ = RecordingWithGaps(model_);
+  std::vector<int> free_ = FindBaseParameters(model_, {.postures = 100}).kept;
+  Eigen::VectorXd fixed_ = Random(2).NormalVector(model_.parameter_count(), 0.01);
+  MarkerResiduals problem_{
+      model_, recording_, SeenMask(recording_), free_, fixed_, CalibrationOptions().prior, 0.2e-3};
+
+  Eigen::VectorXd All(const Eigen::VectorXd& x) {
+    problem_.Evaluate(x, false);
+    std::vector<double> all;
+    for (std::size_t i = 0; i < problem_.residual_blocks.size(); ++i) {
+      Eigen::VectorXd r(problem_.residual_blocks[i].size);
+      problem_.Residual(static_cast<int>(i), Eigen::Map<Eigen::VectorXd>(r.data(), r.size()));
+      all.insert(all.end(), r.begin(), r.end());
+    }
+    return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+  }
+
+  Eigen::MatrixXd Jacobian(const Eigen::VectorXd& x) {
+    problem_.Evaluate(x, true);
+    std::vector<int> start = {0};
+    for (int size : problem_.parameter_blocks) start.push_back(start.back() + size);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(All(x).size(), x.size());
+    problem_.Evaluate(x, true);
+    int row = 0;
+    for (std::size_t i = 0; i < problem_.residual_blocks.size(); ++i) {
+      const auto& shape = problem_.residual_blocks[i];
+      for (std::size_t k = 0; k < shape.parameter_blocks.size(); ++k) {
+        const int block = shape.parameter_blocks[k];
+        LeastSquaresProblem::RowMajorMatrix part(shape.size, problem_.parameter_blocks[block]);
+        problem_.Jacobian(
+            static_cast<int>(i), static_cast<int>(k),
+            Eigen::Map<LeastSquaresProblem::RowMajorMatrix>(part.data(), part.rows(), part.cols()));
+        J.block(row, start[block], part.rows(), part.cols()) = part;
+      }
+      row += shape.size;
+    }
+    return J;
+  }
+};
+
+TEST_F(Residuals, UnseenMarkersTakeNoPart) {
+  int observations = 0;
+  for (const auto& block : problem_.residual_blocks) observations += block.size == 3;
+  EXPECT_EQ(observations, 4 * 9 - 1);
+}
+
+TEST_F(Residuals, ErrorsAndUnknownsAreOneToOne) {
+  const Eigen::VectorXd x = Random(3).NormalVector(static_cast<Eigen::Index>(free_.size()), 1.0);
+  const Eigen::VectorXd delta = problem_.ToErrors(x);
+  EXPECT_LT((problem_.FromErrors(delta) - x).norm(), 1e-14);
+  for (int i = 0; i < model_.parameter_count(); ++i) {
+    if (std::binary_search(free_.begin(), free_.end(), i)) continue;
+    EXPECT_EQ(delta[i], fixed_[i]) << i;
+  }
+}
+
+// Residuals are 1e4 (metres over 0.2 mm) and change by about 40 a unit of x; central differences
+// with a step of 1e-4 leave 1e-8 of truncation and 1e-8 of rounding of these.
+TEST_F(Residuals, JacobianEqualsDifferences) {
+  const Eigen::VectorXd x = Random(3).NormalVector(static_cast<Eigen::Index>(free_.size()), 1.0);
+  const Eigen::MatrixXd J = Jacobian(x);
+  constexpr double kStep = 1e-4;
+  for (Eigen::Index u = 0; u < x.size(); ++u) {
+    Eigen::VectorXd plus = x;
+    Eigen::VectorXd minus = x;
+    plus[u] += kStep;
+    minus[u] -= kStep;
+    const Eigen::VectorXd difference = (All(plus) - All(minus)) / (2.0 * kStep);
+    EXPECT_LT((difference - J.col(u)).norm(), 1e-7 * J.norm())
+        << model_.parameters[free_[static_cast<std::size_t>(u)]].name;
+  }
+}
+
+TEST_F(Residuals, EveryObservationMeetsOneEliminatedBlockAtMost) {
+  const auto& eliminated = problem_.eliminated_blocks;
+  EXPECT_EQ(eliminated.size(), 9u);
+  for (const auto& block : problem_.residual_blocks) {
+    int met = 0;
+    for (int k : block.parameter_blocks) {
+      met += static_cast<int>(std::count(eliminated.begin(), eliminated.end(), k));
+    }
+    EXPECT_LE(met, 1);
+  }
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,167 @@
+#include "elastocal/identifiability/base_parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/robot/kinematics.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/random_robot.hpp"
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+using Names = std::vector<std::string>;
+
+Names NamesOf(const ErrorModel& model, const std::vector<int>& which) {
+  Names names;
+  for (int i : which) names.push_back(model.parameters[i].name);
+  return names;
+}
+
+/// Everything held that the paper holds by hand.
+const Names kHeldByThePaper = {"waist.T0.*", "leg_1.*", "leg_6.*"};
+
+IdentifiabilityOptions Options(const Names& hold, double tolerance = 1e-6) {
+  IdentifiabilityOptions options;
+  options.hold = hold;
+  options.tolerance = tolerance;
+  return options;
+}
+
+TEST(BaseParameters, LegHasTheTheoreticalCount) {
+  const ErrorModel leg = TalosLegModel();
+  const BaseParameters base = FindBaseParameters(leg, {});
+  EXPECT_EQ(base.theoretical_count, 4 * 6 + 3 * 9);
+  EXPECT_EQ(base.kept.size(), 51u);
+  EXPECT_EQ(base.dropped.size(), leg.parameters.size() - 51u);
+  EXPECT_TRUE(base.held.empty());
+  EXPECT_TRUE(LostBySpecialMarkers(leg, {}).empty());
+}
+
+TEST(BaseParameters, LegAsHeldByThePaper) {
+  const ErrorModel leg = TalosLegModel();
+  const BaseParameters base = FindBaseParameters(leg, Options(kHeldByThePaper));
+  EXPECT_EQ(base.held.size(), 6u + 6u + 4u);
+  EXPECT_EQ(base.kept.size(), 43u);
+  EXPECT_EQ(base.kept.size() + base.dropped.size(), 45u);
+  const BaseParameters one_beta =
+      FindBaseParameters(leg, Options({"waist.T0.*", "leg_1.*", "leg_6.*", "leg_5.beta"}));
+  EXPECT_EQ(one_beta.kept.size(), 42u);
+  EXPECT_EQ(one_beta.kept.size() + one_beta.dropped.size(), 44u);
+}
+
+TEST(BaseParameters, TheGapIsWideSoThatTheToleranceHardlyMatters) {
+  const ErrorModel leg = TalosLegModel();
+  const Eigen::MatrixXd factor = NominalFactor(leg, {});
+  for (const Names& hold : {Names{}, kHeldByThePaper}) {
+    const BaseParameters base = FindBaseParameters(leg, factor, Options(hold));
+    EXPECT_GT(base.smallest_kept, 1e-2);
+    EXPECT_LT(base.largest_dropped, 1e-12);
+    for (double tolerance : {1e-10, 1e-8, 1e-3}) {
+      EXPECT_EQ(FindBaseParameters(leg, factor, Options(hold, tolerance)).kept, base.kept);
+    }
+  }
+}
+
+TEST(BaseParameters, ExternalFirstDropsWhatThePaperHolds) {
+  const ErrorModel leg = TalosLegModel();
+  EXPECT_EQ(NamesOf(leg, FindBaseParameters(leg, {}).dropped),
+            (Names{"leg_1.gamma", "leg_1.b", "leg_1.alpha", "leg_1.d", "leg_1.theta", "leg_1.r",
+                   "leg_4.r", "leg_5.r", "leg_6.theta", "leg_6.r"}));
+}
+
+TEST(BaseParameters, ExternalLastKeepsOffsetsFirst) {
+  const ErrorModel leg = TalosLegModel();
+  IdentifiabilityOptions options;
+  options.external = ExternalPriority::kLast;
+  const BaseParameters base = FindBaseParameters(leg, options);
+  EXPECT_EQ(base.kept.size(), 51u);  // another choice of as many
+  for (const char* joint : {"leg_1", "leg_2", "leg_3", "leg_4", "leg_5", "leg_6"}) {
+    const int theta = FindParameter(leg.parameters, std::string(joint) + ".theta");
+    EXPECT_TRUE(std::binary_search(base.kept.begin(), base.kept.end(), theta)) << joint;
+  }
+  for (int i : base.dropped) {
+    EXPECT_NE(leg.parameters[i].kind, ParameterKind::kTheta) << leg.parameters[i].name;
+  }
+}
+
+TEST(BaseParameters, KeptDroppedAndHeldArePartsOfTheModelInOrder) {
+  const ErrorModel leg = TalosLegModel();
+  const BaseParameters base = FindBaseParameters(leg, Options({"leg_3.*", "*.z"}));
+  std::vector<int> all;
+  for (const auto* part : {&base.kept, &base.dropped, &base.held}) {
+    EXPECT_TRUE(std::is_sorted(part->begin(), part->end()));
+    all.insert(all.end(), part->begin(), part->end());
+  }
+  std::sort(all.begin(), all.end());
+  for (int i = 0; i < leg.parameter_count(); ++i) EXPECT_EQ(all.at(i), i);
+  EXPECT_EQ(base.held, MatchParameters(leg.parameters, {"leg_3.*", "*.z"}));
+  ExpectInputError([&] { FindBaseParameters(leg, Options({"leg_7.*"})); }, {"'leg_7.*'"});
+}
+
+TEST(BaseParameters, DroppedErrorsMoveMarkersAsTheKeptDoByTheRegrouping) {
+  const ErrorModel leg = TalosLegModel();
+  Random random(3);
+  const double eps = 1e-5;
+  for (ExternalPriority external : {ExternalPriority::kFirst, ExternalPriority::kLast}) {
+    IdentifiabilityOptions options;
+    options.external = external;
+    const BaseParameters base = FindBaseParameters(leg, options);
+    for (std::size_t j = 0; j < base.dropped.size(); ++j) {
+      Eigen::VectorXd dropped = Eigen::VectorXd::Zero(leg.parameter_count());
+      Eigen::VectorXd kept = dropped;
+      dropped[base.dropped[j]] = eps;
+      kept(base.kept) = eps * base.regrouping.col(static_cast<Eigen::Index>(j));
+      for (int i = 0; i < 10; ++i) {
+        const Eigen::VectorXd q = RandomPosture(leg.tree, random);
+        const Eigen::Matrix3Xd difference = MarkerPositions(leg, ApplyErrors(leg, dropped), q) -
+                                            MarkerPositions(leg, ApplyErrors(leg, kept), q);
+        // Equal to first order (some 1e-4 m): what is left is of the order of the errors' square.
+        EXPECT_LT(difference.cwiseAbs().maxCoeff(), 5.0 * (eps * eps + kept.squaredNorm()))
+            << leg.parameters[base.dropped[j]].name;
+      }
+    }
+  }
+}
+
+TEST(BaseParameters, AMarkerOnTheLastAxisLosesRank) {
+  // One marker a body; the foot's on the ankle roll axis does not move with that joint.
+  ErrorModel leg = SelectMarkers(TalosLegModel(), {"THIGH_1", "SHANK_1", "FOOT_1"});
+  const BaseParameters generic = FindBaseParameters(leg, {});
+  EXPECT_EQ(generic.theoretical_count, 4 * 6 + 3 * 3);
+  EXPECT_EQ(generic.kept.size(), 33u);
+  leg.markers[2].p_link_marker = {0.05, 0, 0};
+  const BaseParameters base = FindBaseParameters(leg, {});
+  EXPECT_EQ(base.theoretical_count, 33);
+  // What is known of the foot: where that point is on the body before, and how far the marker is
+  // from it across the axis; 3 + 2 instead of 4 + 3.
+  EXPECT_EQ(base.kept.size(), 31u);
+  EXPECT_EQ(NamesOf(leg, LostBySpecialMarkers(leg, {})), (Names{"leg_6.alpha", "leg_6.d"}));
+}
+
+class BaseParametersOfRandomRobots : public testing::TestWithParam<int> {};
+
+TEST_P(BaseParametersOfRandomRobots, HaveTheTheoreticalCount) {
+  // Axes that nearly coincide or are nearly parallel included: eq. 1 with beta, and the general
+  // placement, lack no freedom of any joint.
+  Random random(GetParam());
+  std::vector<AxisRelation> relations = kUsualRelations;
+  relations.push_back(AxisRelation::kCoaxial);
+  const RobotTree tree = RandomRobot(relations, random);
+  const ErrorModel model = MakeErrorModel(tree, RandomMarkers(tree, random));
+  IdentifiabilityOptions options;
+  options.postures = 200;
+  for (ExternalPriority external : {ExternalPriority::kFirst, ExternalPriority::kLast}) {
+    options.external = external;
+    const BaseParameters base = FindBaseParameters(model, options);
+    EXPECT_EQ(static_cast<int>(base.kept.size()), base.theoretical_count);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, BaseParametersOfRandomRobots, testing::Range(1, 101));
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,149 @@
+#include "elastocal/robot/placement.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/random_robot.hpp"
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kRightAngle = M_PI / 2.0;
+// Roundings of lengths of a metre. Common normals of axes that are nearly parallel are further out.
+constexpr double kRounding = 1e-14;
+
+std::vector<AxisRelation> AllRelations() {
+  std::vector<AxisRelation> relations = kUsualRelations;
+  relations.push_back(AxisRelation::kCoaxial);
+  return relations;
+}
+
+/// Eq. 1, written out.
+Transform Placed(const JointPlacement& p, const Joint& joint, double position) {
+  const bool revolute = joint.type == JointType::kRevolute;
+  return p.T_parent_pre * RotZ(p.gamma) * TrZ(p.b) * RotY(p.beta) * RotX(p.alpha) * TrX(p.d) *
+         RotZ(p.theta + (revolute ? position : 0.0)) * TrZ(p.r + (revolute ? 0.0 : position));
+}
+
+/// Two joints, the second's axis turned by `angle` out of parallel to the first's, 0.4 m beside it.
+RobotTree TwoAxes(double angle, double distance = 0.4) {
+  RobotTree tree = MakeRoot();
+  const int link = AddJoint(tree, "first", 0, Transform::Identity(), {0, 0, 1});
+  AddJoint(tree, "second", link, Offset(distance, 0, 0.1), RotX(angle) * Eigen::Vector3d(0, 0, 1));
+  return tree;
+}
+
+void ExpectConstants(const JointPlacement& p, double alpha, double d, double theta, double r) {
+  EXPECT_NEAR(p.alpha, alpha, kRounding);
+  EXPECT_NEAR(p.d, d, kRounding);
+  EXPECT_NEAR(p.theta, theta, kRounding);
+  EXPECT_NEAR(p.r, r, kRounding);
+  EXPECT_NEAR(p.beta, 0.0, kRounding);
+  EXPECT_EQ(p.gamma, 0.0);
+  EXPECT_EQ(p.b, 0.0);
+}
+
+TEST(Placement, TalosLeg) {
+  std::vector<JointPlacement> leg = PlaceJoints(TalosLeg(), {});
+  const double h = kRightAngle;
+  ExpectConstants(leg[0], h, 0, 0, 0);
+  ExpectConstants(leg[1], h, 0, h, 0);
+  leg[2].theta = std::abs(leg[2].theta);  // half a turn, either way
+  ExpectConstants(leg[2], h, 0, M_PI, 0);
+  ExpectConstants(leg[3], 0, 0.380, 0, 0);
+  ExpectConstants(leg[4], 0, 0.325, 0, 0);
+  ExpectConstants(leg[5], h, 0, 0, 0);
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_EQ(leg[k].general, k == 0);
+    EXPECT_EQ(leg[k].parallel, k == 3 || k == 4);
+  }
+  // The general placement is on the hip's axis, with its own z across that.
+  EXPECT_LT((leg[0].T_parent_pre.translation() - Eigen::Vector3d(-0.02, 0.085, -0.27105)).norm(),
+            kRounding);
+  EXPECT_NEAR(leg[0].T_parent_pre.linear().col(2).z(), 0.0, kRounding);
+}
+
+TEST(Placement, SkewAxes) {
+  // From (0, 0, z) to (0.4, y, 0.1 + y cot): the common normal is along x.
+  const std::vector<JointPlacement> arm = PlaceJoints(TwoAxes(0.5), {});
+  ExpectConstants(arm[1], 0.5, 0.4, 0, 0);
+  // The first joint's frame is where the normal leaves its axis.
+  EXPECT_LT((arm[0].T_parent_pre.translation() - Eigen::Vector3d(0, 0, 0.1)).norm(), kRounding);
+}
+
+TEST(Placement, BetaBelowTheToleranceOnly) {
+  for (double direction : {0.0, M_PI}) {
+    EXPECT_TRUE(PlaceJoints(TwoAxes(direction), {})[1].parallel);
+    EXPECT_TRUE(PlaceJoints(TwoAxes(direction + 0.019), {})[1].parallel);
+    EXPECT_FALSE(PlaceJoints(TwoAxes(direction + 0.021), {})[1].parallel);
+    EXPECT_TRUE(
+        PlaceJoints(TwoAxes(direction + 0.021), {.parallel_tolerance_rad = 0.03})[1].parallel);
+    EXPECT_FALSE(PlaceJoints(TwoAxes(direction + 0.021), {})[1].general);
+  }
+}
+
+TEST(Placement, TheSameAxisTwiceIsPlacedGenerally) {
+  EXPECT_TRUE(PlaceJoints(TwoAxes(0.0, 0.0), {})[1].general);
+  EXPECT_TRUE(PlaceJoints(TwoAxes(M_PI + 1e-3, 0.5e-3), {})[1].general);
+  EXPECT_FALSE(PlaceJoints(TwoAxes(0.0, 2e-3), {})[1].general);
+  EXPECT_FALSE(PlaceJoints(TwoAxes(0.5, 0.0), {})[1].general);
+}
+
+TEST(Placement, TheFirstJointInTheFileContinuesTheChain) {
+  const RobotTree tree = RailArm();
+  const std::vector<JointPlacement> placements = PlaceJoints(tree, {});
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    EXPECT_EQ(placements[k].general, k == 0 || tree.joints[k].name == "finger_2");
+  }
+}
+
+class RandomRobots : public testing::TestWithParam<int> {};
+
+TEST_P(RandomRobots, NominalPlacementsGiveTheUrdfsKinematics) {
+  Random random(GetParam());
+  const RobotTree tree = RandomRobot(AllRelations(), random);
+  const std::vector<JointPlacement> placements = PlaceJoints(tree, {});
+  for (int i = 0; i < 10; ++i) {
+    const Eigen::VectorXd q = RandomPosture(tree, random);
+    const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
+    std::vector<Transform> T_root_mdh(tree.body_count(), Transform::Identity());
+    for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+      const Joint& joint = tree.joints[k];
+      T_root_mdh[k + 1] =
+          T_root_mdh[joint.parent_body] * Placed(placements[k], joint, JointPosition(joint, q));
+      const Transform T_root_child = T_root_mdh[k + 1] * placements[k].T_joint_body;
+      EXPECT_LT((T_root_child.matrix() - T_root_link[joint.child_link].matrix()).norm(),
+                10 * kRounding)
+          << joint.name;
+    }
+  }
+}
+
+TEST_P(RandomRobots, FramesFollowTheConvention) {
+  // z is the joint's axis. A general joint's constants are nominally zero but for alpha; others
+  // start from the parent's frame itself, and need beta where axes are parallel only.
+  Random random(GetParam());
+  const RobotTree tree = RandomRobot(AllRelations(), random);
+  const std::vector<JointPlacement> placements = PlaceJoints(tree, {});
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const JointPlacement& p = placements[k];
+    const Eigen::Vector3d axis = p.T_joint_body.linear() * tree.joints[k].axis;
+    EXPECT_LT((axis - Eigen::Vector3d::UnitZ()).norm(), kRounding);
+    if (p.general) {
+      EXPECT_FALSE(p.parallel);
+      ExpectConstants(p, kRightAngle, 0, 0, 0);
+    } else {
+      EXPECT_TRUE(p.T_parent_pre.matrix().isIdentity(0.0));
+      EXPECT_EQ(p.gamma, 0.0);
+      EXPECT_EQ(p.b, 0.0);
+      EXPECT_LE(std::abs(p.beta), p.parallel ? 0.02 : 0.0);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomRobots, testing::Range(1, 51));
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,96 @@
+#include "elastocal/robot/robot_tree.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/expect_input_error.hpp"
+#include "tests/random_robot.hpp"
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+using Eigen::Vector3d;
+
+// A few roundings of lengths below a metre.
+constexpr double kRounding = 1e-15;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(RobotTree, LinkTransformsOfThePlanarArm) {
+  const RobotTree tree = PlanarArm();
+  // Upper arm along y, forearm back along x: 90 degrees each.
+  const auto T = LinkTransforms(tree, Eigen::Vector2d(M_PI / 2, M_PI / 2));
+  ASSERT_EQ(T.size(), 4u);
+  EXPECT_EQ(T[0].matrix(), Transform::Identity().matrix());
+  EXPECT_LT(T[1].translation().norm(), kRounding);
+  EXPECT_LT((T[2].translation() - Vector3d(0, 0.5, 0)).norm(), kRounding);
+  EXPECT_LT((T[3].translation() - Vector3d(-0.3, 0.5, 0)).norm(), kRounding);
+  EXPECT_LT((T[3].linear().col(0) - Vector3d(-1, 0, 0)).norm(), kRounding);
+}
+
+TEST(RobotTree, LinkTransformsOfSlidingAndMimicJoints) {
+  const RobotTree tree = RailArm();
+  ASSERT_EQ(tree.coordinate_count(), 5);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(5);
+  const auto T_zero = LinkTransforms(tree, q);
+  q[0] = 0.5;
+  q[4] = 0.03;
+  const auto T = LinkTransforms(tree, q);
+  const int hand = FindLink(tree, "hand_link");
+  const Vector3d rail = T[FindLink(tree, "mount")].linear() * Vector3d(1, 1, 0.2).normalized();
+  EXPECT_LT((T[hand].translation() - T_zero[hand].translation() - 0.5 * rail).norm(), kRounding);
+  // The leader at 0.03, the mimic at -0.03 + 0.01, in the hand's y.
+  const auto in_hand = [&](const char* link) {
+    return Vector3d(T[hand].inverse() * T[FindLink(tree, link)].translation());
+  };
+  EXPECT_LT((in_hand("finger_1_link") - Vector3d(0.05, 0.05, 0)).norm(), kRounding);
+  EXPECT_LT((in_hand("finger_2_link") - Vector3d(0.05, -0.04, 0)).norm(), kRounding);
+}
+
+TEST(RobotTree, JointsToBodyFollowOneBranch) {
+  const RobotTree tree = RailArm();
+  EXPECT_EQ(JointsToBody(tree, 0), std::vector<int>{});
+  EXPECT_EQ(JointsToBody(tree, 5), (std::vector<int>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(JointsToBody(tree, 6), (std::vector<int>{0, 1, 2, 3, 5}));
+}
+
+TEST(RobotTree, FindsByName) {
+  const RobotTree tree = PlanarArm();
+  EXPECT_EQ(FindLink(tree, "tip"), 3);
+  EXPECT_EQ(FindJoint(tree, "elbow"), 1);
+  ExpectInputError([&] { FindLink(tree, "tipp"); }, {"'robot'", "link 'tipp'", "mean 'tip'?"});
+  ExpectInputError([&] { FindJoint(tree, "elbo"); }, {"joint 'elbo'", "mean 'elbow'?"});
+  ExpectInputError([&] { FindJoint(tree, "tip"); }, {"no movable joint 'tip'"});
+}
+
+TEST(RobotTree, SizeIsTwiceTheLongestBranch) {
+  EXPECT_DOUBLE_EQ(RobotSize(PlanarArm()), 2.0 * (0.5 + 0.3));
+  RobotTree tree = MakeRoot();
+  const int link = AddJoint(tree, "slide", 0, Offset(0, 0, 2), {0, 0, 1}, JointType::kPrismatic);
+  AddFixedLink(tree, "end", link, Offset(3, 0, 0));
+  tree.joints[0].limits = {-4, 1, 0, 0};
+  EXPECT_DOUBLE_EQ(RobotSize(tree), 2.0 * (2 + 4 + 3));
+}
+
+TEST(RobotTree, RandomPosturesFillTheLimits) {
+  RobotTree tree = RailArm();
+  tree.joints[1].limits = {0.2, 0.4, 0, 0};
+  tree.joints[2].limits = {-kInfinity, kInfinity, 0, 0};
+  tree.joints[4].limits = {-kInfinity, kInfinity, 0, 0};
+  const Eigen::VectorXd lower = (Eigen::VectorXd(5) << -1, 0.2, -M_PI, -1, -0.5).finished();
+  const Eigen::VectorXd upper = (Eigen::VectorXd(5) << 1, 0.4, M_PI, 1, 0.5).finished();
+  Random random(1);
+  Eigen::MatrixXd q(5, 2000);
+  for (int i = 0; i < q.cols(); ++i) q.col(i) = RandomPosture(tree, random);
+  const Eigen::VectorXd smallest = q.rowwise().minCoeff(), largest = q.rowwise().maxCoeff();
+  EXPECT_TRUE((smallest.array() >= lower.array()).all()) << smallest;
+  EXPECT_TRUE((largest.array() <= upper.array()).all()) << largest;
+  // 2000 numbers leave 1 % free at an end with probability 0.99^2000 = 2e-9.
+  const Eigen::VectorXd margin = 0.01 * (upper - lower);
+  EXPECT_TRUE((smallest.array() <= (lower + margin).array()).all()) << smallest;
+  EXPECT_TRUE((largest.array() >= (upper - margin).array()).all()) << largest;
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,83 @@
+#include "elastocal/robot/special_geometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+using Kind = SpecialGeometry::Kind;
+using Joints = std::vector<int>;
+
+// Roundings of positions and directions of the order of 1.
+constexpr double kRounding = 1e-15;
+
+std::vector<Joints> Found(const RobotTree& tree, Kind kind) {
+  std::vector<Joints> joints;
+  for (const SpecialGeometry& group : FindSpecialGeometry(tree)) {
+    if (group.kind == kind) joints.push_back(group.joints);
+  }
+  return joints;
+}
+
+TEST(SpecialGeometry, TalosLegHasAHipAndTwoParallelPairs) {
+  EXPECT_EQ(Found(TalosLeg(), Kind::kSphericalWrist), std::vector<Joints>({{0, 1, 2}}));
+  EXPECT_EQ(Found(TalosLeg(), Kind::kParallelAxes), std::vector<Joints>({{2, 3}, {3, 4}}));
+}
+
+TEST(SpecialGeometry, AntiparallelAxesCount) {
+  RobotTree tree = PlanarArm();
+  tree.joints[1].axis = -tree.joints[1].axis;
+  EXPECT_EQ(Found(tree, Kind::kParallelAxes), std::vector<Joints>({{0, 1}}));
+}
+
+TEST(SpecialGeometry, AWristMeetsAwayFromTheOrigins) {
+  RobotTree tree = TalosLeg();
+  tree.joints[1].T_parent_child = Offset(0.1, 0, 0);     // along its own axis
+  tree.joints[2].T_parent_child = Offset(-0.1, 0.2, 0);  // back, then along its own
+  EXPECT_EQ(Found(tree, Kind::kSphericalWrist), std::vector<Joints>({{0, 1, 2}}));
+}
+
+TEST(SpecialGeometry, WithinAMicrometreAndAMicroradian) {
+  for (double error : {0.5e-6, 2e-6}) {
+    RobotTree wrist = TalosLeg();
+    wrist.joints[2].T_parent_child = Offset(0, 0, error);
+    EXPECT_EQ(Found(wrist, Kind::kSphericalWrist).empty(), error > 1e-6);
+    RobotTree knee = TalosLeg();
+    knee.joints[3].T_parent_child = Offset(0, 0, -0.38) * RotX(error);
+    EXPECT_EQ(Found(knee, Kind::kParallelAxes).size(), error > 1e-6 ? 1u : 2u);
+  }
+}
+
+TEST(SpecialGeometry, SlidingJointsAndOtherBranchesDoNotCount) {
+  RobotTree tree = PlanarArm();
+  tree.joints[1].type = JointType::kPrismatic;
+  EXPECT_TRUE(FindSpecialGeometry(tree).empty());
+  tree = PlanarArm();
+  AddJoint(tree, "second_arm", 0, Offset(0, 1, 0), {0, 0, 1});  // parallel, but beside the others
+  EXPECT_EQ(FindSpecialGeometry(tree).size(), 1u);
+}
+
+TEST(SpecialGeometry, DeviationOfACorrectedRobot) {
+  const RobotTree nominal = TalosLeg();
+  RobotTree corrected = nominal;
+  corrected.joints[1].T_parent_child = Offset(0, 0.003, 0);
+  corrected.joints[4].T_parent_child = Offset(0, 0, -0.325) * RotX(0.3) * RotZ(0.4);
+  for (const SpecialGeometry& group : FindSpecialGeometry(nominal)) {
+    EXPECT_LT(Deviation(nominal, group), kRounding);
+    const double deviation = Deviation(corrected, group);
+    if (group.kind == Kind::kSphericalWrist) {
+      // Axis 2 passes axis 1 at 3 mm; axis 3 along y meets both.
+      EXPECT_NEAR(deviation, 0.003, kRounding);
+    } else if (group.joints[1] == 4) {
+      // The ankle's y axis went to Rx Rz y = (-sin .4, cos .4 cos .3, cos .4 sin .3).
+      EXPECT_NEAR(deviation, std::acos(std::cos(0.4) * std::cos(0.3)), 4 * kRounding);
+    } else {
+      EXPECT_LT(deviation, kRounding);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,185 @@
+// Verdicts of the estimator: outliers, parameters without support, models side by side.
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+using Kind = ParameterKind;
+
+class LegEstimation : public ::testing::Test {
+ protected:
+  Recording Record(const Eigen::VectorXd& delta, int postures, std::uint64_t seed = 1) const {
+    return MakeSyntheticRecording(model_, delta, {.postures = postures, .seed = seed});
+  }
+  CalibrationResult Estimate(const Recording& recording,
+                             const CalibrationOptions& options = {}) const {
+    return Calibrate(model_, recording, base_, ModelKind::kGeometric, options);
+  }
+  int Find(const char* name) const { return FindParameter(model_.parameters, name); }
+
+  ErrorModel model_ = TalosLegModel();
+  BaseParameters base_ = FindBaseParameters(model_, {});
+  Eigen::VectorXd truth_ = DrawErrors(
+      model_, base_.kept, {{Kind::kTheta, 0.01}, {Kind::kD, 1e-3}, {Kind::kMarker, 5e-3}}, 2);
+};
+
+TEST_F(LegEstimation, OutliersAreNamedAndTheRestIsLeftAlone) {
+  const Recording clean = Record(truth_, 30);
+  Recording recording = clean;
+  recording.markers(4, 3 * 2 + 1) += 3e-3;  // 15 times the noise
+  recording.markers(17, 3 * 8) -= 0.5;      // a swapped label, say
+  recording.markers(17, 3 * 7) -= 0.5;
+  const CalibrationResult result = Estimate(recording);
+  ASSERT_EQ(result.outliers.size(), 3u);
+  EXPECT_EQ(result.outliers[0].posture, 4);
+  EXPECT_EQ(result.outliers[0].marker, 2);
+  EXPECT_NEAR(result.outliers[0].residual, 3e-3, 1e-3);
+  EXPECT_EQ(result.outliers[1].marker, 7);
+  EXPECT_EQ(result.outliers[2].marker, 8);
+  EXPECT_EQ(result.equations, 3 * (30 * 9 - 3));
+  EXPECT_FALSE(result.used(4, 2));
+  const CalibrationResult without = Estimate(clean);
+  for (int i : base_.kept) {
+    if (model_.parameters[i].kind == Kind::kBase) continue;
+    EXPECT_LT(std::abs(result.delta[i] - without.delta[i]), 0.5 * without.sd[i])
+        << model_.parameters[i].name;
+  }
+}
+
+// One recording in a hundred may have an outlier named without reason; 40 clean ones none or one.
+TEST_F(LegEstimation, CleanRecordingsHaveNoOutliers) {
+  int with_outliers = 0;
+  for (int seed = 0; seed < 40; ++seed) {
+    with_outliers += Estimate(Record(truth_, 15, 100u + seed)).outliers.empty() ? 0 : 1;
+  }
+  EXPECT_LE(with_outliers, 2);
+}
+
+TEST_F(LegEstimation, ParametersWithoutSupportAreHeldAtNominal) {
+  // The ankle's roll stands still: its axis cannot be found, its marker positions absorb it.
+  Recording recording = Record(truth_, 30);
+  ErrorModel still = model_;
+  Eigen::MatrixXd& q = recording.q;
+  const Geometry geometry = ApplyErrors(still, truth_);
+  Random random(3);
+  for (int i = 0; i < 30; ++i) {
+    q(i, 5) = 0.1;
+    recording.markers.row(i) =
+        MarkerPositions(still, geometry, q.row(i).transpose()).reshaped().transpose() +
+        random.NormalVector(27, 0.2e-3).transpose();
+  }
+  const CalibrationResult result = Estimate(recording);
+  for (const char* name : {"leg_6.alpha", "leg_6.d"}) {
+    const int i = Find(name);
+    EXPECT_EQ(result.status[i], ParameterStatus::kUnsupported) << name;
+    EXPECT_EQ(result.delta[i], 0.0) << name;
+    EXPECT_FALSE(Significant(result, i)) << name;
+    EXPECT_GT(result.sd[i], 0.5 * CalibrationOptions().prior[model_.parameters[i].kind]) << name;
+  }
+  EXPECT_EQ(result.status[Find("leg_3.theta")], ParameterStatus::kEstimated);
+}
+
+TEST_F(LegEstimation, EveryParameterHasAStatus) {
+  IdentifiabilityOptions options;
+  options.hold = {"leg_3.d"};
+  base_ = FindBaseParameters(model_, options);
+  const Recording recording = Record(truth_, 20);
+  const CalibrationResult offsets =
+      Calibrate(model_, recording, base_, ModelKind::kOffsetsOnly, {});
+  EXPECT_EQ(offsets.status[Find("leg_3.d")], ParameterStatus::kHeld);
+  EXPECT_EQ(offsets.status[Find("leg_1.theta")], ParameterStatus::kDropped);
+  EXPECT_EQ(offsets.status[Find("leg_3.theta")], ParameterStatus::kEstimated);
+  EXPECT_EQ(offsets.status[Find("leg_3.alpha")], ParameterStatus::kNotInModel);
+  EXPECT_EQ(offsets.delta[Find("leg_3.alpha")], 0.0);
+}
+
+TEST_F(LegEstimation, FewerEquationsThanParametersAreRefused) {
+  ExpectInputError([&] { Estimate(Record(truth_, 1)); }, {"27 equations", "33 parameters"});
+}
+
+TEST_F(LegEstimation, GivenNoiseIsUsedAsItIs) {
+  CalibrationOptions options;
+  options.marker_sd = 0.4e-3;
+  const CalibrationResult result = Estimate(Record(truth_, 20), options);
+  EXPECT_EQ(result.marker_sd, 0.4e-3);
+}
+
+// Five degrees where half a degree is expected: the prior is widened, and the interval holds.
+TEST_F(LegEstimation, PriorIsWidenedForARobotFarFromNominal) {
+  truth_[Find("leg_3.theta")] = 0.09;
+  truth_[Find("leg_4.theta")] = -0.08;
+  const Recording recording = Record(truth_, 20);
+  const CalibrationResult result = Estimate(recording);
+  EXPECT_GT(result.prior_scale, 2.0);
+  for (const char* name : {"leg_3.theta", "leg_4.theta"}) {
+    EXPECT_LT(std::abs(result.delta[Find(name)] - truth_[Find(name)]), 3.0 * result.sd[Find(name)])
+        << name;
+  }
+  EXPECT_EQ(Estimate(recording, {.widen_prior = false}).prior_scale, 1.0);
+}
+
+TEST_F(LegEstimation, IterationsThatRunOutAreNotSuccess) {
+  CalibrationOptions options;
+  options.max_iterations = 1;
+  truth_[Find("leg_3.theta")] = 0.5;
+  EXPECT_EQ(Estimate(Record(truth_, 20), options).termination, Termination::kNoConvergence);
+}
+
+TEST_F(LegEstimation, ModelsAreNestedAndJudgedOnTheSameData) {
+  truth_ = DrawErrors(model_, base_.kept,
+                      {{Kind::kTheta, 0.01}, {Kind::kD, 2e-3}, {Kind::kAlpha, 5e-3}}, 2);
+  Recording recording = Record(truth_, 30);
+  recording.markers(3, 0) += 0.1;
+  const ModelComparison comparison = CompareModels(model_, recording, base_, {});
+  EXPECT_EQ(comparison.metrics[0].observations, 30 * 9 - 1);
+  EXPECT_EQ(comparison.metrics[2].observations, 30 * 9 - 1);
+  EXPECT_GT(comparison.metrics[0].rmse_3d, comparison.metrics[1].rmse_3d);
+  EXPECT_GT(comparison.metrics[1].rmse_3d, comparison.metrics[2].rmse_3d);
+  EXPECT_GT(comparison.metrics_all[2].maximum, 0.09);
+
+  std::vector<int> calls;
+  const CrossValidation folds = CrossValidate(comparison, model_, recording, base_, {}, 5, 1,
+                                              [&](int done, int) { calls.push_back(done); });
+  EXPECT_EQ(calls.size(), 15u);
+  EXPECT_EQ(folds.metrics[2].observations, 30 * 9 - 1);
+  // Held-out errors: noise of 0.35 mm in 3-D and what the estimate adds; in-sample ones are less.
+  EXPECT_GT(folds.metrics[2].rmse_3d, comparison.metrics[2].rmse_3d);
+  EXPECT_LT(folds.metrics[2].rmse_3d, 0.45e-3);
+  EXPECT_EQ(CrossValidate(comparison, model_, recording, base_, {}, 5, 1).metrics[2].rmse_3d,
+            folds.metrics[2].rmse_3d);
+}
+
+TEST_F(LegEstimation, FoldsMustFitThePostures) {
+  const Recording recording = Record(truth_, 10);
+  const ModelComparison comparison = CompareModels(model_, recording, base_, {});
+  for (int folds : {0, 1, 11}) {
+    ExpectInputError([&] { CrossValidate(comparison, model_, recording, base_, {}, folds, 1); },
+                     {"2 to 10", std::to_string(folds)});
+  }
+}
+
+TEST_F(LegEstimation, RefittingTheExternalsLeavesTheJointsAlone) {
+  const Recording recording = Record(truth_, 20);
+  std::map<std::string, double> errors = {{"of_another_joint.theta", 1.0}};
+  for (int i : base_.kept) errors[model_.parameters[i].name] = truth_[i];
+  const CalibrationResult refit = RefitExternals(model_, recording, base_, {}, errors);
+  EXPECT_EQ(refit.delta[Find("leg_3.theta")], truth_[Find("leg_3.theta")]);
+  EXPECT_EQ(refit.status[Find("leg_3.theta")], ParameterStatus::kNotInModel);
+  const double rmse =
+      ComputeMetrics(ResidualNorms(refit.model, recording, refit.delta), refit.used).rmse_3d;
+  EXPECT_NEAR(rmse, 0.2e-3 * std::sqrt(3.0), 0.03e-3);
+}
+
+}  // namespace
+}  // namespace elastocal
