@@ -26,9 +26,11 @@ constexpr int kMaxVerdicts = 5;
 struct Fit {
   Eigen::VectorXd delta;
   double marker_sd;
-  double prior_scale = 1.0;
+  PriorScale prior_scale = {};
   Posterior posterior;
 };
+
+double Change(double before, double after) { return std::abs(std::log(after / before)); }
 
 /// One estimation, from recording to result; carries what all steps share.
 class Estimator {
@@ -48,9 +50,11 @@ class Estimator {
       UpdatePosterior(mask, free, fit);
       const double marker_sd =
           options_.marker_sd > 0.0 ? options_.marker_sd : EstimateNoise(mask, fit, robust);
-      const double prior_scale = options_.widen_prior ? EstimatePriorScale(fit) : 1.0;
-      const double change = std::max(std::abs(std::log(marker_sd / fit.marker_sd)),
-                                     std::abs(std::log(prior_scale / fit.prior_scale)));
+      const PriorScale prior_scale =
+          options_.widen_prior ? EstimatePriorScale(fit) : PriorScale();
+      const double change = std::max({Change(fit.marker_sd, marker_sd),
+                                      Change(fit.prior_scale.angles, prior_scale.angles),
+                                      Change(fit.prior_scale.lengths, prior_scale.lengths)});
       fit.marker_sd = marker_sd;
       fit.prior_scale = prior_scale;
       if (change < kHyperTolerance) break;
@@ -77,7 +81,7 @@ class Estimator {
       const Parameter& parameter = result_.model.parameters[fit.posterior.parameters[i]];
       if (IsExternal(parameter.kind)) continue;
       // Without a prior there is nothing to compare with but what would be absurd: 0.1 rad or m.
-      const double prior_sd = fit.prior_scale * options_.prior[parameter.kind];
+      const double prior_sd = options_.prior.Scaled(fit.prior_scale)[parameter.kind];
       const double limit = std::isfinite(prior_sd) ? options_.support_threshold * prior_sd : 0.1;
       if (sd[static_cast<Eigen::Index>(i)] > limit) {
         unsupported.push_back(fit.posterior.parameters[i]);
@@ -129,20 +133,29 @@ class Estimator {
 
   /// MacKay's update: mean square of the deviations in units of the prior, over as many parameters
   /// as the data determine; never narrower than the prior that was given.
-  double EstimatePriorScale(const Fit& fit) const {
+  PriorScale EstimatePriorScale(const Fit& fit) const {
+    const auto widened = [&](double scale, bool angles) {
+      return std::clamp(scale * RelativeDeviation(fit, angles), 1.0, kMaxPriorScale);
+    };
+    return {widened(fit.prior_scale.angles, true), widened(fit.prior_scale.lengths, false)};
+  }
+
+  /// Root mean square of the joints' angles or lengths in units of the prior as it is now; 1 where
+  /// the data determine less than one of them.
+  double RelativeDeviation(const Fit& fit, bool angles) const {
     const Prior prior = options_.prior.Scaled(fit.prior_scale);
     double square_sum = 0.0;
     double determined = 0.0;
     for (std::size_t i = 0; i < fit.posterior.parameters.size(); ++i) {
       const int index = fit.posterior.parameters[i];
-      const double sd = prior[result_.model.parameters[index].kind];
-      if (!std::isfinite(sd)) continue;
+      const ParameterKind kind = result_.model.parameters[index].kind;
+      if (IsExternal(kind) || IsAngle(kind) != angles || !std::isfinite(prior[kind])) continue;
       const auto diagonal = static_cast<Eigen::Index>(i);
-      square_sum += std::pow(fit.delta[index] / sd, 2);
-      determined += 1.0 - fit.posterior.covariance(diagonal, diagonal) / (sd * sd);
+      const double variance = prior[kind] * prior[kind];
+      square_sum += fit.delta[index] * fit.delta[index] / variance;
+      determined += 1.0 - fit.posterior.covariance(diagonal, diagonal) / variance;
     }
-    if (determined < 1.0) return 1.0;
-    return std::clamp(fit.prior_scale * std::sqrt(square_sum / determined), 1.0, kMaxPriorScale);
+    return determined < 1.0 ? 1.0 : std::sqrt(square_sum / determined);
   }
 
   const Recording& recording_;
@@ -259,7 +272,7 @@ Fit FitExternals(const ErrorModel& model, const Recording& recording, const Base
       Median(ResidualNorms(result.model, recording, delta).reshaped().unaryExpr([](double v) {
         return std::isnan(v) ? 0.0 : v;
       })));
-  return estimator.Solve(mask, externals, {delta, rough_sd, 1.0, {}}, fixed_mask == nullptr);
+  return estimator.Solve(mask, externals, {delta, rough_sd, {}, {}}, fixed_mask == nullptr);
 }
 
 template <typename Work>

@@ -57,7 +57,7 @@ struct CalibrationResult {
   ObservationMask used;           ///< observations that took part
   std::vector<Outlier> outliers;  ///< those that did not, and why
   double marker_sd = 0.0;         ///< of one coordinate, m; estimated unless given
-  double prior_scale = 1.0;       ///< factor by which the prior was widened
+  PriorScale prior_scale;         ///< factors by which the prior was widened
   int equations = 0;              ///< 3 a used observation
 
   Termination termination = Termination::kFailure;
@@ -73,7 +73,7 @@ struct CalibrationResult {
 /// 2. all parameters of the kind under Cauchy's loss; observations beyond what noise and
 ///    uncertainty explain are named outliers and left out;
 /// 3. least squares with Gaussian prior on the rest; the noise of a marker coordinate (unless it is
-///    given) follows from the residuals, and the factor that widens the prior from the estimates;
+///    given) follows from the residuals, and the factors that widen the prior from the estimates;
 /// 4. parameters that the data do not support are held at nominal, and the others estimated again.
 ///    Their uncertainty is still counted in that of the others.
 ///

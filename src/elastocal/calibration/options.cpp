@@ -17,9 +17,12 @@ Prior::Prior() {
   }
 }
 
-Prior Prior::Scaled(double factor) const {
+Prior Prior::Scaled(const PriorScale& scale) const {
   Prior scaled = *this;
-  for (double& value : scaled.sd) value *= factor;
+  for (int kind = 0; kind < kParameterKindCount; ++kind) {
+    const bool angle = IsAngle(static_cast<ParameterKind>(kind));
+    scaled.sd[kind] *= angle ? scale.angles : scale.lengths;
+  }
   return scaled;
 }
 

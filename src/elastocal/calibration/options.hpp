@@ -7,23 +7,29 @@
 
 namespace elastocal {
 
+/// Factors by which a prior is widened.
+struct PriorScale {
+  double angles = 1.0, lengths = 1.0;
+};
+
 /// Standard deviation of the Gaussian prior on each kind of parameter, around nominal: rad or m;
 /// infinite for none. T0 and marker positions have none: nobody knows them beforehand.
 struct Prior {
   std::array<double, kParameterKindCount> sd;
 
   Prior();  ///< 0.5 degrees and 1 mm on joints, none on T0 and markers
-  /// The prior with all standard deviations multiplied by `factor`.
-  Prior Scaled(double factor) const;
+  /// The prior with the standard deviations of angles and of lengths multiplied.
+  Prior Scaled(const PriorScale& scale) const;
   double& operator[](ParameterKind kind) { return sd[static_cast<int>(kind)]; }
   double operator[](ParameterKind kind) const { return sd[static_cast<int>(kind)]; }
 };
 
 struct CalibrationOptions {
   Prior prior = {};
-  /// Widen the whole prior by one factor, at least 1 and at most 10, where the estimates say that
-  /// the robot is further from nominal than the prior expects (evidence approximation, MacKay
-  /// 1992). A prior that is too narrow biases the estimates and makes their uncertainty too small.
+  /// Widen the prior, angles by one factor and lengths by another, each at least 1 and at most 10,
+  /// where the estimates say that the robot is further from nominal than the prior expects (evidence
+  /// approximation, MacKay 1992). A prior that is too narrow biases the estimates and makes their
+  /// uncertainty too small.
   bool widen_prior = true;
   /// Standard deviation of one marker coordinate, m. Zero: estimated from the residuals.
   double marker_sd = 0.0;

@@ -114,10 +114,10 @@ std::string DescribeRun(const CalibrationRun& run) {
   text += ModelTable(run);
   text += fmt::format(
       "\nGeometric model {} after {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms\n"
-      "  noise of a marker coordinate {:.4f} mm; prior widened by {:.2f}; {:.1f} parameters "
-      "determined by the data\n\n",
+      "  noise of a marker coordinate {:.4f} mm; prior widened by {:.2f} (angles) and {:.2f} "
+      "(lengths); {:.1f} parameters determined by the data\n\n",
       TerminationName(result.termination), result.iterations, result.initial_cost,
-      result.final_cost, 1e3 * result.solve_seconds, 1e3 * result.marker_sd, result.prior_scale,
+      result.final_cost, 1e3 * result.solve_seconds, 1e3 * result.marker_sd, result.prior_scale.angles, result.prior_scale.lengths,
       result.posterior.effective_parameters);
   text += ParameterTable(result);
   text += "\nNot supported by the data, held at nominal, not worth deploying: " +

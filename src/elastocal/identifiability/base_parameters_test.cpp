@@ -1,7 +1,7 @@
 #include "elastocal/identifiability/base_parameters.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -86,6 +86,34 @@ TEST(BaseParameters, ExternalLastKeepsOffsetsFirst) {
   for (int i : base.dropped) {
     EXPECT_NE(leg.parameters[i].kind, ParameterKind::kTheta) << leg.parameters[i].name;
   }
+}
+
+TEST(BaseParameters, PriorityAmongParametersOfTheSameEffect) {
+  const ErrorModel leg = TalosLegModel();
+  const std::vector<int> same =
+      MatchParameters(leg.parameters, {"waist.T0.d", "leg_2.*", "marker.FOOT_1.x"});
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Identity(leg.parameter_count(), leg.parameter_count());
+  for (int i : same) factor.col(i) = Eigen::VectorXd::Unit(leg.parameter_count(), same[0]);
+  const auto kept = [&](ExternalPriority external, const Names& hold) {
+    IdentifiabilityOptions options = Options(hold);
+    options.external = external;
+    const BaseParameters base = FindBaseParameters(leg, factor, options);
+    std::vector<int> both;
+    std::set_intersection(base.kept.begin(), base.kept.end(), same.begin(), same.end(),
+                          std::back_inserter(both));
+    return NamesOf(leg, both);
+  };
+  // Held one after the other, each leaves its place to the next.
+  using enum ExternalPriority;
+  EXPECT_EQ(kept(kFirst, {}), Names{"waist.T0.d"});
+  EXPECT_EQ(kept(kFirst, {"waist.*"}), Names{"marker.FOOT_1.x"});
+  EXPECT_EQ(kept(kFirst, {"waist.*", "marker.*"}), Names{"leg_2.theta"});
+  EXPECT_EQ(kept(kLast, {}), Names{"leg_2.theta"});
+  EXPECT_EQ(kept(kLast, {"*.theta"}), Names{"leg_2.d"});
+  EXPECT_EQ(kept(kLast, {"*.theta", "*.d"}), Names{"leg_2.r"});
+  EXPECT_EQ(kept(kLast, {"*.theta", "*.d", "*.r"}), Names{"leg_2.alpha"});
+  EXPECT_EQ(kept(kLast, {"leg_2.*"}), Names{"waist.T0.d"});
+  EXPECT_EQ(kept(kLast, {"leg_2.*", "waist.*"}), Names{"marker.FOOT_1.x"});
 }
 
 TEST(BaseParameters, KeptDroppedAndHeldArePartsOfTheModelInOrder) {

@@ -89,6 +89,32 @@ std::vector<std::string> BrokenGeometry(const RobotTree& nominal, const RobotTre
   return warnings;
 }
 
+/// A correction of a joint that carries branches without markers beside one with markers moves these
+/// as well, though nothing was measured there.
+std::vector<std::string> UnrecordedBranches(const ErrorModel& model,
+                                            const std::vector<bool>& changed) {
+  const std::vector<int>& active = model.active_joints;
+  std::vector<std::string> warnings;
+  for (int k : active) {
+    std::string unrecorded;
+    bool branches = false;
+    for (int i = 0; i < static_cast<int>(model.tree.joints.size()); ++i) {
+      if (model.tree.joints[i].parent_body != k + 1) continue;
+      if (std::binary_search(active.begin(), active.end(), i)) {
+        branches = true;
+      } else {
+        unrecorded += (unrecorded.empty() ? "" : ", ") + model.tree.joints[i].name;
+      }
+    }
+    if (!changed[k] || !branches || unrecorded.empty()) continue;
+    warnings.push_back(
+        fmt::format("the correction of {} also moves what {} carries, of which this recording shows "
+                    "nothing: it may belong to the recorded branch alone",
+                    model.tree.joints[k].name, unrecorded));
+  }
+  return warnings;
+}
+
 }  // namespace
 
 CalibratedUrdf MakeCalibratedUrdf(const std::string& urdf, const std::string& source,
@@ -129,6 +155,9 @@ CalibratedUrdf MakeCalibratedUrdf(const std::string& urdf, const std::string& so
         difference, kGateTolerance));
   }
   result.warnings = BrokenGeometry(model.tree, written);
+  for (std::string& warning : UnrecordedBranches(model, changed)) {
+    result.warnings.push_back(std::move(warning));
+  }
   return result;
 }
 

@@ -21,7 +21,8 @@ struct CalibratedUrdf {
   std::string text;
   std::map<std::string, UrdfOrigin> nominal, calibrated;  ///< joints with changed origins only
   std::map<std::string, double> encoder_offsets;  ///< rad or m; empty for ZeroOffsets::kOrigin
-  /// Spherical wrists and parallel axes that are exact no more, in words.
+  /// Spherical wrists and parallel axes that are exact no more, and corrections that move branches
+  /// of which nothing was measured; in words.
   std::vector<std::string> warnings;
 };
 

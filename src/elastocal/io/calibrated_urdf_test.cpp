@@ -147,6 +147,29 @@ TEST(CalibratedUrdf, BrokenWristAndParallelAxesAreWarnedOf) {
   EXPECT_NE(all.find("0.573 deg"), std::string::npos) << all;
 }
 
+TEST(CalibratedUrdf, CorrectionsThatMoveUnrecordedBranchesAreWarnedOf) {
+  const std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  const RobotTree tree = ParseUrdf(urdf, "urdf");
+  CalibrationResult calibration;
+  calibration.model =
+      MakeErrorModel(tree, {{"M", FindLink(tree, "arm_left_4_link"), {0.1, 0.02, 0.03}}});
+  calibration.delta.setZero(calibration.model.parameter_count());
+  const auto set = [&](const char* name) {
+    calibration.delta[FindParameter(calibration.model.parameters, name)] = 1e-3;
+  };
+  const auto warnings = [&] {
+    return MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin).warnings;
+  };
+  set("arm_left_1_joint.theta");
+  set("arm_left_4_joint.theta");  // carries the forearm, but no other branch
+  EXPECT_TRUE(warnings().empty());
+  set("torso_2_joint.theta");
+  ASSERT_EQ(warnings().size(), 1u);
+  EXPECT_NE(warnings()[0].find("torso_2_joint also moves what head_1_joint, arm_right_1_joint"),
+            std::string::npos)
+      << warnings()[0];
+}
+
 // The gate: a text that is not the one that the model was read from must not pass.
 TEST(CalibratedUrdf, ADifferenceToTheModelIsAnError) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));

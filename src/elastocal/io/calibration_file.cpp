@@ -66,7 +66,10 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParam
        << YAML::Comment("where the calibrated URDF has the joints' zero offsets");
   yaml << YAML::Key << "termination" << YAML::Value << TerminationName(result.termination);
   yaml << YAML::Key << "marker_sd_mm" << YAML::Value << FormatNumber(1e3 * result.marker_sd);
-  yaml << YAML::Key << "prior_scale" << YAML::Value << FormatNumber(result.prior_scale);
+  yaml << YAML::Key << "prior_scale" << YAML::Value << YAML::Flow << YAML::BeginMap;
+  yaml << YAML::Key << "angles" << YAML::Value << FormatNumber(result.prior_scale.angles);
+  yaml << YAML::Key << "lengths" << YAML::Value << FormatNumber(result.prior_scale.lengths);
+  yaml << YAML::EndMap;
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(result.interval_factor);
   yaml << YAML::Key << "parameters" << YAML::Value << YAML::BeginSeq;
   for (int i = 0; i < result.model.parameter_count(); ++i) EmitParameter(result, base, i, yaml);

@@ -106,7 +106,7 @@ void CheckJoints(const std::string& place, const Project& project, const Posture
       const int coordinate = tree.joints[k].coordinate;
       const std::string& name = CoordinateName(tree, coordinate);
       if (columns.coordinate_columns[coordinate] >= 0 ||
-          project.recording.not_recorded.count(name) > 0) {
+          project.recording.not_recorded.contains(name)) {
         continue;
       }
       const bool revolute =

@@ -41,7 +41,7 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
       {"marker_mm", ParameterKind::kMarker, kMetresPerMm},
   };
   std::vector<std::string> keys;
-  for (const Entry& entry : kEntries) keys.push_back(entry.key);
+  for (const Entry& entry : kEntries) keys.emplace_back(entry.key);
   section.ExpectKeys(keys);
   for (const Entry& entry : kEntries) {
     if (const auto sd = section.Find(entry.key)) {

@@ -96,7 +96,8 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["identifiable_theory"] = run.base.theoretical_count;
   json["equations"] = result.equations;
   json["marker_sd_mm"] = 1e3 * result.marker_sd;
-  json["prior_scale"] = result.prior_scale;
+  json["prior_scale"] = {{"angles", result.prior_scale.angles},
+                         {"lengths", result.prior_scale.lengths}};
   json["effective_parameters"] = result.posterior.effective_parameters;
   json["rmse_3d_mm"] = ByModel(run.comparison.metrics, &ErrorMetrics::rmse_3d);
   json["rmse_coordinate_mm"] = ByModel(run.comparison.metrics, &ErrorMetrics::rmse_coordinate);

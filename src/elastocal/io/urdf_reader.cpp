@@ -1,5 +1,6 @@
 #include "elastocal/io/urdf_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -205,15 +206,16 @@ class TreeBuilder {
   /// Along a line of mimic joints: position = m (m' q + o') + o.
   Motion FollowMimic(std::string name) {
     std::vector<std::string> followers;
-    for (; motions_.count(name) == 0; name = Source(name).mimic->joint_name) {
+    for (; !motions_.contains(name); name = Source(name).mimic->joint_name) {
       followers.push_back(name);
     }
     Motion motion = motions_.at(name);
-    for (auto follower = followers.rbegin(); follower != followers.rend(); ++follower) {
-      const auto mimic = Source(*follower).mimic;
+    std::reverse(followers.begin(), followers.end());
+    for (const std::string& follower : followers) {
+      const auto mimic = Source(follower).mimic;
       motion.offset = mimic->multiplier * motion.offset + mimic->offset;
       motion.multiplier *= mimic->multiplier;
-      motions_[*follower] = motion;
+      motions_[follower] = motion;
     }
     return motion;
   }

@@ -102,7 +102,7 @@ void CheckRequest(const std::string& source, const std::map<std::string, UrdfOri
   std::vector<std::string> names;
   for (const auto& [name, origin] : known) names.push_back(name);
   for (const auto& [name, origin] : wanted) {
-    if (known.count(name) == 0) {
+    if (!known.contains(name)) {
       throw InputError(source + ": there is no joint " + Quote(name) + DidYouMean(name, names));
     }
     if (!origin.xyz.allFinite() || !origin.rpy.allFinite()) {

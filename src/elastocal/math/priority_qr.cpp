@@ -43,6 +43,9 @@ PriorityQrResult PriorityQr(const Eigen::MatrixXd& A, double tolerance) {
   }
 
   const auto kept_count = static_cast<Eigen::Index>(result.kept.size());
+  const auto dropped_count = static_cast<Eigen::Index>(result.dropped.size());
+  result.regrouping.resize(kept_count, dropped_count);
+  if (result.regrouping.size() == 0) return result;  // Eigen's solver takes no empty matrix
   const Eigen::MatrixXd Q = basis.leftCols(kept_count);
   const Eigen::MatrixXd R_kept = Q.transpose() * R(Eigen::all, result.kept);
   const Eigen::MatrixXd scaled = R_kept.triangularView<Eigen::Upper>().solve(

@@ -44,6 +44,11 @@ const char* KindName(ParameterKind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
+bool IsAngle(ParameterKind kind) {
+  return kind == ParameterKind::kTheta || kind == ParameterKind::kAlpha ||
+         kind == ParameterKind::kBeta || kind == ParameterKind::kGamma;
+}
+
 bool IsExternal(ParameterKind kind) {
   return kind == ParameterKind::kBase || kind == ParameterKind::kMarker;
 }

@@ -27,6 +27,9 @@ struct Parameter {
 /// marker.
 const char* KindName(ParameterKind kind);
 
+/// Whether a kind of joint parameter is an angle: theta, alpha, beta, gamma.
+bool IsAngle(ParameterKind kind);
+
 /// Whether the parameter belongs to the experiment (where the waist and the markers are), not to
 /// the robot: fitted anew for every recording, never deployed.
 bool IsExternal(ParameterKind kind);

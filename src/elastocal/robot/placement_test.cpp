@@ -66,11 +66,13 @@ TEST(Placement, TalosLeg) {
 }
 
 TEST(Placement, SkewAxes) {
-  // From (0, 0, z) to (0.4, y, 0.1 + y cot): the common normal is along x.
-  const std::vector<JointPlacement> arm = PlaceJoints(TwoAxes(0.5), {});
-  ExpectConstants(arm[1], 0.5, 0.4, 0, 0);
-  // The first joint's frame is where the normal leaves its axis.
-  EXPECT_LT((arm[0].T_parent_pre.translation() - Eigen::Vector3d(0, 0, 0.1)).norm(), kRounding);
+  // The common normal is along x, from the first axis to the second, whichever way that is turned.
+  for (double angle : {0.5, -0.5, 2.0}) {
+    const std::vector<JointPlacement> arm = PlaceJoints(TwoAxes(angle), {});
+    ExpectConstants(arm[1], angle, 0.4, 0, 0);
+    // The first joint's frame is where the normal leaves its axis.
+    EXPECT_LT((arm[0].T_parent_pre.translation() - Eigen::Vector3d(0, 0, 0.1)).norm(), kRounding);
+  }
 }
 
 TEST(Placement, BetaBelowTheToleranceOnly) {
@@ -138,6 +140,7 @@ TEST_P(RandomRobots, FramesFollowTheConvention) {
       EXPECT_TRUE(p.T_parent_pre.matrix().isIdentity(0.0));
       EXPECT_EQ(p.gamma, 0.0);
       EXPECT_EQ(p.b, 0.0);
+      EXPECT_GE(p.d, -1e-9);  // axes that are no further apart meet
       EXPECT_LE(std::abs(p.beta), p.parallel ? 0.02 : 0.0);
     }
   }
