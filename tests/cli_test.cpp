@@ -11,6 +11,7 @@
 #include "elastocal/io/project.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/run_program.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {

@@ -3,10 +3,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 
 #include <sys/wait.h>
-#include <unistd.h>
+
+#include "tests/scratch_folder.hpp"
 
 namespace elastocal {
 namespace {
@@ -19,22 +19,6 @@ std::string Contents(const std::filesystem::path& file) {
 }
 
 }  // namespace
-
-ScratchFolder::ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "elastocal_XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no scratch folder");
-  path_ = pattern;
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::string ScratchFolder::Write(const std::string& name, const std::string& contents) const {
-  std::ofstream(path_ / name, std::ios::binary) << contents;
-  return (path_ / name).string();
-}
 
 ProgramResult RunProgram(const std::string& arguments) {
   const ScratchFolder scratch;

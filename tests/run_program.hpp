@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 namespace elastocal {
@@ -13,21 +12,5 @@ struct ProgramResult {
 
 /// Runs the built `elastocal` with these arguments, as a shell would.
 ProgramResult RunProgram(const std::string& arguments);
-
-/// An empty folder for one test, removed with everything in it at the end.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  /// Writes a file into it and returns its path.
-  std::string Write(const std::string& name, const std::string& contents) const;
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace elastocal

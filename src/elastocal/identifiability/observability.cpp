@@ -29,7 +29,7 @@ double ConditionNumber(const Eigen::MatrixXd& A) {
 /// Diagonal of (A^T A)^-1, by singular vectors; infinite for columns that depend on others.
 Eigen::VectorXd InverseDiagonal(const Eigen::MatrixXd& A) {
   const Eigen::BDCSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinV);
-  const Eigen::VectorXd sigma = svd.singularValues();
+  const Eigen::VectorXd& sigma = svd.singularValues();
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(A.cols());
   for (Eigen::Index k = 0; k < sigma.size(); ++k) {
     for (Eigen::Index i = 0; i < A.cols(); ++i) {

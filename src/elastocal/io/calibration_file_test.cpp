@@ -9,6 +9,7 @@
 #include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -26,15 +27,14 @@ class CalibrationFile : public ::testing::Test {
         model, base_.kept, {{ParameterKind::kTheta, 0.01}, {ParameterKind::kD, 1e-3}}, 1);
     result_ = Calibrate(model, MakeSyntheticRecording(model, truth, {.postures = 40}), base_,
                         ModelKind::kGeometric, {});
-    file_ = std::filesystem::path(::testing::TempDir()) / "calibration_file_test.yaml";
   }
-  void TearDown() override { std::filesystem::remove(file_); }
 
   void Write(const std::string& text) { std::ofstream(file_) << text; }
 
   BaseParameters base_;
   CalibrationResult result_;
-  std::filesystem::path file_;
+  ScratchFolder scratch_;
+  std::filesystem::path file_ = scratch_.path() / "calibration.yaml";
 };
 
 TEST_F(CalibrationFile, ReadsBackWhatWasWrittenToTheLastBit) {

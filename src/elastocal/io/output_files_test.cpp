@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace elastocal {
 namespace {
@@ -14,12 +15,8 @@ namespace fs = std::filesystem;
 
 class OutputFiles : public testing::Test {
  protected:
-  OutputFiles() { fs::remove_all(folder_); }
-  ~OutputFiles() override { fs::remove_all(folder_); }
-
-  const fs::path folder_ = fs::path(testing::TempDir()) /
-                           (std::string("output_files_") +
-                            testing::UnitTest::GetInstance()->current_test_info()->name());
+  const ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path() / "folder";
 };
 
 TEST_F(OutputFiles, WritesWhatItReadsAndNothingElse) {

@@ -10,6 +10,7 @@
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 #include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -152,7 +153,8 @@ TEST(PostureTable, RefusesIdenticalMarkers) {
 
 /// Zeros without end, in a few shapes: each is refused by what comes first.
 TEST(PostureTable, RefusesALargeFileOfZeros) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "zeros.csv";
+  const ScratchFolder scratch;
+  const std::filesystem::path file = scratch.path() / "zeros.csv";
   const auto write = [&](const std::string& head, const std::string& piece) {
     std::ofstream stream(file, std::ios::binary);
     stream << head;
@@ -171,7 +173,6 @@ TEST(PostureTable, RefusesALargeFileOfZeros) {
   ExpectInputError(read, {"zeros.csv:2: ", "1 cells"});
   write(kHeader, "0,0,0,0,0,0,0,0\n");
   ExpectInputError(read, {"zeros.csv:100002: ", "more than 100000 rows"});
-  std::filesystem::remove(file);
 }
 
 TEST(PostureTable, NamesAFileThatCannotBeRead) {
@@ -183,7 +184,8 @@ TEST(PostureTable, NamesAFileThatCannotBeRead) {
 }
 
 TEST(PostureTable, WritesWhatItReads) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "written.csv";
+  const ScratchFolder scratch;
+  const std::filesystem::path file = scratch.path() / "written.csv";
   const Project project = ArmProject();
   const Recording first =
       Read(kHeader + "1.5,,,,0.1,0.2,0.3,0.4\n2.5,0.1,0.333333333333333315,-3e-1,-0.1,0,0,0\n")
@@ -196,7 +198,6 @@ TEST(PostureTable, WritesWhatItReads) {
   EXPECT_EQ(second.joints_not_recorded, first.joints_not_recorded);
   EXPECT_FALSE(Seen(second, 0, 0));
   EXPECT_EQ(second.markers.row(1), first.markers.row(1));
-  std::filesystem::remove(file);
 }
 
 TEST(PostureTable, ReadsTheMeasuredRecording) {

@@ -7,6 +7,7 @@
 
 #include "elastocal/io/output_files.hpp"
 #include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -144,12 +145,11 @@ TEST(Project, NamesAMissingFile) {
 }
 
 TEST(Project, NamesMalformedRobot) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "project_names_malformed_robot";
+  const ScratchFolder scratch;
+  const std::filesystem::path& folder = scratch.path();
   WriteFile(folder / "bad.urdf", "<robot name='r'>\n<link>\n</robot>");
   ExpectInputError([&] { ParseProject("robot: {urdf: bad.urdf}", folder / "p.yaml"); },
                    {"bad.urdf:2: ", "malformed XML"});
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Project, NamesUnknownKeysOfEverySection) {
