@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/registration.hpp"
 #include "elastocal/calibration/residuals.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -13,155 +14,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSmallestMarkerSd = 1e-9;  // m: of noise-free data
-constexpr double kCauchyScale = 3.0;        // of a residual in standard deviations of the noise
-constexpr double kMaxPriorScale = 10.0;
-constexpr double kRoughTolerance = 1e-8;  // of the cost, while noise and prior are being found
-constexpr double kHyperTolerance = 1e-3;  // of noise and prior scale, relative
-constexpr int kMaxNoiseUpdates = 50;
 constexpr int kMaxVerdicts = 5;
-
-/// A fit: the errors, the noise that they leave, how far they go beyond the prior, and their
-/// uncertainty.
-struct Fit {
-  Eigen::VectorXd delta;
-  double marker_sd;
-  PriorScale prior_scale = {};
-  Posterior posterior;
-};
-
-double Change(double before, double after) { return std::abs(std::log(after / before)); }
-
-/// One estimation, from recording to result; carries what all steps share.
-class Estimator {
- public:
-  Estimator(const Recording& recording, const CalibrationOptions& options,
-            CalibrationResult& result)
-      : recording_(recording), options_(options), result_(result) {}
-
-  /// Solves for `free` from `start`. Noise and prior weigh against each other and both follow from
-  /// the solution: a fixed-point iteration.
-  Fit Solve(const ObservationMask& mask, const std::vector<int>& free, const Fit& start,
-            bool robust) {
-    Fit fit = start;
-    if (options_.marker_sd > 0.0) fit.marker_sd = options_.marker_sd;
-    for (int update = 0; update < kMaxNoiseUpdates; ++update) {
-      SolveOnce(mask, free, fit, robust, kRoughTolerance);
-      UpdatePosterior(mask, free, fit);
-      const double marker_sd =
-          options_.marker_sd > 0.0 ? options_.marker_sd : EstimateNoise(mask, fit, robust);
-      const PriorScale prior_scale =
-          options_.widen_prior ? EstimatePriorScale(fit) : PriorScale();
-      const double change = std::max({Change(fit.marker_sd, marker_sd),
-                                      Change(fit.prior_scale.angles, prior_scale.angles),
-                                      Change(fit.prior_scale.lengths, prior_scale.lengths)});
-      fit.marker_sd = marker_sd;
-      fit.prior_scale = prior_scale;
-      if (change < kHyperTolerance) break;
-    }
-    return fit;
-  }
-
-  /// Solves to the last digit with noise and prior as they are.
-  void Polish(const ObservationMask& mask, const std::vector<int>& free, Fit& fit) {
-    SolveOnce(mask, free, fit, false, LeastSquaresOptions().function_tolerance);
-  }
-
-  void UpdatePosterior(const ObservationMask& mask, const std::vector<int>& parameters,
-                       Fit& fit) const {
-    fit.posterior = ComputePosterior(result_.model, recording_, mask, parameters, fit.delta,
-                                     options_.prior.Scaled(fit.prior_scale), fit.marker_sd);
-  }
-
-  /// Parameters among the fit's that the data say hardly more about than the prior.
-  std::vector<int> Unsupported(const Fit& fit) const {
-    const Eigen::VectorXd sd = fit.posterior.StandardDeviations();
-    std::vector<int> unsupported;
-    for (std::size_t i = 0; i < fit.posterior.parameters.size(); ++i) {
-      const Parameter& parameter = result_.model.parameters[fit.posterior.parameters[i]];
-      if (IsExternal(parameter.kind)) continue;
-      // Without a prior there is nothing to compare with but what would be absurd: 0.1 rad or m.
-      const double prior_sd = options_.prior.Scaled(fit.prior_scale)[parameter.kind];
-      const double limit = std::isfinite(prior_sd) ? options_.support_threshold * prior_sd : 0.1;
-      if (sd[static_cast<Eigen::Index>(i)] > limit) {
-        unsupported.push_back(fit.posterior.parameters[i]);
-      }
-    }
-    return unsupported;
-  }
-
-  std::vector<Outlier> Outliers(const ObservationMask& mask, const Fit& fit) const {
-    return FindOutliers(result_.model, recording_, mask, fit.delta, fit.posterior, fit.marker_sd,
-                        options_.outlier_probability);
-  }
-
- private:
-  void SolveOnce(const ObservationMask& mask, const std::vector<int>& free, Fit& fit, bool robust,
-                 double tolerance) {
-    MarkerResiduals problem(result_.model, recording_, mask, free, fit.delta,
-                            options_.prior.Scaled(fit.prior_scale), fit.marker_sd);
-    LeastSquaresOptions solver;
-    solver.function_tolerance = tolerance;
-    solver.cauchy_scale = robust ? kCauchyScale : 0.0;
-    solver.max_iterations = options_.max_iterations;
-    const LeastSquaresResult solved =
-        elastocal::Solve(problem, problem.FromErrors(fit.delta), solver);
-    fit.delta = problem.ToErrors(solved.x);
-    result_.termination = solved.termination;
-    result_.message = solved.message;
-    result_.iterations += solved.iterations;
-    result_.initial_cost = solved.initial_cost;
-    result_.final_cost = solved.final_cost;
-  }
-
-  /// Standard deviation of a marker coordinate; by the median where outliers may be among them.
-  double EstimateNoise(const ObservationMask& mask, const Fit& fit, bool robust) const {
-    const Eigen::MatrixXd norms = ResidualNorms(result_.model, recording_, fit.delta);
-    std::vector<double> squares;
-    for (int i = 0; i < mask.rows(); ++i) {
-      for (int m = 0; m < mask.cols(); ++m) {
-        if (mask(i, m)) squares.push_back(norms(i, m) * norms(i, m));
-      }
-    }
-    const Eigen::Map<const Eigen::VectorXd> s(squares.data(),
-                                              static_cast<Eigen::Index>(squares.size()));
-    const double equations = 3.0 * static_cast<double>(squares.size());
-    const double freedom = std::max(1.0, equations - fit.posterior.effective_parameters);
-    const double total = robust ? equations * Median(s) / ChiSquareQuantile(0.5, 3.0) : s.sum();
-    return std::max(kSmallestMarkerSd, std::sqrt(total / freedom));
-  }
-
-  /// MacKay's update: mean square of the deviations in units of the prior, over as many parameters
-  /// as the data determine; never narrower than the prior that was given.
-  PriorScale EstimatePriorScale(const Fit& fit) const {
-    const auto widened = [&](double scale, bool angles) {
-      return std::clamp(scale * RelativeDeviation(fit, angles), 1.0, kMaxPriorScale);
-    };
-    return {widened(fit.prior_scale.angles, true), widened(fit.prior_scale.lengths, false)};
-  }
-
-  /// Root mean square of the joints' angles or lengths in units of the prior as it is now; 1 where
-  /// the data determine less than one of them.
-  double RelativeDeviation(const Fit& fit, bool angles) const {
-    const Prior prior = options_.prior.Scaled(fit.prior_scale);
-    double square_sum = 0.0;
-    double determined = 0.0;
-    for (std::size_t i = 0; i < fit.posterior.parameters.size(); ++i) {
-      const int index = fit.posterior.parameters[i];
-      const ParameterKind kind = result_.model.parameters[index].kind;
-      if (IsExternal(kind) || IsAngle(kind) != angles || !std::isfinite(prior[kind])) continue;
-      const auto diagonal = static_cast<Eigen::Index>(i);
-      const double variance = prior[kind] * prior[kind];
-      square_sum += fit.delta[index] * fit.delta[index] / variance;
-      determined += 1.0 - fit.posterior.covariance(diagonal, diagonal) / variance;
-    }
-    return determined < 1.0 ? 1.0 : std::sqrt(square_sum / determined);
-  }
-
-  const Recording& recording_;
-  const CalibrationOptions& options_;
-  CalibrationResult& result_;
-};
 
 std::vector<int> OfKind(const ErrorModel& model, const BaseParameters& base, ModelKind kind) {
   std::vector<int> free;
@@ -206,6 +59,19 @@ void CheckEquations(const Recording& recording, const ObservationMask& mask,
                    " parameters; record more postures or hold parameters");
 }
 
+/// Median distance between measured and predicted markers, m.
+double TypicalResidual(const ErrorModel& model, const Recording& recording,
+                       const ObservationMask& mask, const Eigen::VectorXd& delta) {
+  const Eigen::MatrixXd norms = ResidualNorms(model, recording, delta);
+  std::vector<double> used;
+  for (Eigen::Index i = 0; i < mask.rows(); ++i) {
+    for (Eigen::Index m = 0; m < mask.cols(); ++m) {
+      if (mask(i, m)) used.push_back(norms(i, m));
+    }
+  }
+  return Median(Eigen::Map<Eigen::VectorXd>(used.data(), static_cast<Eigen::Index>(used.size())));
+}
+
 void FillStatus(const BaseParameters& base, const std::vector<int>& free,
                 const std::vector<int>& unsupported, CalibrationResult& result) {
   result.status.assign(result.model.parameters.size(), ParameterStatus::kNotInModel);
@@ -215,46 +81,66 @@ void FillStatus(const BaseParameters& base, const std::vector<int>& free,
   for (int i : unsupported) result.status[i] = ParameterStatus::kUnsupported;
 }
 
+void FillResult(const BaseParameters& base, const std::vector<int>& free,
+                const std::vector<int>& unsupported, const CalibrationOptions& options, Fit fit,
+                CalibrationResult& result) {
+  result.equations = static_cast<int>(3 * result.used.count());
+  result.marker_sd = fit.marker_sd;
+  result.prior_scale = fit.prior_scale;
+  result.interval_factor =
+      StudentQuantile(0.975, std::max(1.0, result.equations - fit.posterior.effective_parameters));
+  result.correlations = StrongCorrelations(fit.posterior, options.correlation_threshold);
+  result.sd.setConstant(result.model.parameter_count(), std::numeric_limits<double>::quiet_NaN());
+  result.sd(fit.posterior.parameters) = fit.posterior.StandardDeviations();
+  result.termination = fit.termination;
+  result.message = fit.message;
+  result.iterations = fit.iterations;
+  result.initial_cost = fit.initial_cost;
+  result.final_cost = fit.final_cost;
+  result.delta = std::move(fit.delta);
+  result.posterior = std::move(fit.posterior);
+  FillStatus(base, free, unsupported, result);
+}
+
+/// Step 4: the fit without parameters that the data do not support; their uncertainty stays in it.
+std::vector<int> HoldUnsupported(const FitProblem& problem, const ObservationMask& mask,
+                                 const std::vector<int>& free, Fit& fit) {
+  const std::vector<int> unsupported = UnsupportedParameters(problem, fit);
+  for (int i : unsupported) fit.delta[i] = 0.0;
+  Polish(problem, mask, Without(free, unsupported), fit);
+  UpdatePosterior(problem, mask, free, fit);
+  return unsupported;
+}
+
 /// Steps 2 to 4 of Calibrate: from a fit of the externals to the result.
 void EstimateAll(const Recording& recording, const BaseParameters& base,
                  const std::vector<int>& free, const CalibrationOptions& options,
                  const ObservationMask* fixed_mask, Fit fit, CalibrationResult& result) {
-  Estimator estimator(recording, options, result);
-  ObservationMask mask = fixed_mask != nullptr ? *fixed_mask : SeenMask(recording);
+  const FitProblem problem{result.model, recording, options};
+  const auto verdict = [&](const ObservationMask& mask) {
+    return FindOutliers(result.model, recording, mask, fit.delta, fit.posterior, fit.marker_sd,
+                        options.outlier_probability);
+  };
+  result.used = fixed_mask != nullptr ? *fixed_mask : SeenMask(recording);
   if (fixed_mask == nullptr) {
-    fit = estimator.Solve(mask, free, fit, true);
-    result.outliers = estimator.Outliers(mask, fit);
-    mask = WithoutOutliers(recording, result.outliers);
+    fit = FitParameters(problem, result.used, free, fit, true);
+    result.outliers = verdict(result.used);
+    result.used = WithoutOutliers(recording, result.outliers);
   }
-
   std::vector<int> unsupported;
-  for (int verdict = 0; verdict < kMaxVerdicts; ++verdict) {
-    CheckEquations(recording, mask, free);
-    fit = estimator.Solve(mask, free, fit, false);
-    unsupported = estimator.Unsupported(fit);
-    for (int i : unsupported) fit.delta[i] = 0.0;
-    estimator.Polish(mask, Without(free, unsupported), fit);
-    estimator.UpdatePosterior(mask, free, fit);
+  for (int round = 1;; ++round) {
+    CheckEquations(recording, result.used, free);
+    fit = FitParameters(problem, result.used, free, fit, false);
+    unsupported = HoldUnsupported(problem, result.used, free, fit);
     if (fixed_mask != nullptr) break;
-    std::vector<Outlier> outliers = estimator.Outliers(mask, fit);
+    std::vector<Outlier> outliers = verdict(result.used);
     const bool stands = SameObservations(outliers, result.outliers);
+    if (!stands && round == kMaxVerdicts) break;  // keeps the verdict that the fit was made with
     result.outliers = std::move(outliers);
     if (stands) break;
-    mask = WithoutOutliers(recording, result.outliers);
+    result.used = WithoutOutliers(recording, result.outliers);
   }
-
-  result.used = mask;
-  result.equations = static_cast<int>(3 * mask.count());
-  result.delta = fit.delta;
-  result.marker_sd = fit.marker_sd;
-  result.prior_scale = fit.prior_scale;
-  result.posterior = fit.posterior;
-  result.interval_factor =
-      StudentQuantile(0.975, std::max(1.0, result.equations - fit.posterior.effective_parameters));
-  result.correlations = StrongCorrelations(fit.posterior, options.correlation_threshold);
-  FillStatus(base, free, unsupported, result);
-  result.sd.setConstant(result.model.parameter_count(), std::numeric_limits<double>::quiet_NaN());
-  result.sd(fit.posterior.parameters) = fit.posterior.StandardDeviations();
+  FillResult(base, free, unsupported, options, std::move(fit), result);
 }
 
 /// Step 1: the nominal waist pose such that T0 starts at zero, and the fit of the externals.
@@ -266,13 +152,11 @@ Fit FitExternals(const ErrorModel& model, const Recording& recording, const Base
   const ObservationMask mask = fixed_mask != nullptr ? *fixed_mask : SeenMask(recording);
   const std::vector<int> externals = OfKind(model, base, ModelKind::kUncalibrated);
   CheckEquations(recording, mask, externals);
-  Estimator estimator(recording, options, result);
-  const double rough_sd = std::max(
-      kSmallestMarkerSd,
-      Median(ResidualNorms(result.model, recording, delta).reshaped().unaryExpr([](double v) {
-        return std::isnan(v) ? 0.0 : v;
-      })));
-  return estimator.Solve(mask, externals, {delta, rough_sd, {}, {}}, fixed_mask == nullptr);
+  Fit start;
+  start.delta = delta;
+  start.marker_sd = TypicalResidual(result.model, recording, mask, delta);
+  return FitParameters({result.model, recording, options}, mask, externals, start,
+                       fixed_mask == nullptr);
 }
 
 template <typename Work>

@@ -27,9 +27,9 @@ struct Prior {
 struct CalibrationOptions {
   Prior prior = {};
   /// Widen the prior, angles by one factor and lengths by another, each at least 1 and at most 10,
-  /// where the estimates say that the robot is further from nominal than the prior expects (evidence
-  /// approximation, MacKay 1992). A prior that is too narrow biases the estimates and makes their
-  /// uncertainty too small.
+  /// where the estimates say that the robot is further from nominal than the prior expects
+  /// (evidence approximation, MacKay 1992). A prior that is too narrow biases the estimates and
+  /// makes their uncertainty too small.
   bool widen_prior = true;
   /// Standard deviation of one marker coordinate, m. Zero: estimated from the residuals.
   double marker_sd = 0.0;

@@ -1,9 +1,11 @@
 #include "elastocal/optim/least_squares.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 namespace elastocal {
 namespace {
@@ -93,6 +95,18 @@ ceres::Solver::Options SolverOptions(const LeastSquaresProblem& problem,
   return solver;
 }
 
+/// What Ceres logs of a failure is in its summary as well: a library does not print.
+class QuietLog {
+ public:
+  QuietLog() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietLog() { FLAGS_minloglevel = before_; }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  int before_;
+};
+
 Termination Translate(ceres::TerminationType type) {
   switch (type) {
     case ceres::CONVERGENCE:
@@ -140,10 +154,14 @@ LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0
                                    robust ? &loss : nullptr, used);
   }
 
+  const QuietLog quiet;
   ceres::Solver::Summary summary;
   ceres::Solve(SolverOptions(problem, blocks, options), &ceres_problem, &summary);
-  result.initial_cost = summary.initial_cost;
-  result.final_cost = summary.final_cost;
+  const auto cost = [](double value) {  // Ceres says -1 where it never evaluated
+    return value < 0.0 ? std::numeric_limits<double>::quiet_NaN() : value;
+  };
+  result.initial_cost = cost(summary.initial_cost);
+  result.final_cost = cost(summary.final_cost);
   // The first entry is the starting point; there is none where that could not be evaluated.
   result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   result.termination = Translate(summary.termination_type);

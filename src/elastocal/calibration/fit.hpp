@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/options.hpp"
+#include "elastocal/calibration/posterior.hpp"
+#include "elastocal/optim/least_squares.hpp"
+
+namespace elastocal {
+
+/// What stays the same while parameters are fitted in several steps. Keeps references.
+struct FitProblem {
+  const ErrorModel& model;
+  const Recording& recording;
+  const CalibrationOptions& options;
+};
+
+/// Estimated errors with the noise that they leave, how far they go beyond the prior, and their
+/// uncertainty.
+struct Fit {
+  Eigen::VectorXd delta;   ///< one a parameter of the model, rad and m
+  double marker_sd = 0.0;  ///< of one coordinate, m
+  PriorScale prior_scale = {};
+  Posterior posterior = {};  ///< of the fitted parameters
+
+  Termination termination = Termination::kFailure;  ///< of the last solve
+  std::string message = {};
+  int iterations = 0;                           ///< of all solves so far
+  double initial_cost = 0.0, final_cost = 0.0;  ///< of the last solve
+};
+
+/// Fits the parameters `free` to the observations in `mask`, from `start`; the others stay as
+/// there. Noise and prior weigh against each other and both follow from the solution, so it is a
+/// fixed-point iteration: solve, then estimate the noise of a marker coordinate (unless it is
+/// given) and the width of the prior (if asked to) from the solution, and again.
+///
+/// `robust`: under Cauchy's loss and with the noise by the median, which gross errors cannot move.
+Fit FitParameters(const FitProblem& problem, const ObservationMask& mask,
+                  const std::vector<int>& free, const Fit& start, bool robust);
+
+/// Solves once more to the last digit, with noise and prior as they are.
+void Polish(const FitProblem& problem, const ObservationMask& mask, const std::vector<int>& free,
+            Fit& fit);
+
+/// Uncertainty of `parameters` with noise and prior as they are.
+void UpdatePosterior(const FitProblem& problem, const ObservationMask& mask,
+                     const std::vector<int>& parameters, Fit& fit);
+
+/// Joint parameters of the fit about which the data say hardly more than the prior
+/// (CalibrationOptions::support_threshold). Without a prior: those uncertain by more than 0.1 rad
+/// or m, which would be absurd.
+std::vector<int> UnsupportedParameters(const FitProblem& problem, const Fit& fit);
+
+}  // namespace elastocal
