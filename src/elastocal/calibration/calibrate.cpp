@@ -49,12 +49,14 @@ bool SameObservations(const std::vector<Outlier>& a, const std::vector<Outlier>&
 }
 
 void CheckEquations(const Recording& recording, const ObservationMask& mask,
-                    const std::vector<int>& free) {
+                    const std::vector<int>& free, std::size_t outliers) {
   const auto equations = 3 * mask.count();
   if (equations >= static_cast<Eigen::Index>(free.size())) return;
+  const std::string left_out =
+      outliers == 0 ? "" : ", " + std::to_string(outliers) + " observations left out as outliers";
   throw InputError(recording.source + ": " + std::to_string(equations) + " equations (" +
                    std::to_string(recording.posture_count()) + " postures, " +
-                   std::to_string(recording.marker_count()) + " markers) for " +
+                   std::to_string(recording.marker_count()) + " markers" + left_out + ") for " +
                    std::to_string(free.size()) +
                    " parameters; record more postures or hold parameters");
 }
@@ -87,11 +89,11 @@ void FillResult(const BaseParameters& base, const std::vector<int>& free,
   result.equations = static_cast<int>(3 * result.used.count());
   result.marker_sd = fit.marker_sd;
   result.prior_scale = fit.prior_scale;
-  result.interval_factor =
-      StudentQuantile(0.975, std::max(1.0, result.equations - fit.posterior.effective_parameters));
+  result.interval_factor = StudentQuantile(0.975, fit.degrees_of_freedom);
   result.correlations = StrongCorrelations(fit.posterior, options.correlation_threshold);
   result.sd.setConstant(result.model.parameter_count(), std::numeric_limits<double>::quiet_NaN());
   result.sd(fit.posterior.parameters) = fit.posterior.StandardDeviations();
+  result.settled = fit.settled;
   result.termination = fit.termination;
   result.message = fit.message;
   result.iterations = fit.iterations;
@@ -106,7 +108,10 @@ void FillResult(const BaseParameters& base, const std::vector<int>& free,
 std::vector<int> HoldUnsupported(const FitProblem& problem, const ObservationMask& mask,
                                  const std::vector<int>& free, Fit& fit) {
   const std::vector<int> unsupported = UnsupportedParameters(problem, fit);
-  for (int i : unsupported) fit.delta[i] = 0.0;
+  if (!unsupported.empty()) {
+    for (int i : unsupported) fit.delta[i] = 0.0;
+    fit = FitParameters(problem, mask, Without(free, unsupported), fit, false);
+  }
   Polish(problem, mask, Without(free, unsupported), fit);
   UpdatePosterior(problem, mask, free, fit);
   return unsupported;
@@ -118,10 +123,11 @@ void EstimateAll(const Recording& recording, const BaseParameters& base,
                  const ObservationMask* fixed_mask, Fit fit, CalibrationResult& result) {
   const FitProblem problem{result.model, recording, options};
   const auto verdict = [&](const ObservationMask& mask) {
-    return FindOutliers(result.model, recording, mask, fit.delta, fit.posterior, fit.marker_sd,
-                        options.outlier_probability);
+    return FindOutliers(result.model, recording, mask, fit.delta, fit.posterior,
+                        {fit.marker_sd, fit.degrees_of_freedom}, options.outlier_probability);
   };
   result.used = fixed_mask != nullptr ? *fixed_mask : SeenMask(recording);
+  CheckEquations(recording, result.used, free, 0);
   if (fixed_mask == nullptr) {
     fit = FitParameters(problem, result.used, free, fit, true);
     result.outliers = verdict(result.used);
@@ -129,13 +135,16 @@ void EstimateAll(const Recording& recording, const BaseParameters& base,
   }
   std::vector<int> unsupported;
   for (int round = 1;; ++round) {
-    CheckEquations(recording, result.used, free);
+    CheckEquations(recording, result.used, free, result.outliers.size());
     fit = FitParameters(problem, result.used, free, fit, false);
     unsupported = HoldUnsupported(problem, result.used, free, fit);
     if (fixed_mask != nullptr) break;
     std::vector<Outlier> outliers = verdict(result.used);
     const bool stands = SameObservations(outliers, result.outliers);
-    if (!stands && round == kMaxVerdicts) break;  // keeps the verdict that the fit was made with
+    if (!stands && round == kMaxVerdicts) {  // keeps the verdict that the fit was made with
+      fit.settled = false;
+      break;
+    }
     result.outliers = std::move(outliers);
     if (stands) break;
     result.used = WithoutOutliers(recording, result.outliers);
@@ -151,7 +160,7 @@ Fit FitExternals(const ErrorModel& model, const Recording& recording, const Base
   result.model.T_ref_waist = RegisterWaist(model, recording);
   const ObservationMask mask = fixed_mask != nullptr ? *fixed_mask : SeenMask(recording);
   const std::vector<int> externals = OfKind(model, base, ModelKind::kUncalibrated);
-  CheckEquations(recording, mask, externals);
+  CheckEquations(recording, mask, externals, 0);
   Fit start;
   start.delta = delta;
   start.marker_sd = TypicalResidual(result.model, recording, mask, delta);

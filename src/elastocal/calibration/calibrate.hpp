@@ -49,7 +49,8 @@ struct CalibrationResult {
   /// Posterior standard deviation, one a parameter; for an unsupported one it says how little is
   /// known; NaN where none applies.
   Eigen::VectorXd sd;
-  /// Half width of a 95 % interval in standard deviations (Student's t).
+  /// Half width of a 95 % interval in standard deviations (Student's t; normal where the noise is
+  /// given).
   double interval_factor = 1.96;
   Posterior posterior;  ///< of estimated and unsupported parameters together
   std::vector<Correlation> correlations;
@@ -60,7 +61,9 @@ struct CalibrationResult {
   PriorScale prior_scale;         ///< factors by which the prior was widened
   int equations = 0;              ///< 3 a used observation
 
+  /// Of the last solve; and whether noise, prior and the verdict on outliers came to rest.
   Termination termination = Termination::kFailure;
+  bool settled = true;
   std::string message;
   int iterations = 0;                           ///< of all solves together
   double initial_cost = 0.0, final_cost = 0.0;  ///< of the last solve

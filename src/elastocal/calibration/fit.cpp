@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "elastocal/calibration/outliers.hpp"
 #include "elastocal/calibration/residuals.hpp"
@@ -104,8 +105,9 @@ Fit FitParameters(const FitProblem& problem, const ObservationMask& mask,
                   Change(fit.prior_scale.lengths, scale.lengths)});
     fit.marker_sd = marker_sd;
     fit.prior_scale = scale;
-    if (change < kHyperTolerance) break;
+    if (change < kHyperTolerance) return fit;
   }
+  fit.settled = false;
   return fit;
 }
 
@@ -118,20 +120,37 @@ void UpdatePosterior(const FitProblem& problem, const ObservationMask& mask,
                      const std::vector<int>& parameters, Fit& fit) {
   fit.posterior = ComputePosterior(problem.model, problem.recording, mask, parameters, fit.delta,
                                    WidenedPrior(problem, fit), fit.marker_sd);
+  fit.degrees_of_freedom = problem.options.marker_sd > 0.0
+                               ? std::numeric_limits<double>::infinity()
+                               : std::max(1.0, 3.0 * static_cast<double>(mask.count()) -
+                                                   fit.posterior.effective_parameters);
 }
 
 std::vector<int> UnsupportedParameters(const FitProblem& problem, const Fit& fit) {
   const Prior prior = WidenedPrior(problem, fit);
-  const Eigen::VectorXd sd = fit.posterior.StandardDeviations();
-  std::vector<int> unsupported;
-  for (std::size_t i = 0; i < fit.posterior.parameters.size(); ++i) {
-    const int index = fit.posterior.parameters[i];
-    const ParameterKind kind = problem.model.parameters[index].kind;
-    if (IsExternal(kind)) continue;
-    const double limit =
-        std::isfinite(prior[kind]) ? problem.options.support_threshold * prior[kind] : kAbsurdSd;
-    if (sd[static_cast<Eigen::Index>(i)] > limit) unsupported.push_back(index);
+  const std::vector<int>& parameters = fit.posterior.parameters;
+  Eigen::VectorXd limits(static_cast<Eigen::Index>(parameters.size()));
+  for (Eigen::Index i = 0; i < limits.size(); ++i) {
+    const ParameterKind kind = problem.model.parameters[parameters[i]].kind;
+    limits[i] = IsExternal(kind)             ? std::numeric_limits<double>::infinity()
+                : std::isfinite(prior[kind]) ? problem.options.support_threshold * prior[kind]
+                                             : kAbsurdSd;
   }
+  std::vector<int> unsupported;
+  Eigen::MatrixXd covariance = fit.posterior.covariance;
+  while (limits.size() > 0) {
+    Eigen::Index worst = 0;
+    const double ratio =
+        (covariance.diagonal().cwiseMax(0.0).cwiseSqrt().array() / limits.array()).maxCoeff(&worst);
+    if (!(ratio > 1.0)) break;
+    unsupported.push_back(parameters[worst]);
+    // Conditional covariance of the others once it is held.
+    const Eigen::VectorXd column = covariance.col(worst);
+    covariance -= column * column.transpose() / column[worst];
+    covariance.row(worst).setZero();
+    covariance.col(worst).setZero();
+  }
+  std::sort(unsupported.begin(), unsupported.end());
   return unsupported;
 }
 

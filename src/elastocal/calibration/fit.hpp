@@ -22,7 +22,9 @@ struct Fit {
   Eigen::VectorXd delta;   ///< one a parameter of the model, rad and m
   double marker_sd = 0.0;  ///< of one coordinate, m
   PriorScale prior_scale = {};
-  Posterior posterior = {};  ///< of the fitted parameters
+  Posterior posterior = {};         ///< of the fitted parameters
+  double degrees_of_freedom = 1.0;  ///< of the residuals, at least 1; infinite: the noise is given
+  bool settled = true;              ///< whether noise and prior came to rest, in all steps so far
 
   Termination termination = Termination::kFailure;  ///< of the last solve
   std::string message = {};
@@ -48,8 +50,9 @@ void UpdatePosterior(const FitProblem& problem, const ObservationMask& mask,
                      const std::vector<int>& parameters, Fit& fit);
 
 /// Joint parameters of the fit about which the data say hardly more than the prior
-/// (CalibrationOptions::support_threshold). Without a prior: those uncertain by more than 0.1 rad
-/// or m, which would be absurd.
+/// (CalibrationOptions::support_threshold; without a prior: less than 0.1 rad or m). Found one by
+/// one: the worst is held, which may give others the support that they shared with it, and so on;
+/// so a combination that the data determine well is never held altogether.
 std::vector<int> UnsupportedParameters(const FitProblem& problem, const Fit& fit);
 
 }  // namespace elastocal

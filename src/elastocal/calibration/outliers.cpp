@@ -20,6 +20,18 @@ double SquaredDistance(const Eigen::Vector3d& residual, const Eigen::Matrix3d& c
   return ((eigen.eigenvectors().transpose() * residual).array().square() / variances).sum();
 }
 
+/// Of the squared distance of an observation that the noise was estimated from, among others.
+double UsedThreshold(double level, double freedom) {
+  if (std::isinf(freedom)) return ChiSquareQuantile(level, 3.0);
+  return freedom > 3.0 ? freedom * BetaQuantile(level, 1.5, 0.5 * (freedom - 3.0))
+                       : std::numeric_limits<double>::infinity();
+}
+
+double UnusedThreshold(double level, double freedom) {
+  return std::isinf(freedom) ? ChiSquareQuantile(level, 3.0)
+                             : 3.0 * FisherQuantile(level, 3.0, freedom);
+}
+
 }  // namespace
 
 Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recording,
@@ -38,11 +50,13 @@ Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recordin
 
 std::vector<Outlier> FindOutliers(const ErrorModel& model, const Recording& recording,
                                   const ObservationMask& used, const Eigen::VectorXd& delta,
-                                  const Posterior& posterior, double marker_sd,
+                                  const Posterior& posterior, const NoiseLevel& noise,
                                   double probability) {
   const ObservationMask seen = SeenMask(recording);
-  const double threshold =
-      ChiSquareQuantile(1.0 - probability / std::max<double>(1.0, seen.count()), 3.0);
+  const double level = 1.0 - probability / std::max<double>(1.0, seen.count());
+  const double threshold_used = UsedThreshold(level, noise.degrees_of_freedom);
+  const double threshold_unused = UnusedThreshold(level, noise.degrees_of_freedom);
+  const double marker_sd = noise.marker_sd;
   // Covariance over all parameters, zero for those that are not estimated.
   Eigen::MatrixXd covariance =
       Eigen::MatrixXd::Zero(model.parameter_count(), model.parameter_count());
@@ -64,10 +78,10 @@ std::vector<Outlier> FindOutliers(const ErrorModel& model, const Recording& reco
       // Within three standard deviations of noise nothing can be an outlier: spare the algebra.
       if (residual.norm() < 3.0 * marker_sd * std::sqrt(0.05)) continue;
       const Eigen::Matrix3d explained = J * by_marker[m] * J.transpose();
-      const Eigen::Matrix3d noise = marker_sd * marker_sd * Eigen::Matrix3d::Identity();
+      const Eigen::Matrix3d white = marker_sd * marker_sd * Eigen::Matrix3d::Identity();
       const double distance = SquaredDistance(
-          residual, used(i, m) ? Eigen::Matrix3d(noise - explained) : noise + explained, marker_sd);
-      if (distance > threshold) {
+          residual, used(i, m) ? Eigen::Matrix3d(white - explained) : white + explained, marker_sd);
+      if (distance > (used(i, m) ? threshold_used : threshold_unused)) {
         outliers.push_back({i, m, residual.norm(), std::sqrt(distance)});
       }
     }

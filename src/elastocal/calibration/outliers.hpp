@@ -19,13 +19,22 @@ struct Outlier {
 Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recording,
                               const Eigen::VectorXd& delta);
 
-/// Observations whose squared Mahalanobis distance exceeds the chi-square quantile (3 degrees of
-/// freedom) that a clean recording exceeds anywhere with `probability`. The covariance of a
-/// residual is marker_sd^2 I - J C J^T where the observation took part in the estimate (`used`),
-/// and
-/// + J C J^T where it did not.
+/// How sure the noise of a marker coordinate is.
+struct NoiseLevel {
+  double marker_sd = 0.0;  ///< m
+  /// Degrees of freedom of the residuals that it was estimated from; infinite where it was given.
+  double degrees_of_freedom = 0.0;
+};
+
+/// Observations that are further from the model than any observation of a clean recording would be,
+/// but for a chance of `probability`. The squared Mahalanobis distance is judged, with a covariance
+/// of sd^2 I less J C J^T where the observation took part in the estimate (`used`), and plus J C
+/// J^T where it did not. Its quantile is that of the chi-square distribution (3 degrees of freedom)
+/// where the noise is known; where it was estimated, of the beta distribution (the observation is
+/// part of the estimate) or of Fisher's F (it is not).
 std::vector<Outlier> FindOutliers(const ErrorModel& model, const Recording& recording,
                                   const ObservationMask& used, const Eigen::VectorXd& delta,
-                                  const Posterior& posterior, double marker_sd, double probability);
+                                  const Posterior& posterior, const NoiseLevel& noise,
+                                  double probability);
 
 }  // namespace elastocal

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 namespace elastocal {
@@ -15,6 +17,14 @@ double StudentQuantile(double probability, double degrees_of_freedom) {
 
 double ChiSquareQuantile(double probability, double degrees_of_freedom) {
   return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), probability);
+}
+
+double FisherQuantile(double probability, double numerator, double denominator) {
+  return boost::math::quantile(boost::math::fisher_f(numerator, denominator), probability);
+}
+
+double BetaQuantile(double probability, double alpha, double beta) {
+  return boost::math::quantile(boost::math::beta_distribution<>(alpha, beta), probability);
 }
 
 double Median(Eigen::VectorXd values) {

@@ -4,11 +4,18 @@
 
 namespace elastocal {
 
-/// Quantile of Student's t distribution with `degrees_of_freedom` > 0 at `probability` in (0, 1).
+/// Quantile of Student's t distribution with `degrees_of_freedom` > 0 at `probability` in (0, 1);
+/// infinite degrees of freedom: of the normal distribution.
 double StudentQuantile(double probability, double degrees_of_freedom);
 
 /// Quantile of the chi-square distribution with `degrees_of_freedom` > 0.
 double ChiSquareQuantile(double probability, double degrees_of_freedom);
+
+/// Quantile of Fisher's F distribution with both degrees of freedom > 0.
+double FisherQuantile(double probability, double numerator, double denominator);
+
+/// Quantile of the beta distribution with both shapes > 0.
+double BetaQuantile(double probability, double alpha, double beta);
 
 /// Median (mean of the two middle values for an even count); NaN for no values.
 double Median(Eigen::VectorXd values);
