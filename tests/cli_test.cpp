@@ -131,7 +131,8 @@ TEST_F(Program, SameInputSameFiles) {
 TEST_F(Program, QuietPrintsNothing) {
   const ProgramResult result = Calibrate(project_, recording_, "--quiet");
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.out + result.err, "");
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(result.err.find("error"), std::string::npos) << result.err;
 }
 
 // A project whose URDF is the calibrated one has nothing left to calibrate: offsets vanish.
@@ -236,12 +237,75 @@ TEST_F(Program, TooFewOrNoPosturesAreRefused) {
                 {"few.csv", "equations", "parameters"});
 }
 
-TEST_F(Program, NothingIsLeftWhenTheOutputCannotBeWritten) {
+TEST_F(Program, NothingIsLeftWhenAnOutputCannotBeWritten) {
   const std::string file = scratch_.Write("file", "");
-  const ProgramResult result =
-      RunProgram("calibrate " + project_ + " --recording " + recording_ + " -o " + file + "/out");
+  const ProgramResult result = Calibrate(project_, recording_, "--json " + file + "/summary.json");
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_NE(result.err.find("file"), std::string::npos);
+  EXPECT_NE(result.err.find(file), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(Program, OutputsMayNotReplaceInputs) {
+  const std::string before = ReadFile(recording_);
+  ExpectRefused(Calibrate(project_, recording_, "--json " + recording_),
+                {"recording.csv", "input"});
+  EXPECT_EQ(ReadFile(recording_), before);
+}
+
+TEST_F(Program, JsonCanGoToStandardOutput) {
+  const ProgramResult result = Calibrate(project_, recording_, "--json -");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "converged");
+}
+
+// Two joint columns exchanged: every number is fine, the whole is nonsense.
+TEST_F(Program, NonsenseIsNotDeployed) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  std::string table = ReadFile(recording_);
+  table.replace(table.find("elbow_joint"), 11, "elbow_jXint");
+  table.replace(table.find("turret_joint"), 12, "elbow_joint");
+  table.replace(table.find("elbow_jXint"), 11, "turret_joint");
+  const ProgramResult result = Calibrate(project_, scratch_.Write("swapped.csv", table));
+  EXPECT_EQ(result.exit_code, 4) << result.out;
+  EXPECT_NE(result.err.find("does not explain this recording"), std::string::npos) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["status"], "implausible");
+  // Neither new results nor those of the run before.
+  for (const char* file : {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro"}) {
+    EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(out_) / file)) << file;
+  }
+}
+
+TEST_F(Program, CalibrationOfAnotherRobotIsRefused) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  std::string project = ReadFile(project_);
+  project.replace(project.find("arm6.urdf"), 9, "arm6_calibrated.urdf");
+  std::ofstream(out_ + "/project.yaml") << project;
+  const ProgramResult result = RunProgram("validate " + out_ + "/project.yaml --calibration " +
+                                          out_ + "/calibration.yaml --recording " + recording_);
+  EXPECT_EQ(result.exit_code, 3) << result.out;
+  EXPECT_NE(result.err.find("not the calibrated one"), std::string::npos) << result.err;
+}
+
+TEST_F(Program, BadTablesAreRefusedWhole) {
+  const std::string good = ReadFile(recording_);
+  ExpectRefused(Calibrate(project_, scratch_.Write("zeros.csv", std::string(200 << 20, '0'))),
+                {"zeros.csv:1"});
+  const auto scaled = [&](const std::string& marker, double factor) {
+    const Project project = ReadProject(project_);
+    Recording recording = ReadPostureTable(recording_, project).recording;
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      if (!recording.marker_names[m].starts_with(marker)) continue;
+      recording.markers.middleCols(3 * m, 3) *= factor;
+    }
+    WritePostureTable(scratch_.path() / "scaled.csv", recording, project.tree);
+    return (scratch_.path() / "scaled.csv").string();
+  };
+  ExpectRefused(Calibrate(project_, scaled("", 1000.0)), {"scaled.csv", "millimetres"});
+  ExpectRefused(Calibrate(project_, scaled("WRIST", 1000.0)), {"scaled.csv", "WRIST"});
+  std::string missing = good;
+  missing.replace(missing.find("elbow_joint"), 11, "elbow_angle");
+  ExpectRefused(Calibrate(project_, scratch_.Write("missing.csv", missing)),
+                {"missing.csv", "elbow_angle"});
 }
 
 TEST_F(Program, InspectShowsCountsThatAgreeWithTheTheory) {
@@ -264,8 +328,17 @@ TEST_F(Program, InspectShowsCountsThatAgreeWithTheTheory) {
 TEST_F(Program, DemoFindsTheTruth) {
   const ProgramResult result = RunProgram("demo --postures 25 -o " + out_);
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("Truth against estimate"), std::string::npos);
-  EXPECT_TRUE(std::filesystem::exists(out_ + "/recording.csv"));
+  const nlohmann::json summary = nlohmann::json::parse(ReadFile(out_ + "/summary.json"));
+  EXPECT_GT(summary["rmse_3d_mm"]["uncalibrated"], 3.0);
+  EXPECT_LT(summary["kfold"]["rmse_3d_mm"]["geometric"], 0.4);
+  int inside = 0;
+  int count = 0;
+  const std::size_t at = result.out.find("joint parameters lie within");
+  ASSERT_NE(at, std::string::npos) << result.out;
+  const std::size_t line = result.out.rfind('\n', at) + 1;
+  ASSERT_EQ(std::sscanf(result.out.c_str() + line, " %d of %d", &inside, &count), 2);
+  EXPECT_GT(count, 50);
+  EXPECT_GE(inside, 0.85 * count);  // 95 % but for the scatter of one robot, whose errors correlate
   EXPECT_TRUE(std::filesystem::exists(out_ + "/talos_calibrated.urdf"));
 }
 

@@ -13,10 +13,9 @@ namespace {
 
 constexpr double kSmallestMarkerSd = 1e-9;  // m: of noise-free data
 constexpr double kCauchyScale = 3.0;        // of a residual in standard deviations of the noise
-constexpr double kMaxPriorScale = 10.0;
-constexpr double kAbsurdSd = 0.1;         // rad or m
-constexpr double kRoughTolerance = 1e-8;  // of the cost, while noise and prior are being found
-constexpr double kHyperTolerance = 1e-3;  // of noise and prior scale, relative
+constexpr double kAbsurdSd = 0.1;           // rad or m
+constexpr double kRoughTolerance = 1e-8;    // of the cost, while noise and prior are being found
+constexpr double kHyperTolerance = 1e-3;    // of noise and prior scale, relative
 constexpr int kMaxUpdates = 50;
 
 Prior WidenedPrior(const FitProblem& problem, const Fit& fit) {

@@ -12,6 +12,9 @@ struct PriorScale {
   double angles = 1.0, lengths = 1.0;
 };
 
+/// The prior is widened no further than this: what lies beyond is no error of a robot.
+inline constexpr double kMaxPriorScale = 10.0;
+
 /// Standard deviation of the Gaussian prior on each kind of parameter, around nominal: rad or m;
 /// infinite for none. T0 and marker positions have none: nobody knows them beforehand.
 struct Prior {
@@ -33,6 +36,9 @@ struct CalibrationOptions {
   bool widen_prior = true;
   /// Standard deviation of one marker coordinate, m. Zero: estimated from the residuals.
   double marker_sd = 0.0;
+  /// Noise of a marker coordinate above this means that the model does not explain the recording,
+  /// m.
+  double plausible_marker_sd = 5e-3;
   /// Chance that a recording without a single outlier has one named all the same.
   double outlier_probability = 0.01;
   /// A parameter whose posterior standard deviation stays above this part of its prior one is not

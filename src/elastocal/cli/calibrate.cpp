@@ -2,12 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "elastocal/cli/calibration_report.hpp"
 #include "elastocal/cli/calibration_run.hpp"
 #include "elastocal/identifiability/regressor.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/output_files.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal::cli {
@@ -22,62 +24,97 @@ Excitation ExcitationOf(const Session& session, const CalibrationResult& result)
 }
 
 CalibrationRun Calculate(const Session& session, const CalibrateOptions& options) {
+  const CalibrationOptions& settings = session.project.calibration;
   CalibrationRun run;
   run.recording = session.recording;
   run.base = session.base;
   run.warnings = session.warnings;
-  run.comparison =
-      CompareModels(session.model, session.recording, session.base, session.project.calibration);
+  run.comparison = CompareModels(session.model, session.recording, session.base, settings);
   if (options.folds > 0) {
     run.cross_validation =
-        CrossValidate(run.comparison, session.model, session.recording, session.base,
-                      session.project.calibration, options.folds, options.common.seed,
+        CrossValidate(run.comparison, session.model, session.recording, session.base, settings,
+                      options.folds, options.common.seed.value_or(1),
                       TerminalProgress("cross-validation", options.common.quiet));
   }
   run.excitation = ExcitationOf(session, run.comparison.geometric());
+  run.verdict =
+      Judge(run.comparison, run.cross_validation, run.excitation, run.recording, settings);
+  run.warnings.insert(run.warnings.end(), run.verdict.remarks.begin(), run.verdict.remarks.end());
   return run;
 }
 
-void WriteResults(const CalibrateOptions& options, const Session& session,
-                  const CalibrationRun& run, const CalibratedUrdf& urdf, ZeroOffsets zero_offsets) {
+using Files = std::vector<std::pair<std::filesystem::path, std::string>>;
+
+constexpr const char* kCalibration = "calibration.yaml";
+constexpr const char* kOffsets = "offsets.xacro";
+constexpr const char* kCovariance = "covariance.csv";
+
+std::string CalibratedName(const Project& project) {
+  return project.urdf.stem().string() + "_calibrated.urdf";
+}
+
+/// What can be deployed; adds what the export has to warn of.
+Files DeployableFiles(const CalibrateOptions& options, const Session& session,
+                      CalibrationRun& run) {
+  const ZeroOffsets zero_offsets =
+      options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin;
+  const CalibrationResult& result = run.comparison.geometric();
+  const CalibratedUrdf urdf = MakeCalibratedUrdf(
+      ReadFile(session.project.urdf), session.project.urdf.string(), result, zero_offsets);
+  run.warnings.insert(run.warnings.end(), urdf.warnings.begin(), urdf.warnings.end());
   const std::filesystem::path folder = options.output;
-  const std::string calibration =
-      MakeCalibrationYaml(run.comparison.geometric(), run.base, run.recording.source, zero_offsets);
-  const std::string offsets = MakeXacroOffsets(urdf);
-  WriteFile(folder / (session.project.urdf.stem().string() + "_calibrated.urdf"), urdf.text);
-  WriteFile(folder / "calibration.yaml", calibration);
-  WriteFile(folder / "offsets.xacro", offsets);
+  return {{folder / CalibratedName(session.project), urdf.text},
+          {folder / kCalibration,
+           MakeCalibrationYaml(result, run.base, run.recording.source, zero_offsets)},
+          {folder / kOffsets, MakeXacroOffsets(urdf)},
+          {folder / kCovariance, MakeCovarianceCsv(result)}};
+}
+
+/// Results of an earlier run must not stand beside the summary of one that has none.
+void RemoveDeployableFiles(const CalibrateOptions& options, const Project& project) {
+  std::error_code ignored;
+  for (const std::string& name : {CalibratedName(project), std::string(kCalibration),
+                                  std::string(kOffsets), std::string(kCovariance)}) {
+    std::filesystem::remove(std::filesystem::path(options.output) / name, ignored);
+  }
+}
+
+/// No output may replace an input.
+void CheckOutputs(const CalibrateOptions& options, const Session& session, const Files& files) {
+  for (const auto& [file, text] : files) {
+    for (const std::filesystem::path& input :
+         {std::filesystem::path(options.project), session.project.urdf,
+          std::filesystem::path(options.recording)}) {
+      if (SameFile(file, input)) {
+        throw InputError(file.string() + ": this is an input; choose another output");
+      }
+    }
+  }
 }
 
 }  // namespace
 
 int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
-  const bool quiet = options.common.quiet;
-  const Session session = OpenSession(options.project, options.recording);
+  const bool quiet = options.common.Silent();
+  const Session session = OpenSession(options.project, options.recording, options.common.seed);
   CalibrationRun run = Calculate(session, options);
-  const CalibrationResult& result = run.comparison.geometric();
-  const bool converged = result.termination == Termination::kConverged;
-
-  const std::filesystem::path folder = options.output;
-  if (converged) {
-    const ZeroOffsets zero_offsets =
-        options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin;
-    const CalibratedUrdf urdf = MakeCalibratedUrdf(
-        ReadFile(session.project.urdf), session.project.urdf.string(), result, zero_offsets);
-    run.warnings.insert(run.warnings.end(), urdf.warnings.begin(), urdf.warnings.end());
-    WriteResults(options, session, run, urdf, zero_offsets);
-  } else {
-    run.warnings.push_back("not converged (" + result.message + "): no calibrated URDF is written");
-  }
+  const bool deployable = run.verdict.objections.empty();
+  Files files;
+  if (deployable) files = DeployableFiles(options, session, run);
   const std::string summary = MakeSummaryJson(run);
-  WriteFile(folder / "summary.json", summary);
-  if (!options.common.json_file.empty()) WriteFile(options.common.json_file, summary);
+  files.push_back({std::filesystem::path(options.output) / "summary.json", summary});
+  if (!options.common.json_file.empty()) files.push_back({options.common.json_file, summary});
+  CheckOutputs(options, session, files);
+  WriteFiles(files);
+  if (!deployable) RemoveDeployableFiles(options, session.project);
 
   Print(quiet, DescribeRun(run));
-  if (converged) Print(quiet, fmt::format("\nWritten to {}\n", folder.string()));
-  PrintWarnings(quiet, run.warnings);
+  PrintWarnings(run.warnings);
+  for (const std::string& objection : run.verdict.objections) spdlog::error("{}", objection);
+  if (!deployable) spdlog::error("no calibrated URDF is written");
+  Print(quiet, fmt::format("\nWritten to {}\n", options.output));
   if (run_out != nullptr) *run_out = std::move(run);
-  return converged ? kFine : kNotConverged;
+  return deployable ? kFine : kNotConverged;
 }
 
 void AddCalibrate(CLI::App& app, Action& action) {
@@ -87,7 +124,11 @@ void AddCalibrate(CLI::App& app, Action& action) {
   command->add_option("project", options->project, "Project file (YAML)")->required();
   command->add_option("--recording", options->recording, "Table of static postures (CSV)")
       ->required();
-  command->add_option("-o,--output", options->output, "Folder for the results")->required();
+  command->add_option("-o,--output", options->output, "Folder for the results")
+      ->required()
+      ->check([](const std::string& folder) {
+        return folder.empty() ? std::string("the folder needs a name") : std::string();
+      });
   command->add_option("--kfold", options->folds, "Also cross-validate with this many folds")
       ->check(CLI::Range(2, 100000));
   command
@@ -98,7 +139,8 @@ void AddCalibrate(CLI::App& app, Action& action) {
       ->capture_default_str();
   AddCommonOptions(*command, options->common);
   command->footer(
-      "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro and summary.json.\n"
+      "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro, covariance.csv and\n"
+      "summary.json; the last alone, with exit code 4, where the result is not to be trusted.\n"
       "Example: elastocal calibrate project.yaml --recording postures.csv --kfold 10 -o out");
   command->callback(
       [&action, options] { action = [options] { return RunCalibration(*options); }; });

@@ -1,5 +1,6 @@
 #include "elastocal/cli/calibration_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -14,54 +15,67 @@ std::string Millimetres(double metres) {
   return std::isfinite(metres) ? fmt::format("{:.3f}", 1e3 * metres) : "-";
 }
 
-std::string ParameterTable(const CalibrationResult& result) {
-  TextTable table({"parameter", "unit", "estimate", "sd", "95 % interval", ""});
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    const Parameter& parameter = result.model.parameters[i];
-    if (result.status[i] != ParameterStatus::kEstimated || parameter.joint < 0) continue;
-    const double value = InUserUnits(parameter, result.delta[i]);
-    const double sd = InUserUnits(parameter, result.sd[i]);
-    const double half = result.interval_factor * sd;
-    table.Add({parameter.name, UserUnit(parameter), fmt::format("{:.4f}", value),
-               fmt::format("{:.4f}", sd),
-               fmt::format("[{:.4f}, {:.4f}]", value - half, value + half),
-               Significant(result, i) ? "*" : ""});
-  }
-  return table.Render() + "  * differs from nominal at 95 %\n";
+std::string Names(const CalibrationResult& result, const std::vector<int>& which) {
+  return which.empty() ? "none" : JoinNames(result.model.parameters, which);
 }
 
-std::string WithStatus(const CalibrationResult& result, ParameterStatus status) {
+std::vector<int> WithStatus(const CalibrationResult& result, ParameterStatus status) {
   std::vector<int> which;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     if (result.status[i] == status) which.push_back(i);
   }
-  return which.empty() ? "none" : JoinNames(result.model.parameters, which);
+  return which;
+}
+
+std::string ParameterTable(const CalibrationRun& run) {
+  const CalibrationResult& result = run.comparison.geometric();
+  const std::vector<int> weak =
+      HardlyExcited(result.model.parameters, run.base.kept, run.excitation);
+  TextTable table({"parameter", "unit", "estimate", "sd", "95 % interval", ""});
+  for (int i : WithStatus(result, ParameterStatus::kEstimated)) {
+    const Parameter& parameter = result.model.parameters[i];
+    if (parameter.joint < 0) continue;
+    const double value = InUserUnits(parameter, result.delta[i]);
+    const double sd = InUserUnits(parameter, result.sd[i]);
+    const double half = result.interval_factor * sd;
+    const bool is_weak = std::binary_search(weak.begin(), weak.end(), i);
+    table.Add({parameter.name, UserUnit(parameter), fmt::format("{:.4f}", value),
+               fmt::format("{:.4f}", sd),
+               fmt::format("[{:.4f}, {:.4f}]", value - half, value + half),
+               std::string(Significant(result, i) ? "*" : "") + (is_weak ? " weak" : "")});
+  }
+  return table.Render() +
+         "  theta: zero offset; r, d, b: lengths; alpha, beta, gamma: tilts of the axis (eq. 1)\n"
+         "  * differs from nominal at 95 %; weak: hardly excited by this recording, leans on the "
+         "prior\n";
 }
 
 std::string OutlierText(const CalibrationRun& run) {
+  constexpr std::size_t kMost = 10;
   const auto& outliers = run.comparison.geometric().outliers;
   if (outliers.empty()) return "Outliers: none\n";
-  std::string text = "Outliers (left out of the fit)\n";
-  for (const Outlier& outlier : outliers) {
+  std::string text = fmt::format("Outliers (left out of the fit): {}\n", outliers.size());
+  for (std::size_t i = 0; i < std::min(kMost, outliers.size()); ++i) {
     text += fmt::format("  {}: off by {:.3f} mm, {:.1f} times what is likely\n",
-                        DescribeObservation(run.recording, outlier.posture, outlier.marker),
-                        1e3 * outlier.residual, outlier.normalised);
+                        DescribeObservation(run.recording, outliers[i].posture, outliers[i].marker),
+                        1e3 * outliers[i].residual, outliers[i].normalised);
+  }
+  if (outliers.size() > kMost) {
+    text += fmt::format("  and {} more in summary.json\n", outliers.size() - kMost);
   }
   return text;
 }
 
-/// Parameters whose uncertainty from this recording alone is larger than what the prior says.
-std::string WeaklyExcited(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.geometric();
-  std::vector<int> weak;
-  for (std::size_t i = 0; i < run.base.kept.size(); ++i) {
-    const Parameter& parameter = result.model.parameters[run.base.kept[i]];
-    const double limit = parameter.unit == ParameterUnit::kRadian ? M_PI / 180.0 : 5e-3;
-    if (run.excitation.parameter_sd[static_cast<Eigen::Index>(i)] > limit) {
-      weak.push_back(run.base.kept[i]);
-    }
-  }
-  return weak.empty() ? "none" : JoinNames(result.model.parameters, weak);
+/// One sentence for whoever reads no table.
+std::string Conclusion(const CalibrationRun& run) {
+  if (!run.verdict.objections.empty()) return "Verdict: do not deploy (see the errors).\n";
+  const bool held_out = run.cross_validation.folds > 0;
+  const auto& metrics = held_out ? run.cross_validation.metrics : run.comparison.metrics;
+  return fmt::format(
+      "Verdict: from {} to {} mm {}. {}\n", Millimetres(metrics[0].rmse_3d),
+      Millimetres(metrics[2].rmse_3d), held_out ? "on held-out postures" : "in the fit",
+      held_out ? "Before deploying, validate on another recording."
+               : "Cross-validate (--kfold 10) and validate on another recording before deploying.");
 }
 
 std::string Correlations(const CalibrationResult& result) {
@@ -112,26 +126,30 @@ std::string DescribeRun(const CalibrationRun& run) {
       result.equations, run.base.kept.size(), result.model.parameter_count(),
       run.base.theoretical_count);
   text += ModelTable(run);
+  text += "  RMSE is what remains after fitting where the waist and the markers are\n";
   text += fmt::format(
       "\nGeometric model {} after {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms\n"
       "  noise of a marker coordinate {:.4f} mm; prior widened by {:.2f} (angles) and {:.2f} "
       "(lengths); {:.1f} parameters determined by the data\n\n",
       TerminationName(result.termination), result.iterations, result.initial_cost,
-      result.final_cost, 1e3 * result.solve_seconds, 1e3 * result.marker_sd, result.prior_scale.angles, result.prior_scale.lengths,
-      result.posterior.effective_parameters);
-  text += ParameterTable(result);
-  text += "\nNot supported by the data, held at nominal, not worth deploying: " +
-          WithStatus(result, ParameterStatus::kUnsupported) + "\n";
-  text += "Held by the project: " + WithStatus(result, ParameterStatus::kHeld) + "\n\n";
+      result.final_cost, 1e3 * result.solve_seconds, 1e3 * result.marker_sd,
+      result.prior_scale.angles, result.prior_scale.lengths, result.posterior.effective_parameters);
+  text += ParameterTable(run);
+  text += "\nNot identifiable with these markers, unchanged in the URDF: " +
+          Names(result, WithStatus(result, ParameterStatus::kDropped)) +
+          "\nNot supported by the data, held at nominal, not worth deploying: " +
+          Names(result, WithStatus(result, ParameterStatus::kUnsupported)) +
+          "\nHeld by the project: " + Names(result, WithStatus(result, ParameterStatus::kHeld)) +
+          "\n\n";
   text += OutlierText(run);
   text += fmt::format(
-      "\nExcitation by this recording: condition number {:.3g} of all columns, {:.3g} of the "
-      "identifiable ones; O1 {:.4g}\n"
+      "\nExcitation by this recording: condition number {:.3g} (before the choice of identifiable "
+      "parameters {:.3g}); O1 {:.4g}\n"
       "  hardly excited (sd above 1 deg or 5 mm without prior): {}\n",
-      excitation.condition_all, excitation.condition_base, excitation.indices.o1,
-      WeaklyExcited(run));
+      excitation.condition_base, excitation.condition_all, excitation.indices.o1,
+      Names(result, HardlyExcited(result.model.parameters, run.base.kept, excitation)));
   text += "\nStrong correlations\n" + Correlations(result);
-  return text;
+  return text + "\n" + Conclusion(run);
 }
 
 }  // namespace elastocal::cli

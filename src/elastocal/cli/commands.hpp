@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace CLI {
@@ -22,8 +23,11 @@ enum ExitCode {
 /// Options that every command has.
 struct CommonOptions {
   std::string json_file;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;  ///< given by the user
   bool quiet = false;
+
+  /// Whether standard output is for people: not with --quiet, nor when the JSON goes there.
+  bool Silent() const { return quiet || json_file == "-"; }
 };
 
 void AddCommonOptions(CLI::App& command, CommonOptions& options);

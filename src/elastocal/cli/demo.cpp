@@ -100,9 +100,10 @@ int Demo(const DemoOptions& options) {
   const std::filesystem::path source = ModelsFolder() / "talos" / "project.yaml";
   const std::filesystem::path folder = options.output;
   const Project project = ReadProject(source);
-  const Truth truth = DrawTruth(project, options.common.seed);
+  const std::uint64_t seed = options.common.seed.value_or(1);
+  const Truth truth = DrawTruth(project, seed);
   const Recording recording = MakeSyntheticRecording(
-      truth.model, truth.delta, {.postures = options.postures, .seed = options.common.seed + 1});
+      truth.model, truth.delta, {.postures = options.postures, .seed = seed + 1});
   WritePostureTable(folder / "recording.csv", recording, project.tree);
   Print(
       options.common.quiet,
@@ -115,7 +116,7 @@ int Demo(const DemoOptions& options) {
       "origin"};
   CalibrationRun run;
   const int exit_code = RunCalibration(calibrate, &run);
-  Print(options.common.quiet, TruthTable(truth, run.comparison.geometric()));
+  Print(options.common.Silent(), TruthTable(truth, run.comparison.geometric()));
   return exit_code;
 }
 

@@ -91,15 +91,6 @@ ChainReport InspectChain(const std::string& name, const RobotTree& tree,
                          IdentifiabilityOptions options) {
   ChainReport report{name, 0, MakeErrorModel(tree, markers, project.placement), {}, {}};
   report.joints = static_cast<int>(report.model.active_joints.size());
-  // A hold that concerns other chains only is no mistake here.
-  std::erase_if(options.hold, [&](const std::string& pattern) {
-    try {
-      MatchParameters(report.model.parameters, {pattern});
-      return false;
-    } catch (const std::exception&) {
-      return true;
-    }
-  });
   report.base = FindBaseParameters(report.model, options);
   if (static_cast<int>(report.base.kept.size()) < report.base.theoretical_count &&
       options.hold.empty()) {
@@ -146,11 +137,8 @@ std::string RegroupingText(const ChainReport& report) {
   const auto& parameters = report.model.parameters;
   for (std::size_t d = 0; d < report.base.dropped.size(); ++d) {
     text += "  " + parameters[report.base.dropped[d]].name + " ->";
-    for (std::size_t i = 0; i < report.base.kept.size(); ++i) {
-      const double c =
-          report.base.regrouping(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(d));
-      if (std::abs(c) < 1e-9) continue;
-      text += fmt::format(" {:+.4g} {}", c, parameters[report.base.kept[i]].name);
+    for (const Share& share : RegroupedInto(report.base, static_cast<int>(d))) {
+      text += fmt::format(" {:+.4g} {}", share.coefficient, parameters[share.parameter].name);
     }
     text += "\n";
   }
@@ -166,10 +154,8 @@ Json ChainJson(const ChainReport& report) {
   Json regrouping = Json::object();
   for (std::size_t d = 0; d < report.base.dropped.size(); ++d) {
     Json into = Json::object();
-    for (std::size_t i = 0; i < report.base.kept.size(); ++i) {
-      const double c =
-          report.base.regrouping(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(d));
-      if (std::abs(c) >= 1e-9) into[report.model.parameters[report.base.kept[i]].name] = c;
+    for (const Share& share : RegroupedInto(report.base, static_cast<int>(d))) {
+      into[report.model.parameters[share.parameter].name] = share.coefficient;
     }
     regrouping[report.model.parameters[report.base.dropped[d]].name] = into;
   }
@@ -190,18 +176,18 @@ Json ChainJson(const ChainReport& report) {
 int Inspect(const InspectOptions& options) {
   const Project project = ReadProject(options.project);
   IdentifiabilityOptions identifiability = project.identifiability;
-  identifiability.seed = options.common.seed;
+  if (options.common.seed) identifiability.seed = *options.common.seed;
   if (!options.hold.empty()) identifiability.hold = options.hold;
   identifiability.external =
       options.external == "last" ? ExternalPriority::kLast : ExternalPriority::kFirst;
   if (!identifiability.hold.empty()) {
     const ErrorModel all = MakeErrorModel(project.tree, project.markers, project.placement);
-    MatchParameters(all.parameters, identifiability.hold);  // refuses what matches nothing
+    CheckPatterns(all.parameters, identifiability.hold);
   }
 
   const std::vector<JointPlacement> placements = PlaceJoints(project.tree, project.placement);
   const std::vector<ChainReport> reports = InspectChains(project, identifiability);
-  const bool quiet = options.common.quiet;
+  const bool quiet = options.common.Silent();
   Print(quiet, fmt::format("Robot {}: {} links, {} movable joints, {:.3f} kg\n\n",
                            project.tree.name, project.tree.links.size(), project.tree.joints.size(),
                            TotalMass(project.tree)));
@@ -224,7 +210,7 @@ int Inspect(const InspectOptions& options) {
     if (options.regrouping) Print(quiet, RegroupingText(report));
     chains.push_back(ChainJson(report));
   }
-  PrintWarnings(quiet, warnings);
+  PrintWarnings(warnings);
   if (!options.common.json_file.empty()) {
     const Json json = {{"robot", project.tree.name},
                        {"links", project.tree.links.size()},

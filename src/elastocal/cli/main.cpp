@@ -10,10 +10,14 @@
 namespace elastocal::cli {
 
 void AddCommonOptions(CLI::App& command, CommonOptions& options) {
-  command.add_option("--json", options.json_file, "Also write the results to this file, as JSON");
-  command.add_option("--seed", options.seed, "Seed of everything that is drawn at random")
-      ->capture_default_str();
-  command.add_flag("--quiet,-q", options.quiet, "Print nothing but errors");
+  command.add_option("--json", options.json_file,
+                     "Also write the results to this file, as JSON (- for standard output)");
+  command
+      .add_option("--seed", options.seed,
+                  "Seed of all that is drawn at random (postures for identifiability, folds, the "
+                  "demo's truth); default 1, or the project's")
+      ->check(CLI::NonNegativeNumber);
+  command.add_flag("--quiet,-q", options.quiet, "Print nothing but warnings and errors");
 }
 
 namespace {

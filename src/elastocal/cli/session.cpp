@@ -10,55 +10,47 @@
 namespace elastocal::cli {
 namespace {
 
-/// Markers that were seen at least once.
-std::vector<int> SeenMarkers(const Recording& recording) {
-  std::vector<int> seen;
-  for (int m = 0; m < recording.marker_count(); ++m) {
-    for (int i = 0; i < recording.posture_count(); ++i) {
-      if (!Seen(recording, i, m)) continue;
-      seen.push_back(m);
-      break;
-    }
+/// Joints whose limits leave them no motion: nothing can be identified there.
+std::string StuckJoints(const ErrorModel& model) {
+  std::string names;
+  for (int k : model.active_joints) {
+    const Joint& joint = model.tree.joints[k];
+    if (joint.limits.lower < joint.limits.upper) continue;
+    names += (names.empty() ? "" : ", ") + joint.name;
   }
-  return seen;
-}
-
-void LeaveOutUnseen(Recording& recording, std::vector<std::string>& warnings) {
-  const std::vector<int> seen = SeenMarkers(recording);
-  std::vector<std::string> names;
-  std::vector<int> columns;
-  for (int m : seen) {
-    names.push_back(recording.marker_names[m]);
-    for (int i = 0; i < 3; ++i) columns.push_back(3 * m + i);
-  }
-  for (const std::string& name : recording.marker_names) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      warnings.push_back("marker " + name + " was never seen and is left out");
-    }
-  }
-  recording.markers = Eigen::MatrixXd(recording.markers(Eigen::all, columns));
-  recording.marker_names = names;
+  return names;
 }
 
 void WarnOfLostRank(const ErrorModel& model, const IdentifiabilityOptions& options,
                     const BaseParameters& base, std::vector<std::string>& warnings) {
-  if (static_cast<int>(base.kept.size()) >= base.theoretical_count || !base.held.empty()) return;
-  warnings.push_back(fmt::format(
-      "only {} of {} parameters are identifiable: the nominal marker positions are special (on a "
-      "joint axis?). Lost: {}. Give markers positions off the axes, however rough.",
-      base.kept.size(), base.theoretical_count,
-      JoinNames(model.parameters, LostBySpecialMarkers(model, options))));
+  if (static_cast<int>(base.kept.size()) >= base.theoretical_count) return;
+  const std::string stuck = StuckJoints(model);
+  const std::vector<int> lost = LostBySpecialMarkers(model, options);
+  const std::string count =
+      fmt::format("{} of {} parameters are identifiable", base.kept.size(), base.theoretical_count);
+  if (!lost.empty()) {
+    warnings.push_back(fmt::format(
+        "only {}: the nominal marker positions are special (on a joint axis?). Lost: {}. Give "
+        "markers positions off the axes, however rough.",
+        count, JoinNames(model.parameters, lost)));
+  } else if (!stuck.empty()) {
+    warnings.push_back(
+        fmt::format("only {}: these joints cannot move within their limits: {}", count, stuck));
+  } else if (base.held.empty()) {
+    warnings.push_back(fmt::format("only {}; see inspect for what is not", count));
+  }
 }
 
 }  // namespace
 
-Session OpenSession(const std::filesystem::path& project, const std::filesystem::path& recording) {
+Session OpenSession(const std::filesystem::path& project, const std::filesystem::path& recording,
+                    std::optional<std::uint64_t> seed) {
   Session session;
   session.project = ReadProject(project);
+  if (seed) session.project.identifiability.seed = *seed;
   PostureTable table = ReadPostureTable(recording, session.project);
   session.recording = std::move(table.recording);
   session.warnings = std::move(table.warnings);
-  LeaveOutUnseen(session.recording, session.warnings);
   const ErrorModel all =
       MakeErrorModel(session.project.tree, session.project.markers, session.project.placement);
   session.model = SelectMarkers(all, session.recording.marker_names);
@@ -81,8 +73,7 @@ void Print(bool quiet, const std::string& text) {
   if (!quiet) fmt::print("{}", text);
 }
 
-void PrintWarnings(bool quiet, const std::vector<std::string>& warnings) {
-  if (quiet) return;
+void PrintWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) spdlog::warn("{}", warning);
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +21,9 @@ struct Session {
   std::vector<std::string> warnings;  ///< of reading, and of special marker positions
 };
 
-/// Reads both and decides the base parameters. Throws InputError.
-Session OpenSession(const std::filesystem::path& project, const std::filesystem::path& recording);
+/// Reads both and decides the base parameters; a seed replaces the project's. Throws InputError.
+Session OpenSession(const std::filesystem::path& project, const std::filesystem::path& recording,
+                    std::optional<std::uint64_t> seed);
 
 /// Shows progress on stderr where that is a terminal and the user does not want quiet.
 Progress TerminalProgress(const std::string& what, bool quiet);
@@ -28,8 +31,8 @@ Progress TerminalProgress(const std::string& what, bool quiet);
 /// Prints to stdout unless quiet.
 void Print(bool quiet, const std::string& text);
 
-/// Prints warnings to stderr unless quiet.
-void PrintWarnings(bool quiet, const std::vector<std::string>& warnings);
+/// Prints warnings to stderr.
+void PrintWarnings(const std::vector<std::string>& warnings);
 
 /// A parameter in the units that people use: mm and deg.
 double InUserUnits(const Parameter& parameter, double value);

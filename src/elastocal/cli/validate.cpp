@@ -1,9 +1,10 @@
-#include <cmath>
+#include <algorithm>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/session.hpp"
@@ -12,98 +13,104 @@
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/summary.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/validation/transfer.hpp"
 
 namespace elastocal::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ValidateOptions {
   CommonOptions common;
   std::string project, calibration, recording;
 };
 
-/// A model's joints fixed, waist and markers refitted.
-struct Refit {
-  CalibrationResult result;
-  ErrorMetrics metrics;
-};
-
-Refit RefitAndMeasure(const Session& session, const std::map<std::string, double>& joint_errors,
-                      const ObservationMask* mask) {
-  Refit refit;
-  refit.result = RefitExternals(session.model, session.recording, session.base,
-                                session.project.calibration, joint_errors, mask);
-  refit.metrics = ComputeMetrics(
-      ResidualNorms(refit.result.model, session.recording, refit.result.delta), refit.result.used);
-  return refit;
+/// A calibration means something only for the robot description that it was made with.
+void CheckRobot(const StoredCalibration& stored, const Session& session, const std::string& file) {
+  if (stored.nominal == NominalFingerprint(session.model)) return;
+  throw InputError(file + ": made for robot '" + stored.robot +
+                   "' with other nominal geometry than " + session.project.urdf.string() +
+                   "; expected the URDF that was calibrated, not the calibrated one");
 }
 
-/// Errors of joints that the robot does not have are a sign of the wrong file.
-void CheckNames(const StoredCalibration& stored, const Project& project, const std::string& file) {
-  const ErrorModel all = MakeErrorModel(project.tree, project.markers, project.placement);
-  for (const auto& [name, value] : stored.joint_errors) {
-    if (value == 0.0) continue;
-    try {
-      FindParameter(all.parameters, name);
-    } catch (const InputError& error) {
-      throw InputError(file + ": " + error.what() + " in project " + project.file.string());
-    }
+using Json = nlohmann::ordered_json;
+
+std::string Table(const TransferValidation& validation) {
+  TextTable table({"joints (waist and markers refitted)", "RMSE 3-D mm", "RMSE coordinate mm",
+                   "max mm", "with outliers mm"});
+  const auto millimetres = [](double value) { return fmt::format("{:.3f}", 1e3 * value); };
+  for (const auto& [name, refit] : {std::pair{"uncalibrated", &validation.uncalibrated},
+                                    std::pair{"calibrated", &validation.calibrated}}) {
+    table.Add({name, millimetres(refit->metrics.rmse_3d),
+               millimetres(refit->metrics.rmse_coordinate), millimetres(refit->metrics.maximum),
+               millimetres(refit->metrics_all.rmse_3d)});
   }
+  return table.Render();
+}
+
+Json MakeJson(const Session& session, const TransferValidation& validation,
+              const std::string& status, const std::string& calibration) {
+  Json json;
+  json["status"] = status;
+  json["calibration"] = calibration;
+  json["recording"] = session.recording.source;
+  json["postures"] = session.recording.posture_count();
+  json["markers"] = session.recording.marker_count();
+  for (const auto& [name, refit] : {std::pair{"uncalibrated", &validation.uncalibrated},
+                                    std::pair{"calibrated", &validation.calibrated}}) {
+    json["rmse_3d_mm"][name] = 1e3 * refit->metrics.rmse_3d;
+    json["rmse_coordinate_mm"][name] = 1e3 * refit->metrics.rmse_coordinate;
+    json["max_mm"][name] = 1e3 * refit->metrics.maximum;
+    json["rmse_3d_mm_with_outliers"][name] = 1e3 * refit->metrics_all.rmse_3d;
+  }
+  json["outliers"] = Json::array();
+  for (const Outlier& outlier : validation.calibrated.result.outliers) {
+    json["outliers"].push_back({{"posture", outlier.posture},
+                                {"marker", session.recording.marker_names[outlier.marker]},
+                                {"residual_mm", 1e3 * outlier.residual}});
+  }
+  json["warnings"] = session.warnings;
+  return json;
 }
 
 int Validate(const ValidateOptions& options) {
   const StoredCalibration stored = ReadCalibration(options.calibration);
-  const Session session = OpenSession(options.project, options.recording);
-  CheckNames(stored, session.project, options.calibration);
-  // The calibrated model decides what is an outlier, so that both are judged on the same data.
-  const Refit calibrated = RefitAndMeasure(session, stored.joint_errors, nullptr);
-  const Refit nominal = RefitAndMeasure(session, {}, &calibrated.result.used);
-
-  const bool quiet = options.common.quiet;
-  const auto millimetres = [](double value) { return fmt::format("{:.3f}", 1e3 * value); };
-  TextTable table(
-      {"model (waist and markers refitted)", "RMSE 3-D mm", "RMSE coordinate mm", "max mm"});
-  Json rmse_3d, rmse_coordinate, maximum;
-  for (const auto& [name, refit] :
-       {std::pair{"uncalibrated", &nominal}, std::pair{"calibrated", &calibrated}}) {
-    const ErrorMetrics& metrics = refit->metrics;
-    table.Add({name, millimetres(metrics.rmse_3d), millimetres(metrics.rmse_coordinate),
-               millimetres(metrics.maximum)});
-    rmse_3d[name] = 1e3 * metrics.rmse_3d;
-    rmse_coordinate[name] = 1e3 * metrics.rmse_coordinate;
-    maximum[name] = 1e3 * metrics.maximum;
+  Session session = OpenSession(options.project, options.recording, options.common.seed);
+  CheckRobot(stored, session, options.calibration);
+  const TransferValidation validation =
+      ValidateTransfer(session.model, session.recording, session.base, session.project.calibration,
+                       stored.joint_errors);
+  const std::vector<Outlier>& outliers = validation.calibrated.result.outliers;
+  const auto seen = SeenMask(session.recording).count();
+  if (20 * static_cast<Eigen::Index>(outliers.size()) > seen) {
+    session.warnings.push_back(
+        fmt::format("{} of {} observations are outliers of the calibrated "
+                    "model; see the figures with outliers",
+                    outliers.size(), seen));
   }
+  const bool converged = validation.calibrated.result.termination == Termination::kConverged &&
+                         validation.uncalibrated.result.termination == Termination::kConverged;
+  const bool better =
+      validation.calibrated.metrics_all.rmse_3d < validation.uncalibrated.metrics_all.rmse_3d;
+
+  const bool quiet = options.common.Silent();
   Print(quiet, fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
                            session.recording.source, stored.recording,
-                           session.recording.posture_count(), session.recording.marker_count()));
-  Print(quiet, table.Render());
-  Json outliers = Json::array();
-  for (const Outlier& outlier : calibrated.result.outliers) {
-    const std::string where =
-        DescribeObservation(session.recording, outlier.posture, outlier.marker);
-    Print(quiet, fmt::format("  outlier {}: off by {:.3f} mm\n", where, 1e3 * outlier.residual));
-    outliers.push_back({{"posture", outlier.posture},
-                        {"marker", session.recording.marker_names[outlier.marker]},
-                        {"residual_mm", 1e3 * outlier.residual}});
+                           session.recording.posture_count(), session.recording.marker_count()) +
+                   Table(validation));
+  for (std::size_t i = 0; i < std::min<std::size_t>(10, outliers.size()); ++i) {
+    Print(quiet, fmt::format("  outlier {}: off by {:.3f} mm\n",
+                             DescribeObservation(session.recording, outliers[i].posture,
+                                                 outliers[i].marker),
+                             1e3 * outliers[i].residual));
   }
-  PrintWarnings(quiet, session.warnings);
-  const bool converged = calibrated.result.termination == Termination::kConverged &&
-                         nominal.result.termination == Termination::kConverged;
+  PrintWarnings(session.warnings);
+  if (!converged) spdlog::error("the fit of waist and markers has not converged");
+  if (!better) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
   if (!options.common.json_file.empty()) {
-    const Json json = {{"status", converged ? "converged" : "not converged"},
-                       {"calibration", options.calibration},
-                       {"recording", session.recording.source},
-                       {"postures", session.recording.posture_count()},
-                       {"markers", session.recording.marker_count()},
-                       {"rmse_3d_mm", rmse_3d},
-                       {"rmse_coordinate_mm", rmse_coordinate},
-                       {"max_mm", maximum},
-                       {"outliers", outliers},
-                       {"warnings", session.warnings}};
-    WriteFile(options.common.json_file, json.dump(2) + "\n");
+    const std::string status = !converged ? "not converged" : better ? "better" : "not better";
+    WriteFile(options.common.json_file,
+              MakeJson(session, validation, status, options.calibration).dump(2) + "\n");
   }
-  return converged ? kFine : kNotConverged;
+  return converged && better ? kFine : kNotConverged;
 }
 
 }  // namespace

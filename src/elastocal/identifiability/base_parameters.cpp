@@ -1,6 +1,7 @@
 #include "elastocal/identifiability/base_parameters.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "elastocal/identifiability/regressor.hpp"
@@ -52,6 +53,16 @@ std::vector<int> SortingOrder(const std::vector<int>& values) {
 }
 
 }  // namespace
+
+std::vector<Share> RegroupedInto(const BaseParameters& base, int dropped) {
+  constexpr double kSmallest = 1e-9;
+  std::vector<Share> shares;
+  for (std::size_t i = 0; i < base.kept.size(); ++i) {
+    const double coefficient = base.regrouping(static_cast<Eigen::Index>(i), dropped);
+    if (std::abs(coefficient) >= kSmallest) shares.push_back({base.kept[i], coefficient});
+  }
+  return shares;
+}
 
 Eigen::MatrixXd NominalFactor(const ErrorModel& model, const IdentifiabilityOptions& options) {
   Random random(options.seed);

@@ -45,6 +45,16 @@ struct BaseParameters {
   int theoretical_count = 0;
 };
 
+/// What of an error of a dropped parameter shows up in a kept one.
+struct Share {
+  int parameter;       ///< index into the model's parameters
+  double coefficient;  ///< units of the kept parameter per unit of the dropped one
+};
+
+/// Shares of the kept parameters in a dropped one, an index into `base.dropped`; ascending by
+/// parameter, without those that are rounding (below 1e-9 by absolute value).
+std::vector<Share> RegroupedInto(const BaseParameters& base, int dropped);
+
 /// Factor (see regressor.hpp) of the regressor over random postures at nominal geometry.
 Eigen::MatrixXd NominalFactor(const ErrorModel& model, const IdentifiabilityOptions& options);
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "elastocal/robot/parameters.hpp"
+
 namespace elastocal {
 
 /// Observability indices of a set of postures from the singular values sigma_1 >= ... >= sigma_Nb
@@ -30,6 +32,11 @@ struct Excitation {
   /// alone if one marker coordinate had `marker_sd`: rad or m; infinite where it is not excited.
   Eigen::VectorXd parameter_sd;
 };
+
+/// Identifiable parameters that this recording alone leaves uncertain by more than a degree or 5
+/// mm.
+std::vector<int> HardlyExcited(const std::vector<Parameter>& parameters,
+                               const std::vector<int>& base, const Excitation& excitation);
 
 /// `factor` as RegressorFactor returns it; `base` the identifiable columns.
 Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int>& base,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -26,6 +27,10 @@ bool IsZeroOffset(const RobotTree& tree, const Parameter& parameter) {
                                 : ParameterKind::kR);
 }
 
+bool IsActive(const ErrorModel& model, int joint) {
+  return std::binary_search(model.active_joints.begin(), model.active_joints.end(), joint);
+}
+
 /// The calibrated origin of a joint: parent link to child link at position 0. The rotation about
 /// the joint's axis commutes with theta and r of eq. 1, so what is left of it is constant.
 Transform CalibratedOrigin(const ErrorModel& model, const Geometry& geometry, int k) {
@@ -42,25 +47,105 @@ Transform CalibratedOrigin(const ErrorModel& model, const Geometry& geometry, in
          model.placements[k].T_joint_body;
 }
 
-/// Largest difference between the written URDF and the calibrated model, waist to bodies.
+/// Zero offsets that go to the encoders, by joint. A mimic joint has no encoder.
+std::map<std::string, double> EncoderOffsets(const CalibrationResult& calibration) {
+  const ErrorModel& model = calibration.model;
+  std::map<std::string, double> offsets;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (!IsZeroOffset(model.tree, model.parameters[i])) continue;
+    const Joint& joint = model.tree.joints[model.parameters[i].joint];
+    if (!joint.mimic) offsets[joint.name] = calibration.delta[i];
+  }
+  return offsets;
+}
+
+/// The offsets of the encoders as a controller adds them: one an entry of q.
+Eigen::VectorXd CoordinateOffsets(const RobotTree& tree,
+                                  const std::map<std::string, double>& encoder_offsets) {
+  Eigen::VectorXd offsets = Eigen::VectorXd::Zero(tree.coordinate_count());
+  for (const auto& [joint, offset] : encoder_offsets) {
+    offsets[tree.joints[FindJoint(tree, joint)].coordinate] = offset;
+  }
+  return offsets;
+}
+
+/// New origins, by joint, that make up the calibrated robot together with `q_offset` on q. A mimic
+/// joint moves by its leader's offset too, so that its origin takes up the difference to its own
+/// zero offset, which is none where it carries no marker.
+std::map<int, Transform> ChangedOrigins(const CalibrationResult& calibration,
+                                        const Eigen::VectorXd& q_offset) {
+  const ErrorModel& model = calibration.model;
+  const auto offset = [&](const Joint& joint) {
+    return joint.multiplier * q_offset[joint.coordinate];
+  };
+  Eigen::VectorXd in_origins = calibration.delta;
+  std::set<int> changed;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const Parameter& parameter = model.parameters[i];
+    if (parameter.joint < 0) continue;
+    if (IsZeroOffset(model.tree, parameter)) {
+      in_origins[i] -= offset(model.tree.joints[parameter.joint]);
+    }
+    if (in_origins[i] != 0.0) changed.insert(parameter.joint);
+  }
+  const Geometry geometry = ApplyErrors(model, in_origins);
+  std::map<int, Transform> origins;
+  for (int k : changed) origins[k] = CalibratedOrigin(model, geometry, k);
+  for (int k = 0; k < static_cast<int>(model.tree.joints.size()); ++k) {
+    const Joint& joint = model.tree.joints[k];
+    if (IsActive(model, k) || offset(joint) == 0.0) continue;
+    origins[k] =
+        joint.T_parent_child * (joint.type == JointType::kRevolute
+                                    ? RotAxis(joint.axis, -offset(joint))
+                                    : Transform(Eigen::Translation3d(-offset(joint) * joint.axis)));
+  }
+  return origins;
+}
+
+/// The origin as the URDF has it, without the dust that rounding leaves where there is nothing.
+UrdfOrigin ToOrigin(const Transform& T, const Eigen::Vector3d& nominal_rpy) {
+  constexpr double kDust = 1e-15;  // m and rad
+  const auto clean = [](double value) { return std::abs(value) < kDust ? 0.0 : value; };
+  return {T.translation().unaryExpr(clean), ToRpy(T.linear(), nominal_rpy).unaryExpr(clean)};
+}
+
+/// Poses of all links in the waist: the calibrated model's and, where it has no errors because
+/// there are no markers, nominal motion.
+std::vector<Transform> CalibratedLinks(const ErrorModel& model, const Geometry& geometry,
+                                       const Eigen::VectorXd& q) {
+  const RobotTree& tree = model.tree;
+  const std::vector<Transform> T_ref_body = BodyTransforms(model, geometry, q);
+  const std::vector<Transform> T_root_nominal = LinkTransforms(tree, q);
+  std::vector<Transform> T_waist_body(tree.body_count(), Transform::Identity());
+  for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
+    const Joint& joint = tree.joints[k];
+    T_waist_body[k + 1] =
+        IsActive(model, k)
+            ? T_ref_body[0].inverse() * T_ref_body[k + 1]
+            : T_waist_body[joint.parent_body] * tree.links[joint.parent_link].T_body_link *
+                  T_root_nominal[joint.parent_link].inverse() * T_root_nominal[joint.child_link];
+  }
+  std::vector<Transform> T_waist_link;
+  for (const Link& link : tree.links) {
+    T_waist_link.push_back(T_waist_body[link.body] * link.T_body_link);
+  }
+  return T_waist_link;
+}
+
+/// Largest difference between the written URDF at positions q + q_offset and the calibrated model
+/// at q, waist to links.
 double LargestDifference(const CalibrationResult& calibration, const RobotTree& written,
-                         const std::map<std::string, double>& encoder_offsets) {
+                         const Eigen::VectorXd& q_offset) {
   const ErrorModel& model = calibration.model;
   const Geometry geometry = ApplyErrors(model, calibration.delta);
-  RobotTree with_offsets = written;
-  for (Joint& joint : with_offsets.joints) {
-    const auto offset = encoder_offsets.find(joint.name);
-    if (offset != encoder_offsets.end()) joint.offset += offset->second;
-  }
   Random random(1);
   double largest = 0.0;
   for (int i = 0; i < kGatePostures; ++i) {
     const Eigen::VectorXd q = RandomPosture(model.tree, random);
-    const std::vector<Transform> T_ref_body = BodyTransforms(model, geometry, q);
-    const std::vector<Transform> T_root_link = LinkTransforms(with_offsets, q);
-    for (int k : model.active_joints) {
-      const Transform T = (T_ref_body[0].inverse() * T_ref_body[k + 1]).inverse() *
-                          T_root_link[written.joints[k].child_link];
+    const std::vector<Transform> expected = CalibratedLinks(model, geometry, q);
+    const std::vector<Transform> found = LinkTransforms(written, q + q_offset);
+    for (std::size_t link = 0; link < expected.size(); ++link) {
+      const Transform T = expected[link].inverse() * found[link];
       largest = std::max({largest, T.translation().norm(), RotationAngle(T.linear())});
     }
   }
@@ -89,28 +174,31 @@ std::vector<std::string> BrokenGeometry(const RobotTree& nominal, const RobotTre
   return warnings;
 }
 
-/// A correction of a joint that carries branches without markers beside one with markers moves these
-/// as well, though nothing was measured there.
-std::vector<std::string> UnrecordedBranches(const ErrorModel& model,
-                                            const std::vector<bool>& changed) {
-  const std::vector<int>& active = model.active_joints;
+/// A correction of a joint that carries branches without markers beside one with markers moves
+/// these as well, though nothing was measured there.
+std::vector<std::string> UnrecordedBranches(const CalibrationResult& calibration) {
+  const ErrorModel& model = calibration.model;
+  std::set<int> changed;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (calibration.delta[i] != 0.0) changed.insert(model.parameters[i].joint);
+  }
   std::vector<std::string> warnings;
-  for (int k : active) {
+  for (int k : model.active_joints) {
     std::string unrecorded;
     bool branches = false;
     for (int i = 0; i < static_cast<int>(model.tree.joints.size()); ++i) {
       if (model.tree.joints[i].parent_body != k + 1) continue;
-      if (std::binary_search(active.begin(), active.end(), i)) {
+      if (IsActive(model, i)) {
         branches = true;
       } else {
         unrecorded += (unrecorded.empty() ? "" : ", ") + model.tree.joints[i].name;
       }
     }
-    if (!changed[k] || !branches || unrecorded.empty()) continue;
-    warnings.push_back(
-        fmt::format("the correction of {} also moves what {} carries, of which this recording shows "
-                    "nothing: it may belong to the recorded branch alone",
-                    model.tree.joints[k].name, unrecorded));
+    if (!changed.contains(k) || !branches || unrecorded.empty()) continue;
+    warnings.push_back(fmt::format(
+        "the correction of {} also moves what {} carries, of which this recording shows "
+        "nothing: it may belong to the recorded branch alone",
+        model.tree.joints[k].name, unrecorded));
   }
   return warnings;
 }
@@ -122,32 +210,18 @@ CalibratedUrdf MakeCalibratedUrdf(const std::string& urdf, const std::string& so
   const ErrorModel& model = calibration.model;
   const std::map<std::string, UrdfOrigin> origins = ReadOrigins(urdf, source);
   CalibratedUrdf result;
-  Eigen::VectorXd in_origins = calibration.delta;
-  std::vector<bool> changed(model.tree.joints.size(), false);
-  for (int i = 0; i < model.parameter_count(); ++i) {
-    const Parameter& parameter = model.parameters[i];
-    if (parameter.joint < 0 || calibration.delta[i] == 0.0) continue;
-    if (zero_offsets == ZeroOffsets::kEncoder && IsZeroOffset(model.tree, parameter)) {
-      result.encoder_offsets[model.tree.joints[parameter.joint].name] = calibration.delta[i];
-      in_origins[i] = 0.0;
-    } else {
-      changed[parameter.joint] = true;
-    }
-  }
-
-  const Geometry geometry = ApplyErrors(model, in_origins);
-  for (int k : model.active_joints) {
-    if (!changed[k]) continue;
+  if (zero_offsets == ZeroOffsets::kEncoder) result.encoder_offsets = EncoderOffsets(calibration);
+  const Eigen::VectorXd q_offset = CoordinateOffsets(model.tree, result.encoder_offsets);
+  const std::map<int, Transform> changed = ChangedOrigins(calibration, q_offset);
+  for (const auto& [k, T_parent_child] : changed) {
     const std::string& name = model.tree.joints[k].name;
-    const UrdfOrigin& nominal = origins.at(name);
-    const Transform T = CalibratedOrigin(model, geometry, k);
-    result.nominal[name] = nominal;
-    result.calibrated[name] = {T.translation(), ToRpy(T.linear(), nominal.rpy)};
+    result.nominal[name] = origins.at(name);
+    result.calibrated[name] = ToOrigin(T_parent_child, origins.at(name).rpy);
   }
   result.text = ReplaceOrigins(urdf, source, result.calibrated);
 
   const RobotTree written = ParseUrdf(result.text, source + " (calibrated)");
-  const double difference = LargestDifference(calibration, written, result.encoder_offsets);
+  const double difference = LargestDifference(calibration, written, q_offset);
   if (!(difference <= kGateTolerance)) {
     throw std::runtime_error(fmt::format(
         "the calibrated URDF differs from the calibrated model by {:.3g} m or rad (at most {:.0e} "
@@ -155,7 +229,7 @@ CalibratedUrdf MakeCalibratedUrdf(const std::string& urdf, const std::string& so
         difference, kGateTolerance));
   }
   result.warnings = BrokenGeometry(model.tree, written);
-  for (std::string& warning : UnrecordedBranches(model, changed)) {
+  for (std::string& warning : UnrecordedBranches(calibration)) {
     result.warnings.push_back(std::move(warning));
   }
   return result;

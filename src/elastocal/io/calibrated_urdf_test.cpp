@@ -96,23 +96,61 @@ TEST_P(CalibratedUrdfOf, XacroOffsetsAddUpToTheCalibratedOrigins) {
   }
 }
 
+TEST_P(CalibratedUrdfOf, EncoderOffsetsCompleteTheOrigins) {
+  const CalibrationResult calibration = WithErrors(tree_, 3);
+  const CalibratedUrdf calibrated =
+      MakeCalibratedUrdf(urdf_, "urdf", calibration, ZeroOffsets::kEncoder);
+  EXPECT_EQ(calibrated.encoder_offsets.size(), static_cast<std::size_t>(tree_.coordinate_count()));
+  const std::string xacro = MakeXacroOffsets(calibrated);
+  for (int k : tree_.coordinate_joint) {
+    const Joint& joint = tree_.joints[k];
+    const char* zero = joint.type == JointType::kRevolute ? ".theta" : ".r";
+    const int parameter = FindParameter(calibration.model.parameters, joint.name + zero);
+    EXPECT_EQ(calibrated.encoder_offsets.at(joint.name), calibration.delta[parameter]);
+    EXPECT_NE(xacro.find("name=\"" + joint.name + "_offset\""), std::string::npos);
+  }
+  ExpectSamePoses(calibration, ParseUrdf(calibrated.text, "written"), calibrated.encoder_offsets);
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, CalibratedUrdfOf,
                          ::testing::Values("models/talos/talos.urdf", "tests/robots/arm6.urdf",
                                            "tests/robots/mini_humanoid.urdf"),
                          [](const auto& robot) { return std::to_string(robot.index); });
 
-TEST(CalibratedUrdf, EncoderOffsetsCompleteTheOrigins) {
-  const std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+// The right hip is not in the model, but the left one's encoder drives it: its origin turns back.
+TEST(CalibratedUrdf, AMimicJointWithoutMarkersStaysWhereItIs) {
+  const std::string urdf = ReadFile(SourceFile("tests/robots/mini_humanoid.urdf"));
   const RobotTree tree = ParseUrdf(urdf, "urdf");
-  const CalibrationResult calibration = WithErrors(tree, 3);
+  const Joint& leader = tree.joints[FindJoint(tree, "left_hip_yaw_pitch")];
+  CalibrationResult calibration;
+  calibration.model = MakeErrorModel(tree, {{"M", leader.child_link, {0.1, 0.02, 0.03}}});
+  calibration.delta.setZero(calibration.model.parameter_count());
+  calibration.delta[FindParameter(calibration.model.parameters, "left_hip_yaw_pitch.theta")] = 0.01;
   const CalibratedUrdf calibrated =
       MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kEncoder);
-  EXPECT_EQ(calibrated.encoder_offsets.size(), 30u);
-  const int theta = FindParameter(calibration.model.parameters, "arm_left_4_joint.theta");
-  EXPECT_EQ(calibrated.encoder_offsets.at("arm_left_4_joint"), calibration.delta[theta]);
-  ExpectSamePoses(calibration, ParseUrdf(calibrated.text, "written"), calibrated.encoder_offsets);
-  EXPECT_NE(MakeXacroOffsets(calibrated).find("name=\"arm_left_4_joint_offset\""),
-            std::string::npos);
+  EXPECT_EQ(calibrated.encoder_offsets,
+            (std::map<std::string, double>{{"left_hip_yaw_pitch", 0.01}}));
+  ASSERT_EQ(calibrated.calibrated.size(), 1u);
+  const UrdfOrigin& origin = calibrated.calibrated.at("right_hip_yaw_pitch");
+  // Back about the axis (0, 1, 1); what differs is of second order, 0.01^2.
+  const Eigen::Vector3d expected = -0.01 * Eigen::Vector3d(0.0, M_SQRT1_2, M_SQRT1_2);
+  EXPECT_LT((origin.rpy - expected).norm(), 1e-4);
+  EXPECT_EQ(origin.xyz, calibrated.nominal.at("right_hip_yaw_pitch").xyz);
+}
+
+TEST(CalibratedUrdf, EveryEncoderHasAnOffsetWhateverWasEstimated) {
+  const std::string urdf = ReadFile(SourceFile("tests/robots/mini_humanoid.urdf"));
+  CalibrationResult calibration = WithErrors(ParseUrdf(urdf, "urdf"), 3);
+  calibration.delta.setZero();
+  calibration.delta[FindParameter(calibration.model.parameters, "head_yaw.theta")] = 0.01;
+  const CalibratedUrdf calibrated =
+      MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kEncoder);
+  EXPECT_EQ(calibrated.text, urdf);
+  const std::string xacro = MakeXacroOffsets(calibrated);
+  EXPECT_NE(xacro.find("name=\"head_yaw_offset\" value=\"0.01\""), std::string::npos);
+  EXPECT_NE(xacro.find("name=\"head_pitch_offset\" value=\"0\""), std::string::npos);
+  EXPECT_NE(xacro.find("name=\"left_hip_yaw_pitch_offset\" value=\"0\""), std::string::npos);
+  EXPECT_EQ(xacro.find("right_hip_yaw_pitch"), std::string::npos);
 }
 
 TEST(CalibratedUrdf, OnlyOriginsOfJointsWithErrorsChange) {
@@ -127,6 +165,8 @@ TEST(CalibratedUrdf, OnlyOriginsOfJointsWithErrorsChange) {
   const UrdfOrigin& origin = calibrated.calibrated.at("leg_left_3_joint");
   EXPECT_LT((origin.rpy - Eigen::Vector3d(0.0, 0.01, 0.0)).norm(), 1e-15);
   EXPECT_LT((origin.xyz - calibrated.nominal.at("leg_left_3_joint").xyz).norm(), 1e-15);
+  EXPECT_EQ(origin.rpy.x(), 0.0);  // and not 1e-20, which is what rounding leaves
+  EXPECT_EQ(origin.rpy.z(), 0.0);
   EXPECT_TRUE(calibrated.warnings.empty());
 }
 
@@ -179,6 +219,22 @@ TEST(CalibratedUrdf, ADifferenceToTheModelIsAnError) {
   urdf.replace(at, 19, "<axis xyz=\"0 1 1e-6\"/>");
   EXPECT_THROW(MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin),
                std::runtime_error);
+}
+
+TEST(CalibratedUrdf, ADifferenceInABranchWithoutMarkersOrAFixedLinkIsAnError) {
+  const std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  const RobotTree tree = ParseUrdf(urdf, "urdf");
+  CalibrationResult calibration;
+  calibration.model = MakeErrorModel(tree, {{"M", tree.joints[0].child_link, {0.1, 0.02, 0.03}}});
+  calibration.delta.setZero(calibration.model.parameter_count());
+  const auto write_into = [&](const std::string& joint) {
+    std::map<std::string, UrdfOrigin> origins = ReadOrigins(urdf, "urdf");
+    origins.at(joint).xyz.x() += 1e-6;
+    MakeCalibratedUrdf(ReplaceOrigins(urdf, "urdf", origins), "urdf", calibration,
+                       ZeroOffsets::kOrigin);
+  };
+  EXPECT_THROW(write_into("finger_right_joint"), std::runtime_error);
+  EXPECT_THROW(write_into("column_mount"), std::runtime_error);  // on the body that has the marker
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "elastocal/io/calibration_file.hpp"
 
 #include <cmath>
+#include <cstdint>
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include "elastocal/io/output_files.hpp"
@@ -13,18 +15,40 @@ namespace {
 
 constexpr const char* kFormat = "elastocal-calibration-1";
 
+/// Text in which equal numbers look the same: rounded to 1e-9, and 0 where that leaves -0.
+class RoundedText {
+ public:
+  void Add(const std::string& word) { text_ += word + ' '; }
+  void Add(double number) { text_ += fmt::format("{:.0f} ", std::round(number * 1e9) + 0.0); }
+  /// As cosine and sine: pi and -pi are the same angle, and which of them it is may be rounding.
+  void AddAngle(double angle) {
+    Add(std::cos(angle));
+    Add(std::sin(angle));
+  }
+  void Add(const Transform& T) {
+    for (const double number : T.matrix().topRows<3>().reshaped()) Add(number);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::uint64_t Fnv1a(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const unsigned char byte : text) hash = (hash ^ byte) * 1099511628211u;
+  return hash;
+}
+
 const char* UnitName(ParameterUnit unit) { return unit == ParameterUnit::kRadian ? "rad" : "m"; }
 
 /// Pairs (kept parameter, coefficient) that a dropped parameter is regrouped into.
-void EmitRegrouping(const CalibrationResult& result, const BaseParameters& base,
-                    std::size_t dropped, YAML::Emitter& yaml) {
+void EmitRegrouping(const CalibrationResult& result, const BaseParameters& base, int dropped,
+                    YAML::Emitter& yaml) {
   yaml << YAML::Key << "regrouped_into" << YAML::Value << YAML::Flow << YAML::BeginMap;
-  for (std::size_t i = 0; i < base.kept.size(); ++i) {
-    const double coefficient =
-        base.regrouping(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(dropped));
-    if (std::abs(coefficient) < 1e-9) continue;
-    yaml << YAML::Key << result.model.parameters[base.kept[i]].name << YAML::Value
-         << FormatNumber(std::round(coefficient * 1e9) * 1e-9);
+  for (const Share& share : RegroupedInto(base, dropped)) {
+    yaml << YAML::Key << result.model.parameters[share.parameter].name << YAML::Value
+         << FormatNumber(std::round(share.coefficient * 1e9) * 1e-9);
   }
   yaml << YAML::EndMap;
 }
@@ -44,12 +68,34 @@ void EmitParameter(const CalibrationResult& result, const BaseParameters& base, 
     yaml << YAML::Key << "significant" << YAML::Value << Significant(result, i);
   }
   for (std::size_t d = 0; d < base.dropped.size(); ++d) {
-    if (base.dropped[d] == i) EmitRegrouping(result, base, d, yaml);
+    if (base.dropped[d] == i) EmitRegrouping(result, base, static_cast<int>(d), yaml);
   }
   yaml << YAML::EndMap;
 }
 
 }  // namespace
+
+std::string NominalFingerprint(const ErrorModel& model) {
+  const RobotTree& tree = model.tree;
+  RoundedText text;
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const Joint& joint = tree.joints[k];
+    text.Add(joint.name);
+    text.Add(joint.type == JointType::kRevolute ? "revolute" : "prismatic");
+    text.Add(joint.parent_body == 0 ? "waist" : tree.joints[joint.parent_body - 1].name);
+    text.Add(tree.joints[tree.coordinate_joint[joint.coordinate]].name);
+    text.Add(joint.multiplier);
+    text.Add(joint.offset);
+    const JointPlacement& placement = model.placements[k];
+    text.Add(placement.T_parent_pre);
+    for (double length : {placement.b, placement.d, placement.r}) text.Add(length);
+    for (double angle : {placement.gamma, placement.beta, placement.alpha, placement.theta}) {
+      text.AddAngle(angle);
+    }
+    text.Add(placement.T_joint_body);
+  }
+  return fmt::format("{:016x}", Fnv1a(text.text()));
+}
 
 std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
                                 const std::string& recording, ZeroOffsets zero_offsets) {
@@ -59,6 +105,9 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParam
   yaml << YAML::BeginMap;
   yaml << YAML::Key << "format" << YAML::Value << kFormat;
   yaml << YAML::Key << "robot" << YAML::Value << result.model.tree.name;
+  yaml << YAML::Key << "nominal" << YAML::Value << YAML::DoubleQuoted
+       << NominalFingerprint(result.model)
+       << YAML::Comment("fingerprint of the robot that these are deviations from");
   yaml << YAML::Key << "recording" << YAML::Value << recording;
   yaml << YAML::Key << "model" << YAML::Value << ModelKindName(result.kind);
   yaml << YAML::Key << "zero_offsets" << YAML::Value
@@ -83,9 +132,12 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
                             std::string("format ") + kFormat + ", which calibrate writes");
   StoredCalibration stored;
   stored.robot = root.Get("robot").Text();
+  stored.nominal = root.Get("nominal").Text();
   stored.recording = root.Get("recording").Text();
   for (const YamlValue& parameter : root.Get("parameters").Items()) {
     const std::string name = parameter.Get("name").Text();
+    const YamlValue unit = parameter.Get("unit");
+    unit.Expect(unit.Text() == "rad" || unit.Text() == "m", "rad or m");
     const double value = parameter.Get("value").Number();
     const bool external = name.starts_with("waist.T0.") || name.starts_with("marker.");
     if (!external) stored.joint_errors[name] = value;

@@ -9,6 +9,12 @@
 
 namespace elastocal {
 
+/// Tells nominal robots apart: the errors of a calibration are deviations from one of them and mean
+/// nothing on another. 16 hexadecimal digits (FNV-1a, 64 bit) over every joint's name, type,
+/// parent, mimicking and placement (radians and metres, rounded to 1e-9). Links, limits, inertia,
+/// visuals, comments and markers do not count.
+std::string NominalFingerprint(const ErrorModel& model);
+
 /// calibration.yaml: every parameter with unit, value, standard deviation and status, and what is
 /// needed to judge them (docs/formats.md).
 std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
@@ -17,6 +23,7 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParam
 /// What another run needs of such a file.
 struct StoredCalibration {
   std::string robot;
+  std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
   std::map<std::string, double> joint_errors;  ///< by parameter name, rad or m
 };

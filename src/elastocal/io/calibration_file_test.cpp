@@ -41,6 +41,7 @@ TEST_F(CalibrationFile, ReadsBackWhatWasWrittenToTheLastBit) {
   Write(MakeCalibrationYaml(result_, base_, "there.csv", ZeroOffsets::kOrigin));
   const StoredCalibration stored = ReadCalibration(file_);
   EXPECT_EQ(stored.robot, result_.model.tree.name);
+  EXPECT_EQ(stored.nominal, NominalFingerprint(result_.model));
   EXPECT_EQ(stored.recording, "there.csv");
   int joint_parameters = 0;
   for (int i = 0; i < result_.model.parameter_count(); ++i) {
@@ -71,12 +72,58 @@ TEST_F(CalibrationFile, BadFilesAreNamedByLine) {
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "mapping"});
   Write("format: something-else\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "something-else"});
-  Write(
-      "format: elastocal-calibration-1\nrobot: r\nrecording: f\nparameters:\n"
-      "  - {name: a.theta, value: much}\n");
-  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":5", "number"});
+  const std::string head = "format: elastocal-calibration-1\nrobot: r\n";
+  Write(head + "recording: f\nparameters: []\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "'nominal'"});
+  const std::string before = head + "nominal: 0\nrecording: f\nparameters:\n";
+  Write(before + "  - {name: a.theta, unit: rad, value: much}\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "number"});
+  Write(before +
+        "  - {name: a.theta, unit: rad, value: 1}\n  - {name: b.d, unit: deg, value: 1}\n");
+  ExpectInputError([&] { ReadCalibration(file_); },
+                   {file_.string() + ":7", "unit", "'deg'", "rad or m"});
+  Write(before + "  - {name: a.theta, value: 1}\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "'unit'"});
   Write("format: elastocal-calibration-1\nrobot: [r]\nrecording: f\nparameters: []\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":2"});
+}
+
+/// Fingerprint of the arm after a replacement in its URDF.
+std::string FingerprintWith(const std::string& what, const std::string& by) {
+  std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  const std::size_t at = urdf.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  urdf.replace(at, what.size(), by);
+  return NominalFingerprint(MakeErrorModel(ParseUrdf(urdf, "urdf"), {}));
+}
+
+TEST(Fingerprint, TellsNominalRobotsApart) {
+  const std::string same = FingerprintWith("<robot", "<robot");
+  EXPECT_EQ(same.size(), 16u);
+  EXPECT_EQ(same.find_first_not_of("0123456789abcdef"), std::string::npos);
+  const std::string origin = "<origin xyz=\"0 -0.01 0.05\"/>";  // of finger_right_joint
+  for (const auto& [what, by] : std::vector<std::pair<std::string, std::string>>{
+           {origin, "<origin xyz=\"0 -0.01 0.05001\"/>"},
+           {origin, "<origin xyz=\"0 -0.01 0.05\" rpy=\"0 1e-5 0\"/>"},
+           {"multiplier=\"-1\"", "multiplier=\"-1.01\""},
+           {"<joint name=\"finger_right_joint\"", "<joint name=\"finger_other_joint\""}}) {
+    EXPECT_NE(FingerprintWith(what, by), same) << by;
+  }
+}
+
+TEST(Fingerprint, CommentsVisualsMarkersAndMinusZeroDoNotCount) {
+  const std::string same = FingerprintWith("<robot", "<robot");
+  const std::string origin = "<origin xyz=\"0 -0.01 0.05\"/>";
+  EXPECT_EQ(FingerprintWith("<link", "<!-- a comment --><link"), same);
+  EXPECT_EQ(FingerprintWith("</link>",
+                            "<visual><origin xyz=\"1 2 3\"/><geometry><sphere radius=\"1\"/>"
+                            "</geometry></visual></link>"),
+            same);
+  EXPECT_EQ(FingerprintWith(origin, "<origin xyz=\"-0 -0.01 0.05\" rpy=\"-0 0 -0\"/>"), same);
+  EXPECT_EQ(FingerprintWith(origin, "<origin xyz=\"-1e-13 -0.01 0.05\"/>"), same);
+  const RobotTree tree = ReadUrdf(SourceFile("tests/robots/arm6.urdf"));
+  EXPECT_EQ(NominalFingerprint(MakeErrorModel(tree, {{"A", FindLink(tree, "tool"), {1, 2, 3}}})),
+            same);
 }
 
 }  // namespace

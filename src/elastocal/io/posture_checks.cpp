@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -60,16 +61,75 @@ double Range(const Eigen::VectorXd& column) {
   return most - least;
 }
 
-void CheckMetres(const Recording& recording, const RobotTree& tree) {
-  const double size = RobotSize(tree);
+[[noreturn]] void FailMillimetres(const std::string& found, double size) {
+  throw InputError(found + ", but the robot is no larger than " + Round(size) +
+                   " m: these look like millimetres; metres were expected");
+}
+
+void CheckRanges(const Recording& recording, double size) {
   for (int m = 0; m < recording.marker_count(); ++m) {
     for (int axis = 0; axis < 3; ++axis) {
       const double range = Range(recording.markers.col(3 * m + axis));
-      if (size <= 0.0 || range <= kLargestRange * size) continue;
-      throw InputError(recording.source + ": marker " + Quote(recording.marker_names[m]) +
-                       " ranges over " + Round(range) + " m along " + "xyz"[axis] +
-                       ", but the robot is no larger than " + Round(size) +
-                       " m: these look like millimetres; metres were expected");
+      if (range <= kLargestRange * size) continue;
+      FailMillimetres(recording.source + ": marker " + Quote(recording.marker_names[m]) +
+                          " ranges over " + Round(range) + " m along " + "xyz"[axis],
+                      size);
+    }
+  }
+}
+
+std::vector<int> SeenMarkers(const Recording& recording, int posture) {
+  std::vector<int> seen;
+  for (int m = 0; m < recording.marker_count(); ++m) {
+    if (Seen(recording, posture, m)) seen.push_back(m);
+  }
+  return seen;
+}
+
+/// Coordinate by coordinate the one in the middle.
+Eigen::Vector3d MedianPosition(const Recording& recording, int posture,
+                               const std::vector<int>& markers) {
+  Eigen::Vector3d median;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (int m : markers) values.push_back(recording.markers(posture, 3 * m + axis));
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    median[axis] = *middle;
+  }
+  return median;
+}
+
+/// Names the one of two markers far apart that is the odd one: far from where most are or, where
+/// there are only two, the one with the larger numbers.
+void CheckDistance(const Recording& recording, int posture, int a, int b, double size) {
+  const Eigen::Vector3d p = MarkerPosition(recording, posture, a);
+  const Eigen::Vector3d q = MarkerPosition(recording, posture, b);
+  const double distance = (p - q).norm();
+  if (distance <= kLargestRange * size) return;
+  const std::vector<int> seen = SeenMarkers(recording, posture);
+  const Eigen::Vector3d reference =
+      seen.size() > 2 ? MedianPosition(recording, posture, seen) : Eigen::Vector3d::Zero().eval();
+  if ((p - reference).norm() < (q - reference).norm()) std::swap(a, b);
+  FailMillimetres(PlaceOf(recording, posture) + "marker " + Quote(recording.marker_names[a]) +
+                      " is " + Round(distance) + " m from marker " +
+                      Quote(recording.marker_names[b]),
+                  size);
+}
+
+void CheckDistances(const Recording& recording, double size) {
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const std::vector<int> seen = SeenMarkers(recording, i);
+    // No two can be far apart where all are near the first: spares most postures the pairs.
+    const bool close = std::all_of(seen.begin(), seen.end(), [&](int m) {
+      return (MarkerPosition(recording, i, m) - MarkerPosition(recording, i, seen[0])).norm() <=
+             0.5 * kLargestRange * size;
+    });
+    if (close) continue;
+    for (std::size_t a = 0; a < seen.size(); ++a) {
+      for (std::size_t b = a + 1; b < seen.size(); ++b) {
+        CheckDistance(recording, i, seen[a], seen[b], size);
+      }
     }
   }
 }
@@ -85,6 +145,23 @@ void CheckRadians(const Recording& recording, const RobotTree& tree) {
                      FormatNumber(recording.q(worst, c)) +
                      ": this looks like degrees; radians were expected");
   }
+}
+
+void CheckPosturesDiffer(const Recording& recording) {
+  const int count = recording.posture_count();
+  if (count < 2 || recording.q != recording.q.row(0).replicate(count, 1)) return;
+  throw InputError(recording.source + ": the " + std::to_string(count) +
+                   " postures are all the same; different joint positions were expected");
+}
+
+/// Joint and marker positions of a posture. Infinity stands for a marker that was not seen, as NaN
+/// is not even equal to itself.
+std::vector<double> RowNumbers(const Recording& recording, int posture) {
+  std::vector<double> row(recording.q.row(posture).begin(), recording.q.row(posture).end());
+  for (double value : recording.markers.row(posture)) {
+    row.push_back(std::isnan(value) ? std::numeric_limits<double>::infinity() : value);
+  }
+  return row;
 }
 
 std::string LimitWarning(const Recording& recording, const Joint& joint, int coordinate) {
@@ -115,9 +192,14 @@ std::string LimitWarning(const Recording& recording, const Joint& joint, int coo
 }  // namespace
 
 void CheckPlausible(const Recording& recording, const RobotTree& tree) {
-  CheckMetres(recording, tree);
+  const double size = RobotSize(tree);
+  if (size > 0.0) {
+    CheckRanges(recording, size);
+    CheckDistances(recording, size);
+  }
   CheckRadians(recording, tree);
   CheckIdentical(recording);
+  CheckPosturesDiffer(recording);
 }
 
 std::vector<std::string> LimitWarnings(const Recording& recording, const RobotTree& tree) {
@@ -130,6 +212,30 @@ std::vector<std::string> LimitWarnings(const Recording& recording, const RobotTr
     if (!warning.empty()) warnings.push_back(warning);
   }
   return warnings;
+}
+
+std::string RepetitionWarning(const Recording& recording) {
+  std::map<std::vector<double>, int> first_lines;
+  std::vector<int> repeated, repeating;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (SeenMarkers(recording, i).empty()) continue;  // nothing was measured
+    const auto [first, is_new] = first_lines.emplace(RowNumbers(recording, i), recording.line[i]);
+    if (is_new) continue;
+    repeated.push_back(first->second);
+    repeating.push_back(recording.line[i]);
+  }
+  if (repeating.empty()) return "";
+  const std::size_t count = repeating.size();
+  std::string text = recording.source + (count == 1 ? ": line " : ": lines ");
+  text += std::to_string(repeating[0]);
+  if (count > 1) text += (count > 2 ? ", " : " and ") + std::to_string(repeating[1]);
+  if (count > 2) text += " and " + std::to_string(count - 2) + " more";
+  const bool one_source =
+      std::count(repeated.begin(), repeated.end(), repeated[0]) == std::ptrdiff_t(count);
+  text += count == 1 ? " repeats " : " repeat ";
+  text += one_source ? "line " + std::to_string(repeated[0]) : "lines above them";
+  return text + (count == 1 ? ": it counts as an independent measurement, which it is not"
+                            : ": they count as independent measurements, which they are not");
 }
 
 }  // namespace elastocal

@@ -9,12 +9,17 @@
 namespace elastocal {
 
 /// Checks that a recording can be what it says it is: throws InputError for two markers with
-/// identical numbers, for positions that look like millimetres (they range over more than three
-/// times the robot's size) and joints that look like degrees (beyond two turns).
+/// identical numbers, for positions that look like millimetres (a marker ranges over more than
+/// three times the robot's size, or is that far from another one in a posture), joints that look
+/// like degrees (beyond two turns) and two or more postures that are all the same.
 void CheckPlausible(const Recording& recording, const RobotTree& tree);
 
 /// One sentence for each recorded joint that is beyond its limits by more than a degree or 5 mm,
 /// naming the worst line and how many there are.
 std::vector<std::string> LimitWarnings(const Recording& recording, const RobotTree& tree);
+
+/// A sentence naming the lines that repeat positions of joints and markers of lines above them;
+/// empty where there are none. The recording must have lines.
+std::string RepetitionWarning(const Recording& recording);
 
 }  // namespace elastocal

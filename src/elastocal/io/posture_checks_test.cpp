@@ -26,8 +26,19 @@ Recording TwoPostures() {
   recording.source = "t.csv";
   recording.marker_names = {"A", "B"};
   recording.q = Eigen::MatrixXd::Zero(2, 2);
+  recording.q(0, 1) = 0.1;
   recording.markers.resize(2, 6);
-  recording.markers << 0, 0, 0, 1, 1, 1, 0, 0, 0, 2, 2, 2;
+  recording.markers << 0, 0, 0, 0, 0, -0.1, 0, 0, 0, 0, 0, -0.2;
+  return recording;
+}
+
+/// A moves a little, C stands still beside it; B, without moving, is at `b`.
+Recording ThreeMarkers(const Eigen::RowVector3d& b) {
+  Recording recording = TwoPostures();
+  recording.marker_names = {"A", "B", "C"};
+  recording.line = {2, 3};
+  recording.markers.resize(2, 9);
+  recording.markers << 0.1, 0, 0, b, 0, 0.2, 0, 0.2, 0, 0, b, 0, 0.2, 0;
   return recording;
 }
 
@@ -39,6 +50,65 @@ TEST(PostureChecks, RangesUpToThreeTimesTheRobotPass) {
   recording.markers(1, 2) = -3.1;
   ExpectInputError([&] { CheckPlausible(recording, Arm()); },
                    {"t.csv: marker 'A' ranges over 3.1 m along z", "millimetres"});
+}
+
+TEST(PostureChecks, NamesAMarkerInMillimetresThatStandsStill) {
+  EXPECT_NO_THROW(CheckPlausible(ThreeMarkers({2.9, 0, 0}), Arm()));
+  Recording recording = ThreeMarkers({0, 0, 3.1});
+  ExpectInputError([&] { CheckPlausible(recording, Arm()); },
+                   {"t.csv:2: marker 'B' is 3.1", "m from marker 'A'", "millimetres"});
+  // Of two the one with the larger numbers.
+  recording.markers.rightCols(3).setConstant(std::nan(""));
+  ExpectInputError([&] { CheckPlausible(recording, Arm()); }, {"marker 'B' is 3.1", "'A'"});
+  // Never seen together with another one.
+  recording.markers.leftCols(3).setConstant(std::nan(""));
+  recording.markers.row(0) << 0, 0, 0, Eigen::RowVectorXd::Constant(6, std::nan(""));
+  EXPECT_NO_THROW(CheckPlausible(recording, Arm()));
+}
+
+TEST(PostureChecks, TheOddMarkerIsFarFromMostNotFromTheOrigin) {
+  Recording recording = ThreeMarkers({0, 0, 0});
+  for (int column : {0, 6}) recording.markers.col(column).array() += 20.0;
+  ExpectInputError([&] { CheckPlausible(recording, Arm()); }, {"marker 'B' is 20", "m from"});
+}
+
+TEST(PostureChecks, RefusesPosturesThatAreAllTheSame) {
+  Recording recording = TwoPostures();
+  recording.q.setConstant(0.3);
+  ExpectInputError([&] { CheckPlausible(recording, Arm()); },
+                   {"t.csv: the 2 postures are all the same"});
+  recording.q.conservativeResize(1, 2);
+  recording.markers = recording.markers.row(0).eval();
+  EXPECT_NO_THROW(CheckPlausible(recording, Arm()));
+}
+
+TEST(PostureChecks, WarnsOfRepeatedRows) {
+  Recording recording;
+  recording.source = "t.csv";
+  recording.marker_names = {"A"};
+  recording.q = Eigen::MatrixXd::Zero(7, 2);
+  recording.markers = Eigen::MatrixXd::Zero(7, 3);
+  for (int i = 0; i < 7; ++i) {
+    recording.q(i, 1) = i;
+    recording.line.push_back(i + 2);
+  }
+  EXPECT_EQ(RepetitionWarning(recording), "");
+  recording.q(3, 1) = 0;
+  EXPECT_EQ(RepetitionWarning(recording),
+            "t.csv: line 5 repeats line 2: it counts as an independent measurement, which it is "
+            "not");
+  recording.q.col(1).tail(4).setZero();
+  EXPECT_EQ(RepetitionWarning(recording),
+            "t.csv: lines 5, 6 and 2 more repeat line 2: they count as independent measurements, "
+            "which they are not");
+  recording.q.col(1).tail(2).setOnes();
+  EXPECT_EQ(RepetitionWarning(recording),
+            "t.csv: lines 5, 6 and 2 more repeat lines above them: they count as independent "
+            "measurements, which they are not");
+  // Another marker position is another measurement; no marker position is none.
+  recording.markers(3, 2) = 1e-5;
+  recording.markers.bottomRows(3).setConstant(std::nan(""));
+  EXPECT_EQ(RepetitionWarning(recording), "");
 }
 
 TEST(PostureChecks, AnglesUpToTwoTurnsPass) {

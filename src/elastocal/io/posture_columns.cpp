@@ -136,6 +136,9 @@ PostureColumns FindPostureColumns(const std::vector<std::string>& header, const 
   std::set<std::string> seen;
   for (std::size_t i = 0; i < header.size(); ++i) {
     const int column = static_cast<int>(i);
+    if (header[i].empty()) {
+      throw InputError(place + "empty column name, cell " + std::to_string(i + 1));
+    }
     const auto role = roles.find(header[i]);
     if (role == roles.end()) FailUnknown(header[i], place, roles, project);
     const auto& [kind, index, axis] = role->second;

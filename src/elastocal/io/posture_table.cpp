@@ -1,7 +1,9 @@
 #include "elastocal/io/posture_table.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -36,8 +38,11 @@ class RowReader {
 
   void Add(const std::vector<std::string>& cells) {
     if (cells.size() != columns_.names.size()) {
+      // A decimal comma splits a number in two.
+      const bool commas =
+          lines_.separator() == ',' && 2 * cells.size() >= 3 * columns_.names.size();
       Fail("found " + std::to_string(cells.size()) + " cells; the header has " +
-           std::to_string(columns_.names.size()));
+           std::to_string(columns_.names.size()) + (commas ? "; decimal commas?" : ""));
     }
     if (line_.size() >= kMostRows) {
       Fail("more than " + std::to_string(kMostRows) +
@@ -105,8 +110,13 @@ void NameMarkers(const PostureColumns& columns, const Project& project, PostureT
     const auto found =
         std::find(columns.markers.begin(), columns.markers.end(), static_cast<int>(m));
     const auto column = 3 * (found - columns.markers.begin());
-    if (found == columns.markers.end() || recording.markers.col(column).array().isNaN().all()) {
+    const bool has_columns = found != columns.markers.end();
+    if (!has_columns || recording.markers.col(column).array().isNaN().all()) {
       table.markers_not_recorded.push_back(project.markers[m].name);
+      if (has_columns) {
+        table.warnings.push_back("marker " + project.markers[m].name +
+                                 " was never seen and is left out");
+      }
       continue;
     }
     recording.marker_names.push_back(project.markers[m].name);
@@ -159,13 +169,13 @@ std::string Header(const Recording& recording, const RobotTree& tree) {
 
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project) {
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
+  if (!std::filesystem::exists(file, error) && !error) {
     throw InputError(file.string() + ": there is no such file");
   }
+  if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder");
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file, error)) {
-    throw InputError(file.string() + ": cannot be read");
-  }
+  if (!stream) throw InputError(file.string() + ": cannot be read: " + std::strerror(errno));
   return ReadPostureTable(stream, file.string(), project);
 }
 
@@ -185,6 +195,8 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
   NameJoints(columns, project.tree, table.recording);
   CheckPlausible(table.recording, project.tree);
   table.warnings = LimitWarnings(table.recording, project.tree);
+  const std::string repetition = RepetitionWarning(table.recording);
+  if (!repetition.empty()) table.warnings.push_back(repetition);
   return table;
 }
 

@@ -85,7 +85,7 @@ TEST(PostureTable, EmptyMarkerCellsMeanNotSeen) {
   const std::string header =
       "A_x,A_y,A_z,B_x,B_y,B_z,rail_joint,turret_joint,shoulder_joint,"
       "elbow_joint,finger_right_joint\n";
-  const PostureTable table = Read(header + ",,,,,,0,0,0,0,0\n1,2,3,,,,0,0,0,0,0\n");
+  const PostureTable table = Read(header + ",,,,,,0,0,0,0,1\n1,2,3,,,,0,0,0,0.1,1\n");
   EXPECT_EQ(table.recording.marker_names, std::vector<std::string>{"A"});
   EXPECT_FALSE(Seen(table.recording, 0, 0));
   EXPECT_TRUE(Seen(table.recording, 1, 0));
@@ -111,6 +111,8 @@ TEST(PostureTable, NamesWrongColumns) {
 TEST(PostureTable, NamesWrongCells) {
   ExpectError(kHeader, {"t.csv", "no row"});
   ExpectError(kHeader + "1,1,2,3,0.1,0.2,0.3\n", {"t.csv:2: ", "7 cells", "8"});
+  ExpectError(kHeader + "1,1,5,2,0,3,0,0,1,0,2,0,3,0,4\n", {"15 cells", "8; decimal commas?"});
+  ExpectError("A_x,A_y,A_z,,t\n", {"t.csv:1: empty column name, cell 4"});
   const auto row = [](const std::string& x, const std::string& q) {
     return kHeader + "1,1,2,3,0,0,0,0\n1," + x + ",2,3,0,0,0," + q + "\n";
   };
@@ -141,6 +143,14 @@ TEST(PostureTable, WarnsOfJointsBeyondTheirLimits) {
   EXPECT_EQ(table.warnings[1],
             "t.csv:4: joint 'elbow_joint' is at -2.5 rad, 11.4592 degrees beyond its limit of -2.3 "
             "rad (the worst of 2 postures beyond it)");
+}
+
+TEST(PostureTable, WarnsOfRepeatedRows) {
+  const std::string row = "1,2,3,0,0,0,0.1\n";
+  const PostureTable table = Read(kHeader + "1," + row + "2," + row + "3,1,2,3,0,0,0,0.2\n");
+  ASSERT_EQ(table.warnings.size(), 1u);
+  EXPECT_EQ(table.warnings[0].rfind("t.csv: line 3 repeats line 2: ", 0), 0u);
+  ExpectError(kHeader + "1," + row + "2," + row, {"t.csv: the 2 postures are all the same"});
 }
 
 TEST(PostureTable, RefusesIdenticalMarkers) {
@@ -180,7 +190,14 @@ TEST(PostureTable, NamesAFileThatCannotBeRead) {
                    {"nowhere/t.csv", "there is no such file"});
   ExpectInputError(
       [] { ReadPostureTable(std::filesystem::path(testing::TempDir()), ArmProject()); },
-      {"cannot be read"});
+      {"is a folder"});
+  const ScratchFolder scratch;
+  const std::filesystem::path file = scratch.path() / "t.csv";
+  WriteFile(file, kHeader);
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  if (std::ifstream(file)) GTEST_SKIP() << "this user may read everything";
+  ExpectInputError([&] { ReadPostureTable(file, ArmProject()); },
+                   {"t.csv: cannot be read: Permission denied"});
 }
 
 TEST(PostureTable, WritesWhatItReads) {

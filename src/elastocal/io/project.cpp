@@ -23,9 +23,14 @@ std::filesystem::path Resolve(const std::filesystem::path& project_file, const s
 void ReadRobot(const YamlValue& section, Project& project) {
   section.ExpectKeys({"urdf"});
   const YamlValue urdf = section.Get("urdf");
+  if (urdf.Text().find("://") != std::string::npos) {
+    urdf.Fail("found " + Quote(urdf.Text()) +
+              "; package:// and other URIs are not resolved: a path, seen from the project file, "
+              "was expected");
+  }
   project.urdf = Resolve(project.file, urdf.Text());
   std::error_code error;
-  if (!std::filesystem::exists(project.urdf, error)) {
+  if (!std::filesystem::exists(project.urdf, error) && !error) {
     urdf.Fail("there is no file " + project.urdf.string());
   }
   project.tree = ReadUrdf(project.urdf);
@@ -73,7 +78,7 @@ void CheckHeld(const YamlValue& section, const Project& project) {
   for (const YamlValue& pattern : hold->Items()) {
     const std::string text = pattern.Text();
     try {
-      MatchParameters(model.parameters, {text});
+      CheckPatterns(model.parameters, {text});
     } catch (const InputError& error) {
       pattern.Fail(error.what());
     }
@@ -118,6 +123,12 @@ Project ReadProject(const std::filesystem::path& file) {
 }
 
 Project ParseProject(const std::string& text, const std::filesystem::path& file) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::string_view beginning = text;
+  if (beginning.starts_with(kByteOrderMark)) beginning.remove_prefix(kByteOrderMark.size());
+  if (Trim(beginning).starts_with('<')) {
+    throw InputError(Place(file.string(), 1) + "this is XML; a project file (YAML) was expected");
+  }
   const YamlValue root = YamlValue::Parse(text, file.string());
   root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "recording", "placement",
                    "identifiability", "calibration"});

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "elastocal/io/project_sections.hpp"
 #include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -10,7 +12,11 @@ constexpr std::size_t kSmallestCluster = 3;
 
 Eigen::Vector3d ReadPosition(const YamlValue& value) {
   const std::vector<YamlValue> coordinates = value.Items();
-  value.Expect(coordinates.size() == 3, "three coordinates [x, y, z] in mm");
+  if (coordinates.size() != 3) {
+    value.Fail("found " + std::to_string(coordinates.size()) +
+               (coordinates.size() == 1 ? " number" : " numbers") +
+               "; expected three coordinates [x, y, z] in mm");
+  }
   Eigen::Vector3d position;
   for (int i = 0; i < 3; ++i) position[i] = kMetresPerMm * coordinates[i].Number();
   return position;
@@ -84,6 +90,12 @@ void ReadMarkers(const YamlValue& section, Project& project) {
     for (const YamlValue& marker : single->Items()) ReadSingle(marker, project);
   }
   if (project.markers.empty()) section.Fail("there is no marker; at least one was expected");
+  const auto stands_still = [&](const Marker& marker) {
+    return project.tree.links[marker.link].body == 0;
+  };
+  if (std::all_of(project.markers.begin(), project.markers.end(), stands_still)) {
+    section.Fail("no joint moves any marker");
+  }
   if (const auto reference = section.Find("reference")) ReadReference(*reference, project);
 }
 

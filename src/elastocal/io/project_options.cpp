@@ -77,13 +77,17 @@ void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions
 }
 
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options) {
-  section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "outlier_probability",
-                      "support_threshold", "correlation_threshold", "max_iterations"});
+  section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "plausible_marker_sd_mm",
+                      "outlier_probability", "support_threshold", "correlation_threshold",
+                      "max_iterations"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
   if (const auto widen = section.Find("widen_prior")) options.widen_prior = widen->Boolean();
   if (const auto sd = section.Find("marker_sd_mm")) {
     sd->Expect(sd->Number() >= 0.0, "a number of at least 0");
     options.marker_sd = kMetresPerMm * sd->Number();
+  }
+  if (const auto sd = section.Find("plausible_marker_sd_mm")) {
+    options.plausible_marker_sd = kMetresPerMm * sd->PositiveOrInfinity();
   }
   if (const auto probability = section.Find("outlier_probability")) {
     options.outlier_probability = Fraction(*probability);

@@ -144,6 +144,16 @@ TEST(Project, NamesAMissingFile) {
       {"p.yaml:3: robot.urdf: ", "no.urdf"});
 }
 
+TEST(Project, NamesWhatIsNoFileOfItsKind) {
+  ExpectInputError([] { ParseProject("robot: {urdf: package://r/r.urdf}", "p.yaml"); },
+                   {"p.yaml:1: robot.urdf: ", "'package://r/r.urdf'", "not resolved", "a path"});
+  ExpectInputError([] { ReadProject(SourceFile("tests/robots/arm6.urdf")); },
+                   {"arm6.urdf:1: this is XML; a project file (YAML) was expected"});
+  ExpectInputError([] { ReadProject(SourceFile("tests/robots")); }, {"robots: is a folder"});
+  ExpectInputError([] { ParseProject("robot: {urdf: .}", SourceFile("tests/robots/p.yaml")); },
+                   {"is a folder"});
+}
+
 TEST(Project, NamesMalformedRobot) {
   const ScratchFolder scratch;
   const std::filesystem::path& folder = scratch.path();
@@ -202,7 +212,9 @@ TEST(Project, ChecksChains) {
 TEST(Project, ChecksMarkers) {
   ExpectMarkerError("{}", {"p.yaml:2: markers: ", "no marker"});
   ExpectMarkerError("{single: [{name: M, link: tool, position_mm: [1, 2]}]}",
-                    {"position_mm", "three coordinates"});
+                    {"position_mm: found 2 numbers; expected three coordinates"});
+  ExpectMarkerError("{single: [{name: M, link: pedestal, position_mm: [1, 2, 3]}]}",
+                    {"p.yaml:2: markers: no joint moves any marker"});
   ExpectMarkerError("{single: [{name: M, link: tool, position_mm: [1, 2, x]}]}",
                     {"position_mm[2]: found 'x'"});
   ExpectMarkerError("{clusters: [{name: C, link: tool, positions_mm: [[1, 2, 3]]}]}",

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "elastocal/io/text.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -71,6 +73,11 @@ Json ExcitationJson(const CalibrationRun& run) {
   json["O3"] = excitation.indices.o3;
   json["O4"] = excitation.indices.o4;
   json["O5"] = excitation.indices.o5;
+  const auto& parameters = run.comparison.geometric().model.parameters;
+  json["hardly_excited"] = Json::array();
+  for (int i : HardlyExcited(parameters, run.base.kept, excitation)) {
+    json["hardly_excited"].push_back(parameters[i].name);
+  }
   return json;
 }
 
@@ -82,11 +89,37 @@ std::string DescribeObservation(const Recording& recording, int posture, int mar
   return text + ", marker " + recording.marker_names[marker];
 }
 
+std::string RunStatus(const CalibrationRun& run) {
+  const Termination termination = run.comparison.geometric().termination;
+  const bool implausible =
+      termination == Termination::kConverged && !run.verdict.objections.empty();
+  return implausible ? "implausible" : TerminationName(termination);
+}
+
+std::string MakeCovarianceCsv(const CalibrationResult& result) {
+  const std::vector<int>& parameters = result.posterior.parameters;
+  std::string text = "parameter";
+  for (int i : parameters) text += "," + result.model.parameters[i].name;
+  text += "\n";
+  for (std::size_t row = 0; row < parameters.size(); ++row) {
+    text += result.model.parameters[parameters[row]].name;
+    for (std::size_t column = 0; column < parameters.size(); ++column) {
+      text += "," + FormatNumber(result.posterior.covariance(static_cast<Eigen::Index>(row),
+                                                             static_cast<Eigen::Index>(column)));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 std::string MakeSummaryJson(const CalibrationRun& run) {
   const CalibrationResult& result = run.comparison.geometric();
   Json json;
-  json["status"] = TerminationName(result.termination);
+  json["status"] = RunStatus(run);
   json["message"] = result.message;
+  json["settled"] = result.settled;
+  json["objections"] = run.verdict.objections;
+  json["remarks"] = run.verdict.remarks;
   json["robot"] = result.model.tree.name;
   json["recording"] = run.recording.source;
   json["postures"] = run.recording.posture_count();
@@ -109,6 +142,8 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
     json["kfold"]["rmse_3d_mm"] = ByModel(metrics, &ErrorMetrics::rmse_3d);
     json["kfold"]["rmse_coordinate_mm"] = ByModel(metrics, &ErrorMetrics::rmse_coordinate);
     json["kfold"]["max_mm"] = ByModel(metrics, &ErrorMetrics::maximum);
+    json["kfold"]["unconverged"] = run.cross_validation.unconverged;
+    json["kfold"]["not_predicted"] = run.cross_validation.not_predicted;
   }
   json["outliers"] = Outliers(run);
   json["excitation"] = ExcitationJson(run);

@@ -6,6 +6,7 @@
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/validation/model_comparison.hpp"
+#include "elastocal/validation/verdict.hpp"
 
 namespace elastocal {
 
@@ -16,11 +17,20 @@ struct CalibrationRun {
   Excitation excitation;
   ModelComparison comparison;
   CrossValidation cross_validation;  ///< folds 0: not asked for
+  Verdict verdict;
   std::vector<std::string> warnings;
 };
 
+/// "converged", "not converged", "failed", or "implausible" where the verdict has objections though
+/// the fit has converged.
+std::string RunStatus(const CalibrationRun& run);
+
 /// summary.json: the figures of a run, for programs to read (docs/formats.md).
 std::string MakeSummaryJson(const CalibrationRun& run);
+
+/// covariance.csv: covariance of the estimated and unsupported parameters together, rad and m, with
+/// their names as header row and first column.
+std::string MakeCovarianceCsv(const CalibrationResult& result);
 
 /// The marker seen in a posture as people find it again: "posture 12 (line 14), marker LHAND_1".
 std::string DescribeObservation(const Recording& recording, int posture, int marker);

@@ -27,10 +27,38 @@ void CheckBytes(const std::string& text, const std::string& source) {
   }
 }
 
+/// tinyxml2 has names of constants for its errors, not words.
+std::string InWords(tinyxml2::XMLError error) {
+  switch (error) {
+    case tinyxml2::XML_ERROR_PARSING_ELEMENT:
+      return "a tag that cannot be read";
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      return "an attribute that cannot be read; name=\"value\" was expected";
+    case tinyxml2::XML_ERROR_PARSING_TEXT:
+      return "text where a tag was expected";
+    case tinyxml2::XML_ERROR_PARSING_CDATA:
+      return "a CDATA section without end";
+    case tinyxml2::XML_ERROR_PARSING_COMMENT:
+      return "a comment without end";
+    case tinyxml2::XML_ERROR_PARSING_DECLARATION:
+      return "a declaration <?...?> without end or in the wrong place";
+    case tinyxml2::XML_ERROR_PARSING_UNKNOWN:
+      return "a tag <!...> without end";
+    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+      return "no tag at all";
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      return "a tag whose end is missing or is that of another one";
+    case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
+      return "too many elements in one another";
+    default:
+      return "tags that are not closed";
+  }
+}
+
 void ParseXml(const std::string& text, const std::string& source, tinyxml2::XMLDocument& xml) {
   if (xml.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS) return;
-  throw InputError(Place(source, std::max(1, xml.ErrorLineNum())) + "malformed XML (" +
-                   tinyxml2::XMLDocument::ErrorIDToName(xml.ErrorID()) + ")");
+  throw InputError(Place(source, std::max(1, xml.ErrorLineNum())) +
+                   "malformed XML: " + InWords(xml.ErrorID()));
 }
 
 /// Writes what urdfdom is to read, checking the numbers on the way.

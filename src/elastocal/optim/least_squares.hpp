@@ -58,7 +58,7 @@ enum class Termination {
 const char* TerminationName(Termination termination);
 
 struct LeastSquaresResult {
-  Eigen::VectorXd x;  ///< best point found, whatever the termination
+  Eigen::VectorXd x;                            ///< best point found, whatever the termination
   double initial_cost = 0.0, final_cost = 0.0;  ///< NaN where x0 could not be evaluated
   int iterations = 0;
   Termination termination = Termination::kFailure;

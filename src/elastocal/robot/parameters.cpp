@@ -1,7 +1,7 @@
 #include "elastocal/robot/parameters.hpp"
 
+#include <algorithm>
 #include <array>
-#include <set>
 #include <string_view>
 
 #include "elastocal/math/input_error.hpp"
@@ -62,20 +62,25 @@ int FindParameter(const std::vector<Parameter>& parameters, const std::string& n
 
 std::vector<int> MatchParameters(const std::vector<Parameter>& parameters,
                                  const std::vector<std::string>& patterns) {
-  std::set<int> matched;
-  for (const std::string& pattern : patterns) {
-    bool any = false;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      if (!Matches(pattern, parameters[i].name)) continue;
-      matched.insert(static_cast<int>(i));
-      any = true;
-    }
-    if (!any) {
-      throw InputError("'" + pattern + "' matches no parameter" +
-                       DidYouMean(pattern, Names(parameters)));
+  std::vector<int> matched;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto matches = [&](const std::string& pattern) {
+      return Matches(pattern, parameters[i].name);
+    };
+    if (std::any_of(patterns.begin(), patterns.end(), matches)) {
+      matched.push_back(static_cast<int>(i));
     }
   }
-  return {matched.begin(), matched.end()};
+  return matched;
+}
+
+void CheckPatterns(const std::vector<Parameter>& parameters,
+                   const std::vector<std::string>& patterns) {
+  for (const std::string& pattern : patterns) {
+    if (!MatchParameters(parameters, {pattern}).empty()) continue;
+    throw InputError("'" + pattern + "' matches no parameter" +
+                     DidYouMean(pattern, Names(parameters)));
+  }
 }
 
 }  // namespace elastocal

@@ -38,8 +38,12 @@ bool IsExternal(ParameterKind kind);
 int FindParameter(const std::vector<Parameter>& parameters, const std::string& name);
 
 /// Indices, ascending, of the parameters whose names match any of the patterns; `*` stands for any
-/// run of characters. Throws InputError for a pattern that matches nothing.
+/// run of characters. A pattern may match nothing: it may concern a part that was not recorded.
 std::vector<int> MatchParameters(const std::vector<Parameter>& parameters,
                                  const std::vector<std::string>& patterns);
+
+/// Throws InputError, with the nearest known name, for a pattern that matches nothing.
+void CheckPatterns(const std::vector<Parameter>& parameters,
+                   const std::vector<std::string>& patterns);
 
 }  // namespace elastocal

@@ -52,16 +52,22 @@ TEST(Parameters, MatchesPatterns) {
   EXPECT_TRUE(Matched({}).empty());
 }
 
-TEST(Parameters, APatternThatMatchesNothingIsAnError) {
-  ExpectInputError([] { Matched({"leg_2.*", "leg_7.*"}); }, {"'leg_7.*' matches no parameter"});
-  ExpectInputError([] { Matched({"leg_2.thet"}); }, {"'leg_2.thet'", "mean 'leg_2.theta'?"});
+void Check(const std::vector<std::string>& patterns) { CheckPatterns(LegParameters(), patterns); }
+
+TEST(Parameters, APatternMayMatchNothing) {
+  EXPECT_EQ(Matched({"leg_7.*", "leg_2.d"}), Names{"leg_2.d"});
+}
+
+TEST(Parameters, APatternThatMatchesNothingCanBeRefused) {
+  ExpectInputError([] { Check({"leg_2.*", "leg_7.*"}); }, {"'leg_7.*' matches no parameter"});
+  ExpectInputError([] { Check({"leg_2.thet"}); }, {"'leg_2.thet'", "mean 'leg_2.theta'?"});
   // Not parts of names, and case counts.
-  ExpectInputError([] { Matched({"leg_2"}); }, {"'leg_2'"});
-  ExpectInputError([] { Matched({"*.D"}); }, {"'*.D'"});
+  ExpectInputError([] { Check({"leg_2"}); }, {"'leg_2'"});
+  ExpectInputError([] { Check({"*.D"}); }, {"'*.D'"});
 }
 
 TEST(Parameters, ManyStarsAreNoWork) {
-  ExpectInputError([] { Matched({std::string(30, '*') + "#"}); }, {"matches no parameter"});
+  ExpectInputError([] { Check({std::string(30, '*') + "#"}); }, {"matches no parameter"});
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ ModelComparison CompareModels(const ErrorModel& model, const Recording& recordin
 struct CrossValidation {
   int folds = 0;
   std::array<ErrorMetrics, 3> metrics;  ///< of held-out observations, by ModelKind
+  int unconverged = 0;                  ///< fits that did not converge
+  int not_predicted = 0;  ///< held-out observations left out: the marker was in no other fold
 };
 
 /// k-fold cross-validation by posture: every posture is predicted once by models calibrated without

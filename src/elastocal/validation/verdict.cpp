@@ -1,0 +1,126 @@
+#include "elastocal/validation/verdict.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace elastocal {
+namespace {
+
+constexpr double kMostOutliers = 0.25;     // part of all observations: an objection
+constexpr double kManyOutliers = 0.05;     // a remark
+constexpr double kSuspectedMarker = 0.25;  // part of a marker's or a posture's sightings
+constexpr const char* kAdvice =
+    " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
+    "on.";
+
+std::string Number(double value, const char* unit) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.3g %s", value, unit);
+  return text;
+}
+
+std::string PerCent(Eigen::Index part, Eigen::Index whole) {
+  return std::to_string(100 * part / std::max<Eigen::Index>(1, whole)) + " %";
+}
+
+void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options,
+              Verdict& verdict) {
+  if (result.termination != Termination::kConverged) {
+    verdict.objections.push_back("the fit has not converged: " + result.message);
+  } else if (!result.settled) {
+    verdict.remarks.push_back(
+        "noise, prior and the verdict on outliers have not come to rest: the standard deviations "
+        "are rough");
+  }
+  if (result.marker_sd > options.plausible_marker_sd) {
+    verdict.objections.push_back(
+        "the model does not explain this recording: markers would have "
+        "to be measured with a noise of " +
+        Number(1e3 * result.marker_sd, "mm") + "." + kAdvice);
+  }
+  for (const auto& [scale, what] : {std::pair{result.prior_scale.angles, "angles"},
+                                    std::pair{result.prior_scale.lengths, "lengths"}}) {
+    if (scale < kMaxPriorScale) continue;
+    verdict.objections.push_back(std::string("the estimated ") + what +
+                                 " are more than ten times what the prior expects: not the errors "
+                                 "of a robot." +
+                                 kAdvice);
+  }
+}
+
+/// The joint parameter furthest from nominal in units of its prior.
+void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& verdict) {
+  int largest = -1;
+  double furthest = 0.0;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[i];
+    const double deviation = std::abs(result.delta[i]) / prior[parameter.kind];
+    if (parameter.joint < 0 || !(deviation > furthest)) continue;
+    furthest = deviation;
+    largest = i;
+  }
+  if (largest < 0) return;
+  const Parameter& parameter = result.model.parameters[largest];
+  const bool angle = parameter.unit == ParameterUnit::kRadian;
+  verdict.remarks.push_back(
+      "furthest from nominal: " + parameter.name + ", " +
+      Number(result.delta[largest] * (angle ? 180.0 / M_PI : 1e3), angle ? "deg" : "mm"));
+}
+
+void JudgeOutliers(const CalibrationResult& result, const Recording& recording, Verdict& verdict) {
+  const ObservationMask seen = SeenMask(recording);
+  const ObservationMask out = seen && !result.used;
+  if (static_cast<double>(out.count()) > kMostOutliers * static_cast<double>(seen.count())) {
+    verdict.objections.push_back(PerCent(out.count(), seen.count()) +
+                                 " of the observations are outliers." + kAdvice);
+  } else if (static_cast<double>(out.count()) > kManyOutliers * static_cast<double>(seen.count())) {
+    verdict.remarks.push_back(PerCent(out.count(), seen.count()) +
+                              " of the observations are outliers");
+  }
+  for (Eigen::Index m = 0; m < seen.cols(); ++m) {
+    const auto rejected = out.col(m).count();
+    if (rejected < 3 || static_cast<double>(rejected) <
+                            kSuspectedMarker * static_cast<double>(seen.col(m).count())) {
+      continue;
+    }
+    verdict.remarks.push_back("marker " + recording.marker_names[m] + ": " +
+                              std::to_string(rejected) + " of " +
+                              std::to_string(seen.col(m).count()) +
+                              " sightings are outliers; is it on the right link, and did it stay?");
+  }
+}
+
+}  // namespace
+
+Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
+              const Excitation& excitation, const Recording& recording,
+              const CalibrationOptions& options) {
+  const CalibrationResult& result = comparison.geometric();
+  Verdict verdict;
+  JudgeFit(result, options, verdict);
+  if (!std::isfinite(excitation.condition_base)) {
+    verdict.objections.push_back(
+        "the postures do not determine the parameters (infinite condition number): record more of "
+        "them, and more different ones");
+  }
+  JudgeOutliers(result, recording, verdict);
+  if (validation.folds > 0) {
+    if (validation.metrics[2].rmse_3d >= validation.metrics[0].rmse_3d) {
+      verdict.objections.push_back(
+          "on held-out postures the calibrated model is no better than the uncalibrated one");
+    }
+    if (validation.unconverged > 0) {
+      verdict.remarks.push_back(std::to_string(validation.unconverged) +
+                                " fits of the cross-validation have not converged");
+    }
+    if (validation.not_predicted > 0) {
+      verdict.remarks.push_back(
+          std::to_string(validation.not_predicted) +
+          " held-out sightings could not be predicted: their marker is in no other fold");
+    }
+  }
+  if (!verdict.objections.empty()) NameLargest(result, options.prior, verdict);
+  return verdict;
+}
+
+}  // namespace elastocal

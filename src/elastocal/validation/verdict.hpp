@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/identifiability/observability.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+
+namespace elastocal {
+
+/// Whether a calibration can be trusted, in words that a user can act on.
+struct Verdict {
+  /// Why nothing of it should be deployed: the model does not explain the recording, or the
+  /// recording does not determine the model. Empty: nothing found.
+  std::vector<std::string> objections;
+  /// What to look at before it is deployed.
+  std::vector<std::string> remarks;
+};
+
+/// Judges a calibration. Objections: no convergence; noise above
+/// CalibrationOptions::plausible_marker_sd; a prior that would have to be widened beyond
+/// kMaxPriorScale; dependent columns; more than a quarter of the observations outliers; held-out
+/// errors no better than uncalibrated. `validation` may have no folds.
+Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
+              const Excitation& excitation, const Recording& recording,
+              const CalibrationOptions& options);
+
+}  // namespace elastocal
