@@ -57,13 +57,14 @@ TEST_F(LegEstimation, OutliersAreNamedAndTheRestIsLeftAlone) {
   }
 }
 
-// One recording in a hundred may have an outlier named without reason; 40 clean ones none or one.
-TEST_F(LegEstimation, CleanRecordingsHaveNoOutliers) {
+// One clean recording in a hundred has an outlier named, also when the noise is estimated from few
+// residuals. Of 300, more than 9 would have a chance of one in a thousand.
+TEST_F(LegEstimation, CleanRecordingsHaveOutliersAsRarelyAsPromised) {
   int with_outliers = 0;
-  for (int seed = 0; seed < 40; ++seed) {
-    with_outliers += Estimate(Record(truth_, 15, 100u + seed)).outliers.empty() ? 0 : 1;
+  for (int seed = 0; seed < 300; ++seed) {
+    with_outliers += Estimate(Record(truth_, 5, 100u + seed)).outliers.empty() ? 0 : 1;
   }
-  EXPECT_LE(with_outliers, 2);
+  EXPECT_LE(with_outliers, 9);
 }
 
 TEST_F(LegEstimation, ParametersWithoutSupportAreHeldAtNominal) {
@@ -88,6 +89,38 @@ TEST_F(LegEstimation, ParametersWithoutSupportAreHeldAtNominal) {
     EXPECT_GT(result.sd[i], 0.5 * CalibrationOptions().prior[model_.parameters[i].kind]) << name;
   }
   EXPECT_EQ(result.status[Find("leg_3.theta")], ParameterStatus::kEstimated);
+}
+
+// Ten parallel joints, eight of which stand still: each offset of the eight is uncertain, but their
+// sum is measured well. Holding all of them would throw the sum away.
+TEST(Support, WhatManyParametersShareIsNotHeldAsAWhole) {
+  RobotTree tree = MakeRoot();
+  for (int k = 0; k < 10; ++k) {
+    AddJoint(tree, "joint_" + std::to_string(k), k, Offset(0.1, 0.0, 0.0), {0, 0, 1});
+  }
+  const ErrorModel model = MakeErrorModel(tree, {{"BASE_1", 0, {0.1, 0.2, 0.1}},
+                                                 {"BASE_2", 0, {-0.1, 0.1, 0.2}},
+                                                 {"BASE_3", 0, {0.0, -0.2, 0.1}},
+                                                 {"TIP_1", 10, {0.1, 0.05, 0.02}},
+                                                 {"TIP_2", 10, {0.05, -0.05, 0.06}},
+                                                 {"TIP_3", 10, {-0.03, 0.04, 0.05}}});
+  const BaseParameters base = FindBaseParameters(model, {});
+  const Eigen::VectorXd truth = DrawErrors(model, base.kept, {{Kind::kTheta, 0.01}}, 4);
+  Recording recording = MakeSyntheticRecording(model, truth, {.postures = 40});
+  recording.q.middleCols(1, 8).setConstant(0.1);
+  Random random(5);
+  for (int i = 0; i < 40; ++i) {
+    recording.markers.row(i) =
+        MarkerPositions(model, ApplyErrors(model, truth), recording.q.row(i).transpose())
+            .reshaped()
+            .transpose() +
+        random.NormalVector(18, 0.2e-3).transpose();
+  }
+  const CalibrationResult result = Calibrate(model, recording, base, ModelKind::kGeometric, {});
+  EXPECT_TRUE(result.settled);
+  EXPECT_NEAR(result.marker_sd, 0.2e-3, 0.02e-3);
+  const Eigen::MatrixXd distances = ResidualNorms(result.model, recording, result.delta);
+  EXPECT_NEAR(ComputeMetrics(distances, SeenMask(recording)).rmse_3d, 0.34e-3, 0.04e-3);
 }
 
 TEST_F(LegEstimation, EveryParameterHasAStatus) {

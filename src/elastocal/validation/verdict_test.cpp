@@ -1,0 +1,96 @@
+#include "elastocal/validation/verdict.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+class VerdictTest : public ::testing::Test {
+ protected:
+  /// A comparison that nothing can be said against.
+  void SetUp() override {
+    CalibrationResult& result = comparison_.results[2];
+    result.model = TalosLegModel();
+    result.delta.setZero(result.model.parameter_count());
+    result.termination = Termination::kConverged;
+    result.marker_sd = 0.2e-3;
+    for (const Marker& marker : result.model.markers) {
+      recording_.marker_names.push_back(marker.name);
+    }
+    recording_.q.setZero(20, 6);
+    recording_.markers.setZero(20, 27);
+    result.used = SeenMask(recording_);
+    excitation_.condition_base = 100.0;
+    validation_.folds = 5;
+    for (int k = 0; k < 3; ++k) validation_.metrics[k].rmse_3d = 3e-3 - 1e-3 * k;
+  }
+
+  Verdict Judged() const {
+    return Judge(comparison_, validation_, excitation_, recording_, CalibrationOptions());
+  }
+  void ExpectObjection(const char* part) const {
+    const Verdict verdict = Judged();
+    ASSERT_EQ(verdict.objections.size(), 1u);
+    EXPECT_NE(verdict.objections[0].find(part), std::string::npos) << verdict.objections[0];
+  }
+
+  ModelComparison comparison_;
+  CrossValidation validation_;
+  Excitation excitation_;
+  Recording recording_;
+};
+
+TEST_F(VerdictTest, NothingToSay) {
+  EXPECT_TRUE(Judged().objections.empty());
+  EXPECT_TRUE(Judged().remarks.empty());
+}
+
+TEST_F(VerdictTest, NoConvergence) {
+  comparison_.results[2].termination = Termination::kNoConvergence;
+  ExpectObjection("not converged");
+}
+
+TEST_F(VerdictTest, ImplausibleNoiseNamesTheFurthestParameter) {
+  CalibrationResult& result = comparison_.results[2];
+  result.marker_sd = 6e-3;
+  result.delta[FindParameter(result.model.parameters, "leg_4.theta")] = 0.1;
+  result.delta[FindParameter(result.model.parameters, "leg_3.d")] = 2e-3;
+  ExpectObjection("6 mm");
+  ASSERT_EQ(Judged().remarks.size(), 1u);
+  EXPECT_NE(Judged().remarks[0].find("leg_4.theta, 5.73 deg"), std::string::npos);
+}
+
+TEST_F(VerdictTest, PriorAtItsLimit) {
+  comparison_.results[2].prior_scale.lengths = kMaxPriorScale;
+  ExpectObjection("lengths are more than ten times");
+}
+
+TEST_F(VerdictTest, DependentColumns) {
+  excitation_.condition_base = std::numeric_limits<double>::infinity();
+  ExpectObjection("do not determine");
+}
+
+TEST_F(VerdictTest, OutliersByNumberAndByMarker) {
+  auto& used = comparison_.results[2].used;
+  used.col(4).head(10).setConstant(false);  // 10 of 180: 5.6 %, all of one marker
+  ASSERT_EQ(Judged().remarks.size(), 2u);
+  EXPECT_NE(Judged().remarks[0].find("5 %"), std::string::npos) << Judged().remarks[0];
+  EXPECT_NE(Judged().remarks[1].find("SHANK_2: 10 of 20"), std::string::npos);
+  EXPECT_TRUE(Judged().objections.empty());
+  used.topRows(6).setConstant(false);
+  ExpectObjection("outliers");
+}
+
+TEST_F(VerdictTest, HeldOutErrorsNoBetter) {
+  validation_.metrics[2].rmse_3d = 3.1e-3;
+  ExpectObjection("held-out");
+  validation_.folds = 0;
+  EXPECT_TRUE(Judged().objections.empty());
+}
+
+}  // namespace
+}  // namespace elastocal
