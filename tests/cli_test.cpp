@@ -83,6 +83,8 @@ TEST_F(Program, HelpHasAnExampleForEveryCommand) {
 TEST_F(Program, WrongUsageEndsWithTwo) {
   EXPECT_EQ(RunProgram("").exit_code, 2);
   EXPECT_EQ(RunProgram("calibrat").exit_code, 2);
+  EXPECT_NE(RunProgram("calibrat").err.find("did you mean 'calibrate'"), std::string::npos);
+  EXPECT_EQ(RunProgram("demo --seed -1").exit_code, 2);
   EXPECT_EQ(RunProgram("calibrate " + project_).exit_code, 2);
   EXPECT_EQ(Calibrate(project_, recording_, "--kfold one").exit_code, 2);
   EXPECT_EQ(Calibrate(project_, recording_, "--no-such-option").exit_code, 2);

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -16,11 +19,22 @@ void AddCommonOptions(CLI::App& command, CommonOptions& options) {
       .add_option("--seed", options.seed,
                   "Seed of all that is drawn at random (postures for identifiability, folds, the "
                   "demo's truth); default 1, or the project's")
-      ->check(CLI::NonNegativeNumber);
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? std::string("a seed is 0 or above") : std::string();
+      });
   command.add_flag("--quiet,-q", options.quiet, "Print nothing but warnings and errors");
 }
 
 namespace {
+
+/// What is wrong with the first word of the command line where it is no command; else empty.
+std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return "";
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return "";
+  return "unknown command '" + std::string(argv[1]) + "'" + DidYouMean(argv[1], known);
+}
 
 int Run(int argc, char** argv) {
   CLI::App app("Elasto-geometric calibration of humanoid robots from marker positions.");
@@ -35,6 +49,10 @@ int Run(int argc, char** argv) {
   AddCalibrate(app, action);
   AddValidate(app, action);
   AddDemo(app, action);
+  if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {
+    spdlog::error("{} (elastocal --help lists the commands)", unknown);
+    return kUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
