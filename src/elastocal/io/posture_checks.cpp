@@ -74,19 +74,6 @@ void CheckMetres(const Recording& recording, const RobotTree& tree) {
   }
 }
 
-void CheckRadians(const Recording& recording, const RobotTree& tree) {
-  for (int c = 0; c < tree.coordinate_count(); ++c) {
-    const Joint& joint = tree.joints[tree.coordinate_joint[c]];
-    if (joint.type != JointType::kRevolute) continue;
-    Eigen::Index worst = 0;
-    const double largest = recording.q.col(c).cwiseAbs().maxCoeff(&worst);
-    if (largest <= kLargestAngle) continue;
-    throw InputError(PlaceOf(recording, worst) + "joint " + Quote(joint.name) + " is at " +
-                     FormatNumber(recording.q(worst, c)) +
-                     ": this looks like degrees; radians were expected");
-  }
-}
-
 std::string LimitWarning(const Recording& recording, const Joint& joint, int coordinate) {
   const bool revolute = joint.type == JointType::kRevolute;
   const double margin = revolute ? kLimitMarginRad : kLimitMarginM;
@@ -114,9 +101,23 @@ std::string LimitWarning(const Recording& recording, const Joint& joint, int coo
 
 }  // namespace
 
+void CheckRadians(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
+                  const std::function<std::string(Eigen::Index)>& place) {
+  if (joint.type != JointType::kRevolute || positions.size() == 0) return;
+  Eigen::Index worst = 0;
+  const double largest = positions.cwiseAbs().maxCoeff(&worst);
+  if (largest <= kLargestAngle) return;
+  throw InputError(place(worst) + "joint " + Quote(joint.name) + " is at " +
+                   FormatNumber(positions[worst]) +
+                   ": this looks like degrees; radians were expected");
+}
+
 void CheckPlausible(const Recording& recording, const RobotTree& tree) {
   CheckMetres(recording, tree);
-  CheckRadians(recording, tree);
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    CheckRadians(tree.joints[tree.coordinate_joint[c]], recording.q.col(c),
+                 [&](Eigen::Index i) { return PlaceOf(recording, i); });
+  }
   CheckIdentical(recording);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,11 @@ namespace elastocal {
 /// identical numbers, for positions that look like millimetres (they range over more than three
 /// times the robot's size) and joints that look like degrees (beyond two turns).
 void CheckPlausible(const Recording& recording, const RobotTree& tree);
+
+/// The last of these for the recorded positions of one joint, none of them NaN; `place(i)` begins a
+/// message about the i-th.
+void CheckRadians(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
+                  const std::function<std::string(Eigen::Index)>& place);
 
 /// One sentence for each recorded joint that is beyond its limits by more than a degree or 5 mm,
 /// naming the worst line and how many there are.

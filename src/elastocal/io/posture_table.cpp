@@ -123,14 +123,6 @@ void NameJoints(const PostureColumns& columns, const RobotTree& tree, Recording&
   }
 }
 
-/// A name as a cell of a table.
-std::string Cell(const std::string& name) {
-  if (name.find_first_of(",;\t\"") == std::string::npos) return name;
-  std::string cell = "\"";
-  for (char character : name) cell += character == '"' ? "\"\"" : std::string(1, character);
-  return cell + "\"";
-}
-
 /// Coordinates of the tree that the recording holds.
 std::vector<int> RecordedCoordinates(const Recording& recording, const RobotTree& tree) {
   const auto& absent = recording.joints_not_recorded;
@@ -146,10 +138,10 @@ std::string Header(const Recording& recording, const RobotTree& tree) {
   std::string header;
   if (recording.time_s.size() > 0) header += RecordingColumns().time + ",";
   for (const std::string& marker : recording.marker_names) {
-    for (const std::string& column : DefaultMarkerColumns(marker)) header += Cell(column) + ",";
+    for (const std::string& column : DefaultMarkerColumns(marker)) header += MakeCell(column) + ",";
   }
   for (int c : RecordedCoordinates(recording, tree)) {
-    header += Cell(tree.joints[tree.coordinate_joint[c]].name) + ",";
+    header += MakeCell(tree.joints[tree.coordinate_joint[c]].name) + ",";
   }
   header.back() = '\n';
   return header;
@@ -158,14 +150,7 @@ std::string Header(const Recording& recording, const RobotTree& tree) {
 }  // namespace
 
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    throw InputError(file.string() + ": there is no such file");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file, error)) {
-    throw InputError(file.string() + ": cannot be read");
-  }
+  std::ifstream stream = OpenTable(file);
   return ReadPostureTable(stream, file.string(), project);
 }
 
