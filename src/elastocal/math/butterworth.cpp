@@ -30,30 +30,35 @@ SecondOrderSection SinglePole(double warped) {
   return section;
 }
 
+// Signals are filtered four at a time, one a row: each sample waits for the one before, so that a
+// single signal would leave the processor idle.
+constexpr int kLanes = 4;
+using Lanes = Eigen::Array<double, kLanes, Eigen::Dynamic>;
+
 // One pass in place, in transposed direct form II, started as if the first sample had lasted
 // forever.
-void Filter(const SecondOrderSection& f, Eigen::Ref<Eigen::VectorXd> x) {
+void Filter(const SecondOrderSection& f, Lanes& x) {
   const double gain = (f.b0 + f.b1 + f.b2) / (1.0 + f.a1 + f.a2);
-  double s1 = (gain - f.b0) * x[0];
-  double s2 = (f.b2 - f.a2 * gain) * x[0];
-  for (double& value : x) {
-    const double in = value;
-    const double out = f.b0 * in + s1;
+  Eigen::Array<double, kLanes, 1> s1 = (gain - f.b0) * x.col(0);
+  Eigen::Array<double, kLanes, 1> s2 = (f.b2 - f.a2 * gain) * x.col(0);
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const Eigen::Array<double, kLanes, 1> in = x.col(i);
+    const Eigen::Array<double, kLanes, 1> out = f.b0 * in + s1;
     s1 = f.b1 * in - f.a1 * out + s2;
     s2 = f.b2 * in - f.a2 * out;
-    value = out;
+    x.col(i) = out;
   }
 }
 
 // Mirrors the signal in its end points, `padding` samples at either end.
-void ExtendOddly(const Eigen::Ref<const Eigen::VectorXd>& signal, int padding,
-                 Eigen::Ref<Eigen::VectorXd> extended) {
+void ExtendOddly(const Eigen::Ref<const Eigen::VectorXd>& signal, int padding, int lane,
+                 Lanes& extended) {
   const Eigen::Index n = signal.size();
-  extended.segment(padding, n) = signal;
-  extended.head(padding) =
-      (2.0 * signal[0] - signal.segment(1, padding).array()).matrix().reverse();
-  extended.tail(padding) =
-      (2.0 * signal[n - 1] - signal.segment(n - 1 - padding, padding).array()).matrix().reverse();
+  for (int k = 1; k <= padding; ++k) {
+    extended(lane, padding - k) = 2.0 * signal[0] - signal[k];
+    extended(lane, padding + n - 1 + k) = 2.0 * signal[n - 1] - signal[n - 1 - k];
+  }
+  extended.row(lane).segment(padding, n) = signal.transpose();
 }
 
 }  // namespace
@@ -96,14 +101,17 @@ void FiltFilt(const SecondOrderSections& sections, Eigen::Ref<Eigen::MatrixXd> s
                                 " samples, expected more than the filter's padding of " +
                                 std::to_string(padding));
   }
-  Eigen::VectorXd extended(signals.rows() + 2 * padding);
-  for (Eigen::Index column = 0; column < signals.cols(); ++column) {
-    ExtendOddly(signals.col(column), padding, extended);
+  Lanes extended = Lanes::Zero(kLanes, signals.rows() + 2 * padding);
+  for (Eigen::Index first = 0; first < signals.cols(); first += kLanes) {
+    const int used = static_cast<int>(std::min<Eigen::Index>(kLanes, signals.cols() - first));
+    for (int k = 0; k < used; ++k) ExtendOddly(signals.col(first + k), padding, k, extended);
     for (int pass = 0; pass < 2; ++pass) {
       for (const SecondOrderSection& section : sections) Filter(section, extended);
-      extended.reverseInPlace();
+      extended.rowwise().reverseInPlace();
     }
-    signals.col(column) = extended.segment(padding, signals.rows());
+    for (int k = 0; k < used; ++k) {
+      signals.col(first + k) = extended.row(k).segment(padding, signals.rows()).transpose();
+    }
   }
 }
 

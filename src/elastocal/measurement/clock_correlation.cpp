@@ -91,7 +91,8 @@ UniformSpeed Resample(const PredictedSpeed& predicted, double rate_hz) {
   const Eigen::VectorXd& time = predicted.time_s;
   UniformSpeed result{time[0], rate_hz, {}};
   const double duration = time[time.size() - 1] - time[0];
-  result.values.resize(1 + static_cast<Eigen::Index>(duration * rate_hz));
+  // With slack, for the last sample must not be lost to rounding.
+  result.values.resize(1 + static_cast<Eigen::Index>(duration * rate_hz + 1e-6));
   Eigen::Index next = 1;  // the first log sample after the time of interest
   for (Eigen::Index k = 0; k < result.values.size(); ++k) {
     const double t = time[0] + static_cast<double>(k) / rate_hz;

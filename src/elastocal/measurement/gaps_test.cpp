@@ -32,14 +32,6 @@ void Hide(MarkerTrajectories& trajectories, int marker, FrameInterval gap) {
   trajectories.positions.block(gap.begin, 3 * marker, gap.size(), 3).setConstant(kNan);
 }
 
-TEST(RunsWhere, FindsRunsAtBothEnds) {
-  const std::vector<bool> holds{true, true, false, true, false, false, true};
-  const auto predicate = [&](int frame) { return holds[static_cast<std::size_t>(frame)]; };
-  EXPECT_EQ(RunsWhere(7, predicate), (Intervals{{0, 2}, {3, 4}, {6, 7}}));
-  EXPECT_EQ(FrameCount(RunsWhere(7, predicate)), 4);
-  EXPECT_TRUE(RunsWhere(0, predicate).empty());
-}
-
 TEST(FillGaps, ReproducesACubicUpToTheLongestGap) {
   const MarkerTrajectories truth = CubicMotion(200);
   MarkerTrajectories seen = truth;
