@@ -122,7 +122,8 @@ TEST(JointLog, RefusesARecordingWithoutEnd) {
 }
 
 TEST(JointLog, WritesWhatItReads) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "written_joints.csv";
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "written_joints.csv";
   const JointLog written = Read(
       "t,elbow_joint,rail_joint,rail_joint_torque\n0.1,0.3333333333333333,1e-17,-7.25\n"
       "0.30000000000000004,2,3,4\n");
