@@ -69,7 +69,9 @@ void ChooseThreshold(const Eigen::MatrixXd& speeds, const std::vector<int>& mark
   const double window_s = std::max(options.hold_s, 0.1);
   const double resting = EstimateRestingSpeed(speeds, markers, rate_hz, window_s);
   result.resting_speed_m_per_s = resting;
-  const double threshold = options.threshold_factor * resting;
+  const double threshold =
+      std::max(options.threshold_factor * resting, options.least_threshold_m_per_s);
+  // Also where no speed is known and the resting speed NaN.
   result.threshold_limited = !(threshold <= options.threshold_limit_m_per_s);
   result.threshold_m_per_s = result.threshold_limited ? options.threshold_limit_m_per_s : threshold;
 }

@@ -14,13 +14,14 @@ namespace elastocal {
 /// Which frames of a trial count as measured at rest (paper, section 5.1).
 struct StableSampleOptions {
   /// All markers must be slower, m/s; 0 stands for `threshold_factor` times the resting speed that
-  /// EstimateRestingSpeed finds, but never more than `threshold_limit_m_per_s`.
+  /// EstimateRestingSpeed finds, but within the two limits below.
   double threshold_m_per_s = 0.0;
   /// With normal noise of equal size, 63 resting markers all stay below 4 times the median speed
   /// for hours; below 3.5 times, for ten minutes.
   double threshold_factor = 4.0;
-  double threshold_limit_m_per_s = 0.02;  ///< for trials that never rest
-  double hold_s = 0.3;                    ///< shortest time at rest
+  double least_threshold_m_per_s = 0.001;  ///< for data without noise
+  double threshold_limit_m_per_s = 0.02;   ///< for trials that never rest
+  double hold_s = 0.3;                     ///< shortest time at rest
   int samples_per_run = 1;
   double least_visible = 0.5;  ///< share of the markers that must have a speed in a frame
 };

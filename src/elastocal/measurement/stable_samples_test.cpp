@@ -92,7 +92,7 @@ TEST(FindStableSamples, TakesAllFramesOfARunThatHasFewer) {
 }
 
 // Twelve markers, 0.2 mm of noise: postures 5 s apart, of which the last second is at rest.
-MarkerTrajectories Postures(int count, double rest_s) {
+MarkerTrajectories Postures(int count, double rest_s, double noise = 0.2e-3) {
   MarkerTrajectories trajectories;
   trajectories.names.resize(12, "m");
   trajectories.rate_hz = 100.0;
@@ -105,7 +105,7 @@ MarkerTrajectories Postures(int count, double rest_s) {
     const double way = i / 500 + u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
     for (int k = 0; k < 36; ++k) {
       const double reach = k < 18 ? 0.0 : 0.4;  // half of the markers are on the base
-      trajectories.positions(i, k) = reach * std::sin(way + k) + random.Normal(0.2e-3);
+      trajectories.positions(i, k) = reach * std::sin(way + k) + random.Normal(noise);
     }
   }
   return trajectories;
@@ -130,6 +130,14 @@ TEST(FindStableSamples, ChoosesItsThresholdFromTheData) {
     }
     ExpectComplete(samples, 10000);
   }
+}
+
+TEST(FindStableSamples, TakesDataWithoutNoise) {
+  MarkerTrajectories trajectories = Postures(5, 1.0, 0.0);
+  SmoothTrajectories({}, trajectories);
+  const StableSamples samples = FindStableSamples(MarkerSpeeds(trajectories), AllOf(12), 100.0, {});
+  EXPECT_EQ(samples.threshold_m_per_s, 0.001);
+  EXPECT_EQ(samples.runs.size(), 5u);
 }
 
 TEST(FindStableSamples, FindsNoneInAMotionWithoutRest) {
