@@ -109,6 +109,17 @@ LagLine TheilSen(const std::vector<WindowLag>& windows) {
   return line;
 }
 
+// The windows' variances and one that they have in common, as far as their scatter about a line
+// asks for it: errors of the robot's model shift each window by more than its noise, and a window
+// with little noise must not rule the line.
+Eigen::VectorXd AddCommonVariance(const std::vector<WindowLag>& windows,
+                                  const Eigen::VectorXd& residuals) {
+  Eigen::VectorXd variances(residuals.size());
+  for (Eigen::Index i = 0; i < variances.size(); ++i) variances[i] = std::pow(windows[i].sd_s, 2);
+  const double scatter = kNormalMad * Median(residuals.cwiseAbs());
+  return variances.array() + std::max(0.0, scatter * scatter - Median(variances));
+}
+
 // Weighted least squares; standard deviations from the scatter, or the weights where that is less.
 LagLine FitWeighted(const std::vector<WindowLag>& windows, const Eigen::VectorXd& weights) {
   LagLine line;
@@ -174,18 +185,21 @@ std::optional<WindowLag> FitWindowLag(const UniformSpeed& measured, const Unifor
 LagLine FitLine(std::vector<WindowLag>& windows) {
   const auto count = static_cast<Eigen::Index>(windows.size());
   LagLine line = TheilSen(windows);
+  const auto residuals = [&] {
+    Eigen::VectorXd values(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      values[i] = windows[i].lag_s - line.Lag(windows[i].time_s);
+    }
+    return values;
+  };
+  const Eigen::VectorXd variances = AddCommonVariance(windows, residuals());
   Eigen::VectorXd weights(count);
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Eigen::VectorXd residuals(count);  // in standard deviations
-    for (Eigen::Index i = 0; i < count; ++i) {
-      residuals[i] = (windows[i].lag_s - line.Lag(windows[i].time_s)) / windows[i].sd_s;
-    }
-    const double scale = std::max(1.0, kNormalMad * Median(residuals.cwiseAbs()));
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double u = std::min(1.0, std::abs(residuals[i]) / (kBiweight * scale));
-      weights[i] = std::pow((1.0 - u * u) / windows[i].sd_s, 2);
-      windows[i].used = u < 1.0;
-    }
+    const Eigen::ArrayXd standardised = residuals().array().abs() / variances.array().sqrt();
+    const double scale = std::max(1.0, kNormalMad * Median(standardised));
+    const Eigen::ArrayXd u = (standardised / (kBiweight * scale)).min(1.0);
+    weights = (1.0 - u.square()).square() / variances.array();
+    for (Eigen::Index i = 0; i < count; ++i) windows[i].used = u[i] < 1.0;
     line = FitWeighted(windows, weights);
   }
   return line;

@@ -52,8 +52,22 @@ TEST(FitLine, IsNotMovedByOutliers) {
   }
   EXPECT_NEAR(line.Lag(0.0), 4.0, 4.0 * line.Sd(0.0));
   EXPECT_NEAR(line.slope, -50e-6, 4.0 * line.slope_sd);
-  EXPECT_LT(line.Sd(0.0), 1e-4);  // twice 2e-4 / sqrt(26)
+  // At the end of a line, twice 2e-4 / sqrt(26); the scatter of 30 is known to a quarter.
+  EXPECT_NEAR(line.Sd(0.0), 0.8e-4, 0.4e-4);
   EXPECT_NEAR(line.residual_s, 2e-4, 0.8e-4);
+}
+
+TEST(FitLine, IsNotRuledByWindowsThatClaimToBeSure) {
+  // Errors of 5 ms in all windows, of which three claim a tenth of a millisecond.
+  Random random(9);
+  std::vector<WindowLag> windows;
+  for (int i = 0; i < 30; ++i) {
+    const double t = 10.0 + 20.0 * i;
+    windows.push_back({t, 1.0 + random.Normal(5e-3), i % 10 == 0 ? 1e-4 : 1e-3, true});
+  }
+  const LagLine line = FitLine(windows);
+  EXPECT_NEAR(line.Sd(line.middle_s), 5e-3 / std::sqrt(30.0), 0.5e-3);  // two quarters
+  EXPECT_NEAR(line.Lag(300.0), 1.0, 3.0 * line.Sd(300.0));
 }
 
 }  // namespace
