@@ -139,7 +139,7 @@ CorrelationPeaks Correlate(const UniformSpeed& measured, const UniformSpeed& pre
   result.second_peak = SecondPeak(correlations, best);
   result.at_the_rim = best == 0 || best == correlations.size() - 1 ||
                       std::isnan(correlations[best - 1]) || std::isnan(correlations[best + 1]);
-  double shift = static_cast<double>(first + best);
+  auto shift = static_cast<double>(first + best);
   if (!result.at_the_rim) {
     shift += ParabolaTop(correlations[best - 1], correlations[best], correlations[best + 1]);
   }
