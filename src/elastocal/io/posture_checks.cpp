@@ -134,19 +134,6 @@ void CheckDistances(const Recording& recording, double size) {
   }
 }
 
-void CheckRadians(const Recording& recording, const RobotTree& tree) {
-  for (int c = 0; c < tree.coordinate_count(); ++c) {
-    const Joint& joint = tree.joints[tree.coordinate_joint[c]];
-    if (joint.type != JointType::kRevolute) continue;
-    Eigen::Index worst = 0;
-    const double largest = recording.q.col(c).cwiseAbs().maxCoeff(&worst);
-    if (largest <= kLargestAngle) continue;
-    throw InputError(PlaceOf(recording, worst) + "joint " + Quote(joint.name) + " is at " +
-                     FormatNumber(recording.q(worst, c)) +
-                     ": this looks like degrees; radians were expected");
-  }
-}
-
 void CheckPosturesDiffer(const Recording& recording) {
   const int count = recording.posture_count();
   if (count < 2 || recording.q != recording.q.row(0).replicate(count, 1)) return;
@@ -191,13 +178,27 @@ std::string LimitWarning(const Recording& recording, const Joint& joint, int coo
 
 }  // namespace
 
+void CheckRadians(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
+                  const std::function<std::string(Eigen::Index)>& place) {
+  if (joint.type != JointType::kRevolute || positions.size() == 0) return;
+  Eigen::Index worst = 0;
+  const double largest = positions.cwiseAbs().maxCoeff(&worst);
+  if (largest <= kLargestAngle) return;
+  throw InputError(place(worst) + "joint " + Quote(joint.name) + " is at " +
+                   FormatNumber(positions[worst]) +
+                   ": this looks like degrees; radians were expected");
+}
+
 void CheckPlausible(const Recording& recording, const RobotTree& tree) {
   const double size = RobotSize(tree);
   if (size > 0.0) {
     CheckRanges(recording, size);
     CheckDistances(recording, size);
   }
-  CheckRadians(recording, tree);
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    CheckRadians(tree.joints[tree.coordinate_joint[c]], recording.q.col(c),
+                 [&](Eigen::Index i) { return PlaceOf(recording, i); });
+  }
   CheckIdentical(recording);
   CheckPosturesDiffer(recording);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,11 @@ namespace elastocal {
 /// three times the robot's size, or is that far from another one in a posture), joints that look
 /// like degrees (beyond two turns) and two or more postures that are all the same.
 void CheckPlausible(const Recording& recording, const RobotTree& tree);
+
+/// The last of these for the recorded positions of one joint, none of them NaN; `place(i)` begins a
+/// message about the i-th.
+void CheckRadians(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
+                  const std::function<std::string(Eigen::Index)>& place);
 
 /// One sentence for each recorded joint that is beyond its limits by more than a degree or 5 mm,
 /// naming the worst line and how many there are.

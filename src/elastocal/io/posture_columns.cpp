@@ -19,11 +19,6 @@ struct Role {
 
 using Roles = std::map<std::string, Role>;
 
-std::string JointColumn(const Project& project, const std::string& joint) {
-  const auto renamed = project.recording.joints.find(joint);
-  return renamed == project.recording.joints.end() ? joint : renamed->second;
-}
-
 std::array<std::string, 3> MarkerColumns(const Project& project, const std::string& marker) {
   const auto renamed = project.recording.markers.find(marker);
   return renamed == project.recording.markers.end() ? DefaultMarkerColumns(marker)
@@ -121,6 +116,11 @@ void CheckJoints(const std::string& place, const Project& project, const Posture
 }
 
 }  // namespace
+
+std::string JointColumn(const Project& project, const std::string& joint) {
+  const auto renamed = project.recording.joints.find(joint);
+  return renamed == project.recording.joints.end() ? joint : renamed->second;
+}
 
 std::array<std::string, 3> DefaultMarkerColumns(const std::string& marker) {
   return {marker + "_x", marker + "_y", marker + "_z"};

@@ -23,6 +23,9 @@ struct PostureColumns {
 PostureColumns FindPostureColumns(const std::vector<std::string>& header, const std::string& place,
                                   const Project& project);
 
+/// The column of a joint: as the project has it, or the joint's name.
+std::string JointColumn(const Project& project, const std::string& joint);
+
 /// Default columns of a marker: NAME_x, NAME_y, NAME_z.
 std::array<std::string, 3> DefaultMarkerColumns(const std::string& marker);
 

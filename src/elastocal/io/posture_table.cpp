@@ -1,9 +1,7 @@
 #include "elastocal/io/posture_table.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -133,14 +131,6 @@ void NameJoints(const PostureColumns& columns, const RobotTree& tree, Recording&
   }
 }
 
-/// A name as a cell of a table.
-std::string Cell(const std::string& name) {
-  if (name.find_first_of(",;\t\"") == std::string::npos) return name;
-  std::string cell = "\"";
-  for (char character : name) cell += character == '"' ? "\"\"" : std::string(1, character);
-  return cell + "\"";
-}
-
 /// Coordinates of the tree that the recording holds.
 std::vector<int> RecordedCoordinates(const Recording& recording, const RobotTree& tree) {
   const auto& absent = recording.joints_not_recorded;
@@ -156,10 +146,10 @@ std::string Header(const Recording& recording, const RobotTree& tree) {
   std::string header;
   if (recording.time_s.size() > 0) header += RecordingColumns().time + ",";
   for (const std::string& marker : recording.marker_names) {
-    for (const std::string& column : DefaultMarkerColumns(marker)) header += Cell(column) + ",";
+    for (const std::string& column : DefaultMarkerColumns(marker)) header += MakeCell(column) + ",";
   }
   for (int c : RecordedCoordinates(recording, tree)) {
-    header += Cell(tree.joints[tree.coordinate_joint[c]].name) + ",";
+    header += MakeCell(tree.joints[tree.coordinate_joint[c]].name) + ",";
   }
   header.back() = '\n';
   return header;
@@ -168,14 +158,7 @@ std::string Header(const Recording& recording, const RobotTree& tree) {
 }  // namespace
 
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error) && !error) {
-    throw InputError(file.string() + ": there is no such file");
-  }
-  if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string() + ": cannot be read: " + std::strerror(errno));
+  std::ifstream stream = OpenTable(file);
   return ReadPostureTable(stream, file.string(), project);
 }
 

@@ -1,6 +1,8 @@
 #include "elastocal/io/table_lines.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <istream>
 
 // libfccp would start a thread for every file otherwise.
@@ -80,6 +82,18 @@ bool TakeQuoted(std::string_view& line, std::string& cell) {
 
 }  // namespace
 
+std::ifstream OpenTable(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error) && !error) {
+    throw InputError(file.string() + ": there is no such file");
+  }
+  if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file.string() + ": cannot be read: " + std::strerror(errno));
+  return stream;
+}
+
 class TableLines::Lines {
  public:
   Lines(std::istream& stream, const std::string& source)
@@ -132,19 +146,34 @@ bool TableLines::Next(std::vector<std::string>& cells) {
 }
 
 bool SplitCells(std::string_view line, char separator, std::vector<std::string>& cells) {
-  cells.clear();
+  // The strings of the row before are used again: a motion has millions of cells.
+  std::size_t count = 0;
   for (;;) {
-    if (!Trim(line.substr(0, line.find(separator))).starts_with('"')) {
-      const std::size_t end = std::min(line.find(separator), line.size());
-      cells.emplace_back(Trim(line.substr(0, end)));
+    if (count == cells.size()) cells.emplace_back();
+    std::string& cell = cells[count++];
+    const std::size_t end = std::min(line.find(separator), line.size());
+    const std::string_view text = Trim(line.substr(0, end));
+    if (!text.starts_with('"')) {
+      cell = text;
       line.remove_prefix(end);
-    } else if (!TakeQuoted(line, cells.emplace_back())) {
-      return false;
+    } else {
+      cell.clear();
+      if (!TakeQuoted(line, cell)) return false;
     }
-    if (line.empty()) return true;
+    if (line.empty()) {
+      cells.resize(count);
+      return true;
+    }
     if (line[0] != separator) return false;
     line.remove_prefix(1);
   }
+}
+
+std::string MakeCell(const std::string& text) {
+  if (text.find_first_of(",;\t\"") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (char character : text) cell += character == '"' ? "\"\"" : std::string(1, character);
+  return cell + "\"";
 }
 
 }  // namespace elastocal

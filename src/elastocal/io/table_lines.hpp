@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <fstream>
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -7,6 +9,9 @@
 #include <vector>
 
 namespace elastocal {
+
+/// Opens a table for reading. Throws InputError where there is no file or it cannot be read.
+std::ifstream OpenTable(const std::filesystem::path& file);
 
 /// The rows of a table of separated values: comma, semicolon or tab, as the first row has it; cells
 /// may stand in double quotes; any line ends; a byte-order mark and empty lines at the end are
@@ -40,5 +45,8 @@ class TableLines {
 /// Splits a line at the separators outside double quotes; "" within quotes is one quote. False for
 /// quotes that do not enclose a whole cell.
 bool SplitCells(std::string_view line, char separator, std::vector<std::string>& cells);
+
+/// A text as a cell of a table, in quotes where it needs them.
+std::string MakeCell(const std::string& text);
 
 }  // namespace elastocal

@@ -40,6 +40,19 @@ TEST(TableLines, SplitsAtSeparatorsOutsideQuotes) {
   EXPECT_FALSE(SplitCells("\"a\"b,c", ',', cells));
 }
 
+TEST(TableLines, UsesTheCellsOfTheRowBeforeAgain) {
+  const std::vector<Cells> expected = {{"long", "b,c", "d"}, {"1"}, {"", "e"}};
+  EXPECT_EQ(Rows("long,\"b,c\",d\n1\n,\"e\"\n"), expected);
+}
+
+TEST(TableLines, MakesCellsThatAreReadAgain) {
+  for (const std::string text : {"plain name", "a,b", "a;b", "say \"a\""}) {
+    Cells cells;
+    EXPECT_TRUE(SplitCells(MakeCell(text) + ",x", ',', cells));
+    EXPECT_EQ(cells, (Cells{text, "x"}));
+  }
+}
+
 TEST(TableLines, CountsLines) {
   std::istringstream stream("a\n1\n2");
   TableLines lines(stream, "t.csv");

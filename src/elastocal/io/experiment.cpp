@@ -1,0 +1,179 @@
+#include "elastocal/io/experiment.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <yaml-cpp/emitter.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/project_sections.hpp"
+#include "elastocal/io/text.hpp"
+#include "elastocal/io/yaml_value.hpp"
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFileName = "experiment.yaml";
+constexpr std::array kKinds = {TrialKind::kCalibration, TrialKind::kSine, TrialKind::kRandom,
+                               TrialKind::kRepeatability};
+
+template <typename Value>
+bool Contains(const std::vector<Value>& values, const Value& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+int ChainNamedBy(const YamlValue& value, const Project& project) {
+  const std::string name = value.Text();
+  std::vector<std::string> known;
+  for (const Chain& chain : project.chains) known.push_back(chain.name);
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end()) {
+    value.Fail("there is no chain " + Quote(name) + " in " + project.file.string() +
+               DidYouMean(name.substr(0, 60), known));
+  }
+  return static_cast<int>(found - known.begin());
+}
+
+/// `chain: name` or `chains: [name, ...]`.
+std::vector<int> ReadChains(const YamlValue& trial, const Project& project) {
+  const auto one = trial.Find("chain");
+  const auto list = trial.Find("chains");
+  if (one.has_value() == list.has_value()) {
+    trial.Fail(
+        "the chains that the trial exercises: expected one of the keys 'chain' and "
+        "'chains'");
+  }
+  if (one) return {ChainNamedBy(*one, project)};
+  std::vector<int> chains;
+  for (const YamlValue& value : list->Items()) {
+    const int chain = ChainNamedBy(value, project);
+    if (Contains(chains, chain)) value.Fail("the chain comes twice");
+    chains.push_back(chain);
+  }
+  if (chains.empty()) list->Fail("found no chain; one or more were expected");
+  return chains;
+}
+
+/// Feet are where chains end: only there is known what carries the robot.
+std::vector<int> ReadSupport(const YamlValue& list, const Project& project) {
+  std::vector<std::string> tips;
+  for (const Chain& chain : project.chains) {
+    tips.push_back(project.tree.links[chain.tip_link].name);
+  }
+  std::vector<int> support;
+  for (const YamlValue& value : list.Items()) {
+    const int link = LinkNamedBy(value, project.tree);
+    const std::string& name = project.tree.links[link].name;
+    if (!Contains(tips, name)) {
+      value.Fail("link " + Quote(name) + " is not the tip of any chain of " +
+                 project.file.string() + DidYouMean(name.substr(0, 60), tips));
+    }
+    if (Contains(support, link)) value.Fail("the link comes twice");
+    support.push_back(link);
+  }
+  return support;
+}
+
+TrialKind ReadKind(const YamlValue& value) {
+  const std::string text = value.Text();
+  std::vector<std::string> names;
+  for (TrialKind kind : kKinds) {
+    names.push_back(TrialKindName(kind));
+    if (names.back() == text) return kind;
+  }
+  value.Fail("found " + Quote(text) + "; expected calibration, sine, random or repeatability" +
+             DidYouMean(text.substr(0, 60), names));
+}
+
+/// Adds the file to those that trials have named.
+fs::path ReadFileName(const YamlValue& value, const fs::path& folder, std::vector<fs::path>& used) {
+  const fs::path file = (folder / value.Text()).lexically_normal();
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) value.Fail("there is no file " + file.string());
+  if (Contains(used, file)) value.Fail("the file " + file.string() + " is named twice");
+  used.push_back(file);
+  return file;
+}
+
+TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Project& project,
+                     std::vector<fs::path>& used) {
+  value.ExpectKeys({"name", "kind", "chain", "chains", "support", "markers", "joints"});
+  TrialFiles trial;
+  trial.name = value.Get("name").Text();
+  if (const auto kind = value.Find("kind")) trial.kind = ReadKind(*kind);
+  trial.chains = ReadChains(value, project);
+  if (const auto support = value.Find("support")) trial.support = ReadSupport(*support, project);
+  trial.markers = ReadFileName(value.Get("markers"), folder, used);
+  trial.joints = ReadFileName(value.Get("joints"), folder, used);
+  return trial;
+}
+
+void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& project,
+               YAML::Emitter& yaml) {
+  const auto emit = [&](const char* key, const std::string& value) {
+    yaml << YAML::Key << key << YAML::Value << value;
+  };
+  yaml << YAML::BeginMap;
+  emit("name", trial.name);
+  emit("kind", TrialKindName(trial.kind));
+  yaml << YAML::Key << "chains" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (int chain : trial.chains) yaml << project.chains[chain].name;
+  yaml << YAML::EndSeq;
+  yaml << YAML::Key << "support" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  for (int link : trial.support) yaml << project.tree.links[link].name;
+  yaml << YAML::EndSeq;
+  emit("markers", trial.markers.lexically_proximate(folder.lexically_normal()).generic_string());
+  emit("joints", trial.joints.lexically_proximate(folder.lexically_normal()).generic_string());
+  yaml << YAML::EndMap;
+}
+
+}  // namespace
+
+std::string TrialKindName(TrialKind kind) {
+  switch (kind) {
+    case TrialKind::kCalibration:
+      return "calibration";
+    case TrialKind::kSine:
+      return "sine";
+    case TrialKind::kRandom:
+      return "random";
+    case TrialKind::kRepeatability:
+      break;
+  }
+  return "repeatability";
+}
+
+Experiment ReadExperiment(const fs::path& folder, const Project& project) {
+  return ParseExperiment(ReadFile(folder / kFileName), folder, project);
+}
+
+Experiment ParseExperiment(const std::string& text, const fs::path& folder,
+                           const Project& project) {
+  const YamlValue root = YamlValue::Parse(text, (folder / kFileName).string());
+  root.ExpectKeys({"trials"});
+  const YamlValue list = root.Get("trials");
+  Experiment experiment;
+  std::vector<fs::path> used;
+  for (const YamlValue& value : list.Items()) {
+    TrialFiles trial = ReadTrial(value, folder, project, used);
+    for (const TrialFiles& other : experiment.trials) {
+      if (other.name == trial.name) value.Fail("a second trial of the name " + Quote(trial.name));
+    }
+    experiment.trials.push_back(std::move(trial));
+  }
+  if (experiment.trials.empty()) list.Fail("found no trial; one or more were expected");
+  return experiment;
+}
+
+void WriteExperiment(const fs::path& folder, const Experiment& experiment, const Project& project) {
+  YAML::Emitter yaml;
+  yaml << YAML::BeginMap << YAML::Key << "trials" << YAML::Value << YAML::BeginSeq;
+  for (const TrialFiles& trial : experiment.trials) EmitTrial(trial, folder, project, yaml);
+  yaml << YAML::EndSeq << YAML::EndMap;
+  WriteFile(folder / kFileName, std::string(yaml.c_str()) + "\n");
+}
+
+}  // namespace elastocal

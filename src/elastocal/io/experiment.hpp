@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/project.hpp"
+
+namespace elastocal {
+
+/// What a trial is for: estimating parameters, or judging them on motions of another kind (section
+/// 6 of the paper).
+enum class TrialKind { kCalibration, kSine, kRandom, kRepeatability };
+
+/// As experiment.yaml has it: "calibration", "sine", "random", "repeatability".
+std::string TrialKindName(TrialKind kind);
+
+/// One motion as it was recorded, by cameras and robot.
+struct TrialFiles {
+  std::string name;
+  TrialKind kind = TrialKind::kCalibration;
+  std::vector<int> chains;  ///< that it exercises, of Project::chains; one or more
+  std::vector<int>
+      support;  ///< links that stand on the floor, of the tree; empty: the root is held
+  std::filesystem::path markers, joints;  ///< Qualisys TSV and joint log
+};
+
+/// The contents of a recording folder.
+struct Experiment {
+  std::vector<TrialFiles> trials;  ///< one or more, names and files all different
+};
+
+/// Reads `folder`/experiment.yaml (docs/formats.md). Files in it are seen from the folder and must
+/// be there; they are not opened. Throws InputError naming file, line and key: what ReadProject
+/// refuses in values, chains that the project does not have, supports that are not the tip of a
+/// chain, files that are absent or used twice, no trial.
+Experiment ReadExperiment(const std::filesystem::path& folder, const Project& project);
+
+/// The same from the text of the file.
+Experiment ParseExperiment(const std::string& text, const std::filesystem::path& folder,
+                           const Project& project);
+
+/// Writes `folder`/experiment.yaml for such trials, with files as seen from the folder.
+void WriteExperiment(const std::filesystem::path& folder, const Experiment& experiment,
+                     const Project& project);
+
+}  // namespace elastocal

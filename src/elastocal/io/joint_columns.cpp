@@ -1,0 +1,115 @@
+#include "elastocal/io/joint_columns.hpp"
+
+#include <map>
+
+#include "elastocal/io/posture_columns.hpp"
+#include "elastocal/io/text.hpp"
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+/// What a column name stands for in this project.
+struct Role {
+  enum class Kind { kTime, kPosition, kTorque, kIgnored } kind = Kind::kIgnored;
+  int joint = 0;
+};
+
+using Roles = std::map<std::string, Role>;
+
+Roles FindRoles(const Project& project) {
+  const std::vector<Joint>& joints = project.tree.joints;
+  const auto count = static_cast<int>(joints.size());
+  const auto role = [&](Role::Kind kind, int k) {
+    return Role{joints[k].mimic ? Role::Kind::kIgnored : kind, k};
+  };
+  Roles roles;
+  roles[project.recording.time] = {Role::Kind::kTime};
+  for (int k = 0; k < count; ++k) {
+    const std::string column = JointColumn(project, joints[k].name);
+    if (!roles.emplace(column, role(Role::Kind::kPosition, k)).second) {
+      throw InputError(project.file.string() + ": the column " + Quote(column) +
+                       " stands for two things; name one of them otherwise in recording.columns");
+    }
+  }
+  // Where one of these is the name of another joint, it is that joint.
+  roles.emplace("time", Role{Role::Kind::kTime});
+  for (int k = 0; k < count; ++k) {
+    const std::string column = JointColumn(project, joints[k].name);
+    roles.emplace(column + "_position", role(Role::Kind::kPosition, k));
+    roles.emplace(column + "_torque", role(Role::Kind::kTorque, k));
+    roles.emplace(column + "_effort", role(Role::Kind::kTorque, k));
+  }
+  for (const std::string& column : project.recording.ignore) roles[column] = Role{};
+  return roles;
+}
+
+[[noreturn]] void FailUnknown(const std::string& column, const std::string& place,
+                              const Roles& roles, const Project& project) {
+  if (ParseNumber(column)) {
+    throw InputError(place + "found the number " + Quote(column) +
+                     " in the first row; a header row with the names of the columns was expected");
+  }
+  std::vector<std::string> known;
+  for (const auto& [name, role] : roles) known.push_back(name);
+  throw InputError(place + "unknown column " + Quote(column) +
+                   DidYouMean(column.substr(0, 60), known) +
+                   " (columns that are not to be read are listed in recording.ignore of " +
+                   project.file.string() + ")");
+}
+
+/// Keeps the joints whose positions are there.
+void KeepJoints(const std::vector<int>& position, const std::vector<int>& torque,
+                const std::string& place, const RobotTree& tree, JointColumns& result) {
+  std::map<int, int> joint_of_column;
+  for (std::size_t k = 0; k < position.size(); ++k) {
+    if (position[k] >= 0) {
+      joint_of_column[position[k]] = static_cast<int>(k);
+    } else if (torque[k] >= 0) {
+      throw InputError(place + "the column " + Quote(result.names[torque[k]]) +
+                       " has torques of joint " + Quote(tree.joints[k].name) +
+                       ", whose positions are missing");
+    }
+  }
+  for (const auto& [column, joint] : joint_of_column) {
+    result.joints.push_back(joint);
+    result.positions.push_back(column);
+    result.torques.push_back(torque[joint]);
+  }
+}
+
+}  // namespace
+
+JointColumns FindJointColumns(const std::vector<std::string>& header, const std::string& place,
+                              const Project& project) {
+  const Roles roles = FindRoles(project);
+  JointColumns result;
+  result.names = header;
+  std::vector<int> position(project.tree.joints.size(), -1), torque = position;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const auto role = roles.find(header[i]);
+    if (role == roles.end() && header[i].ends_with("_velocity")) continue;
+    if (role == roles.end()) FailUnknown(header[i], place, roles, project);
+    const auto& [kind, joint] = role->second;
+    if (kind == Role::Kind::kIgnored) continue;
+    int& column = kind == Role::Kind::kTime       ? result.time
+                  : kind == Role::Kind::kPosition ? position[joint]
+                                                  : torque[joint];
+    if (column >= 0) {
+      throw InputError(place + "the columns " + Quote(header[column]) + " and " + Quote(header[i]) +
+                       " stand for the same");
+    }
+    column = static_cast<int>(i);
+  }
+  if (result.time < 0) {
+    throw InputError(place + "there is no column of the time in s; expected " +
+                     Quote(project.recording.time) + " or 'time'");
+  }
+  KeepJoints(position, torque, place, project.tree, result);
+  if (result.joints.empty()) {
+    throw InputError(place + "there is no column of any joint; expected the names of the joints");
+  }
+  return result;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/measurement/trial.hpp"
+
+namespace elastocal {
+
+/// Reads a log of joint positions and torques (docs/formats.md): CSV with a header row; a column of
+/// the time in s, `t` or `time` or as the project names it; for each joint `JOINT` or
+/// `JOINT_position` in rad or m and, where it has a sensor, `JOINT_torque` or `JOINT_effort` in N.m
+/// or N, JOINT being the joint's name or its column in the project. Velocities, mimic joints and
+/// what the project ignores are passed over. A joint without a torque column, or with one that is
+/// empty or NaN from the first to the last row, has NaN torques.
+/// Throws InputError naming file, line and column: unknown columns (with the nearest known one),
+/// text or NaN where a number belongs, time that does not increase, no rows, more than a million,
+/// positions that look like degrees.
+JointLog ReadJointLog(const std::filesystem::path& file, const Project& project);
+
+/// The same from a stream; `source` names it in messages.
+JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& project);
+
+/// Writes such a table, with a torque column for each joint that has a torque: `t`, JOINT, ...,
+/// JOINT_torque, ... All digits are kept.
+void WriteJointLog(const std::filesystem::path& file, const JointLog& log);
+
+}  // namespace elastocal

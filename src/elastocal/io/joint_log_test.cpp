@@ -1,0 +1,148 @@
+#include "elastocal/io/joint_log.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+Project ArmProject(const std::string& recording = "{}") {
+  return ParseProject(
+      "robot: {urdf: arm6.urdf}\n"
+      "markers: {single: [{name: A, link: tool, position_mm: [10, 20, 30]}]}\n"
+      "recording: " +
+          recording,
+      SourceFile("tests/robots/p.yaml"));
+}
+
+JointLog Read(const std::string& text, const Project& project = ArmProject()) {
+  std::istringstream stream(text);
+  return ReadJointLog(stream, "j.csv", project);
+}
+
+void ExpectError(const std::string& text, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { Read(text); }, parts);
+}
+
+TEST(JointLog, ReadsPositionsAndTorques) {
+  const JointLog log = Read(
+      "elbow_joint_torque,t,elbow_joint,rail_joint_position,rail_joint_effort,turret_joint,"
+      "turret_joint_velocity,gone_velocity,finger_right_joint,finger_right_joint_torque\n"
+      "-5,100.5,0.1,0.2,7,0.3,x,y,z,w\n-6,100.75,-1.1,1e-3,8,0.4,,,,\n");
+  EXPECT_EQ(log.source, "j.csv");
+  EXPECT_EQ(log.names, (std::vector<std::string>{"elbow_joint", "rail_joint", "turret_joint"}));
+  EXPECT_EQ(log.sample_count(), 2);
+  EXPECT_EQ(log.time_s, Eigen::Vector2d(100.5, 100.75));
+  EXPECT_EQ(log.positions.row(0), Eigen::RowVector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(log.positions.row(1), Eigen::RowVector3d(-1.1, 1e-3, 0.4));
+  EXPECT_EQ(log.torques.leftCols(2), (Eigen::Matrix2d() << -5, 7, -6, 8).finished());
+  EXPECT_TRUE(log.torques.col(2).array().isNaN().all());
+}
+
+TEST(JointLog, UsesTheNamesOfTheProject) {
+  const Project project = ArmProject(
+      "{columns: {time: stamp, joints: {elbow_joint: q4}}, ignore: [mode, turret_joint_torque]}");
+  const JointLog log = Read(
+      "stamp;mode;q4_position;q4_torque;turret_joint;turret_joint_torque\r\n"
+      "1;idle;0.4;9;0.5;broken\r\n",
+      project);
+  EXPECT_EQ(log.names, (std::vector<std::string>{"elbow_joint", "turret_joint"}));
+  EXPECT_EQ(log.torques(0, 0), 9.0);
+  EXPECT_TRUE(std::isnan(log.torques(0, 1)));
+  EXPECT_EQ(Read("time,elbow_joint\n2,0.5\n").time_s[0], 2.0);
+  ExpectInputError([] { Read("x\n", ArmProject("{columns: {time: elbow_joint}}")); },
+                   {"p.yaml", "'elbow_joint' stands for two things"});
+}
+
+TEST(JointLog, ATorqueColumnWithoutNumbersIsNoSensor) {
+  const std::string header = "t,elbow_joint,elbow_joint_torque,rail_joint,rail_joint_torque\n";
+  const JointLog log = Read(header + "1,0,nan,0,\n2,0,NaN,0,\n");
+  EXPECT_TRUE(log.torques.array().isNaN().all());
+  ExpectError(header + "1,0,5,0,\n2,0,5,0,\n3,0,nan,0,\n4,0,,0,\n",
+              {"j.csv:4: column 'elbow_joint_torque'", "found no torque", "in any row"});
+}
+
+TEST(JointLog, NamesWrongColumns) {
+  ExpectError("", {"j.csv", "empty"});
+  ExpectError("t,elbo_joint\n",
+              {"j.csv:1: ", "'elbo_joint'", "did you mean 'elbow_joint'", "recording.ignore"});
+  ExpectError("t,elbow_joint,elbow_joint_torqe\n", {"did you mean 'elbow_joint_torque'"});
+  ExpectError("t,elbow_joint,elbow_joint_position\n",
+              {"j.csv:1: ", "'elbow_joint' and 'elbow_joint_position' stand for the same"});
+  ExpectError("t,elbow_joint,elbow_joint_torque,elbow_joint_effort\n", {"stand for the same"});
+  ExpectError("t,time,elbow_joint\n", {"'t' and 'time' stand for the same"});
+  ExpectError("elbow_joint\n", {"j.csv:1: ", "no column of the time", "'t'"});
+  ExpectError("t,elbow_joint_velocity\n", {"j.csv:1: ", "no column of any joint"});
+  ExpectError("t,elbow_joint,rail_joint_torque\n",
+              {"j.csv:1: ", "'rail_joint_torque'", "positions are missing"});
+  ExpectError("0.1,0.2\n", {"j.csv:1: ", "number '0.1'", "header row"});
+}
+
+TEST(JointLog, NamesWrongCells) {
+  const std::string header = "t,elbow_joint,elbow_joint_torque\n";
+  ExpectError(header, {"j.csv", "no row"});
+  ExpectError(header + "1,0\n", {"j.csv:2: ", "2 cells", "3"});
+  ExpectError(header + "1,0,0\n2,x,0\n", {"j.csv:3: column 'elbow_joint'", "'x'"});
+  ExpectError(header + "1,0,0\n2,nan,0\n", {"j.csv:3: column 'elbow_joint'", "'nan'"});
+  ExpectError(header + "1,0,0\n2,,0\n", {"j.csv:3: column 'elbow_joint'", "found nothing"});
+  ExpectError(header + "1,0,0\n2,0,inf\n", {"j.csv:3: column 'elbow_joint_torque'", "'inf'"});
+  ExpectError(header + "1,0,\"0,5\"\n", {"j.csv:2: ", "'0,5'", "decimal point"});
+  ExpectError(header + "nan,0,0\n", {"j.csv:2: column 't'", "'nan'"});
+}
+
+TEST(JointLog, TimeIncreases) {
+  const std::string header = "time,elbow_joint\n";
+  ExpectError(header + "1,0\n2,0\n2,0\n", {"j.csv:4: column 'time'", "2 after 2", "increase"});
+  ExpectError(header + "1,0\n2,0\n1.5,0\n", {"j.csv:4: ", "1.5 after 2"});
+}
+
+TEST(JointLog, SuspectsDegrees) {
+  ExpectError("t,elbow_joint\n1,0\n2,-45\n3,12\n",
+              {"j.csv:3: ", "'elbow_joint'", "-45", "degrees"});
+  // A prismatic joint is in metres, and two turns are 12.57 rad.
+  EXPECT_NO_THROW(Read("t,elbow_joint,rail_joint\n1,12.5,45\n"));
+}
+
+TEST(JointLog, RefusesARecordingWithoutEnd) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "endless.csv";
+  std::ofstream stream(file, std::ios::binary);
+  stream << "t,elbow_joint\n";
+  for (int i = 0; i < 1000010; ++i) stream << i << ",0\n";
+  stream.close();
+  ExpectInputError([&] { ReadJointLog(file, ArmProject()); },
+                   {"endless.csv:1000002: ", "more than 1000000 rows"});
+  std::filesystem::remove(file);
+}
+
+TEST(JointLog, WritesWhatItReads) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "written_joints.csv";
+  const JointLog written = Read(
+      "t,elbow_joint,rail_joint,rail_joint_torque\n0.1,0.3333333333333333,1e-17,-7.25\n"
+      "0.30000000000000004,2,3,4\n");
+  WriteJointLog(file, written);
+  EXPECT_EQ(ReadFile(file).substr(0, 44), "t,elbow_joint,rail_joint,rail_joint_torque\n0");
+  const JointLog read = ReadJointLog(file, ArmProject());
+  EXPECT_EQ(read.source, file.string());
+  EXPECT_EQ(read.names, written.names);
+  EXPECT_EQ(read.time_s, written.time_s);
+  EXPECT_EQ(read.positions, written.positions);
+  EXPECT_EQ(read.torques.col(1), written.torques.col(1));
+  EXPECT_TRUE(read.torques.col(0).array().isNaN().all());
+  std::filesystem::remove(file);
+}
+
+TEST(JointLog, NamesAFileThatCannotBeRead) {
+  ExpectInputError([] { ReadJointLog("nowhere/j.csv", ArmProject()); },
+                   {"nowhere/j.csv", "there is no such file"});
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "elastocal/measurement/trial.hpp"
+
+namespace elastocal {
+
+/// Reads a Qualisys QTM 3-D TSV (docs/formats.md): lines `KEY<tab>value`, a row of column names,
+/// then one row a frame in mm. The columns Frame and Time and all but the names of the markers may
+/// be absent. A marker is not seen where its cells are empty, NaN, NULL or 0 0 0. The rate is
+/// FREQUENCY or follows from the column Time. Cost: linear in the size of the file.
+/// Throws InputError naming file, line and column: a number that is none, rows of unequal length,
+/// frames that do not follow each other, another number of markers or frames than the header says,
+/// no rate, more than 256 MiB.
+MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file);
+
+/// The same from the text of a file; `source` names it in messages.
+MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source);
+
+/// Writes such a file, as QTM does by default: with header, column names, Frame and Time, and
+/// positions in mm with three decimals (`decimals`, from 0 to 12). A marker that was not seen has
+/// empty cells. What rounds to 0 0 0 is to every reader of the format a marker that was not seen.
+/// Throws InputError for names that the format cannot hold and when the file cannot be written.
+void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& trajectories,
+                 int decimals = 3);
+
+}  // namespace elastocal

@@ -1,0 +1,188 @@
+#include "elastocal/io/qtm_tsv.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "tests/expect_input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+/// As QTM writes it, with the markers A and "B 2".
+const std::string kHeader =
+    "NO_OF_FRAMES\t3\r\nNO_OF_CAMERAS\t20\r\nNO_OF_MARKERS\t2\r\nFREQUENCY\t100\r\n"
+    "NO_OF_ANALOG\t0\r\nANALOG_FREQUENCY\t0\r\nDESCRIPTION\t--\r\n"
+    "TIME_STAMP\t2021-03-04, 10:38:02.123\t30235.1\r\nDATA_INCLUDED\t3D\r\n"
+    "EVENT\tstart\t1\t0.00000\r\nEVENT\tend\t3\t0.02000\r\nMARKER_NAMES\tA\tB 2\r\n"
+    "TRAJECTORY_TYPES\tMeasured\tMixed\r\n";
+const std::string kColumns = "Frame\tTime\tA X\tA Y\tA Z\tB 2 X\tB 2 Y\tB 2 Z\r\n";
+/// The least that says everything.
+const std::string kShort = "FREQUENCY\t100\nMARKER_NAMES\tA\tB\n";
+
+MarkerTrajectories Parse(const std::string& text) { return ParseQtmTsv(text, "t.tsv"); }
+
+void ExpectError(const std::string& text, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { Parse(text); }, parts);
+}
+
+/// Products with 1e-3 are rounded.
+constexpr double kRounding = 1e-15;
+
+TEST(QtmTsv, ReadsWhatQtmWrites) {
+  const MarkerTrajectories t =
+      Parse(kHeader + kColumns +
+            "1\t0.00000\t100.5\t-20\t1e3\t4\t5\t6\r\n2\t0.01000\t101\t-21\t1001\t\t\t\r\n"
+            "3\t0.02000\t0.000\t0.000\t0.000\t0.000\t0.000\t6.5\r\n");
+  EXPECT_EQ(t.source, "t.tsv");
+  EXPECT_EQ(t.names, (std::vector<std::string>{"A", "B 2"}));
+  EXPECT_EQ(t.rate_hz, 100.0);
+  ASSERT_EQ(t.frame_count(), 3);
+  Eigen::RowVectorXd first(6);
+  first << 0.1005, -0.02, 1.0, 0.004, 0.005, 0.006;
+  EXPECT_TRUE(t.positions.row(0).isApprox(first, kRounding));
+  EXPECT_NEAR(t.positions(1, 2), 1.001, kRounding);
+  EXPECT_TRUE(t.positions.block(1, 3, 1, 3).array().isNaN().all());
+  EXPECT_TRUE(t.positions.block(2, 0, 1, 3).array().isNaN().all());
+  // Not a gap: one coordinate is not zero.
+  EXPECT_EQ(t.positions(2, 3), 0.0);
+  EXPECT_NEAR(t.positions(2, 5), 0.0065, kRounding);
+}
+
+TEST(QtmTsv, InfersTheColumnsFromTheirNumber) {
+  for (const char* end : {"", "\t"}) {
+    for (const char* leading : {"", "7\t", "7\t0.5\t"}) {
+      const std::string row = std::string(leading) + "\t\t\t4\t5\t6" + end + "\n";
+      const MarkerTrajectories t = Parse(kShort + row);
+      ASSERT_EQ(t.frame_count(), 1) << row;
+      EXPECT_TRUE(std::isnan(t.positions(0, 0))) << row;
+      EXPECT_NEAR(t.positions(0, 5), 0.006, kRounding) << row;
+    }
+  }
+  // One cell more than six: is the last marker a gap after a frame number, or is the end a tab?
+  EXPECT_NEAR(Parse(kShort + "7\t1\t2\t3\t\t\t\n").positions(0, 0), 0.001, kRounding);
+  EXPECT_NEAR(Parse(kShort + "1\t2\t3\t\t\t\t\n").positions(0, 0), 0.001, kRounding);
+}
+
+TEST(QtmTsv, NeedsNoHeader) {
+  const MarkerTrajectories t = Parse(
+      "\xEF\xBB\xBF"
+      "Time\tA X\tA Y\tA Z\n0.5\t1\t2\t3\n0.525\t1\t2\t3\n0.55\t1\t2\t3");
+  EXPECT_EQ(t.names, std::vector<std::string>{"A"});
+  EXPECT_NEAR(t.rate_hz, 40.0, 1e-12);  // from rounded times
+  EXPECT_EQ(t.frame_count(), 3);
+}
+
+TEST(QtmTsv, FindsTheRate) {
+  const std::string names = "MARKER_NAMES\tA\n";
+  EXPECT_NEAR(Parse(names + "0.00\t1\t2\t3\n0.01\t1\t2\t3\n0.02\t1\t2\t3\n").rate_hz, 100.0, 1e-9);
+  EXPECT_EQ(Parse("FREQUENCY\t300\n" + names + "4\t1\t2\t3\n5\t1\t2\t3\n").rate_hz, 300.0);
+  const std::string advice = "FREQUENCY<tab>100";
+  ExpectError(names + "1\t2\t3\n1\t2\t3\n", {"t.tsv", "rate is not known", advice});
+  ExpectError(names + "4\t1\t2\t3\n5\t1\t2\t3\n", {"rate is not known", advice});
+  ExpectError(names + "4\t0.1\t1\t2\t3\n", {"rate is not known", advice});
+  ExpectError("FREQUENCY\t0\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'0'"});
+  ExpectError("FREQUENCY\t100,5\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'100,5'"});
+}
+
+TEST(QtmTsv, FramesFollowEachOther) {
+  const std::string head = "FREQUENCY\t100\nMARKER_NAMES\tA\nFrame\tTime\tA X\tA Y\tA Z\n";
+  const std::string cells = "\t1\t2\t3\n";
+  ExpectError(head + "7\t0.00" + cells + "8\t0.01" + cells + "10\t0.03" + cells,
+              {"t.tsv:6: ", "Frame", "10 after 8"});
+  ExpectError(head + "7\t0.00" + cells + "8\t0.02" + cells, {"t.tsv:5: ", "Time", "0.02 after 0"});
+  ExpectError(head + "7\t0.00" + cells + "8\t0.00" + cells, {"t.tsv:5: ", "Time", "not later"});
+  // Steps of 0.012 s are within half a frame of 0.01 s each, but not all together.
+  ExpectError(head + "7\t0" + cells + "8\t.012" + cells + "9\t.024" + cells + "10\t.036" + cells,
+              {"t.tsv:7: ", "Time", "0.036 s", "FREQUENCY, 100", "0.03 s"});
+  EXPECT_EQ(Parse(head + "7\t5.00" + cells + "8\t5.01" + cells).rate_hz, 100.0);
+}
+
+TEST(QtmTsv, GapsHaveManyShapes) {
+  for (const char* gap : {"\t\t", "0\t0\t0", "0.000\t-0.000\t0", "NaN\tNaN\tnan",
+                          "NULL\tNULL\tnull", " \tNaN\tNULL"}) {
+    const MarkerTrajectories t = Parse(kShort + gap + "\t4\t5\t6\n1\t2\t3\t" + gap);
+    ASSERT_EQ(t.frame_count(), 2) << gap;
+    EXPECT_TRUE(t.positions.block(0, 0, 1, 3).array().isNaN().all()) << gap;
+    EXPECT_TRUE(t.positions.block(1, 3, 1, 3).array().isNaN().all()) << gap;
+    EXPECT_NEAR(t.positions(0, 5), 0.006, kRounding) << gap;
+  }
+  ExpectError(kShort + "1\t2\t3\t4\t5\t6\n1\t2\t3\t4\t\t6\n",
+              {"t.tsv:4: column 4 (B X)", "X, Y and Z, or none"});
+}
+
+TEST(QtmTsv, NamesWrongCells) {
+  const std::string good = "1\t2\t3\t4\t5\t6\n";
+  for (const char* wrong : {"1,5", "abc", "inf", "-inf", "1e999", "2 3", "0x10", "--1"}) {
+    ExpectError(kShort + good + "1\t2\t3\t4\t" + wrong + "\t6\n",
+                {"t.tsv:4: column 5 (B Y)", "'" + std::string(wrong) + "'", "decimal point"});
+  }
+  EXPECT_NEAR(Parse(kShort + "1\t2\t3\t4\t5\t +6 \n").positions(0, 5), 0.006, kRounding);
+  ExpectError(kShort + good + "1\t2\t3\t4\t5\n", {"t.tsv:4: ", "5 cells", "6"});
+  ExpectError(kShort + good + good.substr(0, 11) + "\t7\n", {"t.tsv:4: ", "7 cells"});
+  ExpectError(kShort + "1\t2\t3\n", {"t.tsv:3: ", "3 cells", "6"});
+  ExpectError(kShort + "1\t2\t3\t4\t5\t6\t\t\t\t\n", {"t.tsv:3: ", "10 cells", "8"});
+  ExpectError(kShort + "1\t2\t3\t4\t5\t6\t\n1\t2\t3\t4\t5\t6\t7\n", {"t.tsv:4: column 7"});
+  ExpectError(kShort + good + "\n" + good, {"t.tsv:4: ", "1 cells"});
+  ExpectError(kHeader + kColumns + "1\tNULL\t1\t2\t3\t4\t5\t6\n",
+              {":15: column 2 (Time)", "'NULL'"});
+  ExpectError(kShort + std::string("1\t2\t3\t4\t5\t6\0", 12), {"t.tsv:3: ", "NUL"});
+}
+
+TEST(QtmTsv, NamesWrongHeaders) {
+  ExpectError("", {"t.tsv:1: ", "MARKER_NAMES"});
+  ExpectError("1\t2\t3\n", {"t.tsv:1: ", "MARKER_NAMES"});
+  ExpectError(kShort, {"t.tsv", "no frame"});
+  ExpectError(kShort + "\r\n\r\n", {"t.tsv", "no frame"});
+  ExpectError("MARKER_NAMES\tA\tA\n", {"t.tsv:1: ", "two markers", "'A'"});
+  ExpectError("MARKER_NAMES\tA\t\tB\n", {"t.tsv:1: ", "without a name"});
+  ExpectError("MARKER_NAMES\tA\nMARKER_NAMES\tA\n", {"t.tsv:2: ", "second line MARKER_NAMES"});
+  ExpectError("NO_OF_MARKERS\t3\n" + kShort + "1\n", {"t.tsv:4: ", "2 markers", "is 3"});
+  ExpectError("NO_OF_MARKERS\tmany\n", {"t.tsv:1: NO_OF_MARKERS", "'many'", "whole number"});
+  ExpectError("NO_OF_FRAMES\t2\n" + kShort + "1\t2\t3\t4\t5\t6\n", {"t.tsv", "1 frames", "is 2"});
+  ExpectError("DATA_INCLUDED\t6D\n", {"t.tsv:1: ", "'6D'", "3D"});
+  ExpectError("marker,x,y\n", {"t.tsv:1: column 1", "'marker,x,y'", "header line"});
+  ExpectError("Frame\tFrame\tA X\tA Y\tA Z\n", {"t.tsv:1: column 2", "second column Frame"});
+  ExpectError("Frame\tA X\tA Y\tB Z\n", {"t.tsv:1: column 4", "'B Z'", "'A Z'"});
+  ExpectError("Frame\tA X\tA Y\n", {"t.tsv:1: ", "'A'", "not complete"});
+  ExpectError(kShort + "B X\tB Y\tB Z\tA X\tA Y\tA Z\n", {"t.tsv:3: ", "other markers"});
+  ExpectError("DESCRIPTION\t" + std::string(1 << 20, 'x') + "\n", {"t.tsv:1: ", "1 MiB"});
+  std::string endless;
+  for (int i = 0; i < 10001; ++i) endless += "A\n";
+  ExpectError(endless, {"t.tsv:10001: ", "more than 10000 lines"});
+}
+
+TEST(QtmTsv, WritesWhatItReads) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "written.tsv";
+  MarkerTrajectories written = Parse(
+      "FREQUENCY\t120.5\nMARKER_NAMES\tA\tB "
+      "2\n1.0004\t-2.5\t1234.567\t4\t5\t6\n\t\t\t0\t0\t0.001\n");
+  WriteQtmTsv(file, written);
+  const std::string text = ReadFile(file);
+  EXPECT_NE(text.find("\r\nFREQUENCY\t120.5\r\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\r\n1\t0.00000\t1.000\t-2.500\t1234.567\t4.000\t5.000\t6.000\r\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("\r\n2\t0.00830\t\t\t\t0.000\t0.000\t0.001\r\n"), std::string::npos) << text;
+  MarkerTrajectories read = ReadQtmTsv(file);
+  EXPECT_EQ(read.source, file.string());
+  EXPECT_EQ(read.names, written.names);
+  EXPECT_EQ(read.rate_hz, written.rate_hz);
+  EXPECT_TRUE(std::isnan(read.positions(1, 0)));
+  // Three decimals of a millimetre: half a micrometre.
+  EXPECT_LT((read.positions.row(0) - written.positions.row(0)).cwiseAbs().maxCoeff(), 0.5e-6);
+  WriteQtmTsv(file, written, 12);
+  read = ReadQtmTsv(file);
+  EXPECT_TRUE(read.positions.row(0).isApprox(written.positions.row(0), kRounding));
+  std::filesystem::remove(file);
+  written.names[1] = "B\t2";
+  ExpectInputError([&] { WriteQtmTsv(file, written); }, {"cannot hold", "'B?2'"});
+}
+
+TEST(QtmTsv, NamesAFileThatCannotBeRead) {
+  ExpectInputError([] { ReadQtmTsv("nowhere/t.tsv"); }, {"nowhere/t.tsv", "no such file"});
+}
+
+}  // namespace
+}  // namespace elastocal

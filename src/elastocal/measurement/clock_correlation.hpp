@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "elastocal/measurement/clock.hpp"
+
+namespace elastocal {
+
+/// A speed at a constant rate; NaN where unknown.
+struct UniformSpeed {
+  double start_s = 0.0;  ///< time of the first value
+  double rate_hz = 0.0;
+  Eigen::VectorXd values;
+};
+
+/// The predicted speed at a constant rate, by linear interpolation; NaN within holes of the log of
+/// more than 0.1 s.
+UniformSpeed Resample(const PredictedSpeed& predicted, double rate_hz);
+
+/// Where the correlation of the two speeds over all lags in range has its peaks.
+struct CorrelationPeaks {
+  bool overlap = false;  ///< any lag with enough in common; else the rest has no meaning
+  double lag_s = 0.0;    ///< refined by a parabola
+  double peak = 0.0;
+  double second_peak = 0.0;  ///< 0 if there is none
+  bool at_the_rim = false;   ///< the best lag is the first or the last
+};
+
+/// Normalised correlation at about 20 Hz. Both speeds must have the same rate.
+CorrelationPeaks Correlate(const UniformSpeed& measured, const UniformSpeed& predicted,
+                           const ClockOptions& options);
+
+}  // namespace elastocal

@@ -1,0 +1,247 @@
+#include "elastocal/measurement/labels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace elastocal {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kOpen = -1;  // the order of labels is not known from the frame itself
+
+// What is to be done with a cluster, frame by frame.
+struct Plan {
+  std::vector<int> order;                  // index into the shape's permutations, or kOpen
+  std::vector<std::vector<bool>> removed;  // raw marker, frame
+  std::vector<bool> undecided;             // frame
+
+  Plan(int frames, int size)
+      : order(frames, kOpen), removed(size, std::vector<bool>(frames)), undecided(frames) {}
+};
+
+// Decides on the frames of one cluster by its distances.
+class LabelFinder {
+ public:
+  LabelFinder(const std::vector<int>& markers, const LabelOptions& options,
+              const MarkerTrajectories& trajectories)
+      : markers_(markers),
+        trajectories_(trajectories),
+        table_(MeasureDistances(trajectories, markers)),
+        shape_(MeasureShape(table_, static_cast<int>(markers.size()), options.tolerance_sd,
+                            options.least_tolerance_m)),
+        ambiguous_(!(shape_.separation >= options.least_separation)) {}
+
+  const ClusterShape& shape() const { return shape_; }
+  bool ambiguous() const { return ambiguous_; }
+
+  Plan Find() const {
+    Plan plan(trajectories_.frame_count(), shape_.size);
+    DecideWholeFrames(plan);
+    // The nearest decided orders, for the frames that are not.
+    std::vector<int> after(plan.order.size(), kOpen);
+    for (std::size_t i = plan.order.size(); i-- > 0;) {
+      const bool last = i + 1 == plan.order.size();
+      after[i] = plan.order[i] != kOpen ? plan.order[i] : (last ? kOpen : after[i + 1]);
+    }
+    int before = kOpen;
+    for (int frame = 0; frame < trajectories_.frame_count(); ++frame) {
+      if (plan.order[frame] != kOpen) {
+        before = plan.order[frame];
+      } else if (plan.undecided[frame]) {
+        plan.order[frame] = 0;
+      } else {
+        DecideByNeighbours(frame, before, after[frame], plan);
+      }
+    }
+    return plan;
+  }
+
+ private:
+  // Frames in which all markers are seen and fit in one order.
+  void DecideWholeFrames(Plan& plan) const {
+    int last = 0;
+    for (int frame = 0; frame < trajectories_.frame_count(); ++frame) {
+      if (!table_.row(frame).allFinite()) continue;
+      int order = Fits(frame, 0) ? 0 : (Fits(frame, last) ? last : kOpen);
+      const int count = static_cast<int>(shape_.permutations.size());
+      for (int other = 1; order == kOpen && other < count; ++other) {
+        if (Fits(frame, other)) order = other;
+      }
+      if (order > 0) last = order;
+      plan.undecided[frame] = order > 0 && ambiguous_;
+      if (!plan.undecided[frame]) plan.order[frame] = order;
+    }
+  }
+
+  // Frames with hidden or outlying markers: the orders of the frames around, and the given one.
+  void DecideByNeighbours(int frame, int before, int after, Plan& plan) const {
+    if (before == kOpen) before = after == kOpen ? 0 : after;
+    if (after == kOpen) after = before;
+    if (before == after) {
+      if (Try(frame, {before}, plan) || (before != 0 && Try(frame, {0}, plan))) return;
+    } else if (Try(frame, {before, after, 0}, plan)) {
+      return;
+    }
+    RemoveAll(frame, plan);
+  }
+
+  // Takes the first order that fits, if the others that fit do the same; failing that, the first
+  // that fits without one marker.
+  bool Try(int frame, const std::vector<int>& orders, Plan& plan) const {
+    std::vector<int> fitting;
+    for (const int order : orders) {
+      if (Fits(frame, order)) fitting.push_back(order);
+    }
+    if (!fitting.empty()) {
+      plan.order[frame] = fitting[0];
+      for (const int order : fitting) {
+        if (!SameForSeen(frame, fitting[0], order)) RemoveAll(frame, plan);
+      }
+      return true;
+    }
+    std::vector<int> blamed;  // raw markers
+    int chosen = kOpen;
+    for (const int order : orders) {
+      const std::vector<int> outlying = OutlyingMarkers(frame, order);
+      if (outlying.empty() || order == chosen) continue;
+      if (chosen != kOpen && !SameForSeen(frame, chosen, order)) {
+        RemoveAll(frame, plan);
+        return true;
+      }
+      chosen = order;
+      blamed = outlying;
+    }
+    if (chosen == kOpen) return false;
+    plan.order[frame] = chosen;
+    for (const int marker : blamed) plan.removed[marker][frame] = true;
+    return true;
+  }
+
+  // Raw markers without each of which at least two others are left that fit.
+  std::vector<int> OutlyingMarkers(int frame, int order) const {
+    std::vector<int> outlying;
+    int seen = 0;
+    for (int marker = 0; marker < shape_.size; ++marker) seen += IsSeen(frame, marker);
+    if (seen < 3) return outlying;
+    for (int marker = 0; marker < shape_.size; ++marker) {
+      const Permutation& permutation = shape_.permutations[order];
+      if (IsSeen(frame, marker) && shape_.Fits(table_.row(frame), permutation, marker)) {
+        outlying.push_back(marker);
+      }
+    }
+    return outlying;
+  }
+
+  bool SameForSeen(int frame, int first, int second) const {
+    const Permutation& a = shape_.permutations[first];
+    const Permutation& b = shape_.permutations[second];
+    for (int i = 0; i < shape_.size; ++i) {
+      if (a[i] != b[i] && (IsSeen(frame, a[i]) || IsSeen(frame, b[i]))) return false;
+    }
+    return true;
+  }
+
+  void RemoveAll(int frame, Plan& plan) const {
+    plan.order[frame] = 0;
+    for (int marker = 0; marker < shape_.size; ++marker) {
+      plan.removed[marker][frame] = IsSeen(frame, marker);
+    }
+  }
+
+  bool Fits(int frame, int order) const {
+    return shape_.Fits(table_.row(frame), shape_.permutations[order]);
+  }
+
+  bool IsSeen(int frame, int marker) const {
+    return !std::isnan(trajectories_.positions(frame, 3 * markers_[marker]));
+  }
+
+  const std::vector<int>& markers_;
+  const MarkerTrajectories& trajectories_;
+  DistanceTable table_;
+  ClusterShape shape_;
+  bool ambiguous_;
+};
+
+void CheckCluster(const MarkerCluster& cluster, int marker_count) {
+  std::vector<int> sorted = cluster.markers;
+  std::sort(sorted.begin(), sorted.end());
+  const bool in_range = sorted.empty() || (sorted.front() >= 0 && sorted.back() < marker_count);
+  if (!in_range || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+    throw std::invalid_argument("cluster " + cluster.name +
+                                ": expected different markers from 0 to " +
+                                std::to_string(marker_count - 1));
+  }
+}
+
+// Whether label `i` of the cluster loses its position in a frame.
+bool IsRemoved(const Plan& plan, const ClusterShape& shape, int frame, int i) {
+  return plan.removed[shape.permutations[plan.order[frame]][i]][frame];
+}
+
+// Carries a plan out.
+void Apply(const Plan& plan, const ClusterShape& shape, const std::vector<int>& markers,
+           Eigen::MatrixXd& positions) {
+  std::vector<Eigen::RowVector3d> raw(markers.size());
+  for (int frame = 0; frame < static_cast<int>(positions.rows()); ++frame) {
+    const auto position = [&](int i) { return positions.block<1, 3>(frame, 3 * markers[i]); };
+    if (plan.order[frame] != 0) {
+      for (int i = 0; i < shape.size; ++i) raw[i] = position(i);
+      for (int i = 0; i < shape.size; ++i) {
+        position(i) = raw[shape.permutations[plan.order[frame]][i]];
+      }
+    }
+    for (int i = 0; i < shape.size; ++i) {
+      if (IsRemoved(plan, shape, frame, i)) position(i).setConstant(kNan);
+    }
+  }
+}
+
+ClusterLabels Report(const Plan& plan, const LabelFinder& finder, const MarkerCluster& cluster) {
+  const ClusterShape& shape = finder.shape();
+  ClusterLabels labels;
+  labels.name = cluster.name;
+  labels.ambiguous = finder.ambiguous();
+  labels.distances = shape.distances;
+  labels.tolerances = shape.tolerances;
+  const int frames = static_cast<int>(plan.order.size());
+  for (int begin = 0, end = 0; begin < frames; begin = end) {
+    while (end < frames && plan.order[end] == plan.order[begin]) ++end;
+    if (plan.order[begin] == 0) continue;
+    labels.swaps.push_back({{begin, end}, shape.permutations[plan.order[begin]]});
+  }
+  for (int i = 0; i < shape.size; ++i) {
+    for (const FrameInterval& run :
+         RunsWhere(frames, [&](int frame) { return IsRemoved(plan, shape, frame, i); })) {
+      labels.outliers.push_back({run, cluster.markers[i]});
+    }
+  }
+  labels.undecided = RunsWhere(frames, [&](int frame) { return bool{plan.undecided[frame]}; });
+  return labels;
+}
+
+}  // namespace
+
+std::vector<ClusterLabels> CorrectLabels(const std::vector<MarkerCluster>& clusters,
+                                         const LabelOptions& options,
+                                         MarkerTrajectories& trajectories) {
+  std::vector<ClusterLabels> reports;
+  for (const MarkerCluster& cluster : clusters) {
+    CheckCluster(cluster, trajectories.marker_count());
+    if (cluster.markers.size() < 2) {
+      reports.emplace_back();
+      reports.back().name = cluster.name;
+      reports.back().ambiguous = true;
+      continue;
+    }
+    const LabelFinder finder(cluster.markers, options, trajectories);
+    const Plan plan = finder.Find();
+    Apply(plan, finder.shape(), cluster.markers, trajectories.positions);
+    reports.push_back(Report(plan, finder, cluster));
+  }
+  return reports;
+}
+
+}  // namespace elastocal
