@@ -66,6 +66,22 @@ std::string OutlierText(const CalibrationRun& run) {
   return text;
 }
 
+/// Markers whose estimated position is far from the project's: measured roughly, on another link,
+/// or exchanged.
+std::string MarkerText(const CalibrationResult& result) {
+  constexpr double kFar = 0.02;  // m
+  std::string text;
+  const int first = result.model.parameter_count() - 3 * result.model.marker_count();
+  for (int m = 0; m < result.model.marker_count(); ++m) {
+    const double distance = result.delta.segment<3>(first + 3 * m).norm();
+    if (distance < kFar) continue;
+    text += fmt::format("{}{} {:.0f} mm", text.empty() ? "" : ", ", result.model.markers[m].name,
+                        1e3 * distance);
+  }
+  return "Markers more than 20 mm from where the project has them: " +
+         (text.empty() ? "none" : text) + "\n";
+}
+
 /// One sentence for whoever reads no table.
 std::string Conclusion(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) return "Verdict: do not deploy (see the errors).\n";
@@ -141,6 +157,7 @@ std::string DescribeRun(const CalibrationRun& run) {
           Names(result, WithStatus(result, ParameterStatus::kUnsupported)) +
           "\nHeld by the project: " + Names(result, WithStatus(result, ParameterStatus::kHeld)) +
           "\n\n";
+  text += MarkerText(result);
   text += OutlierText(run);
   text += fmt::format(
       "\nExcitation by this recording: condition number {:.3g} (before the choice of identifiable "
