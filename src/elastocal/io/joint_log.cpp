@@ -72,14 +72,7 @@ class LogReader {
   std::string PlaceOf(Eigen::Index row) const { return Place(source_, 2 + static_cast<int>(row)); }
 
   double Number(const std::vector<std::string>& cells, int column) const {
-    const std::string& cell = cells[column];
-    const std::optional<double> number = ParseNumber(cell);
-    if (!number) {
-      Fail("column " + Quote(columns_.names[column]) + ": found " +
-           (cell.empty() ? "nothing" : Quote(cell)) + "; a finite number was expected" +
-           (cell.find(',') == std::string::npos ? "" : ", with a decimal point"));
-    }
-    return *number;
+    return CellNumber(cells[column], columns_.names[column], source_, lines_.line());
   }
 
   /// Drivers log NaN for joints without a sensor.

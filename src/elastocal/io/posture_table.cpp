@@ -73,14 +73,7 @@ class RowReader {
   }
 
   double Number(const std::vector<std::string>& cells, int column) const {
-    const std::string& cell = cells[column];
-    const std::optional<double> number = ParseNumber(cell);
-    if (!number) {
-      Fail("column " + Quote(columns_.names[column]) + ": found " +
-           (cell.empty() ? "nothing" : Quote(cell)) + "; a finite number was expected" +
-           (cell.find(',') == std::string::npos ? "" : ", with a decimal point"));
-    }
-    return *number;
+    return CellNumber(cells[column], columns_.names[column], source_, lines_.line());
   }
 
   void AddMarker(const std::vector<std::string>& cells, const std::array<int, 3>& xyz) {

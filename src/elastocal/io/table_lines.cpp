@@ -169,6 +169,15 @@ bool SplitCells(std::string_view line, char separator, std::vector<std::string>&
   }
 }
 
+double CellNumber(const std::string& cell, const std::string& column, const std::string& source,
+                  int line) {
+  const std::optional<double> number = ParseNumber(cell);
+  if (number) return *number;
+  throw InputError(Place(source, line) + "column " + Quote(column) + ": found " +
+                   (cell.empty() ? "nothing" : Quote(cell)) + "; a finite number was expected" +
+                   (cell.find(',') == std::string::npos ? "" : ", with a decimal point"));
+}
+
 std::string MakeCell(const std::string& text) {
   if (text.find_first_of(",;\t\"") == std::string::npos) return text;
   std::string cell = "\"";

@@ -46,6 +46,10 @@ class TableLines {
 /// quotes that do not enclose a whole cell.
 bool SplitCells(std::string_view line, char separator, std::vector<std::string>& cells);
 
+/// A cell as a finite number. Throws InputError naming file, line and column for anything else.
+double CellNumber(const std::string& cell, const std::string& column, const std::string& source,
+                  int line);
+
 /// A text as a cell of a table, in quotes where it needs them.
 std::string MakeCell(const std::string& text);
 
