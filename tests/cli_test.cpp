@@ -288,6 +288,24 @@ TEST_F(Program, CalibrationOfAnotherRobotIsRefused) {
   EXPECT_NE(result.err.find("not the calibrated one"), std::string::npos) << result.err;
 }
 
+TEST_F(Program, AJointBeyondItsLimitsIsAWarning) {
+  std::string project = ReadFile(project_);
+  std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  const std::size_t joint = urdf.find("name=\"elbow_joint\"");
+  const std::size_t upper = urdf.find("upper=\"", joint) + 7;
+  const std::size_t lower = urdf.find("lower=\"", joint) + 7;
+  for (const auto& [at, value] :
+       {std::pair{std::max(upper, lower), upper > lower ? "0.1" : "-0.1"},
+        std::pair{std::min(upper, lower), upper > lower ? "-0.1" : "0.1"}}) {
+    urdf.replace(at, urdf.find('"', at) - at, value);
+  }
+  scratch_.Write("arm6.urdf", urdf);
+  const ProgramResult result = Calibrate(scratch_.Write("tight.yaml", project), recording_);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("elbow_joint"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("beyond its limit"), std::string::npos) << result.err;
+}
+
 TEST_F(Program, BadTablesAreRefusedWhole) {
   const std::string good = ReadFile(recording_);
   ExpectRefused(Calibrate(project_, scratch_.Write("zeros.csv", std::string(200 << 20, '0'))),
@@ -304,6 +322,12 @@ TEST_F(Program, BadTablesAreRefusedWhole) {
   };
   ExpectRefused(Calibrate(project_, scaled("", 1000.0)), {"scaled.csv", "millimetres"});
   ExpectRefused(Calibrate(project_, scaled("WRIST", 1000.0)), {"scaled.csv", "WRIST"});
+  const Project project = ReadProject(project_);
+  Recording twins = ReadPostureTable(recording_, project).recording;
+  twins.markers.middleCols(3, 3) = twins.markers.leftCols(3);
+  WritePostureTable(scratch_.path() / "twins.csv", twins, project.tree);
+  ExpectRefused(Calibrate(project_, (scratch_.path() / "twins.csv").string()),
+                {"twins.csv", twins.marker_names[0], twins.marker_names[1]});
   std::string missing = good;
   missing.replace(missing.find("elbow_joint"), 11, "elbow_angle");
   ExpectRefused(Calibrate(project_, scratch_.Write("missing.csv", missing)),
