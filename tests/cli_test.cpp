@@ -252,12 +252,18 @@ TEST_F(Program, OutputsMayNotReplaceInputs) {
   ExpectRefused(Calibrate(project_, recording_, "--json " + recording_),
                 {"recording.csv", "input"});
   EXPECT_EQ(ReadFile(recording_), before);
+  const std::string project = scratch_.Write("arm6_project.yaml", ReadFile(project_));
+  scratch_.Write("arm6.urdf", ReadFile(SourceFile("tests/robots/arm6.urdf")));
+  ExpectRefused(RunProgram("inspect " + project + " --json " + project), {"input"});
+  EXPECT_EQ(ReadFile(project), ReadFile(project_));
 }
 
 TEST_F(Program, JsonCanGoToStandardOutput) {
   const ProgramResult result = Calibrate(project_, recording_, "--json -");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "converged");
+  const ProgramResult demo = RunProgram("demo --postures 15 --json - -o " + out_);
+  EXPECT_EQ(nlohmann::json::parse(demo.out)["status"], "converged") << demo.err;
 }
 
 // Two joint columns exchanged: every number is fine, the whole is nonsense.

@@ -9,7 +9,6 @@
 #include "elastocal/identifiability/regressor.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/output_files.hpp"
-#include "elastocal/math/input_error.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal::cli {
@@ -45,12 +44,12 @@ CalibrationRun Calculate(const Session& session, const CalibrateOptions& options
 
 using Files = std::vector<std::pair<std::filesystem::path, std::string>>;
 
-constexpr const char* kCalibration = "calibration.yaml";
-constexpr const char* kOffsets = "offsets.xacro";
-constexpr const char* kCovariance = "covariance.csv";
-
-std::string CalibratedName(const Project& project) {
-  return project.urdf.stem().string() + "_calibrated.urdf";
+/// Results that stand in the folder if there are any, of this run or of an earlier one.
+std::vector<std::filesystem::path> DeployablePaths(const CalibrateOptions& options,
+                                                   const Project& project) {
+  const std::filesystem::path folder = options.output;
+  return {folder / (project.urdf.stem().string() + "_calibrated.urdf"), folder / "calibration.yaml",
+          folder / "offsets.xacro", folder / "covariance.csv"};
 }
 
 /// What can be deployed; adds what the export has to warn of.
@@ -62,34 +61,11 @@ Files DeployableFiles(const CalibrateOptions& options, const Session& session,
   const CalibratedUrdf urdf = MakeCalibratedUrdf(
       ReadFile(session.project.urdf), session.project.urdf.string(), result, zero_offsets);
   run.warnings.insert(run.warnings.end(), urdf.warnings.begin(), urdf.warnings.end());
-  const std::filesystem::path folder = options.output;
-  return {{folder / CalibratedName(session.project), urdf.text},
-          {folder / kCalibration,
-           MakeCalibrationYaml(result, run.base, run.recording.source, zero_offsets)},
-          {folder / kOffsets, MakeXacroOffsets(urdf)},
-          {folder / kCovariance, MakeCovarianceCsv(result)}};
-}
-
-/// Results of an earlier run must not stand beside the summary of one that has none.
-void RemoveDeployableFiles(const CalibrateOptions& options, const Project& project) {
-  std::error_code ignored;
-  for (const std::string& name : {CalibratedName(project), std::string(kCalibration),
-                                  std::string(kOffsets), std::string(kCovariance)}) {
-    std::filesystem::remove(std::filesystem::path(options.output) / name, ignored);
-  }
-}
-
-/// No output may replace an input.
-void CheckOutputs(const CalibrateOptions& options, const Session& session, const Files& files) {
-  for (const auto& [file, text] : files) {
-    for (const std::filesystem::path& input :
-         {std::filesystem::path(options.project), session.project.urdf,
-          std::filesystem::path(options.recording)}) {
-      if (SameFile(file, input)) {
-        throw InputError(file.string() + ": this is an input; choose another output");
-      }
-    }
-  }
+  const std::vector<std::filesystem::path> paths = DeployablePaths(options, session.project);
+  return {{paths[0], urdf.text},
+          {paths[1], MakeCalibrationYaml(result, run.base, run.recording.source, zero_offsets)},
+          {paths[2], MakeXacroOffsets(urdf)},
+          {paths[3], MakeCovarianceCsv(result)}};
 }
 
 }  // namespace
@@ -97,16 +73,25 @@ void CheckOutputs(const CalibrateOptions& options, const Session& session, const
 int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const bool quiet = options.common.Silent();
   const Session session = OpenSession(options.project, options.recording, options.common.seed);
+  const std::filesystem::path summary_file = std::filesystem::path(options.output) / "summary.json";
+  const std::vector<std::filesystem::path> deployable_paths =
+      DeployablePaths(options, session.project);
+  std::vector<std::filesystem::path> outputs = deployable_paths;
+  outputs.insert(outputs.end(), {summary_file, options.common.json_file});
+  CheckOutputs(outputs, {options.project, session.project.urdf, options.recording});
+
   CalibrationRun run = Calculate(session, options);
   const bool deployable = run.verdict.objections.empty();
   Files files;
   if (deployable) files = DeployableFiles(options, session, run);
   const std::string summary = MakeSummaryJson(run);
-  files.push_back({std::filesystem::path(options.output) / "summary.json", summary});
+  files.push_back({summary_file, summary});
   if (!options.common.json_file.empty()) files.push_back({options.common.json_file, summary});
-  CheckOutputs(options, session, files);
   WriteFiles(files);
-  if (!deployable) RemoveDeployableFiles(options, session.project);
+  if (!deployable) {
+    std::error_code ignored;
+    for (const auto& file : deployable_paths) std::filesystem::remove(file, ignored);
+  }
 
   Print(quiet, DescribeRun(run));
   PrintWarnings(run.warnings);

@@ -106,7 +106,7 @@ int Demo(const DemoOptions& options) {
       truth.model, truth.delta, {.postures = options.postures, .seed = seed + 1});
   WritePostureTable(folder / "recording.csv", recording, project.tree);
   Print(
-      options.common.quiet,
+      options.common.Silent(),
       fmt::format("A TALOS with known errors, {} random postures of its upper body, 0.2 mm marker "
                   "noise: {}\n\n",
                   options.postures, (folder / "recording.csv").string()));

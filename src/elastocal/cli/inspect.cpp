@@ -175,6 +175,7 @@ Json ChainJson(const ChainReport& report) {
 
 int Inspect(const InspectOptions& options) {
   const Project project = ReadProject(options.project);
+  CheckOutputs({options.common.json_file}, {options.project, project.urdf});
   IdentifiabilityOptions identifiability = project.identifiability;
   if (options.common.seed) identifiability.seed = *options.common.seed;
   if (!options.hold.empty()) identifiability.hold = options.hold;

@@ -7,6 +7,9 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/math/input_error.hpp"
+
 namespace elastocal::cli {
 namespace {
 
@@ -58,6 +61,17 @@ Session OpenSession(const std::filesystem::path& project, const std::filesystem:
   session.base = FindBaseParameters(session.model, options);
   WarnOfLostRank(session.model, options, session.base, session.warnings);
   return session;
+}
+
+void CheckOutputs(const std::vector<std::filesystem::path>& outputs,
+                  const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& output : outputs) {
+    for (const std::filesystem::path& input : inputs) {
+      if (!output.empty() && SameFile(output, input)) {
+        throw InputError(output.string() + ": this is an input; choose another output");
+      }
+    }
+  }
 }
 
 Progress TerminalProgress(const std::string& what, bool quiet) {

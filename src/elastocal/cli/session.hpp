@@ -25,6 +25,10 @@ struct Session {
 Session OpenSession(const std::filesystem::path& project, const std::filesystem::path& recording,
                     std::optional<std::uint64_t> seed);
 
+/// Throws InputError where an output (empty ones aside) would replace an input.
+void CheckOutputs(const std::vector<std::filesystem::path>& outputs,
+                  const std::vector<std::filesystem::path>& inputs);
+
 /// Shows progress on stderr where that is a terminal and the user does not want quiet.
 Progress TerminalProgress(const std::string& what, bool quiet);
 

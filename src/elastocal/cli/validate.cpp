@@ -75,6 +75,8 @@ int Validate(const ValidateOptions& options) {
   const StoredCalibration stored = ReadCalibration(options.calibration);
   Session session = OpenSession(options.project, options.recording, options.common.seed);
   CheckRobot(stored, session, options.calibration);
+  CheckOutputs({options.common.json_file},
+               {options.project, session.project.urdf, options.recording, options.calibration});
   const TransferValidation validation =
       ValidateTransfer(session.model, session.recording, session.base, session.project.calibration,
                        stored.joint_errors);
