@@ -5,12 +5,9 @@
 #include <vector>
 
 #include "elastocal/io/project.hpp"
+#include "elastocal/measurement/recording.hpp"
 
 namespace elastocal {
-
-/// What a trial is for: estimating parameters, or judging them on motions of another kind (section
-/// 6 of the paper).
-enum class TrialKind { kCalibration, kSine, kRandom, kRepeatability };
 
 /// As experiment.yaml has it: "calibration", "sine", "random", "repeatability".
 std::string TrialKindName(TrialKind kind);

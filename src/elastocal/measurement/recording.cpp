@@ -14,6 +14,12 @@ Recording SelectPostures(const Recording& recording, const std::vector<int>& pos
   Recording selected = recording;
   selected.q = recording.q(postures, Eigen::all);
   selected.markers = recording.markers(postures, Eigen::all);
+  if (recording.torques.rows() > 0) selected.torques = recording.torques(postures, Eigen::all);
+  if (recording.wrenches.rows() > 0) selected.wrenches = recording.wrenches(postures, Eigen::all);
+  if (!recording.trial.empty()) {
+    selected.trial.clear();
+    for (int posture : postures) selected.trial.push_back(recording.trial[posture]);
+  }
   if (recording.time_s.size() > 0) selected.time_s = recording.time_s(postures);
   if (!recording.line.empty()) {
     selected.line.clear();
