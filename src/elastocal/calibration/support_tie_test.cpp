@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-Transform Displaced(const Vector6& by) {
+Transform Displaced(const Vector6d& by) {
   Transform T = Transform::Identity();
   T.linear() = RotationFromVector(by.tail<3>());
   T.translation() = by.head<3>();
@@ -18,7 +18,7 @@ Transform Displaced(const Vector6& by) {
 }
 
 /// Motion of a body under the screw [a; m] for one unit of time: exact, about the origin.
-Transform Screw(const Vector6& screw) {
+Transform Screw(const Vector6d& screw) {
   Transform T = Transform::Identity();
   T.linear() = RotationFromVector(screw.head<3>());
   T.translation() = LeftJacobian(screw.head<3>()) * screw.tail<3>();
@@ -39,9 +39,9 @@ SupportTie LeaningRobot() {
 TEST(SupportTie, IsZeroWhereTheLoadedLegReachesFromFootToWaist) {
   SupportTie tie = LeaningRobot();
   // The foot's axes are the reference's: the waist 0.9 m up, then moved 3 mm down and leaning.
-  tie.T_ref_foot = Displaced((Vector6() << 1.0, 2.0, 0.0, 0.0, 0.0, 0.0).finished());
+  tie.T_ref_foot = Displaced((Vector6d() << 1.0, 2.0, 0.0, 0.0, 0.0, 0.0).finished());
   tie.deflection << 0.0, 0.001, -0.003, 0.004, 0.0, 0.0;
-  Transform T_foot_waist = Displaced((Vector6() << 0.1, 0.0, 0.9, 0.2, 0.3, 0.1).finished());
+  Transform T_foot_waist = Displaced((Vector6d() << 0.1, 0.0, 0.9, 0.2, 0.3, 0.1).finished());
   const Transform T_waist_foot = T_foot_waist.inverse();
   T_foot_waist.translation() += tie.deflection.head<3>();
   T_foot_waist.linear() = RotationFromVector(tie.deflection.tail<3>()) * T_foot_waist.linear();
@@ -52,36 +52,36 @@ TEST(SupportTie, IsZeroWhereTheLoadedLegReachesFromFootToWaist) {
   // Half a millimetre lower than the leg explains.
   tie.T_ref_waist.translation().z() -= 0.0005;
   tie.T_ref_foot_predicted.translation().z() -= 0.0005;
-  const Vector6 residual = EvaluateTie(tie).residual;
+  const Vector6d residual = EvaluateTie(tie).residual;
   EXPECT_NEAR(residual[2], -0.0005, 1e-15);
-  EXPECT_LT((residual - residual[2] * Vector6::Unit(2)).norm(), 1e-14);
+  EXPECT_LT((residual - residual[2] * Vector6d::Unit(2)).norm(), 1e-14);
 }
 
 TEST(SupportTie, DerivativesEqualDifferences) {
   const SupportTie tie = LeaningRobot();
   const TieResidual at = EvaluateTie(tie);
-  using Change = std::function<void(SupportTie&, const Vector6&)>;
-  const std::vector<std::pair<Matrix6, Change>> cases = {
+  using Change = std::function<void(SupportTie&, const Vector6d&)>;
+  const std::vector<std::pair<Matrix6d, Change>> cases = {
       {at.by_waist,
-       [](SupportTie& t, const Vector6& step) {
+       [](SupportTie& t, const Vector6d& step) {
          t.T_ref_waist = Screw(step) * t.T_ref_waist;
          t.T_ref_foot_predicted = Screw(step) * t.T_ref_foot_predicted;
        }},
       {at.by_leg,
-       [](SupportTie& t, const Vector6& step) {
+       [](SupportTie& t, const Vector6d& step) {
          t.T_ref_foot_predicted = Screw(step) * t.T_ref_foot_predicted;
        }},
       {at.by_foot,
-       [](SupportTie& t, const Vector6& step) { t.T_ref_foot = t.T_ref_foot * Displaced(step); }},
-      {at.by_deflection, [](SupportTie& t, const Vector6& step) { t.deflection += step; }}};
+       [](SupportTie& t, const Vector6d& step) { t.T_ref_foot = t.T_ref_foot * Displaced(step); }},
+      {at.by_deflection, [](SupportTie& t, const Vector6d& step) { t.deflection += step; }}};
   constexpr double kStep = 1e-5;  // truncation 1e-10, rounding 1e-11
   for (std::size_t c = 0; c < cases.size(); ++c) {
     for (int i = 0; i < 6; ++i) {
       SupportTie plus = tie;
       SupportTie minus = tie;
-      cases[c].second(plus, kStep * Vector6::Unit(i));
-      cases[c].second(minus, -kStep * Vector6::Unit(i));
-      const Vector6 difference =
+      cases[c].second(plus, kStep * Vector6d::Unit(i));
+      cases[c].second(minus, -kStep * Vector6d::Unit(i));
+      const Vector6d difference =
           (EvaluateTie(plus).residual - EvaluateTie(minus).residual) / (2.0 * kStep);
       EXPECT_LT((difference - cases[c].first.col(i)).norm(), 1e-8) << c << ", " << i;
     }
