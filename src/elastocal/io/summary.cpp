@@ -43,7 +43,7 @@ Json Parameters(const CalibrationResult& result) {
     const Parameter& parameter = result.model.parameters[i];
     Json item;
     item["name"] = parameter.name;
-    item["unit"] = parameter.unit == ParameterUnit::kRadian ? "rad" : "m";
+    item["unit"] = UnitName(parameter.unit);
     item["value"] = result.delta[i];
     item["sd"] = Finite(result.sd[i]);
     item["status"] = StatusName(result.status[i]);
@@ -141,7 +141,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["rmse_3d_mm_with_outliers"] =
       FigureByModel(run.comparison.kinds, run.comparison.metrics_all, &ErrorMetrics::rmse_3d);
   if (run.cross_validation.folds > 0) {
-    const Metrics& metrics = run.cross_validation.metrics;
+    const ByModel<ErrorMetrics>& metrics = run.cross_validation.metrics;
     json["kfold"]["folds"] = run.cross_validation.folds;
     json["kfold"]["rmse_3d_mm"] =
         FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::rmse_3d);

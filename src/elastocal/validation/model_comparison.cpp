@@ -76,11 +76,11 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
     for (int i = 0; i < postures; ++i) (fold_of[i] == fold ? held_out : training).push_back(i);
     const Recording training_data = SelectPostures(recording, training);
     const Recording held_out_data = SelectPostures(recording, held_out);
-    Selection training_selection{comparison.best().used(training, Eigen::all), {}};
-    for (int i : training) training_selection.tied.push_back(comparison.best().tied[i]);
+    Selection selection{comparison.best().used(training, Eigen::all), {}};
+    for (int i : training) selection.tied.push_back(comparison.best().tied[i]);
     for (ModelKind kind : comparison.kinds) {
       const CalibrationResult result = CalibrateFold(model, training_data, base, kind, options,
-                                                     training_selection, fold + 1, folds);
+                                                     selection, fold + 1, folds);
       validation.unconverged += result.termination == Termination::kConverged ? 0 : 1;
       distances[static_cast<int>(kind)](held_out, Eigen::all) =
           Predict(result.model, result.delta, held_out_data, options, &result.placement).distances;
@@ -88,7 +88,7 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
     }
     // A marker that is in no other fold has no estimated position to predict it from.
     for (int m = 0; m < recording.marker_count(); ++m) {
-      if (training_mask.col(m).any()) continue;
+      if (selection.markers.col(m).any()) continue;
       for (int i : held_out) {
         validation.not_predicted += predicted(i, m) ? 1 : 0;
         predicted(i, m) = false;
