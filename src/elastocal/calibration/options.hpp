@@ -15,13 +15,16 @@ struct PriorScale {
 /// The prior is widened no further than this: what lies beyond is no error of a robot.
 inline constexpr double kMaxPriorScale = 10.0;
 
-/// Standard deviation of the Gaussian prior on each kind of parameter, around nominal: rad or m;
-/// infinite for none. T0 and marker positions have none: nobody knows them beforehand.
+/// Standard deviation of the Gaussian prior on each kind of parameter, around nominal, in the
+/// parameter's SI unit; infinite for none. T0 and marker positions have none: nobody knows them
+/// beforehand.
 struct Prior {
   std::array<double, kParameterKindCount> sd;
 
-  Prior();  ///< 0.5 degrees and 1 mm on joints, none on T0 and markers
-  /// The prior with the standard deviations of angles and of lengths multiplied.
+  /// 0.5 degrees and 1 mm on joints, none on T0 and markers; torsion, bending and legs about an
+  /// axis 5e-5 rad/(N.m), legs along an axis 1e-5 m/N, torque sensors 2 N.m.
+  Prior();
+  /// The prior with the standard deviations of angles and of lengths multiplied; elastic ones stay.
   Prior Scaled(const PriorScale& scale) const;
   double& operator[](ParameterKind kind) { return sd[static_cast<int>(kind)]; }
   double operator[](ParameterKind kind) const { return sd[static_cast<int>(kind)]; }

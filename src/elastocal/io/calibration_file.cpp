@@ -40,7 +40,12 @@ std::uint64_t Fnv1a(const std::string& text) {
   return hash;
 }
 
-const char* UnitName(ParameterUnit unit) { return unit == ParameterUnit::kRadian ? "rad" : "m"; }
+bool IsUnitName(const std::string& text) {
+  for (int unit = 0; unit < kParameterUnitCount; ++unit) {
+    if (text == UnitName(static_cast<ParameterUnit>(unit))) return true;
+  }
+  return false;
+}
 
 /// Pairs (kept parameter, coefficient) that a dropped parameter is regrouped into.
 void EmitRegrouping(const CalibrationResult& result, const BaseParameters& base, int dropped,
@@ -100,8 +105,7 @@ std::string NominalFingerprint(const ErrorModel& model) {
 std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
                                 const std::string& recording, ZeroOffsets zero_offsets) {
   YAML::Emitter yaml;
-  yaml << YAML::Comment(
-      "Written by elastocal: deviations from the nominal URDF, radians and metres.");
+  yaml << YAML::Comment("Written by elastocal: deviations from the nominal URDF, in SI units.");
   yaml << YAML::BeginMap;
   yaml << YAML::Key << "format" << YAML::Value << kFormat;
   yaml << YAML::Key << "robot" << YAML::Value << result.model.tree.name;
@@ -137,7 +141,7 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   for (const YamlValue& parameter : root.Get("parameters").Items()) {
     const std::string name = parameter.Get("name").Text();
     const YamlValue unit = parameter.Get("unit");
-    unit.Expect(unit.Text() == "rad" || unit.Text() == "m", "rad or m");
+    unit.Expect(IsUnitName(unit.Text()), "rad, m, rad/(N.m), m/N, N.m or N");
     const double value = parameter.Get("value").Number();
     const bool external = name.starts_with("waist.T0.") || name.starts_with("marker.");
     if (!external) stored.joint_errors[name] = value;

@@ -43,7 +43,7 @@ Json Parameters(const CalibrationResult& result) {
     const Parameter& parameter = result.model.parameters[i];
     Json item;
     item["name"] = parameter.name;
-    item["unit"] = parameter.unit == ParameterUnit::kRadian ? "rad" : "m";
+    item["unit"] = UnitName(parameter.unit);
     item["value"] = result.delta[i];
     item["sd"] = Finite(result.sd[i]);
     item["status"] = StatusName(result.status[i]);

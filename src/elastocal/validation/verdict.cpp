@@ -55,7 +55,7 @@ void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& v
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[i];
     const double deviation = std::abs(result.delta[i]) / prior[parameter.kind];
-    if (parameter.joint < 0 || !(deviation > furthest)) continue;
+    if (parameter.joint < 0 || IsElastic(parameter.kind) || !(deviation > furthest)) continue;
     furthest = deviation;
     largest = i;
   }
