@@ -15,6 +15,7 @@ namespace elastocal {
 namespace {
 
 constexpr int kMaxVerdicts = 5;
+constexpr int kFewUpdates = 2;  // of the noise, for a start
 
 bool IsEstimated(ParameterKind parameter, ModelKind kind) {
   if (IsExternal(parameter)) return true;
@@ -197,7 +198,8 @@ void Estimate(const ErrorModel& model, const Recording& recording, const BasePar
   const Fit start = StartFit(problem, selection, delta);
   if (waist_moves) FindFootings(model, recording, options.slip, &result.slips);
   CheckEquations(recording, start.placement, selection, externals, 0);
-  const Fit fit = FitParameters(problem, selection, externals, start, fixed == nullptr);
+  const Fit fit =
+      FitParameters(problem, selection, externals, start, fixed == nullptr, kFewUpdates);
   EstimateAll(problem, base, OfKind(model, base, result.kind, waist_moves), fixed, fit, result);
 }
 

@@ -17,7 +17,6 @@ constexpr double kCauchyScale = 3.0;      // of a residual in standard deviation
 constexpr double kAbsurdSd = 0.1;         // rad or m
 constexpr double kRoughTolerance = 1e-8;  // of the cost, while noise and prior are being found
 constexpr double kHyperTolerance = 1e-3;  // of noise and prior scale, relative
-constexpr int kMaxUpdates = 50;
 constexpr int kMaxPolishing = 6;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 
@@ -214,9 +213,9 @@ Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen:
 }
 
 Fit FitParameters(const FitProblem& problem, const Selection& selection,
-                  const std::vector<int>& free, const Fit& start, bool robust) {
+                  const std::vector<int>& free, const Fit& start, bool robust, int updates) {
   Fit fit = start;
-  for (int update = 0; update < kMaxUpdates; ++update) {
+  for (int update = 0; update < updates; ++update) {
     SolveOnce(problem, selection, free, robust, kRoughTolerance, fit);
     UpdatePosterior(problem, selection, free, fit);
     const Noise noise = EstimateNoise(problem, selection, fit, robust);
@@ -229,9 +228,18 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                                     Change(fit.prior_scale.lengths, scale.lengths)});
     fit.noise = noise;
     fit.prior_scale = scale;
+    if (getenv("EDBG")) {
+      fprintf(stderr, "upd %d it %d cost %g change %g noise", update, fit.iterations,
+              fit.final_cost, change);
+      for (int g = 0; g < noise.group_count(); ++g)
+        fprintf(stderr, " | %g %g %g", noise.marker_sd[g], noise.waist_position_sd[g],
+                noise.waist_rotation_sd[g]);
+      fprintf(stderr, " scale %g %g robust %d free %zu\n", scale.angles, scale.lengths, robust,
+              free.size());
+    }
     if (change < kHyperTolerance) return fit;
   }
-  fit.settled = false;
+  fit.settled = fit.settled && updates < kMaxUpdates;
   return fit;
 }
 

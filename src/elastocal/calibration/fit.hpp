@@ -11,6 +11,8 @@
 
 namespace elastocal {
 
+inline constexpr int kMaxUpdates = 50;  ///< of noise and prior before a fit counts as unsettled
+
 /// What stays the same while parameters are fitted in several steps. Keeps references.
 struct FitProblem {
   const ErrorModel& model;
@@ -61,8 +63,10 @@ Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen:
 /// bend the robot follow along.
 ///
 /// `robust`: under Cauchy's loss and with the noise by the median, which gross errors cannot move.
+/// `updates`: of noise and prior at most; a start for another fit needs few.
 Fit FitParameters(const FitProblem& problem, const Selection& selection,
-                  const std::vector<int>& free, const Fit& start, bool robust);
+                  const std::vector<int>& free, const Fit& start, bool robust,
+                  int updates = kMaxUpdates);
 
 /// Solves to the last digit, with noise and prior as they are and loads as the solution has them.
 void Polish(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "elastocal/robot/parameters.hpp"
+#include "elastocal/robot/posture_loads.hpp"
 
 namespace elastocal {
 
@@ -14,20 +15,6 @@ struct PriorScale {
 
 /// The prior is widened no further than this: what lies beyond is no error of a robot.
 inline constexpr double kMaxPriorScale = 10.0;
-
-/// Where the load on the waist is taken from.
-enum class LoadSource {
-  kTorques,  ///< the leg's torque sensors (eq. 6); a missing one is replaced by the statics
-  kWrench,   ///< an ankle's force-torque sensor, where it was recorded; else as kTorques
-  kStatics,  ///< gravity on the calibrated model
-};
-
-struct LoadOptions {
-  LoadSource source = LoadSource::kTorques;
-  /// Where the leg's Jacobian is worse conditioned than this (a straight knee), torques say nothing
-  /// about the load: statics replace them in that posture.
-  double largest_condition = 100.0;
-};
 
 /// Standard deviation of the Gaussian prior on each kind of parameter, around nominal, in the
 /// parameter's SI unit; infinite for none. T0 and marker positions have none: nobody knows them

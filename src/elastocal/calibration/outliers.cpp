@@ -73,8 +73,7 @@ OutlierVerdict FindOutliers(const Fit& fit, const std::vector<int>& group, const
     const bool in_use = tie ? used.tied[posture] != 0 : used.markers(posture, marker);
     const Eigen::MatrixXd white = Eigen::MatrixXd::Identity(residual.size(), residual.size());
     const Eigen::MatrixXd& explained = fit.posterior.explained[block];
-    const double distance =
-        SquaredDistance(residual, white + (in_use ? -1.0 : 1.0) * explained);
+    const double distance = SquaredDistance(residual, white + (in_use ? -1.0 : 1.0) * explained);
     if (!(distance > thresholds[tie ? 1 : 0][in_use ? 1 : 0])) continue;
     if (tie) {
       verdict.footings.push_back(

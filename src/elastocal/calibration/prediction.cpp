@@ -80,10 +80,9 @@ class Predictor {
     Prediction prediction;
     prediction.distances.setConstant(recording_.posture_count(), recording_.marker_count(), kNaN);
     for (int i = 0; i < recording_.posture_count(); ++i) {
-      const Eigen::Matrix3Xd p_waist = MarkersInWaist(i);
+      const Eigen::Matrix3Xd predicted = Markers(i);
       for (int m = 0; m < recording_.marker_count(); ++m) {
-        prediction.distances(i, m) =
-            (MarkerPosition(recording_, i, m) - placement_.T_ref_waist[i] * p_waist.col(m)).norm();
+        prediction.distances(i, m) = (MarkerPosition(recording_, i, m) - predicted.col(m)).norm();
       }
     }
     prediction.placement = std::move(placement_);
@@ -95,14 +94,31 @@ class Predictor {
   Eigen::Matrix3Xd MarkersInWaist(int posture) const {
     return MarkerPositions(model_, geometry_, Q(posture), loads_[posture].joints);
   }
+  /// By the footing; those on the foot itself without what is between it and the waist.
+  Eigen::Matrix3Xd MarkersInFoot(int leg, int posture, const Transform& T_foot_waist) const {
+    Eigen::Matrix3Xd positions = T_foot_waist * MarkersInWaist(posture);
+    if (leg < 0) return positions;
+    const int foot = model_.legs[leg].link;
+    for (int m = 0; m < model_.marker_count(); ++m) {
+      const bool on_foot =
+          model_.tree.links[model_.markers[m].link].body == model_.tree.links[foot].body;
+      if (on_foot) positions.col(m) = PlaceMarker(model_, geometry_, m, foot).position;
+    }
+    return positions;
+  }
+
+  Eigen::Matrix3Xd Markers(int posture) const {
+    const int footing = placement_.footing[posture];
+    if (footing < 0) return placement_.T_ref_waist[posture] * MarkersInWaist(posture);
+    const Transform& T_ref_foot = placement_.T_ref_footing[footing];
+    return T_ref_foot * MarkersInFoot(placement_.footings[footing].leg, posture,
+                                      T_ref_foot.inverse() * placement_.T_ref_waist[posture]);
+  }
 
   Transform WaistOnFoot(int leg, int posture) const {
     if (leg < 0) return Transform::Identity();
     const LegPosture rigid = PlaceLeg(model_, geometry_, Q(posture), leg, loads_[posture].joints);
-    Vector6d wrench = loads_[posture].waist;
-    if (loads_[posture].waist_by_bias.cols() > 0) {
-      wrench += loads_[posture].waist_by_bias * geometry_.torque_bias(model_.legs[leg].joints);
-    }
+    const Vector6d wrench = loads_[posture].WaistLoad(model_, geometry_, leg);
     return DeflectWaist(rigid.T_foot_waist, geometry_.leg_compliance[leg], wrench).T_foot_waist;
   }
 

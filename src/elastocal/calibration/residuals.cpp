@@ -128,6 +128,12 @@ BodyResiduals::Deflection BodyResiduals::MapDeflection(int leg) const {
   return deflection;
 }
 
+bool BodyResiduals::IsMarkerBlock(int block) const {
+  const auto first = std::find(block_of_.begin(), block_of_.end(), block);
+  return first != block_of_.end() &&
+         in_.model.parameters[free_[first - block_of_.begin()]].marker >= 0;
+}
+
 void BodyResiduals::MakeMarkerBlocks() {
   const ObservationMask seen = SeenMask(in_.recording);
   for (int i = 0; i < seen.rows(); ++i) {
@@ -188,11 +194,7 @@ Eigen::VectorXd BodyResiduals::ToErrors(const Eigen::VectorXd& x) const {
 Placement BodyResiduals::ToPlacement(const Eigen::VectorXd& x) const {
   Placement placement = placement_;
   for (std::size_t f = 0; f < placement.footings.size(); ++f) {
-    const Vector6d step =
-        kPoseScale * x.segment<6>(first_entry_[first_footing_block_ + static_cast<int>(f)]);
-    Transform& T = placement.T_ref_footing[f];
-    T.translation() += T.linear() * step.head<3>();
-    T.linear() = T.linear() * RotationFromVector(step.tail<3>());
+    placement.T_ref_footing[f] = FootingPose(x, static_cast<int>(f));
   }
   Geometry geometry = ApplyErrors(in_.model, fixed_);
   for (std::size_t i = 0; i < placement.T_ref_waist.size(); ++i) {
@@ -215,7 +217,30 @@ Vector6d BodyResiduals::PoseAt(int block) const {
   return kPoseScale * x_.segment<6>(first_entry_[block]);
 }
 
-void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobians) {
+bool BodyResiduals::OnStandingFoot(int posture, int marker) const {
+  if (placement_.empty() || placement_.footing[posture] < 0) return false;
+  const int leg = placement_.footings[placement_.footing[posture]].leg;
+  const auto body = [&](int link) { return in_.model.tree.links[link].body; };
+  return leg >= 0 && body(in_.model.markers[marker].link) == body(in_.model.legs[leg].link);
+}
+
+Transform BodyResiduals::FootingPose(const Eigen::VectorXd& x, int footing) const {
+  const Vector6d step = kPoseScale * x.segment<6>(first_entry_[first_footing_block_ + footing]);
+  Transform T = placement_.T_ref_footing[footing];
+  T.translation() += T.linear() * step.head<3>();
+  T.linear() = T.linear() * RotationFromVector(step.tail<3>());
+  return T;
+}
+
+Matrix6d BodyResiduals::FootingChart(int footing) const {
+  const Vector6d step = PoseAt(first_footing_block_ + footing);
+  Matrix6d chart = Matrix6d::Identity();
+  chart.topLeftCorner<3, 3>() = RotationFromVector(-step.tail<3>());
+  chart.bottomRightCorner<3, 3>() = LeftJacobian(step.tail<3>()).transpose();
+  return kPoseScale * chart;
+}
+
+void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool /*with_jacobians*/) {
   x_ = x;
   delta_ = ToErrors(x);
   geometry_ = ApplyErrors(in_.model, delta_);
@@ -230,22 +255,55 @@ void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobians) {
       const int m = meanings_[block].marker;
       if (m < 0) {
         EvaluateTieBlock(block, i);
-        continue;
-      }
-      const double weight = 1.0 / MarkerSd(i, m);
-      residuals_[block] = weight * (MarkerPosition(in_.recording, i, m) - jacobian_.Position(m));
-      if (!with_jacobians) continue;
-      const auto all = jacobian_.Block(m);
-      RowMajorMatrix& J = jacobians_[block];
-      J.resize(3, all.cols());
-      Eigen::Index at = 0;
-      for (const BlockColumns& columns : marker_columns_[m]) {
-        for (std::size_t c = 0; c < columns.source.size(); ++c) {
-          J.col(at++) =
-              (-weight * columns.scale[static_cast<Eigen::Index>(c)]) * all.col(columns.source[c]);
-        }
+      } else if (OnStandingFoot(i, m)) {
+        EvaluateFootMarker(block, i, m);
+      } else {
+        EvaluateMarker(block, i, m);
       }
     }
+  }
+}
+
+void BodyResiduals::EvaluateMarker(int block, int posture, int marker) {
+  const double weight = 1.0 / MarkerSd(posture, marker);
+  residuals_[block] =
+      weight * (MarkerPosition(in_.recording, posture, marker) - jacobian_.Position(marker));
+  const auto all = jacobian_.Block(marker);
+  RowMajorMatrix& J = jacobians_[block];
+  Eigen::Index width = 0;
+  for (const BlockColumns& columns : marker_columns_[marker]) width += columns.scale.size();
+  J.resize(3, width);
+  Eigen::Index at = 0;
+  for (const BlockColumns& columns : marker_columns_[marker]) {
+    for (std::size_t c = 0; c < columns.source.size(); ++c) {
+      J.col(at++) =
+          (-weight * columns.scale[static_cast<Eigen::Index>(c)]) * all.col(columns.source[c]);
+    }
+  }
+}
+
+void BodyResiduals::EvaluateFootMarker(int block, int posture, int marker) {
+  const int footing = placement_.footing[posture];
+  const int link = in_.model.legs[placement_.footings[footing].leg].link;
+  const MarkerInLink on_foot = PlaceMarker(in_.model, geometry_, marker, link);
+  const Transform T_ref_foot = FootingPose(x_, footing);
+  const double weight = 1.0 / MarkerSd(posture, marker);
+  residuals_[block] =
+      weight * (MarkerPosition(in_.recording, posture, marker) - T_ref_foot * on_foot.position);
+  RowMajorMatrix& J = jacobians_[block];
+  const bool estimated = residual_blocks[block].parameter_blocks.size() > 1;
+  const BlockColumns& own = marker_columns_[marker].back();
+  J.resize(3, estimated ? 6 + own.scale.size() : 6);
+  Eigen::Matrix<double, 3, 6> by_foot;
+  by_foot << Eigen::Matrix3d::Identity(), -Skew(on_foot.position);
+  J.leftCols(6) = -weight * T_ref_foot.linear() * by_foot * FootingChart(footing);
+  if (!estimated) return;
+  // The marker's own coordinates are the last three columns of its block.
+  const Eigen::Matrix3d by_marker = T_ref_foot.linear() * on_foot.axes;
+  const auto first = static_cast<int>(jacobian_.Columns(marker).size()) - 3;
+  for (Eigen::Index c = 0; c < own.scale.size(); ++c) {
+    J.col(6 + c) =
+        -weight * own.scale[c] * by_marker.col(own.source[static_cast<std::size_t>(c)] - first);
   }
 }
 
@@ -253,25 +311,13 @@ void BodyResiduals::EvaluateTieBlock(int block, int posture) {
   const int footing = placement_.footing[posture];
   const int leg = placement_.footings[footing].leg;
   const PostureLoads load = in_.loads.empty() ? PostureLoads() : in_.loads[posture];
-  const Vector6d foot_step = PoseAt(first_footing_block_ + footing);
-  const Eigen::Matrix3d turn = RotationFromVector(foot_step.tail<3>());
-
+  const Vector6d wrench =
+      leg < 0 ? Vector6d(Vector6d::Zero()) : load.WaistLoad(in_.model, geometry_, leg);
   SupportTie tie;
   tie.T_ref_waist = jacobian_.WaistPose();
-  tie.T_ref_foot = placement_.T_ref_footing[footing];
-  tie.T_ref_foot.translation() += tie.T_ref_foot.linear() * foot_step.head<3>();
-  tie.T_ref_foot.linear() = tie.T_ref_foot.linear() * turn;
+  tie.T_ref_foot = FootingPose(x_, footing);
   tie.T_ref_foot_predicted = leg < 0 ? tie.T_ref_waist : jacobian_.LegPose(leg);
-  Vector6d compliance = Vector6d::Zero();
-  Vector6d wrench = Vector6d::Zero();
-  if (leg >= 0) {
-    compliance = geometry_.leg_compliance[leg];
-    wrench = load.waist;
-    if (load.waist_by_bias.cols() > 0) {
-      wrench += load.waist_by_bias * geometry_.torque_bias(in_.model.legs[leg].joints);
-    }
-    tie.deflection = compliance.cwiseProduct(wrench);
-  }
+  if (leg >= 0) tie.deflection = geometry_.leg_compliance[leg].cwiseProduct(wrench);
   const TieResidual at = EvaluateTie(tie);
 
   const int group = in_.group[posture];
@@ -281,47 +327,45 @@ void BodyResiduals::EvaluateTieBlock(int block, int posture) {
   if (in_.form == SupportForm::kFootRooted) weight.setConstant(1.0 / kExactLeg);
   residuals_[block] = weight.cwiseProduct(at.residual);
 
-  int width = 0;
-  for (int k : residual_blocks[block].parameter_blocks) width += parameter_blocks[k];
   RowMajorMatrix& J = jacobians_[block];
+  Eigen::Index width = 0;
+  for (int k : residual_blocks[block].parameter_blocks) width += parameter_blocks[k];
   J.resize(6, width);
-  // Right Jacobian: the displacement is from where the footing was, not from where it is.
-  Matrix6d chart = Matrix6d::Identity();
-  chart.topLeftCorner<3, 3>() = turn.transpose();
-  chart.bottomRightCorner<3, 3>() = LeftJacobian(foot_step.tail<3>()).transpose();
-  J.middleCols(6, 6) = kPoseScale * at.by_foot * chart;
+  J.middleCols<6>(6) = at.by_foot * FootingChart(footing);
   if (leg < 0) {
-    J.leftCols(6) = kPoseScale * at.by_waist * jacobian_.WaistScrews();
+    J.leftCols<6>() = kPoseScale * at.by_waist * jacobian_.WaistScrews();
   } else {
-    const auto& screws = jacobian_.LegScrews(leg);
-    Eigen::Index joint_column = 12;
-    for (const BlockColumns& columns : leg_columns_[leg]) {
-      const bool waist = columns.block == kWaistBlock;
-      Eigen::Index to = waist ? 0 : joint_column;
-      for (std::size_t c = 0; c < columns.source.size(); ++c) {
-        J.col(to++) = columns.scale[static_cast<Eigen::Index>(c)] *
-                      ((waist ? at.by_waist : at.by_leg) * screws.col(columns.source[c]));
-      }
-      if (!waist) joint_column = to;
-    }
-    const Deflection& deflection = deflections_[leg];
-    for (std::size_t c = 0; c < deflection.parameters.size(); ++c) {
-      const Parameter& parameter = in_.model.parameters[deflection.parameters[c]];
-      Vector6d by = Vector6d::Zero();
-      if (parameter.kind == ParameterKind::kTorqueBias) {
-        if (load.waist_by_bias.cols() > 0) {
-          by = compliance.cwiseProduct(
-              load.waist_by_bias.col(IndexInLeg(in_.model.legs[leg], parameter.joint)));
-        }
-      } else {
-        const int axis = parameter.axis + (parameter.kind == ParameterKind::kBaseMoment ? 3 : 0);
-        by[axis] = wrench[axis];
-      }
-      J.col(joint_column++) =
-          deflection.scale[static_cast<Eigen::Index>(c)] * (at.by_deflection * by);
-    }
+    FillTieJacobian(leg, load, wrench, at, J);
   }
   J = weight.asDiagonal() * J;
+}
+
+void BodyResiduals::FillTieJacobian(int leg, const PostureLoads& load, const Vector6d& wrench,
+                                    const TieResidual& at, RowMajorMatrix& J) const {
+  const auto& screws = jacobian_.LegScrews(leg);
+  Eigen::Index next = 12;  // after waist and footing
+  for (const BlockColumns& columns : leg_columns_[leg]) {
+    const bool waist = columns.block == kWaistBlock;
+    Eigen::Index to = waist ? 0 : next;
+    for (std::size_t c = 0; c < columns.source.size(); ++c) {
+      J.col(to++) = columns.scale[static_cast<Eigen::Index>(c)] *
+                    ((waist ? at.by_waist : at.by_leg) * screws.col(columns.source[c]));
+    }
+    if (!waist) next = to;
+  }
+  const Deflection& deflection = deflections_[leg];
+  for (std::size_t c = 0; c < deflection.parameters.size(); ++c) {
+    const Parameter& parameter = in_.model.parameters[deflection.parameters[c]];
+    Vector6d by = Vector6d::Zero();
+    if (parameter.kind != ParameterKind::kTorqueBias) {
+      const int axis = parameter.axis + (parameter.kind == ParameterKind::kBaseMoment ? 3 : 0);
+      by[axis] = wrench[axis];
+    } else if (load.waist_by_bias.cols() > 0) {
+      by = geometry_.leg_compliance[leg].cwiseProduct(
+          load.waist_by_bias.col(IndexInLeg(in_.model.legs[leg], parameter.joint)));
+    }
+    J.col(next++) = deflection.scale[static_cast<Eigen::Index>(c)] * (at.by_deflection * by);
+  }
 }
 
 void BodyResiduals::Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const {

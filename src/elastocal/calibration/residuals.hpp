@@ -8,6 +8,7 @@
 #include "elastocal/calibration/noise.hpp"
 #include "elastocal/calibration/options.hpp"
 #include "elastocal/calibration/placement.hpp"
+#include "elastocal/calibration/support_tie.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/optim/least_squares.hpp"
 #include "elastocal/robot/jacobian.hpp"
@@ -38,7 +39,8 @@ struct ResidualInputs {
 };
 
 /// Eq. 14 as a least-squares problem: for every observation the difference between measured and
-/// predicted marker position; for every posture on one foot what its constraint leaves (see
+/// predicted marker position (those on the foot that stands: from the footing, the others from the
+/// waist); for every posture on one foot what its constraint leaves (see
 /// support_tie.hpp); for every parameter with a prior its deviation from nominal; each over its
 /// standard deviation.
 ///
@@ -93,12 +95,22 @@ class BodyResiduals : public LeastSquaresProblem {
   void MakePoseBlocks();
   std::vector<BlockColumns> MapColumns(const std::vector<int>& columns) const;
   Deflection MapDeflection(int leg) const;
+  bool IsMarkerBlock(int block) const;
   void MakeMarkerBlocks();
   void MakeTieBlocks();
   void MakePriorBlocks();
   double MarkerSd(int posture, int marker) const;
   Vector6d PoseAt(int block) const;
+  /// Whether the marker is on the foot that the posture stands on.
+  bool OnStandingFoot(int posture, int marker) const;
+  Transform FootingPose(const Eigen::VectorXd& x, int footing) const;
+  /// Derivative of a footing's motion, in its own axes, by its unknowns.
+  Matrix6d FootingChart(int footing) const;
+  void EvaluateMarker(int block, int posture, int marker);
+  void EvaluateFootMarker(int block, int posture, int marker);
   void EvaluateTieBlock(int block, int posture);
+  void FillTieJacobian(int leg, const PostureLoads& load, const Vector6d& wrench,
+                       const TieResidual& at, RowMajorMatrix& J) const;
 
   ResidualInputs in_;
   Eigen::VectorXd fixed_;

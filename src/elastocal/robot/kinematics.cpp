@@ -147,6 +147,15 @@ Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geomet
   return positions;
 }
 
+MarkerInLink PlaceMarker(const ErrorModel& model, const Geometry& geometry, int marker, int link) {
+  const Link& on = model.tree.links[link];
+  const Transform T_joint_link =
+      on.body == 0 ? on.T_body_link : model.placements[on.body - 1].T_joint_body * on.T_body_link;
+  const Transform T_link_joint = T_joint_link.inverse();
+  return {T_link_joint * geometry.p_joint_marker[marker],
+          T_link_joint.linear() * geometry.R_joint_link[marker]};
+}
+
 std::vector<Transform> BodyTransforms(const ErrorModel& model, const Geometry& geometry,
                                       const Eigen::VectorXd& q, const JointLoads& loads) {
   const std::vector<MdhFrame> frames = MdhFrames(model, geometry, q, loads);

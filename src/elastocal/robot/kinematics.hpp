@@ -63,6 +63,14 @@ Transform WaistPose(const Geometry& geometry);
 Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geometry,
                                  const Eigen::VectorXd& q, const JointLoads& loads = {});
 
+/// Position of a marker in the frame of a link of its own body, m, and the axes of its coordinates
+/// there (columns): constant, whatever the posture.
+struct MarkerInLink {
+  Eigen::Vector3d position;
+  Eigen::Matrix3d axes;
+};
+MarkerInLink PlaceMarker(const ErrorModel& model, const Geometry& geometry, int marker, int link);
+
 /// Poses of the bodies in the reference frame: the root's, then those that active joints move
 /// (others are identity). Body frames, as in RobotTree.
 std::vector<Transform> BodyTransforms(const ErrorModel& model, const Geometry& geometry,
