@@ -12,7 +12,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kSmallestMarkerSd = 1e-9;  // m: of noise-free data
-constexpr double kLeastTieShare = 0.01;   // of the marker noise [m, rad]: constraints are no better
+constexpr double kLeastTieShare = 0.1;     // of the marker noise [m, rad]: no constraint is better
 constexpr double kCauchyScale = 3.0;      // of a residual in standard deviations of the noise
 constexpr double kAbsurdSd = 0.1;         // rad or m
 constexpr double kRoughTolerance = 1e-8;  // of the cost, while noise and prior are being found
@@ -228,15 +228,6 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                                     Change(fit.prior_scale.lengths, scale.lengths)});
     fit.noise = noise;
     fit.prior_scale = scale;
-    if (getenv("EDBG")) {
-      fprintf(stderr, "upd %d it %d cost %g change %g noise", update, fit.iterations,
-              fit.final_cost, change);
-      for (int g = 0; g < noise.group_count(); ++g)
-        fprintf(stderr, " | %g %g %g", noise.marker_sd[g], noise.waist_position_sd[g],
-                noise.waist_rotation_sd[g]);
-      fprintf(stderr, " scale %g %g robust %d free %zu\n", scale.angles, scale.lengths, robust,
-              free.size());
-    }
     if (change < kHyperTolerance) return fit;
   }
   fit.settled = fit.settled && updates < kMaxUpdates;

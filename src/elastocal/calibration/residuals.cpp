@@ -140,9 +140,15 @@ void BodyResiduals::MakeMarkerBlocks() {
     for (int m = 0; m < seen.cols(); ++m) {
       if (!seen(i, m) || marker_columns_[m].empty()) continue;
       ResidualBlock block{3, {}, true, in_.used(i, m)};
-      for (const BlockColumns& columns : marker_columns_[m]) {
-        block.parameter_blocks.push_back(columns.block == kWaistBlock ? first_waist_block_ + i
-                                                                      : columns.block);
+      if (OnStandingFoot(i, m)) {
+        block.parameter_blocks = {first_footing_block_ + placement_.footing[i]};
+        const int last = marker_columns_[m].back().block;
+        if (IsMarkerBlock(last)) block.parameter_blocks.push_back(last);
+      } else {
+        for (const BlockColumns& columns : marker_columns_[m]) {
+          block.parameter_blocks.push_back(
+              columns.block == kWaistBlock ? first_waist_block_ + i : columns.block);
+        }
       }
       blocks_of_posture_[i].push_back(static_cast<int>(residual_blocks.size()));
       residual_blocks.push_back(std::move(block));
