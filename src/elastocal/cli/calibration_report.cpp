@@ -140,7 +140,7 @@ std::string DescribeRun(const CalibrationRun& run) {
   std::string text = fmt::format(
       "{}: {} postures, {} markers, {} equations; {} of {} parameters identifiable (theory {})\n\n",
       result.model.tree.name, run.recording.posture_count(), run.recording.marker_count(),
-      result.equations, run.base.kept.size(), result.model.parameter_count(),
+      result.equations, run.base.geometric_count, result.model.parameter_count(),
       run.base.theoretical_count);
   text += ModelTable(run);
   text += "  RMSE is what remains after fitting where the waist and the markers are\n";

@@ -26,11 +26,11 @@ std::string StuckJoints(const ErrorModel& model) {
 
 void WarnOfLostRank(const ErrorModel& model, const IdentifiabilityOptions& options,
                     const BaseParameters& base, std::vector<std::string>& warnings) {
-  if (static_cast<int>(base.kept.size()) >= base.theoretical_count) return;
+  if (base.geometric_count >= base.theoretical_count) return;
   const std::string stuck = StuckJoints(model);
   const std::vector<int> lost = LostBySpecialMarkers(model, options);
-  const std::string count =
-      fmt::format("{} of {} parameters are identifiable", base.kept.size(), base.theoretical_count);
+  const std::string count = fmt::format("{} of {} parameters are identifiable",
+                                        base.geometric_count, base.theoretical_count);
   if (!lost.empty()) {
     warnings.push_back(fmt::format(
         "only {}: the nominal marker positions are special (on a joint axis?). Lost: {}. Give "

@@ -123,6 +123,7 @@ BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd
   base.regrouping = qr.regrouping(SortingOrder(kept), SortingOrder(dropped));
   base.kept = Sorted(kept);
   base.dropped = Sorted(dropped);
+  base.geometric_count = static_cast<int>(kept.size());
   KeepElastic(model, base);
   base.theoretical_count = TheoreticalCount(model);
   return base;

@@ -36,6 +36,7 @@ struct BaseParameters {
   /// Indices into the model's parameters, ascending. Elastic ones are among them unless held: the
   /// data decide on these (IsElastic).
   std::vector<int> kept;
+  int geometric_count = 0;   ///< of the kept ones, those that are not elastic
   std::vector<int> dropped;  ///< not identifiable beside the kept ones, ascending
   std::vector<int> held;     ///< held by the user's setting, ascending
   /// kept x dropped: what the data determine is delta(kept) + regrouping * delta(dropped).

@@ -98,7 +98,9 @@ TEST(Project, ReadsSettingsInTheirUnits) {
       "  hold: ['*_joint.theta', waist.T0.b]}\n"
       "calibration:\n"
       "  marker_sd_mm: 0.2\n"
-      "  prior: {theta_deg: 90, r_mm: 3, marker_mm: 20, beta_deg: .inf}\n"
+      "  prior: {theta_deg: 90, r_mm: 3, marker_mm: 20, beta_deg: .inf,\n"
+      "          torsion_urad_per_Nm: 20, bending_urad_per_Nm: 30, base_force_um_per_N: 4,\n"
+      "          base_moment_urad_per_Nm: .inf, torque_bias_Nm: 0.5}\n"
       "  widen_prior: false\n"
       "  outlier_probability: 0.05\n"
       "  support_threshold: 0.8\n"
@@ -117,6 +119,11 @@ TEST(Project, ReadsSettingsInTheirUnits) {
   EXPECT_NEAR(calibration.prior[ParameterKind::kMarker], 0.02, 1e-16);
   EXPECT_EQ(calibration.prior[ParameterKind::kBeta], std::numeric_limits<double>::infinity());
   EXPECT_EQ(calibration.prior[ParameterKind::kD], CalibrationOptions().prior[ParameterKind::kD]);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kTorsion], 20e-6, 1e-18);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kBending], 30e-6, 1e-18);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kBaseForce], 4e-6, 1e-18);
+  EXPECT_EQ(calibration.prior[ParameterKind::kBaseMoment], std::numeric_limits<double>::infinity());
+  EXPECT_EQ(calibration.prior[ParameterKind::kTorqueBias], 0.5);
   EXPECT_FALSE(calibration.widen_prior);
   EXPECT_EQ(calibration.outlier_probability, 0.05);
   EXPECT_EQ(calibration.support_threshold, 0.8);

@@ -125,7 +125,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["postures"] = run.recording.posture_count();
   json["markers"] = run.recording.marker_count();
   json["parameters_total"] = result.model.parameter_count();
-  json["identifiable"] = run.base.kept.size();
+  json["identifiable"] = run.base.geometric_count;
   json["identifiable_theory"] = run.base.theoretical_count;
   json["equations"] = result.equations;
   json["marker_sd_mm"] = 1e3 * result.marker_sd;

@@ -19,6 +19,7 @@ void SetTranslation(Screws& screws, int row, const Vector3d& direction) {
 GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
     : model_(model),
       first_parameter_(model.tree.joints.size(), -1),
+      compliances_(model.tree.joints.size(), 0),
       frames_(model.tree.body_count()),
       positions_(3, model.marker_count()),
       T_ref_foot_(model.legs.size(), Transform::Identity()) {
@@ -29,6 +30,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
     if (parameter.leg >= 0) continue;
     first_parameter_[parameter.joint] = i;
     ++parameter_count[parameter.joint];
+    if (IsCompliance(parameter.kind)) ++compliances_[parameter.joint];
   }
   screws_.setZero(screw_count, 6);
 
@@ -73,7 +75,7 @@ void GeneralizedJacobian::SetCompliances(int joint, int row,
   Eigen::Matrix3d axes = twisted.R;
   if (revolute && loaded) axes *= LeftJacobian(constants.compliance.cwiseProduct(load));
   const Vector3d centre = twisted.p + constants.centre * twisted.R.col(2);
-  for (; row < screws_.rows() && model_.parameters[row].joint == joint; ++row) {
+  for (const int end = row + compliances_[joint]; row < end; ++row) {
     const int axis = model_.parameters[row].axis;
     if (revolute) {
       SetRotation(screws_, row, load[axis] * axes.col(axis), centre);
@@ -105,7 +107,7 @@ void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::
     SetRotation(screws_, row++, deflected.R.col(2), deflected.p);
     // An error of r moves the physical centre along: the axis before deflection.
     SetTranslation(screws_, row++, twisted.R.col(2));
-    if (!waist) SetCompliances(joint, row, constants, twisted, loads);
+    if (!waist && compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, loads);
   };
   EvaluateMdhFrames(model_, geometry, q, loads, frames_, visit);
 }

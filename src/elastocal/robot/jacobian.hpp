@@ -85,6 +85,7 @@ class GeneralizedJacobian {
 
   const ErrorModel& model_;
   std::vector<int> first_parameter_;                // by joint
+  std::vector<int> compliances_;                    // by joint: how many it has
   std::vector<MarkerLayout> layout_;                // by marker
   std::vector<BodyLayout> legs_;                    // by leg
   std::vector<MdhFrame> frames_;                    // by body

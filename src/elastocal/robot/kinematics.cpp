@@ -24,6 +24,8 @@ Geometry::JointConstants MakeConstants(const JointPlacement& placement) {
   constants.p_parent_twisted = T.translation();
   constants.theta = placement.theta;
   constants.r = placement.r;
+  constants.centre = placement.r + placement.T_joint_body.translation().z();
+  constants.compliance.setZero();
   return constants;
 }
 
@@ -80,7 +82,6 @@ Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
     }
   }
   Geometry::JointConstants constants = MakeConstants(placement);
-  constants.centre = placement.r + placement.T_joint_body.translation().z();
   constants.compliance = compliance;
   return constants;
 }
@@ -88,6 +89,7 @@ Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
 /// Errors of the legs, from the index `i` on; moves `i` behind them.
 void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& i,
                     Geometry& geometry) {
+  if (model.legs.empty()) return;
   geometry.leg_compliance.assign(model.legs.size(), Vector6d::Zero());
   geometry.torque_bias.setZero(static_cast<Eigen::Index>(model.tree.joints.size()));
   for (; i < model.parameter_count() && model.parameters[i].leg >= 0; ++i) {

@@ -29,16 +29,17 @@ struct Geometry {
     Eigen::Vector3d z_pre, p_pre;    ///< axis of gamma and b
     Eigen::Vector3d y_beta, p_beta;  ///< axis of beta
     double theta, r;                 ///< without the joint's position
-    double centre = 0.0;             ///< z of the physical centre in the twisted frame, m
+    double centre;                   ///< z of the physical centre in the twisted frame, m
     /// About x, y, z of the twisted frame, rad/(N.m); prismatic: z only, m/N.
-    Eigen::Vector3d compliance = Eigen::Vector3d::Zero();
+    Eigen::Vector3d compliance;
   };
   std::vector<JointConstants> joints;  ///< one a joint of the tree; only active ones are filled
   JointConstants base;                 ///< eq. 2 as if it were a joint at position 0
   Transform T_joint_waist;             ///< constant that ends eq. 2, see ApplyErrors
   /// By leg, in the axes of its foot: x, y, z in m/N, then about x, y, z in rad/(N.m).
   std::vector<Vector6d> leg_compliance;
-  Eigen::VectorXd torque_bias;                  ///< by joint, N.m (N): measured minus true torque
+  /// By joint, N.m (N): measured minus true torque. Empty where the model has no legs.
+  Eigen::VectorXd torque_bias;
   std::vector<Eigen::Vector3d> p_joint_marker;  ///< by marker, in its body's MDH frame
   std::vector<Eigen::Matrix3d> R_joint_link;    ///< by marker: axes of its x, y, z
 };

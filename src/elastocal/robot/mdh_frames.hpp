@@ -44,27 +44,26 @@ template <typename Visit>
 inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
                               const Eigen::VectorXd& q, const JointLoads& loads,
                               std::vector<MdhFrame>& frames, const Visit& visit) {
+  const bool loaded = loads.cols() > 0;
   const auto place = [&](int joint, const Geometry::JointConstants& constants,
                          const MdhFrame& parent, bool revolute, double position, MdhFrame& frame) {
     const MdhFrame twisted{parent.R * constants.R_parent_twisted,
                            parent.p + parent.R * constants.p_parent_twisted};
-    const bool bends = joint != kWaist && loads.cols() > 0 && !constants.compliance.isZero(0.0);
-    const auto turn = [&](const MdhFrame& before) {
-      visit(joint, constants, parent, twisted, before);
-      const double theta = constants.theta + (revolute ? position : 0.0);
-      const double r = constants.r + (revolute ? 0.0 : position);
-      const double c = std::cos(theta);
-      const double s = std::sin(theta);
-      frame.R.col(0) = c * before.R.col(0) + s * before.R.col(1);
-      frame.R.col(1) = c * before.R.col(1) - s * before.R.col(0);
-      frame.R.col(2) = before.R.col(2);
-      frame.p = before.p + r * before.R.col(2);
-    };
-    if (bends) {
-      turn(Deflected(constants, revolute, loads.col(joint), twisted));
-    } else {
-      turn(twisted);
+    MdhFrame bent;
+    const MdhFrame* deflected = &twisted;
+    if (loaded && joint != kWaist && !constants.compliance.isZero(0.0)) {
+      bent = Deflected(constants, revolute, loads.col(joint), twisted);
+      deflected = &bent;
     }
+    visit(joint, constants, parent, twisted, *deflected);
+    const double theta = constants.theta + (revolute ? position : 0.0);
+    const double r = constants.r + (revolute ? 0.0 : position);
+    const double c = std::cos(theta);
+    const double s = std::sin(theta);
+    frame.R.col(0) = c * deflected->R.col(0) + s * deflected->R.col(1);
+    frame.R.col(1) = c * deflected->R.col(1) - s * deflected->R.col(0);
+    frame.R.col(2) = deflected->R.col(2);
+    frame.p = deflected->p + r * deflected->R.col(2);
   };
   const MdhFrame reference{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
   place(kWaist, geometry.base, reference, true, 0.0, frames[0]);
