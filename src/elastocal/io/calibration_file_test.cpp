@@ -67,7 +67,10 @@ TEST_F(CalibrationFile, ReadsBackWhatAComparisonNeeds) {
     EXPECT_EQ(read.name, result_.model.parameters[i].name);
     EXPECT_EQ(read.external, IsExternal(result_.model.parameters[i].kind)) << read.name;
     EXPECT_EQ(read.status, result_.status[i]) << read.name;
-    if (std::isfinite(result_.sd[i])) EXPECT_EQ(read.sd, result_.sd[i]) << read.name;
+    EXPECT_EQ(std::isfinite(read.sd), std::isfinite(result_.sd[i])) << read.name;
+    if (std::isfinite(read.sd)) {
+      EXPECT_EQ(read.sd, result_.sd[i]) << read.name;
+    }
   }
   for (std::size_t d = 0; d < base_.dropped.size(); ++d) {
     const auto& shares = estimate.parameters[base_.dropped[d]].regrouped_into;
