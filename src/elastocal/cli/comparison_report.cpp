@@ -32,6 +32,7 @@ std::string Shown(double value, const std::string& unit) {
 }
 
 std::string Probability(double p) {
+  if (p < 1e-16) return "<1e-16";
   return p < 1e-4 ? fmt::format("{:.0e}", p) : fmt::format("{:.4f}", p);
 }
 
@@ -132,11 +133,18 @@ std::string Conclusion(const CalibrationComparison& comparison, double level) {
         "No joint moved by more than its uncertainty (chance of a false alarm {:.3g} %).\n",
         100.0 * level);
   }
-  return fmt::format(
-      "Something changed (p {}), but no joint can be singled out. Any one of these alone would "
-      "explain it: {}\n",
-      Probability(comparison.overall.p),
-      comparison.suspects.empty() ? "none; several moved" : Joined(comparison.suspects));
+  const std::string together = fmt::format(
+      "Together the differences are more than their uncertainty (p {}), but no joint can be "
+      "singled "
+      "out",
+      Probability(comparison.overall.p));
+  if (!comparison.with_covariance) return together + ".\n";
+  const std::string alone =
+      comparison.suspects.empty()
+          ? "no joint alone would explain it"
+          : "any one of these alone would explain it: " + Joined(comparison.suspects);
+  return together + "; " + alone +
+         ".\nErrors that the model does not have, such as elasticity, look the same.\n";
 }
 
 Json SideJson(const CalibrationEstimate& estimate) {

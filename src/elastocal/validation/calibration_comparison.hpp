@@ -73,6 +73,9 @@ struct CalibrationComparison {
 /// Without covariance of both, a joint's p is the smallest of its parameters' times their number
 /// (Bonferroni), and combinations are not compared.
 ///
+/// The uncertainty is that of noise. What neither model has (elasticity, say) makes two recordings
+/// of other postures differ by more.
+///
 /// Two joints that a recording can hardly tell apart may both be insignificant though something
 /// changed. Then the test of everything together finds it, and `suspects` are named instead.
 ///
