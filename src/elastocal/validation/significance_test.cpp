@@ -73,7 +73,7 @@ TEST(PooledFreedom, IsWelchs) {
 }
 
 // Covariances known but for a factor, which is estimated with few degrees of freedom: chi-square
-// would reject 13 % here. 20000 trials have a standard deviation of 0.15 %.
+// would reject 12 % here. 20000 trials have a standard deviation of 0.15 %.
 TEST(TestDifferences, FiveInAHundredWithoutAChange) {
   Random random(1);
   const double freedom = 8.0;
