@@ -100,7 +100,7 @@ std::string DescribeErrorTable(const ErrorTable& table) {
   std::vector<std::string> header = {"chain", "case", "trials"};
   for (const ModelKind kind : kinds) header.push_back(std::string(PaperName(kind)) + " RMSE mm");
   for (const ModelKind kind : kinds) header.push_back(std::string(PaperName(kind)) + " max mm");
-  header.push_back("sightings");
+  header.emplace_back("sightings");
   TextTable text(header);
   for (const ErrorTableRow& row : table.rows) text.Add(Row(row, CaseName(row.kind), kinds));
   for (const ErrorTableRow& row : table.groups) text.Add(Row(row, "all", kinds));

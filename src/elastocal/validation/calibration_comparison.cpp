@@ -225,7 +225,7 @@ void AddWarnings(const CalibrationEstimate& a, const CalibrationEstimate& b,
                                   std::string("nominal there is in its other estimates: ") + held);
   }
   if (!comparison.with_covariance) {
-    comparison.warnings.push_back(
+    comparison.warnings.emplace_back(
         "without covariance.csv of both, parameters are tested one by one: joints are found less "
         "easily");
   }

@@ -43,10 +43,10 @@ std::vector<Repetitions> GroupSamples(const Recording& recording,
           return SamePosture(recording, repetitions.front().front(), i, options);
         });
     const auto posture = static_cast<std::size_t>(same - postures.begin());
-    if (same == postures.end()) postures.push_back({});
+    if (same == postures.end()) postures.emplace_back();
     const bool goes_on =
         i > 0 && posture == last && SameHold(recording, i - 1, i, options.longest_hold_gap_s);
-    if (!goes_on) postures[posture].push_back({});
+    if (!goes_on) postures[posture].emplace_back();
     postures[posture].back().push_back(i);
     last = posture;
   }
