@@ -19,7 +19,7 @@ ErrorTable SmallTable() {
          .group = group,
          .markers = {0},
          .distances = {{ModelKind::kUncalibrated, Eigen::MatrixXd::Constant(2, 1, none)},
-                       {ModelKind::kGeometric, Eigen::MatrixXd::Constant(2, 1, geometric)}}}));
+                       {ModelKind::kFull, Eigen::MatrixXd::Constant(2, 1, geometric)}}}));
   };
   add("HAT", TrialKind::kSine, 6.6e-3, 2.9e-3);
   add("HAT", TrialKind::kRandom, 6.6e-3, 1.9e-3);
@@ -31,7 +31,7 @@ ErrorTable SmallTable() {
 TEST(ErrorTableReport, HasThePapersRowsAndColumns) {
   const std::string text = DescribeErrorTable(SmallTable());
   const std::string expected =
-      "  chain              case  trials  GCM RMSE mm  NCM RMSE mm  GCM max mm  NCM max mm  "
+      "  chain              case  trials  FCM RMSE mm  NCM RMSE mm  FCM max mm  NCM max mm  "
       "sightings\n";
   EXPECT_EQ(text.substr(0, expected.size()), expected);
   for (const char* row :
@@ -53,10 +53,10 @@ TEST(ErrorTableReport, Json) {
   EXPECT_EQ(json["rows"][1]["chain"], "HAT");
   EXPECT_EQ(json["rows"][1]["case"], "RP");
   EXPECT_EQ(json["rows"][1]["observations"], 2);
-  EXPECT_DOUBLE_EQ(json["rows"][1]["rmse_3d_mm"]["geometric"], 1.9);
+  EXPECT_DOUBLE_EQ(json["rows"][1]["rmse_3d_mm"]["full"], 1.9);
   EXPECT_DOUBLE_EQ(json["rows"][2]["max_mm"]["uncalibrated"], 8.4);
-  EXPECT_TRUE(json["rows"][3]["rmse_3d_mm"]["geometric"].is_null());
-  EXPECT_TRUE(json["rows"][3]["max_mm"]["geometric"].is_null());
+  EXPECT_TRUE(json["rows"][3]["rmse_3d_mm"]["full"].is_null());
+  EXPECT_TRUE(json["rows"][3]["max_mm"]["full"].is_null());
   EXPECT_EQ(json["chains"].size(), 3u);
   EXPECT_EQ(json["trials"][2]["trial"], "left leg trial");
   EXPECT_NEAR(json["mean_rmse_3d_mm"]["uncalibrated"].get<double>(), 7.2, 1e-9);

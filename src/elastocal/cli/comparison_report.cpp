@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Angles and lengths in units that people use; anything else as it is.
+/// Units that people use, as InUserUnits has them.
 struct UserScale {
   double factor;
   std::string unit;
@@ -22,13 +22,13 @@ struct UserScale {
 UserScale ScaleOf(const std::string& unit) {
   if (unit == "rad") return {180.0 / M_PI, "deg"};
   if (unit == "m") return {1e3, "mm"};
+  if (unit == "rad/(N.m)") return {1e6, "urad/(N.m)"};
+  if (unit == "m/N") return {1e6, "um/N"};
   return {1.0, unit};
 }
 
 std::string Shown(double value, const std::string& unit) {
-  const bool scaled = unit == "rad" || unit == "m";
-  const double user = value * ScaleOf(unit).factor;
-  return scaled ? fmt::format("{:.4f}", user) : fmt::format("{:.4g}", user);
+  return fmt::format("{:.4f}", value * ScaleOf(unit).factor);
 }
 
 std::string Probability(double p) {

@@ -22,9 +22,10 @@ const char* PaperName(ModelKind kind) {
       return "offsets";
     case ModelKind::kGeometric:
       return "GCM";
-    default:
+    case ModelKind::kFull:
       return "FCM";
   }
+  return "";
 }
 
 const char* CaseName(TrialKind kind) {

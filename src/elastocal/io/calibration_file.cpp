@@ -42,7 +42,12 @@ std::uint64_t Fnv1a(const std::string& text) {
   return hash;
 }
 
-const char* UnitName(ParameterUnit unit) { return unit == ParameterUnit::kRadian ? "rad" : "m"; }
+bool IsUnitName(const std::string& text) {
+  for (int unit = 0; unit < kParameterUnitCount; ++unit) {
+    if (text == UnitName(static_cast<ParameterUnit>(unit))) return true;
+  }
+  return false;
+}
 
 /// Pairs (kept parameter, coefficient) that a dropped parameter is regrouped into.
 void EmitRegrouping(const CalibrationResult& result, const BaseParameters& base, int dropped,
@@ -95,9 +100,7 @@ ParameterEstimate ReadParameter(const YamlValue& item) {
   parameter.name = item.Get("name").Text();
   const YamlValue unit = item.Get("unit");
   parameter.unit = unit.Text();
-  unit.Expect(parameter.unit == "rad" || parameter.unit == "m" || parameter.unit == "rad/(N.m)" ||
-                  parameter.unit == "m/N",
-              "rad or m, or rad/(N.m) or m/N of a compliance");
+  unit.Expect(IsUnitName(parameter.unit), "rad, m, rad/(N.m), m/N, N.m or N");
   parameter.external =
       parameter.name.starts_with("waist.T0.") || parameter.name.starts_with("marker.");
   parameter.value = item.Get("value").Number();
@@ -149,8 +152,7 @@ std::string NominalFingerprint(const ErrorModel& model) {
 std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
                                 const std::string& recording, ZeroOffsets zero_offsets) {
   YAML::Emitter yaml;
-  yaml << YAML::Comment(
-      "Written by elastocal: deviations from the nominal URDF, radians and metres.");
+  yaml << YAML::Comment("Written by elastocal: deviations from the nominal URDF, in SI units.");
   yaml << YAML::BeginMap;
   yaml << YAML::Key << "format" << YAML::Value << kFormat;
   yaml << YAML::Key << "robot" << YAML::Value << result.model.tree.name;

@@ -30,7 +30,7 @@ struct StoredCalibration {
   std::string robot;
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
-  std::map<std::string, double> joint_errors;  ///< by parameter name, rad or m
+  std::map<std::string, double> joint_errors;  ///< by parameter name, SI
 };
 
 /// Reads a calibration.yaml. Throws InputError naming file, line and key.

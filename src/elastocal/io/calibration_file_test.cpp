@@ -117,9 +117,9 @@ TEST_F(CalibrationFile, ACovarianceThatDoesNotBelongIsNamedByLine) {
 TEST_F(CalibrationFile, EveryParameterHasAUnitAndAStatus) {
   const std::string text = MakeCalibrationYaml(result_, base_, "there.csv", ZeroOffsets::kOrigin);
   for (const Parameter& parameter : result_.model.parameters) {
-    const char* unit = parameter.unit == ParameterUnit::kRadian ? "rad" : "m";
-    EXPECT_NE(text.find("name: " + parameter.name + ", unit: " + unit + ", value: "),
-              std::string::npos)
+    EXPECT_NE(
+        text.find("name: " + parameter.name + ", unit: " + UnitName(parameter.unit) + ", value: "),
+        std::string::npos)
         << parameter.name;
   }
   EXPECT_NE(text.find("status: dropped, regrouped_into: {"), std::string::npos);
@@ -142,7 +142,7 @@ TEST_F(CalibrationFile, BadFilesAreNamedByLine) {
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "number"});
   Write(before + fine + "  - {name: b.d, unit: deg, value: 1}\n");
   ExpectInputError([&] { ReadCalibration(file_); },
-                   {file_.string() + ":7", "unit", "'deg'", "rad or m"});
+                   {file_.string() + ":7", "unit", "'deg'", "rad, m, rad/(N.m)"});
   Write(before + "  - {name: a.theta, value: 1}\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "'unit'"});
   Write(before + fine + fine);

@@ -167,6 +167,7 @@ void AddNotCompared(const Side& a, const Side& b, CommonParameters& result) {
 }  // namespace
 
 std::string OwnerName(const std::string& parameter) {
+  if (parameter.ends_with(".torque_bias")) return parameter;
   return parameter.substr(0, parameter.rfind('.'));
 }
 

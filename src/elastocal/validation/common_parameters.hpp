@@ -13,7 +13,7 @@ namespace elastocal {
 /// One parameter as a calibration leaves it. Units are kept as text, so that parameters of any kind
 /// can be compared.
 struct ParameterEstimate {
-  std::string name;       ///< what comes before the last dot is the joint (or foot, or spring)
+  std::string name;       ///< see OwnerName
   std::string unit;       ///< of value and sd, SI: "rad", "m", ...
   bool external = false;  ///< of the experiment, not of the robot: see IsExternal
   ParameterStatus status = ParameterStatus::kEstimated;
@@ -39,7 +39,8 @@ struct CalibrationEstimate {
   bool has_covariance() const { return !covariance_names.empty(); }
 };
 
-/// What comes before the last dot of a parameter's name.
+/// The joint or leg that a parameter is of: what comes before the last dot of its name. The bias of
+/// a torque sensor is on its own: it drifts though the joint has not moved.
 std::string OwnerName(const std::string& parameter);
 
 /// One quantity of the robot that two calibrations A and B both determine. Mostly a parameter kept

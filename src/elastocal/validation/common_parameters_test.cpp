@@ -118,9 +118,10 @@ TEST(CommonParameters, UnsupportedIsNotEstimated) {
   EXPECT_EQ(Reasons(found).at("i.r"), "unsupported in A, estimated in B");
 }
 
-TEST(OwnerName, IsAllBeforeTheLastDot) {
+TEST(OwnerName, IsTheJointTheLegOrTheSensor) {
   EXPECT_EQ(OwnerName("arm_1_joint.theta"), "arm_1_joint");
-  EXPECT_EQ(OwnerName("leg_left.base.x"), "leg_left.base");
+  EXPECT_EQ(OwnerName("leg_left.compliance_rx"), "leg_left");
+  EXPECT_EQ(OwnerName("arm_1_joint.torque_bias"), "arm_1_joint.torque_bias");
 }
 
 }  // namespace
