@@ -6,6 +6,7 @@
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/validation/common_parameters.hpp"
 
 namespace elastocal {
 
@@ -19,6 +20,10 @@ std::string NominalFingerprint(const ErrorModel& model);
 /// needed to judge them (docs/formats.md).
 std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
                                 const std::string& recording, ZeroOffsets zero_offsets);
+
+/// Reads all of a calibration.yaml that a comparison needs; the covariance is in another file.
+/// Throws InputError naming file, line and key.
+CalibrationEstimate ReadEstimate(const std::filesystem::path& file);
 
 /// What another run needs of such a file.
 struct StoredCalibration {
