@@ -203,6 +203,7 @@ ClusterLabels Report(const Plan& plan, const LabelFinder& finder, const LabelClu
   const ClusterShape& shape = finder.shape();
   ClusterLabels labels;
   labels.name = cluster.name;
+  labels.markers = cluster.markers;
   labels.ambiguous = finder.ambiguous();
   labels.distances = shape.distances;
   labels.tolerances = shape.tolerances;
@@ -233,6 +234,7 @@ std::vector<ClusterLabels> CorrectLabels(const std::vector<LabelCluster>& cluste
     if (cluster.markers.size() < 2) {
       reports.emplace_back();
       reports.back().name = cluster.name;
+      reports.back().markers = cluster.markers;
       reports.back().ambiguous = true;
       continue;
     }

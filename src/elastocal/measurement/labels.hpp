@@ -37,6 +37,7 @@ struct OutlyingMarker {
 
 struct ClusterLabels {
   std::string name;
+  std::vector<int> markers;  ///< of the trajectories' names, as the cluster's
   /// Exchanged labels cannot be told from right ones: one or two markers, or distances much alike.
   /// Labels are then left as they are; outliers are still removed.
   bool ambiguous = false;

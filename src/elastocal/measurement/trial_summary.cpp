@@ -65,7 +65,7 @@ class Finder {
       std::vector<std::string> names;
       for (std::size_t i = 0; i < swap.permutation.size(); ++i) {
         if (swap.permutation[i] != static_cast<int>(i)) {
-          names.push_back(labels.name + " #" + std::to_string(i + 1));
+          names.push_back(summary_.markers[labels.markers[i]]);
         }
       }
       Add(Format("the labels of %s were exchanged from %.2f s to %.2f s; corrected",
