@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "elastocal/measurement/stable_samples.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kRestWindow_s = 0.3;
 constexpr double kLeastSeen = 0.5;  // of the trial, for a marker to count without being seen
 
 // Nominal positions of markers in the frame of the link that stands still.
@@ -134,12 +137,20 @@ LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& mar
 }
 
 ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz,
-                            const LoggedSpeeds& logged, const std::optional<double>& expected_lag_s,
+                            LoggedSpeeds logged, const std::optional<double>& expected_lag_s,
                             ClockOptions options) {
   if (logged.time_s.size() < 2 || measured.rows() == 0) return {};
   options.expected_lag_s = expected_lag_s.value_or(0.0);
   if (!expected_lag_s) {
     ChooseRange(static_cast<double>(measured.rows()) / rate_hz, logged.time_s, options);
+  }
+  // The length of a noisy velocity is never zero. Without this the two speeds differ at each rest,
+  // which hides how well they agree.
+  std::vector<int> columns(static_cast<std::size_t>(measured.cols()));
+  std::iota(columns.begin(), columns.end(), 0);
+  const double resting = EstimateRestingSpeed(measured, columns, rate_hz, kRestWindow_s);
+  if (std::isfinite(resting)) {
+    logged.speeds = (logged.speeds.array().square() + resting * resting).sqrt();
   }
   std::vector<bool> mostly_seen;
   for (const auto& speed : measured.colwise()) {
