@@ -82,7 +82,10 @@ TEST_F(RecordingFolderTest, KeepsValidationApart) {
 }
 
 TEST_F(RecordingFolderTest, TakesTheMarkersThatBelongToATrial) {
-  const auto names = [&](const TrialFiles& trial) {
+  const auto names = [&](const std::vector<int>& chains, const std::vector<int>& support) {
+    TrialFiles trial;
+    trial.chains = chains;
+    trial.support = support;
     std::vector<std::string> clusters;
     for (const int m : TrialMarkers(project_, trial)) {
       const std::string& name = project_.markers[m].name;
@@ -92,10 +95,8 @@ TEST_F(RecordingFolderTest, TakesTheMarkersThatBelongToATrial) {
     return clusters;
   };
   const int right_sole = FindLink(project_.tree, "right_sole");
-  EXPECT_EQ(names({.name = "a", .chains = {3}, .support = {right_sole}}),
-            (std::vector<std::string>{"BACK", "LFOOT", "RFOOT"}));
-  EXPECT_EQ(names({.name = "a", .chains = {0, 1}, .support = {}}),
-            (std::vector<std::string>{"BACK", "HEAD", "LHAND"}));
+  EXPECT_EQ(names({3}, {right_sole}), (std::vector<std::string>{"BACK", "LFOOT", "RFOOT"}));
+  EXPECT_EQ(names({0, 1}, {}), (std::vector<std::string>{"BACK", "HEAD", "LHAND"}));
 }
 
 TEST_F(RecordingFolderTest, GoesOnWithoutATrialThatItRefuses) {

@@ -6,19 +6,25 @@
 
 #include "elastocal/math/butterworth.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/frame_interval.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr double kLongestHole_s = 0.1;
-constexpr double kRegular = 1e-4;  // of a step: times closer than this need no interpolation
+constexpr double kHoleSteps = 2.5;  // of a slow log: two samples lost are a hole
+constexpr double kRegular = 1e-4;   // of a step: times closer than this need no interpolation
 
 std::vector<FrameInterval> SplitAtHoles(const Eigen::VectorXd& time_s) {
+  const Eigen::Index steps = time_s.size() - 1;
+  if (steps < 1) return {};
+  const double step = Median(time_s.tail(steps) - time_s.head(steps));
+  const double hole = std::max(kLongestHole_s, kHoleSteps * step);
   std::vector<FrameInterval> pieces;
   int begin = 0;
   for (int i = 1; i <= static_cast<int>(time_s.size()); ++i) {
-    if (i < time_s.size() && time_s[i] - time_s[i - 1] <= kLongestHole_s) continue;
+    if (i < time_s.size() && time_s[i] - time_s[i - 1] <= hole) continue;
     pieces.push_back({begin, i});
     begin = i;
   }

@@ -40,9 +40,10 @@ struct SmoothedLog {
   const LogPiece* PieceAt(double robot_time_s) const;
 };
 
-/// Splits the log at holes of more than 0.1 s, brings each piece to a constant rate (its own mean
-/// rate, by linear interpolation; a regular log stays as it is) and filters it forwards and
-/// backwards. Pieces too short for the filter are dropped. Linear in the number of samples.
+/// Splits the log at holes of more than 0.1 s (or two samples), brings each piece to a constant
+/// rate (its own mean rate, by linear interpolation; a regular log stays as it is) and filters it
+/// forwards and backwards. Pieces too short for the filter are dropped. Linear in the number of
+/// samples.
 ///
 /// Throws InputError naming the log if it is slower than twice the cutoff.
 SmoothedLog SmoothLog(const JointLog& log, const SmoothingOptions& options);

@@ -13,7 +13,11 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRestWindow_s = 0.3;
-constexpr double kLeastSeen = 0.5;  // of the trial, for a marker to count without being seen
+constexpr double kJump = 0.02;        // of the mean speed's standard deviation
+constexpr double kJumpReach_s = 0.1;  // to either side of a jump
+constexpr int kMostPasses = 3;
+constexpr double kSettled_s = 5e-3;  // well within a jump's reach
+constexpr double kLeastSeen = 0.5;   // of the trial, for a marker to count without being seen
 
 // Nominal positions of markers in the frame of the link that stands still.
 class StandingKinematics {
@@ -69,22 +73,46 @@ Eigen::VectorXd MeanKnown(const Eigen::MatrixXd& values, const std::vector<bool>
   return (count.array() >= least).select(sum.array() / count.array(), kNan);
 }
 
-// The logged mean, at each time over the markers that were seen in that frame.
-Eigen::VectorXd MeanOfSeen(const LoggedSpeeds& logged, const Eigen::MatrixXd& measured,
-                           double rate_hz, const ClockFit& clock) {
-  Eigen::VectorXd mean(logged.time_s.size());
-  for (Eigen::Index i = 0; i < logged.time_s.size(); ++i) {
-    const auto frame = std::llround(clock.CameraTime(logged.time_s[i]) * rate_hz);
-    double sum = 0.0;
-    int count = 0;
-    for (Eigen::Index m = 0; m < measured.cols(); ++m) {
-      if (frame < 0 || frame >= measured.rows() || std::isnan(measured(frame, m))) continue;
-      sum += logged.speeds(i, m);
-      ++count;
-    }
-    mean[i] = count > 0 ? sum / count : logged.speeds.row(i).mean();
+// The two mean speeds, over the same markers in each moment.
+struct MeansOfSeen {
+  Eigen::VectorXd measured;  // by frame
+  Eigen::VectorXd logged;    // by logged time
+};
+
+// The logged mean at a time, over the markers that are seen in a frame.
+double MeanOfSeen(const Eigen::MatrixXd& logged, Eigen::Index row, const Eigen::MatrixXd& measured,
+                  Eigen::Index frame) {
+  double sum = 0.0;
+  int count = 0;
+  for (Eigen::Index m = 0; m < measured.cols(); ++m) {
+    if (std::isnan(measured(frame, m))) continue;
+    sum += logged(row, m);
+    ++count;
   }
-  return mean;
+  return count > 0 ? sum / count : logged.row(row).mean();
+}
+
+// Which frame is at which logged time is known by `clock`. Where markers come or go and the mean
+// jumps, it would jump in both signals just as this clock has it, whatever is true: frames around
+// such jumps are left out.
+MeansOfSeen TakeMeansOfSeen(const Eigen::MatrixXd& measured, const Eigen::VectorXd& measured_mean,
+                            double rate_hz, const LoggedSpeeds& logged, const ClockFit& clock) {
+  MeansOfSeen means{measured_mean, logged.speeds.rowwise().mean()};
+  const double jump =
+      kJump * std::sqrt((means.logged.array() - means.logged.mean()).square().mean());
+  const auto reach = static_cast<Eigen::Index>(std::ceil(kJumpReach_s * rate_hz));
+  for (Eigen::Index i = 0; i < logged.time_s.size(); ++i) {
+    const Eigen::Index frame = std::llround(clock.CameraTime(logged.time_s[i]) * rate_hz);
+    if (frame < 0 || frame >= measured.rows()) continue;
+    means.logged[i] = MeanOfSeen(logged.speeds, i, measured, frame);
+    if (frame == 0) continue;
+    const double before = MeanOfSeen(logged.speeds, i, measured, frame - 1);
+    if (std::abs(means.logged[i] - before) <= jump) continue;
+    const Eigen::Index begin = std::max<Eigen::Index>(0, frame - reach);
+    const Eigen::Index end = std::min(measured.rows(), frame + reach);
+    means.measured.segment(begin, end - begin).setConstant(kNan);
+  }
+  return means;
 }
 
 void ChooseRange(double camera_s, const Eigen::VectorXd& log_time_s, ClockOptions& options) {
@@ -136,9 +164,8 @@ LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& mar
   return logged;
 }
 
-ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz,
-                            LoggedSpeeds logged, const std::optional<double>& expected_lag_s,
-                            ClockOptions options) {
+ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, LoggedSpeeds logged,
+                            const std::optional<double>& expected_lag_s, ClockOptions options) {
   if (logged.time_s.size() < 2 || measured.rows() == 0) return {};
   options.expected_lag_s = expected_lag_s.value_or(0.0);
   if (!expected_lag_s) {
@@ -166,10 +193,15 @@ ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz,
   const ClockFit first = EstimateClock(seen, {logged.time_s, all}, options);
   if (first.state == ClockState::kNoOverlap || first.state == ClockState::kWeak) return first;
   const std::vector<bool> every(mostly_seen.size(), true);
-  const MeasuredSpeed seen_at_all{rate_hz, MeanKnown(measured, every, 0.5 * markers)};
-  const ClockFit second = EstimateClock(
-      seen_at_all, {logged.time_s, MeanOfSeen(logged, measured, rate_hz, first)}, options);
-  return first.state == ClockState::kAmbiguous ? first : second;
+  const Eigen::VectorXd mean = MeanKnown(measured, every, 0.5 * markers);
+  ClockFit fit = first;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const ClockFit last = fit;
+    const MeansOfSeen means = TakeMeansOfSeen(measured, mean, rate_hz, logged, last);
+    fit = EstimateClock({rate_hz, means.measured}, {logged.time_s, means.logged}, options);
+    if (std::abs(fit.lag_s - last.lag_s) < kSettled_s) break;
+  }
+  return first.state == ClockState::kAmbiguous ? first : fit;
 }
 
 }  // namespace elastocal

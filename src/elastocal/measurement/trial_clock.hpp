@@ -29,13 +29,12 @@ LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& mar
 /// markers of one robot has no periods of its own and no frame). `measured` (frames x markers, m/s,
 /// NaN where unknown; markers as in `logged`) was filtered as the log was.
 ///
-/// Markers come and go, and with them the mean. So the clock is estimated twice: with all markers
-/// of the log, then, in each moment, with those that the cameras saw then.
+/// Markers come and go, and with them the mean. So the clock is estimated again, in each moment
+/// with those markers that the cameras saw then.
 ///
 /// Without `expected_lag_s`, the lags searched are those between both beginning together and both
 /// ending together, and ClockOptions::longest_lag_s further to either side.
-ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz,
-                            LoggedSpeeds logged, const std::optional<double>& expected_lag_s,
-                            ClockOptions options);
+ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, LoggedSpeeds logged,
+                            const std::optional<double>& expected_lag_s, ClockOptions options);
 
 }  // namespace elastocal
