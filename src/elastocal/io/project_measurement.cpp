@@ -28,7 +28,10 @@ void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& option
     options.smoothing.longest_fill_s = gap->Number();
   }
   if (const auto lag = section.Find("expected_lag_s")) options.expected_lag_s = lag->Number();
-  ReadPositive(section, "longest_lag_s", options.clock.longest_lag_s);
+  if (const auto lag = section.Find("longest_lag_s")) {
+    lag->Expect(lag->Number() > 0.0 && lag->Number() <= 3600.0, "a number above 0, at most 3600");
+    options.clock.longest_lag_s = lag->Number();
+  }
   ReadPositive(section, "largest_lag_sd_ms", options.clock.largest_sd_s, 1e-3);
   ReadPositive(section, "rest_speed_mm_per_s", options.rest.threshold_m_per_s, kMetresPerMm);
   ReadPositive(section, "hold_s", options.rest.hold_s);

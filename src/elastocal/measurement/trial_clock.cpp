@@ -12,6 +12,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kWidest_s = 600.0;  // keeps the search linear
+constexpr double kMostSamples = 1e8;
 constexpr double kRestWindow_s = 0.3;
 constexpr double kJump = 0.02;        // of the mean speed's standard deviation
 constexpr double kJumpReach_s = 0.1;  // to either side of a jump
@@ -118,8 +120,9 @@ MeansOfSeen TakeMeansOfSeen(const Eigen::MatrixXd& measured, const Eigen::Vector
 void ChooseRange(double camera_s, const Eigen::VectorXd& log_time_s, ClockOptions& options) {
   const double together = -log_time_s[0];
   const double ending = camera_s - log_time_s[log_time_s.size() - 1];
-  options.expected_lag_s = 0.5 * (together + ending);
-  options.longest_lag_s += 0.5 * std::abs(ending - together);
+  const double half = 0.5 * std::clamp(ending - together, -kWidest_s, kWidest_s);
+  options.expected_lag_s = together + half;
+  options.longest_lag_s += std::abs(half);
 }
 
 }  // namespace
@@ -167,6 +170,8 @@ LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& mar
 ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, LoggedSpeeds logged,
                             const std::optional<double>& expected_lag_s, ClockOptions options) {
   if (logged.time_s.size() < 2 || measured.rows() == 0) return {};
+  const double span_s = logged.time_s[logged.time_s.size() - 1] - logged.time_s[0];
+  if (!(span_s * rate_hz < kMostSamples)) return {};  // a log of years, with one hole
   options.expected_lag_s = expected_lag_s.value_or(0.0);
   if (!expected_lag_s) {
     ChooseRange(static_cast<double>(measured.rows()) / rate_hz, logged.time_s, options);

@@ -33,7 +33,7 @@ LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& mar
 /// with those markers that the cameras saw then.
 ///
 /// Without `expected_lag_s`, the lags searched are those between both beginning together and both
-/// ending together, and ClockOptions::longest_lag_s further to either side.
+/// ending together (ten minutes at most), and ClockOptions::longest_lag_s further to either side.
 ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, LoggedSpeeds logged,
                             const std::optional<double>& expected_lag_s, ClockOptions options);
 
