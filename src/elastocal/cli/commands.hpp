@@ -40,5 +40,6 @@ void AddInspect(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
 void AddValidate(CLI::App& app, Action& action);
 void AddDemo(CLI::App& app, Action& action);
+void AddSimulate(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

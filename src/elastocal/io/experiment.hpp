@@ -20,6 +20,7 @@ struct TrialFiles {
   std::vector<int>
       support;  ///< links that stand on the floor, of the tree; empty: the root is held
   std::filesystem::path markers, joints;  ///< Qualisys TSV and joint log
+  std::filesystem::path truth = {};  ///< of a simulated trial, see ReadWaistTruth; empty: unknown
 };
 
 /// The contents of a recording folder.

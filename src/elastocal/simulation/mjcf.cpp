@@ -79,6 +79,17 @@ class MjcfWriter {
             ">\n";
   }
 
+  bool Gives(int body) const {
+    return robot_.link_compliance[static_cast<std::size_t>(body)].any();
+  }
+
+  /// The far half of a link that gives way, on the side of joint k: a body of its own, since MuJoCo
+  /// allows six degrees of freedom between two bodies. The link's weight stays with the near half.
+  void OpenHalf(int k, const Transform& T_from_half) {
+    text += "<body" + Attribute("name", "h" + std::to_string(k)) + PoseAttributes(T_from_half) +
+            "><inertial pos=\"0 0 0\" mass=\"1e-6\" diaginertia=\"1e-7 1e-7 1e-7\"/>\n";
+  }
+
   /// Inertia of a body, then all that hangs on it but where the walk comes from: the joint
   /// `from_joint` or the sole `from_sole`. Closes the body.
   void Contents(int body, int from_joint, int from_sole) {
@@ -99,11 +110,16 @@ class MjcfWriter {
   void Outwards(int k) {
     const Joint& joint = JointAt(k);
     const Transform T_parent_child = JointPlacement(k);
+    const bool halved = Gives(joint.parent_body);
+    if (halved) {
+      OpenHalf(k, Transform::Identity());
+      LinkSprings(joint.parent_body, T_parent_child.translation(), Transform::Identity());
+    }
     OpenBody(k + 1, T_parent_child);
-    LinkSprings(joint.parent_body, T_parent_child.translation(), T_parent_child.inverse());
     JointSpring(k, joint.axis, Eigen::Vector3d::Zero());
     Motor(k, joint.axis, Eigen::Vector3d::Zero());
     Contents(k + 1, k, -1);
+    if (halved) text += "</body>\n";
   }
 
   /// From the body that joint k moves to the one that carries it: the same joint seen from the
@@ -112,11 +128,20 @@ class MjcfWriter {
     const Joint& joint = JointAt(k);
     const Transform T_parent_child = JointPlacement(k);
     const Eigen::Vector3d axis = -(T_parent_child.linear() * joint.axis);
-    OpenBody(joint.parent_body, T_parent_child.inverse());
+    const bool halved = Gives(joint.parent_body);
+    if (halved) {
+      OpenHalf(k, T_parent_child.inverse());
+    } else {
+      OpenBody(joint.parent_body, T_parent_child.inverse());
+    }
     Motor(k, axis, T_parent_child.translation());
     JointSpring(k, axis, T_parent_child.translation());
-    LinkSprings(joint.parent_body, T_parent_child.translation(), Transform::Identity());
+    if (halved) {
+      OpenBody(joint.parent_body, Transform::Identity());
+      LinkSprings(joint.parent_body, T_parent_child.translation(), Transform::Identity());
+    }
     Contents(joint.parent_body, k, -1);
+    if (halved) text += "</body>\n";
   }
 
   /// A further foot on the floor.

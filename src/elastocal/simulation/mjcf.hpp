@@ -36,7 +36,8 @@ struct PhysicsOptions {
 ///   joints likewise. A joint of compliance 0 has no `e<k>`.
 /// - A link with compliance has three slides and three hinges `x<b>_0..5` (b: body) half way to its
 ///   next joint.
-/// - Bodies are `b<index>`, soles on which the robot stands `s<i>` (i: index into `support`).
+/// - Bodies are `b<index>`, far halves of links that give way `h<k>` (towards joint k), soles on
+/// which the robot stands `s<i>` (i: index into `support`).
 /// - Welded, the tree is rooted at the first sole, which is fixed to the world exactly, and
 /// reversed
 ///   up to the waist; a second sole is held by a weld constraint. Free, the root is the waist with
