@@ -1,5 +1,7 @@
 #include "elastocal/simulation/base_compliance.hpp"
 
+#include <algorithm>
+
 namespace elastocal {
 
 BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
@@ -13,6 +15,14 @@ BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
   options.sliding_servo_stiffness *= kHeld;
   TrueRobot smooth = robot;
   smooth.friction.setZero();
+  // What the leg carries is as good rigid, and faster.
+  for (std::size_t k = 0; k < smooth.tree.joints.size(); ++k) {
+    const bool carries =
+        std::find(leg.joints.begin(), leg.joints.end(), static_cast<int>(k)) != leg.joints.end();
+    if (carries) continue;
+    smooth.compliance[static_cast<Eigen::Index>(k)] = 0.0;
+    smooth.link_compliance[k + 1].setZero();
+  }
   VirtualRobot body(smooth, {leg.foot_link}, posture, options);
   body.Settle();
 

@@ -251,7 +251,7 @@ std::string Weld(std::size_t sole, const Transform& T_world_sole) {
   return "<weld" + Attribute("body1", "s" + std::to_string(sole)) +
          Attribute("relpose",
                    Numbers(std::array{p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()})) +
-         " solref=\"0.004 1\" solimp=\"0.999 0.9999 0.001\"/>\n";
+         " solref=\"0.01 1\" solimp=\"0.999 0.9999 0.001\"/>\n";
 }
 
 std::string Header(const PhysicsOptions& options) {

@@ -199,6 +199,14 @@ class Planner {
     Add("upper_sine", TrialKind::kSine, upper_, feet_, writer.motion, 0);
   }
 
+  Eigen::VectorXd DrawLeg(PostureSampler& sampler, std::size_t i) const {
+    Eigen::VectorXd q = sampler.stand();
+    if (options_.counterweight > 0.0) {
+      q += options_.counterweight * (DrawUpperBody(sampler) - q);
+    }
+    return sampler.DrawSwing(q, legs_[i], Support(i));
+  }
+
   const Leg& Support(std::size_t swing) const { return legs_[swing == 0 ? 1 : 0]; }
 
   int ChainOf(const Leg& leg) const {
@@ -211,8 +219,8 @@ class Planner {
   void AddLegPostures(std::size_t i, const std::string& name, TrialKind kind, int count) {
     PostureSampler sampler = Sampler(name);
     std::vector<Eigen::VectorXd> postures;
-    for (int n = 0; n < count; ++n) postures.push_back(sampler.DrawSwing(legs_[i], Support(i)));
-    const Eigen::VectorXd start = sampler.DrawSwing(legs_[i], Support(i));
+    for (int n = 0; n < count; ++n) postures.push_back(DrawLeg(sampler, i));
+    const Eigen::VectorXd start = DrawLeg(sampler, i);
     MotionWriter writer(start, options_);
     writer.Visit(Sorted(start, postures));
     Add(name, kind, {ChainOf(legs_[i])}, {Support(i).foot_link}, writer.motion, count);
@@ -249,8 +257,8 @@ class Planner {
     AddLegPostures(i, name + "_random", TrialKind::kRandom, options_.random_postures);
 
     PostureSampler sampler = Sampler(name + "_repeat");
-    const Eigen::VectorXd first = sampler.DrawSwing(legs_[i], Support(i));
-    const Eigen::VectorXd second = sampler.DrawSwing(legs_[i], Support(i));
+    const Eigen::VectorXd first = DrawLeg(sampler, i);
+    const Eigen::VectorXd second = DrawLeg(sampler, i);
     MotionWriter writer(first, options_);
     for (int n = 0; n < options_.repetitions; ++n) writer.Visit({second, first});
     Add(name + "_repeat", TrialKind::kRepeatability, {ChainOf(legs_[i])}, {Support(i).foot_link},
@@ -262,7 +270,7 @@ class Planner {
   void LegSineTrial(std::size_t i, const std::string& name) {
     constexpr int kTries = 100;
     PostureSampler sampler = Sampler(name);
-    MotionWriter writer(sampler.DrawSwing(legs_[i], Support(i)), options_);
+    MotionWriter writer(DrawLeg(sampler, i), options_);
     for (int k : legs_[i].joints) {
       if (tree_.joints[Size(k)].mimic) continue;
       const int coordinate = tree_.joints[Size(k)].coordinate;

@@ -36,9 +36,12 @@ struct MotionOptions {
   double lead_in_s =
       5.0;  ///< at rest before the first motion (cameras start before the robot's log)
   double move_s = 3.5, rest_s = 1.5;  ///< of a posture: 5 s apart, as in the paper
-  int head_postures = 8;     ///< of chains with less than PostureOptions::arm_joints joints
-  int arm_postures = 32;     ///< of other chains that are no leg
-  int leg_postures = 24;     ///< of each leg while another carries
+  int head_postures = 8;  ///< of chains with less than PostureOptions::arm_joints joints
+  int arm_postures = 32;  ///< of other chains that are no leg
+  int leg_postures = 24;  ///< of each leg while another carries
+  /// While a leg swings, head, arms and trunk move too, this share of the way to their own random
+  /// postures: it loads the leg that carries differently each time.
+  double counterweight = 0.5;
   int random_postures = 20;  ///< of each validation trial
   int repetitions = 5;
   double sine_hz = 0.5;

@@ -219,10 +219,9 @@ std::optional<Eigen::VectorXd> PostureSampler::DrawSupport(Eigen::VectorXd q, co
   return q;
 }
 
-Eigen::VectorXd PostureSampler::DrawSwing(const Leg& swing, const Leg& support) {
+Eigen::VectorXd PostureSampler::DrawSwing(Eigen::VectorXd q, const Leg& swing, const Leg& support) {
   constexpr int kTries = 200000;
   for (int i = 0; i < kTries; ++i) {
-    Eigen::VectorXd q = stand_;
     DrawJoints(swing.joints, q);
     if (!InWorkspace(options_.foot, swing.foot_link, q)) continue;
     if (const auto found = DrawSupport(q, swing, support)) return *found;

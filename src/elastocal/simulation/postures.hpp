@@ -60,8 +60,9 @@ class PostureSampler {
   Eigen::VectorXd DrawUpper(const NamedChain& chain);
 
   /// The leg `swing` in the workspace of feet, while the leg `support` carries, bent, with its foot
-  /// flat on the floor. Throws InputError where no such posture is found.
-  Eigen::VectorXd DrawSwing(const Leg& swing, const Leg& support);
+  /// flat on the floor; all other joints as in `q`. Throws InputError where no such posture is
+  /// found.
+  Eigen::VectorXd DrawSwing(Eigen::VectorXd q, const Leg& swing, const Leg& support);
 
   /// Only the leg that carries is drawn; the other joints are those of `q`. Nothing where this draw
   /// is not feasible.

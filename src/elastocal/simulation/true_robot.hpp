@@ -30,14 +30,14 @@ struct TruthOptions {
   // Elasticity. Joint springs about the joints' axes: stiffness log-uniform between two values,
   // N.m/rad (N/m for sliding joints).
   double upper_stiffness_least = 0.3e5, upper_stiffness_most = 5e5;
-  double leg_stiffness_least = 1e5, leg_stiffness_most = 4e5;
+  double leg_stiffness_least = 1.5e5, leg_stiffness_most = 5e5;
   double upper_elasticity_scale = 1.0;  ///< factor on the compliances; 0: rigid
   double leg_elasticity_scale = 1.0;    ///< of joints and links
   /// Compliance of a leg's link half way between its joints, about and along its own axes
   /// [m/N x 3, rad/(N.m) x 3]; `hip` for the first half of the leg's links, `shank` for the rest.
   /// Each entry is multiplied by a factor drawn uniformly within 1 +- link_compliance_spread.
-  Vector6d hip_link_compliance{{2e-7, 2e-7, 3e-7, 4e-6, 1.2e-5, 1e-6}};
-  Vector6d shank_link_compliance{{2e-7, 2e-7, 3e-7, 3e-6, 2e-6, 1e-6}};
+  Vector6d hip_link_compliance{{3e-7, 3e-7, 4e-7, 4e-6, 2e-5, 1e-6}};
+  Vector6d shank_link_compliance{{3e-7, 3e-7, 4e-7, 2e-6, 1e-6, 1e-6}};
   double link_compliance_spread = 0.3;
 
   // Inertia.
