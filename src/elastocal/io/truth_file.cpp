@@ -63,6 +63,9 @@ void WriteJoints(const VirtualExperiment& experiment, const RobotTree& described
     writer.List("shift_mm", Eigen::Vector3d(1e3 * error.translation()));
     writer.List("turn_deg", Eigen::Vector3d(turn.angle() / kDegree * turn.axis()));
     writer.Value(slides ? "compliance_m_per_n" : "compliance_rad_per_nm", robot.compliance[index]);
+    if (robot.link_compliance[k].any()) {
+      writer.List("carrier_compliance", robot.link_compliance[k]);
+    }
     writer.Value(slides ? "friction_n" : "friction_nm", robot.friction[index]);
     if (robot.torque_sensor[k]) {
       writer.Value("torque_gain", robot.torque_gain[index]);
@@ -77,16 +80,11 @@ void WriteLinks(const TrueRobot& robot, TruthWriter& writer) {
   writer.Key("links");
   writer.yaml << YAML::BeginMap;
   for (const Link& link : robot.tree.links) {
-    const Vector6d& compliance = robot.link_compliance[static_cast<std::size_t>(link.body)];
-    const bool moves =
-        link.body > 0 && robot.tree.joints[static_cast<std::size_t>(link.body - 1)].child_link ==
-                             static_cast<int>(&link - robot.tree.links.data());
-    if (link.mass <= 0.0 && !(moves && compliance.any())) continue;
+    if (link.mass <= 0.0) continue;
     writer.Key(link.name);
     writer.yaml << YAML::BeginMap;
     writer.Value("mass_kg", link.mass);
     writer.List("com_mm", Eigen::Vector3d(1e3 * link.com));
-    if (moves && compliance.any()) writer.List("compliance", compliance);
     writer.yaml << YAML::EndMap;
   }
   writer.yaml << YAML::EndMap;
@@ -96,7 +94,8 @@ void WriteLegs(const VirtualExperiment& experiment, TruthWriter& writer) {
   const RobotTree& tree = experiment.robot.tree;
   writer.Key("legs");
   writer.yaml << YAML::BeginMap;
-  for (const LegCompliance& leg : experiment.legs) {
+  for (std::size_t l = 0; l < experiment.legs.size(); ++l) {
+    const LegCompliance& leg = experiment.legs[l];
     writer.Key(leg.chain);
     writer.yaml << YAML::BeginMap;
     writer.Key("foot");
@@ -108,14 +107,13 @@ void WriteLegs(const VirtualExperiment& experiment, TruthWriter& writer) {
     writer.yaml << YAML::EndSeq;
     writer.Key("posture_rad");
     writer.yaml << YAML::Flow << YAML::BeginMap;
-    for (const Leg& known : experiment.robot.legs) {
-      if (known.foot_link != leg.foot_link) continue;
-      for (int k : known.joints) {
-        const Joint& joint = tree.joints[static_cast<std::size_t>(k)];
-        writer.Value(joint.name, JointPosition(joint, leg.posture));
-      }
+    for (int k : experiment.robot.legs[l].joints) {
+      const Joint& joint = tree.joints[static_cast<std::size_t>(k)];
+      writer.Value(joint.name, JointPosition(joint, leg.posture));
     }
-    writer.yaml << YAML::EndMap << YAML::EndMap;
+    writer.yaml << YAML::EndMap;
+    writer.List("foot_compliance", experiment.robot.foot_compliance[l]);
+    writer.yaml << YAML::EndMap;
   }
   writer.yaml << YAML::EndMap;
 }

@@ -21,7 +21,7 @@ BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
         std::find(leg.joints.begin(), leg.joints.end(), static_cast<int>(k)) != leg.joints.end();
     if (carries) continue;
     smooth.compliance[static_cast<Eigen::Index>(k)] = 0.0;
-    smooth.link_compliance[k + 1].setZero();
+    smooth.link_compliance[k].setZero();
   }
   VirtualRobot body(smooth, {leg.foot_link}, posture, options);
   body.Settle();

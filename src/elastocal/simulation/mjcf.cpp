@@ -49,7 +49,7 @@ class MjcfWriter {
     text += "<body" + Attribute("name", "s" + std::to_string(sole)) + PoseAttributes(T_world_sole) +
             ">\n";
     OpenBody(link.body, link.T_body_link.inverse());
-    LinkSprings(link.body, link.T_body_link.translation(), Transform::Identity());
+    LinkSprings(FootSprings(sole), link.T_body_link.translation(), Transform::Identity());
     Contents(link.body, -1, sole);
     text += "</body>\n";
   }
@@ -79,10 +79,6 @@ class MjcfWriter {
             ">\n";
   }
 
-  bool Gives(int body) const {
-    return robot_.link_compliance[static_cast<std::size_t>(body)].any();
-  }
-
   /// The far half of a link that gives way, on the side of joint k: a body of its own, since MuJoCo
   /// allows six degrees of freedom between two bodies. The link's weight stays with the near half.
   void OpenHalf(int k, const Transform& T_from_half) {
@@ -110,10 +106,10 @@ class MjcfWriter {
   void Outwards(int k) {
     const Joint& joint = JointAt(k);
     const Transform T_parent_child = JointPlacement(k);
-    const bool halved = Gives(joint.parent_body);
+    const bool halved = robot_.link_compliance[static_cast<std::size_t>(k)].any();
     if (halved) {
       OpenHalf(k, Transform::Identity());
-      LinkSprings(joint.parent_body, T_parent_child.translation(), Transform::Identity());
+      LinkSprings(CarrierSprings(k), T_parent_child.translation(), Transform::Identity());
     }
     OpenBody(k + 1, T_parent_child);
     JointSpring(k, joint.axis, Eigen::Vector3d::Zero());
@@ -128,7 +124,7 @@ class MjcfWriter {
     const Joint& joint = JointAt(k);
     const Transform T_parent_child = JointPlacement(k);
     const Eigen::Vector3d axis = -(T_parent_child.linear() * joint.axis);
-    const bool halved = Gives(joint.parent_body);
+    const bool halved = robot_.link_compliance[static_cast<std::size_t>(k)].any();
     if (halved) {
       OpenHalf(k, T_parent_child.inverse());
     } else {
@@ -138,7 +134,7 @@ class MjcfWriter {
     JointSpring(k, axis, T_parent_child.translation());
     if (halved) {
       OpenBody(joint.parent_body, Transform::Identity());
-      LinkSprings(joint.parent_body, T_parent_child.translation(), Transform::Identity());
+      LinkSprings(CarrierSprings(k), T_parent_child.translation(), Transform::Identity());
     }
     Contents(joint.parent_body, k, -1);
     if (halved) text += "</body>\n";
@@ -149,7 +145,7 @@ class MjcfWriter {
     const Link& link = FootLink(sole);
     text += "<body" + Attribute("name", "s" + std::to_string(sole)) +
             PoseAttributes(link.T_body_link) + ">\n";
-    LinkSprings(link.body, link.T_body_link.translation(), link.T_body_link.inverse());
+    LinkSprings(FootSprings(sole), link.T_body_link.translation(), link.T_body_link.inverse());
     text += "<inertial pos=\"0 0 0\" mass=\"0.1\" diaginertia=\"1e-4 1e-4 1e-4\"/>\n";
     if (options_.standing == Standing::kFree) {
       constexpr double kHalfThickness = 0.01;
@@ -217,15 +213,28 @@ class MjcfWriter {
            robot_.compliance[k]);
   }
 
+  struct NamedSprings {
+    std::string name;
+    const Vector6d& compliance;
+  };
+  NamedSprings CarrierSprings(int k) const {
+    return {"x" + std::to_string(k), robot_.link_compliance[static_cast<std::size_t>(k)]};
+  }
+  NamedSprings FootSprings(int sole) const {
+    const int foot = support_[static_cast<std::size_t>(sole)];
+    std::size_t leg = 0;
+    while (robot_.legs[leg].foot_link != foot) ++leg;
+    return {"y" + std::to_string(sole), robot_.foot_compliance[leg]};
+  }
+
   /// Springs of a body's link, half way to `p_body_next`, in the frame of the body being written,
   /// to which T_here_body leads.
-  void LinkSprings(int body, const Eigen::Vector3d& p_body_next, const Transform& T_here_body) {
-    const Vector6d& compliance = robot_.link_compliance[static_cast<std::size_t>(body)];
+  void LinkSprings(const NamedSprings& springs, const Eigen::Vector3d& p_body_next,
+                   const Transform& T_here_body) {
     const Eigen::Vector3d anchor = T_here_body * Eigen::Vector3d(0.5 * p_body_next);
     for (int i = 0; i < 6; ++i) {
       const Eigen::Vector3d axis = T_here_body.linear().col(i % 3);
-      Spring("x" + std::to_string(body) + "_" + std::to_string(i), i < 3, axis, anchor,
-             compliance[i]);
+      Spring(springs.name + "_" + std::to_string(i), i < 3, axis, anchor, springs.compliance[i]);
     }
   }
 

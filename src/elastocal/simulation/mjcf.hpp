@@ -34,8 +34,8 @@ struct PhysicsOptions {
 ///   the servo: its rest position is what is commanded, and it is the encoder's side; in series
 ///   with it, about the same axis, the elastic hinge `e<k>` of the joint's compliance. Sliding
 ///   joints likewise. A joint of compliance 0 has no `e<k>`.
-/// - A link with compliance has three slides and three hinges `x<b>_0..5` (b: body) half way to its
-///   next joint.
+/// - A link with compliance has three slides and three hinges half way to the joint k that it
+///   carries, `x<k>_0..5`, or to the sole, `y<i>_0..5`.
 /// - Bodies are `b<index>`, far halves of links that give way `h<k>` (towards joint k), soles on
 /// which the robot stands `s<i>` (i: index into `support`).
 /// - Welded, the tree is rooted at the first sole, which is fixed to the world exactly, and

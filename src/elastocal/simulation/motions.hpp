@@ -41,7 +41,7 @@ struct MotionOptions {
   int leg_postures = 24;  ///< of each leg while another carries
   /// While a leg swings, head, arms and trunk move too, this share of the way to their own random
   /// postures: it loads the leg that carries differently each time.
-  double counterweight = 0.5;
+  double counterweight = 1.0;
   int random_postures = 20;  ///< of each validation trial
   int repetitions = 5;
   double sine_hz = 0.5;

@@ -190,6 +190,16 @@ bool PostureSampler::SwingFeasible(const Eigen::VectorXd& q, const Leg& swing,
   return true;
 }
 
+bool PostureSampler::KneeBent(const Leg& leg, const Eigen::VectorXd& q) const {
+  const auto bend = [&](int k, const Eigen::VectorXd& posture) {
+    return std::abs(JointPosition(tree_.joints[Size(k)], posture));
+  };
+  const int knee = *std::max_element(leg.joints.begin(), leg.joints.end(), [&](int a, int b) {
+    return bend(a, stand_) < bend(b, stand_);
+  });
+  return bend(knee, q) >= options_.least_bend && bend(knee, q) <= options_.largest_bend;
+}
+
 std::optional<Eigen::VectorXd> PostureSampler::DrawSupport(Eigen::VectorXd q, const Leg& swing,
                                                            const Leg& support) {
   constexpr int kBalanceSteps = 4;
@@ -215,7 +225,7 @@ std::optional<Eigen::VectorXd> PostureSampler::DrawSupport(Eigen::VectorXd q, co
     if (!placed) return std::nullopt;
     q = *placed;
   }
-  if (!SwingFeasible(q, swing, support)) return std::nullopt;
+  if (!KneeBent(support, q) || !SwingFeasible(q, swing, support)) return std::nullopt;
   return q;
 }
 

@@ -25,10 +25,12 @@ struct PostureOptions {
   double limit_margin = 0.05;      ///< left free at either end of a joint's range, as a share of it
   double least_distance = 0.13;    ///< between joint centres of the moving and of other chains, m
   double ground_clearance = 0.03;  ///< of the swinging sole's origin, m
-  /// The leg that carries: the waist is lower than over straight legs by these shares of the
-  /// standing height (TALOS: knee bent by 0.4 to 1 rad), leans and turns by up to `lean`, and the
-  /// robot's centre of mass is above a point of the sole up to `sway` from its origin.
-  double least_drop = 0.015, largest_drop = 0.085;
+  /// The leg that carries: its knee (the joint that bends most in standing) is bent within these
+  /// limits, rad; the waist is lower than over straight legs by these shares of the standing
+  /// height, leans and turns, and the robot's centre of mass is above a point of the sole up to
+  /// `sway` from its origin.
+  double least_bend = 0.4, largest_bend = 1.0;
+  double least_drop = 0.01, largest_drop = 0.11;
   double largest_lean = 0.07, largest_turn = 0.10;  ///< rad
   Eigen::Vector2d sway{0.07, 0.045};                ///< m
 };
@@ -76,6 +78,7 @@ class PostureSampler {
   void DrawJoints(const std::vector<int>& joints, Eigen::VectorXd& q);
   bool InWorkspace(const EndWorkspace& workspace, int tip, const Eigen::VectorXd& q) const;
   bool ArmApart(const NamedChain& chain, const Eigen::VectorXd& q) const;
+  bool KneeBent(const Leg& leg, const Eigen::VectorXd& q) const;
   std::optional<Eigen::VectorXd> Bend(const Leg& leg, Eigen::VectorXd q, double drop);
 
   const RobotTree& tree_;

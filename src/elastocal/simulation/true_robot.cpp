@@ -53,16 +53,22 @@ class Drawing {
 
   void LinkSprings() {
     Random random(StreamSeed(options_.seed, "link springs"));
-    for (const Leg& leg : robot_.legs) {
-      for (std::size_t i = 0; i < leg.joints.size(); ++i) {
-        const bool hip = 2 * i < leg.joints.size();
-        Vector6d compliance = hip ? options_.hip_link_compliance : options_.shank_link_compliance;
-        for (double& c : compliance) {
-          c *= options_.leg_elasticity_scale *
-               (1.0 + options_.link_compliance_spread * random.Uniform(-1.0, 1.0));
-        }
-        robot_.link_compliance[static_cast<std::size_t>(leg.joints[i]) + 1] = compliance;
+    const auto draw = [&](Vector6d compliance) {
+      for (double& c : compliance) {
+        c *= options_.leg_elasticity_scale *
+             (1.0 + options_.link_compliance_spread * random.Uniform(-1.0, 1.0));
       }
+      return compliance;
+    };
+    for (std::size_t l = 0; l < robot_.legs.size(); ++l) {
+      const std::vector<int>& joints = robot_.legs[l].joints;
+      for (std::size_t i = 0; i < joints.size(); ++i) {
+        robot_.link_compliance[static_cast<std::size_t>(joints[i])] =
+            draw(i == 0                   ? options_.pelvis_compliance
+                 : 2 * i <= joints.size() ? options_.hip_link_compliance
+                                          : options_.shank_link_compliance);
+      }
+      robot_.foot_compliance[l] = draw(options_.shank_link_compliance);
     }
   }
 
@@ -126,7 +132,8 @@ TrueRobot NominalRobot(RobotTree tree, std::vector<Marker> markers, std::vector<
   robot.offset = robot.compliance = robot.friction = Eigen::VectorXd::Zero(joints);
   robot.torque_gain = Eigen::VectorXd::Ones(joints);
   robot.torque_bias = Eigen::VectorXd::Zero(joints);
-  robot.link_compliance.assign(robot.tree.joints.size() + 1, Vector6d::Zero());
+  robot.link_compliance.assign(robot.tree.joints.size(), Vector6d::Zero());
+  robot.foot_compliance.assign(robot.legs.size(), Vector6d::Zero());
   robot.torque_sensor.assign(robot.tree.joints.size(), false);
   for (int k : torque_sensors) robot.torque_sensor[static_cast<std::size_t>(k)] = true;
   return robot;

@@ -30,14 +30,16 @@ struct TruthOptions {
   // Elasticity. Joint springs about the joints' axes: stiffness log-uniform between two values,
   // N.m/rad (N/m for sliding joints).
   double upper_stiffness_least = 0.3e5, upper_stiffness_most = 5e5;
-  double leg_stiffness_least = 1.5e5, leg_stiffness_most = 5e5;
+  double leg_stiffness_least = 2e5, leg_stiffness_most = 6e5;
   double upper_elasticity_scale = 1.0;  ///< factor on the compliances; 0: rigid
   double leg_elasticity_scale = 1.0;    ///< of joints and links
-  /// Compliance of a leg's link half way between its joints, about and along its own axes
-  /// [m/N x 3, rad/(N.m) x 3]; `hip` for the first half of the leg's links, `shank` for the rest.
-  /// Each entry is multiplied by a factor drawn uniformly within 1 +- link_compliance_spread.
-  Vector6d hip_link_compliance{{3e-7, 3e-7, 4e-7, 4e-6, 2e-5, 1e-6}};
-  Vector6d shank_link_compliance{{3e-7, 3e-7, 4e-7, 2e-6, 1e-6, 1e-6}};
+  /// Compliance of a leg's links, each half way between its joints, about and along its own axes
+  /// [m/N x 3, rad/(N.m) x 3]: of the root link between its origin and the hip, of the first half
+  /// of the leg's links, and of the rest. Each entry is multiplied by a factor drawn uniformly
+  /// within 1 +- link_compliance_spread.
+  Vector6d pelvis_compliance{{2e-7, 2e-7, 4e-7, 8e-6, 6e-5, 2e-6}};
+  Vector6d hip_link_compliance{{2e-7, 2e-7, 4e-7, 2e-6, 5e-6, 1e-6}};
+  Vector6d shank_link_compliance{{2e-7, 2e-7, 4e-7, 1e-6, 5e-7, 1e-6}};
   double link_compliance_spread = 0.3;
 
   // Inertia.
@@ -58,11 +60,12 @@ struct TrueRobot {
   std::vector<Marker> markers;  ///< where they truly are
   Eigen::VectorXd offset;       ///< by joint: true position = encoder's + offset, rad or m
   Eigen::VectorXd compliance;   ///< by joint, about or along its axis, rad/(N.m) or m/N; 0: rigid
-  /// By body of the tree: compliance of its link half way between its own joint and each joint (or
-  /// sole) that it carries, in the link's axes, m/N and rad/(N.m); zeros: rigid.
+  /// By joint: compliance of the link that carries it, half way between that link's own joint (or
+  /// the root link's origin) and this one, in the link's axes, m/N and rad/(N.m); zeros: rigid.
   std::vector<Vector6d> link_compliance;
-  Eigen::VectorXd friction;                  ///< by joint, N.m or N
-  std::vector<bool> torque_sensor;           ///< by joint: whether it has one
+  std::vector<Vector6d> foot_compliance;  ///< by leg: the same between its last joint and the sole
+  Eigen::VectorXd friction;               ///< by joint, N.m or N
+  std::vector<bool> torque_sensor;        ///< by joint: whether it has one
   Eigen::VectorXd torque_gain, torque_bias;  ///< by joint: reading = gain * torque + bias
 };
 
