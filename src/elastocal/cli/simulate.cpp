@@ -2,28 +2,41 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/simulation_settings.hpp"
 #include "elastocal/io/truth_file.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct SimulateOptions {
   CommonOptions common;
   std::string project, output, trials = "all";
+  std::string settings;
   int threads = 2;
-  VirtualExperimentOptions experiment;
+  bool nominal = false, free = false;
+  std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
 };
+
+std::string FlagName(std::string key) {
+  std::replace(key.begin(), key.end(), '_', '-');
+  return "--" + key;
+}
 
 /// What is kept of a trial once its files are written.
 struct PlayedTrial {
@@ -112,9 +125,44 @@ std::string StiffnessTable(const VirtualExperiment& experiment) {
   return table.Render();
 }
 
+Json MakeJson(const std::vector<PlayedTrial>& played, const VirtualExperiment& experiment,
+              const std::vector<std::size_t>& chosen) {
+  Json json;
+  json["trials"] = Json::array();
+  for (std::size_t i = 0; i < played.size(); ++i) {
+    json["trials"].push_back({{"name", experiment.trials[chosen[i]].name},
+                              {"postures", experiment.trials[chosen[i]].postures},
+                              {"frames", played[i].frames},
+                              {"lag_s", played[i].sensors.lag_s},
+                              {"drift_ppm", played[i].sensors.drift_ppm},
+                              {"waist_mm", 1e3 * played[i].waist.translation},
+                              {"faults", played[i].sensors.faults}});
+  }
+  for (const LegCompliance& leg : experiment.legs) {
+    json["stiffness"][leg.chain] =
+        std::vector<double>(leg.base.stiffness.begin(), leg.base.stiffness.end());
+  }
+  return json;
+}
+
+/// Defaults, or a perfect robot; then the settings file; then the command line.
+VirtualExperimentOptions Settings(const SimulateOptions& options) {
+  VirtualExperimentOptions settings;
+  if (options.nominal) SwitchOffImperfections(settings);
+  if (!options.settings.empty()) ReadSimulationSettings(options.settings, settings);
+  for (const SimulationSetting& setting : SimulationSettings(settings)) {
+    const auto given = options.flags.find(setting.key);
+    if (given == options.flags.end() || given->second.empty()) continue;
+    ApplySetting(setting, given->second, FlagName(setting.key) + ": ");
+  }
+  if (options.free) settings.physics.standing = Standing::kFree;
+  return settings;
+}
+
 int Simulate(const SimulateOptions& options) {
   const Project project = ReadProject(options.project);
-  VirtualExperimentOptions settings = options.experiment;
+  CheckOutputs({options.common.json_file}, {options.project, project.urdf, options.settings});
+  VirtualExperimentOptions settings = Settings(options);
   settings.seed = options.common.seed.value_or(1);
   const VirtualExperiment experiment = PrepareExperiment(DescribeRobot(project), settings);
   const std::vector<std::size_t> chosen = Chosen(experiment, options.trials);
@@ -132,6 +180,9 @@ int Simulate(const SimulateOptions& options) {
         TrialTable(played, experiment, chosen) + "\nStiffness of the legs as felt at the waist\n" +
             StiffnessTable(experiment) +
             fmt::format("\nWritten: {} with experiment.yaml and truth.yaml\n", options.output));
+  if (!options.common.json_file.empty()) {
+    WriteFile(options.common.json_file, MakeJson(played, experiment, chosen).dump(2) + "\n");
+  }
   return kFine;
 }
 
@@ -150,7 +201,21 @@ void AddSimulate(CLI::App& app, Action& action) {
   command->add_option("--threads", options->threads, "Trials played at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  command->add_option("--settings", options->settings,
+                      "File with any of the options below (YAML; docs/formats.md)");
+  command->add_flag("--nominal", options->nominal,
+                    "Begin with a robot and sensors without any imperfection");
+  command->add_flag("--free", options->free,
+                    "Feet lie on the floor by contact instead of being part of it");
   AddCommonOptions(*command, options->common);
+  VirtualExperimentOptions defaults;
+  for (const SimulationSetting& setting : SimulationSettings(defaults)) {
+    const std::string value = SettingText(setting);
+    command
+        ->add_option(FlagName(setting.key), options->flags[setting.key],
+                     setting.help + (value.empty() ? "" : " [" + value + "]"))
+        ->group(setting.group);
+  }
   command->footer("Example: elastocal simulate models/talos/project.yaml -o recording");
   command->callback([&action, options] { action = [options] { return Simulate(*options); }; });
 }

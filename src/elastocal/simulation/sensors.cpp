@@ -115,6 +115,9 @@ JointLog MakeLog(const TrueRobot& robot, const TrueMotion& motion, const SensorO
       log.torques.col(c).setConstant(kNaN);
     }
   }
+  // As drivers print them; positions still a thousand times finer than the encoders.
+  log.positions = (1e8 * log.positions).array().round() / 1e8;
+  log.torques = (1e4 * log.torques).array().round() / 1e4;
   return log;
 }
 

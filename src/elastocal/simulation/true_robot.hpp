@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -19,10 +20,11 @@ struct TruthOptions {
   std::uint64_t seed = 1;
 
   // Geometry: a general displacement (three lengths, three angles) of every joint's placement.
-  double upper_offset_sd = 0.01745;   ///< of joint zeros, rad (for sliding joints: length_sd, m)
-  double leg_offset_sd = 0.00873;     ///< rad
-  double length_sd = 1.2e-3;          ///< m, each of three directions
-  double angle_sd = 0.00524;          ///< rad, each of three axes
+  double upper_offset_sd =
+      M_PI / 180.0;  ///< of joint zeros, rad (for sliding joints: length_sd, m)
+  double leg_offset_sd = 0.5 * M_PI / 180.0;  ///< rad
+  double length_sd = 1.2e-3;                  ///< m, each of three directions
+  double angle_sd = 0.3 * M_PI / 180.0;       ///< rad, each of three axes
   double upper_geometry_scale = 1.0;  ///< factor on all of the above, of head, arms and trunk
   double leg_geometry_scale = 1.0;    ///< the same, of the legs
   double marker_sd = 3e-3;            ///< of a marker's coordinate on its link, m

@@ -26,6 +26,21 @@ std::vector<Transform> DrawPlaces(std::uint64_t seed, std::size_t trials) {
 
 }  // namespace
 
+void SwitchOffImperfections(VirtualExperimentOptions& options) {
+  TruthOptions& truth = options.truth;
+  truth.upper_geometry_scale = truth.leg_geometry_scale = truth.marker_sd = 0.0;
+  truth.upper_elasticity_scale = truth.leg_elasticity_scale = 0.0;
+  truth.mass_sd = truth.com_sd = truth.friction_share = 0.0;
+  truth.torque_gain_sd = truth.torque_bias_sd = 0.0;
+  SensorOptions& sensors = options.sensors;
+  sensors.marker_noise_sd = sensors.gaps_per_minute = 0.0;
+  sensors.outlier_share = sensors.swaps_per_minute = 0.0;
+  sensors.least_lag_s = sensors.largest_lag_s = sensors.drift_sd_ppm = 0.0;
+  sensors.encoder_bits = 0;
+  sensors.torque_noise_sd = 0.0;
+  options.faults = {};
+}
+
 VirtualExperiment PrepareExperiment(const DescribedRobot& described,
                                     const VirtualExperimentOptions& options) {
   VirtualExperiment experiment;

@@ -28,6 +28,11 @@ struct VirtualExperimentOptions {
   Faults faults;
 };
 
+/// A rigid robot as it is described, seen by perfect sensors: standard deviations, compliances,
+/// friction, gaps and the like all zero, encoders not quantised, clocks in step. Servos still give
+/// way to the load, which encoders see. Motions and physics stay.
+void SwitchOffImperfections(VirtualExperimentOptions& options);
+
 /// A leg's lumped compliance and the posture that it was computed in.
 struct LegCompliance {
   std::string chain;
