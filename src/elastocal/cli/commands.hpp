@@ -41,5 +41,6 @@ void AddCalibrate(CLI::App& app, Action& action);
 void AddValidate(CLI::App& app, Action& action);
 void AddCompare(CLI::App& app, Action& action);
 void AddDemo(CLI::App& app, Action& action);
+void AddSimulate(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

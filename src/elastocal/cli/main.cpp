@@ -50,6 +50,7 @@ int Run(int argc, char** argv) {
   AddValidate(app, action);
   AddCompare(app, action);
   AddDemo(app, action);
+  AddSimulate(app, action);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {
     spdlog::error("{} (elastocal --help lists the commands)", unknown);
     return kUsage;

@@ -100,8 +100,8 @@ fs::path ReadFileName(const YamlValue& value, const fs::path& folder, std::vecto
 
 TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Project& project,
                      std::vector<fs::path>& used) {
-  value.ExpectKeys(
-      {"name", "kind", "chain", "chains", "support", "markers", "joints", "expected_lag_s"});
+  value.ExpectKeys({"name", "kind", "chain", "chains", "support", "markers", "joints",
+                    "expected_lag_s", "truth"});
   TrialFiles trial;
   trial.name = value.Get("name").Text();
   if (const auto kind = value.Find("kind")) trial.kind = ReadKind(*kind);
@@ -110,6 +110,7 @@ TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Proje
   trial.markers = ReadFileName(value.Get("markers"), folder, used);
   trial.joints = ReadFileName(value.Get("joints"), folder, used);
   if (const auto lag = value.Find("expected_lag_s")) trial.expected_lag_s = lag->Number();
+  if (const auto truth = value.Find("truth")) trial.truth = ReadFileName(*truth, folder, used);
   return trial;
 }
 
@@ -134,11 +135,15 @@ void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& p
   yaml << YAML::Key << "support" << YAML::Value << YAML::Flow << YAML::BeginSeq;
   for (int link : trial.support) yaml << project.tree.links[link].name;
   yaml << YAML::EndSeq;
-  emit("markers", trial.markers.lexically_proximate(folder.lexically_normal()).generic_string());
-  emit("joints", trial.joints.lexically_proximate(folder.lexically_normal()).generic_string());
+  const auto emit_file = [&](const char* key, const fs::path& file) {
+    emit(key, file.lexically_proximate(folder.lexically_normal()).generic_string());
+  };
+  emit_file("markers", trial.markers);
+  emit_file("joints", trial.joints);
   if (trial.expected_lag_s) {
     yaml << YAML::Key << "expected_lag_s" << YAML::Value << FormatNumber(*trial.expected_lag_s);
   }
+  if (!trial.truth.empty()) emit_file("truth", trial.truth);
   yaml << YAML::EndMap;
 }
 

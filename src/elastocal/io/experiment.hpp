@@ -23,6 +23,7 @@ struct TrialFiles {
   std::filesystem::path markers, joints;  ///< Qualisys TSV and joint log
   /// Camera time less robot time at the beginning, s, where it is known.
   std::optional<double> expected_lag_s = {};
+  std::filesystem::path truth = {};  ///< of a simulated trial, see ReadWaistTruth; empty: unknown
 };
 
 /// The contents of a recording folder.

@@ -1,0 +1,42 @@
+#include "elastocal/simulation/legs.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace elastocal {
+
+std::vector<Leg> FindLegs(const RobotTree& tree, const std::vector<NamedChain>& chains) {
+  constexpr double kSameFloor = 0.02;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(tree.coordinate_count());
+  const std::vector<Transform> T_root_link = LinkTransforms(tree, zero);
+  const double tolerance = kSameFloor * RobotSize(tree);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const NamedChain& chain : chains) {
+    lowest = std::min(lowest, T_root_link[chain.tip_link].translation().z());
+  }
+  std::vector<Leg> legs;
+  for (const NamedChain& chain : chains) {
+    const double height = T_root_link[chain.tip_link].translation().z();
+    const bool known = std::any_of(legs.begin(), legs.end(),
+                                   [&](const Leg& leg) { return leg.foot_link == chain.tip_link; });
+    const std::vector<int> joints = JointsToBody(tree, tree.links[chain.tip_link].body);
+    if (known || chain.from_link != 0 || joints.empty()) continue;
+    if (height > lowest + tolerance || height > -tolerance) continue;
+    legs.push_back({chain.name, chain.tip_link, joints, T_root_link[chain.tip_link].linear()});
+  }
+  return legs;
+}
+
+double StandingHeight(const RobotTree& tree, const std::vector<Leg>& legs) {
+  if (legs.empty()) return 0.0;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(tree.coordinate_count());
+  return -LinkTransforms(tree, zero)[legs.front().foot_link].translation().z();
+}
+
+bool InLeg(const std::vector<Leg>& legs, int joint) {
+  return std::any_of(legs.begin(), legs.end(), [&](const Leg& leg) {
+    return std::find(leg.joints.begin(), leg.joints.end(), joint) != leg.joints.end();
+  });
+}
+
+}  // namespace elastocal

@@ -1,0 +1,311 @@
+#include "elastocal/simulation/mjcf.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <stdexcept>
+
+namespace elastocal {
+namespace {
+
+std::string Number(double value) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end};
+}
+
+template <typename Vector>
+std::string Numbers(const Vector& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : " ") + Number(value);
+  return text;
+}
+
+std::string Attribute(const std::string& name, const std::string& value) {
+  return " " + name + "=\"" + value + "\"";
+}
+
+std::string PoseAttributes(const Transform& T) {
+  const Eigen::Quaterniond q(T.linear());
+  return Attribute("pos", Numbers(Eigen::Vector3d(T.translation()))) +
+         Attribute("quat", Numbers(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
+}
+
+/// Writes the bodies, walking over the tree from the one that is held.
+class MjcfWriter {
+ public:
+  MjcfWriter(const TrueRobot& robot, const std::vector<int>& support, const PhysicsOptions& options)
+      : robot_(robot), tree_(robot.tree), support_(support), options_(options) {}
+
+  std::string text;
+
+  std::string Friction() const {
+    return Attribute("friction", Number(options_.floor_friction) + " 0.01 0.001");
+  }
+
+  /// A sole fixed to the world, and all that it carries.
+  void WriteFromSole(int sole, const Transform& T_world_sole) {
+    const Link& link = FootLink(sole);
+    text += "<body" + Attribute("name", "s" + std::to_string(sole)) + PoseAttributes(T_world_sole) +
+            ">\n";
+    OpenBody(link.body, link.T_body_link.inverse());
+    LinkSprings(FootSprings(sole), link.T_body_link.translation(), Transform::Identity());
+    Contents(link.body, -1, sole);
+    text += "</body>\n";
+  }
+
+  /// The waist in the world, fixed or floating.
+  void WriteFromWaist(const Transform& T_world_waist, bool floating) {
+    OpenBody(0, T_world_waist);
+    if (floating) text += "<freejoint name=\"float\"/>\n";
+    Contents(0, -1, -1);
+  }
+
+ private:
+  const Link& FootLink(int sole) const {
+    return tree_.links[static_cast<std::size_t>(support_[static_cast<std::size_t>(sole)])];
+  }
+  const Joint& JointAt(int k) const { return tree_.joints[static_cast<std::size_t>(k)]; }
+
+  /// Pose of a joint's body in the body that carries it, at position 0.
+  Transform JointPlacement(int k) const {
+    const Joint& joint = JointAt(k);
+    return tree_.links[static_cast<std::size_t>(joint.parent_link)].T_body_link *
+           joint.T_parent_child;
+  }
+
+  void OpenBody(int body, const Transform& T_from_body) {
+    text += "<body" + Attribute("name", "b" + std::to_string(body)) + PoseAttributes(T_from_body) +
+            ">\n";
+  }
+
+  /// The far half of a link that gives way, on the side of joint k: a body of its own, since MuJoCo
+  /// allows six degrees of freedom between two bodies. The link's weight stays with the near half.
+  void OpenHalf(int k, const Transform& T_from_half) {
+    text += "<body" + Attribute("name", "h" + std::to_string(k)) + PoseAttributes(T_from_half) +
+            "><inertial pos=\"0 0 0\" mass=\"1e-6\" diaginertia=\"1e-7 1e-7 1e-7\"/>\n";
+  }
+
+  /// Inertia of a body, then all that hangs on it but where the walk comes from: the joint
+  /// `from_joint` or the sole `from_sole`. Closes the body.
+  void Contents(int body, int from_joint, int from_sole) {
+    Inertial(body);
+    for (std::size_t s = 0; s < support_.size(); ++s) {
+      if (FootLink(static_cast<int>(s)).body == body && static_cast<int>(s) != from_sole) {
+        Sole(static_cast<int>(s));
+      }
+    }
+    for (int k = 0; k < static_cast<int>(tree_.joints.size()); ++k) {
+      if (JointAt(k).parent_body == body && k != from_joint) Outwards(k);
+    }
+    if (body > 0 && from_joint != body - 1) Inwards(body - 1);
+    text += "</body>\n";
+  }
+
+  /// From the body that carries joint k to the one that it moves.
+  void Outwards(int k) {
+    const Joint& joint = JointAt(k);
+    const Transform T_parent_child = JointPlacement(k);
+    const bool halved = robot_.link_compliance[static_cast<std::size_t>(k)].any();
+    if (halved) {
+      OpenHalf(k, Transform::Identity());
+      LinkSprings(CarrierSprings(k), T_parent_child.translation(), Transform::Identity());
+    }
+    OpenBody(k + 1, T_parent_child);
+    JointSpring(k, joint.axis, Eigen::Vector3d::Zero());
+    Motor(k, joint.axis, Eigen::Vector3d::Zero());
+    Contents(k + 1, k, -1);
+    if (halved) text += "</body>\n";
+  }
+
+  /// From the body that joint k moves to the one that carries it: the same joint seen from the
+  /// other side, so that the axis is reversed.
+  void Inwards(int k) {
+    const Joint& joint = JointAt(k);
+    const Transform T_parent_child = JointPlacement(k);
+    const Eigen::Vector3d axis = -(T_parent_child.linear() * joint.axis);
+    const bool halved = robot_.link_compliance[static_cast<std::size_t>(k)].any();
+    if (halved) {
+      OpenHalf(k, T_parent_child.inverse());
+    } else {
+      OpenBody(joint.parent_body, T_parent_child.inverse());
+    }
+    Motor(k, axis, T_parent_child.translation());
+    JointSpring(k, axis, T_parent_child.translation());
+    if (halved) {
+      OpenBody(joint.parent_body, Transform::Identity());
+      LinkSprings(CarrierSprings(k), T_parent_child.translation(), Transform::Identity());
+    }
+    Contents(joint.parent_body, k, -1);
+    if (halved) text += "</body>\n";
+  }
+
+  /// A further foot on the floor.
+  void Sole(int sole) {
+    const Link& link = FootLink(sole);
+    text += "<body" + Attribute("name", "s" + std::to_string(sole)) +
+            PoseAttributes(link.T_body_link) + ">\n";
+    LinkSprings(FootSprings(sole), link.T_body_link.translation(), link.T_body_link.inverse());
+    text += "<inertial pos=\"0 0 0\" mass=\"0.1\" diaginertia=\"1e-4 1e-4 1e-4\"/>\n";
+    if (options_.standing == Standing::kFree) {
+      constexpr double kHalfThickness = 0.01;
+      text += "<geom type=\"box\" pos=\"0 0 " + Number(kHalfThickness) + "\"" +
+              Attribute("size", Numbers(std::array{0.5 * options_.foot_length,
+                                                   0.5 * options_.foot_width, kHalfThickness})) +
+              " mass=\"0\"" + Friction() + "/>\n";
+    }
+    text += "</body>\n";
+  }
+
+  void Inertial(int body) {
+    double mass = 0.0;
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    for (const Link& link : tree_.links) {
+      if (link.body != body) continue;
+      mass += link.mass;
+      moment += link.mass * (link.T_body_link * link.com);
+    }
+    const Eigen::Vector3d com = mass > 0.0 ? Eigen::Vector3d(moment / mass) : moment;
+    // MuJoCo wants moving bodies to have some inertia.
+    Eigen::Matrix3d inertia = 1e-7 * Eigen::Matrix3d::Identity();
+    for (const Link& link : tree_.links) {
+      if (link.body != body) continue;
+      const Eigen::Matrix3d R = link.T_body_link.linear();
+      const Eigen::Matrix3d lever = Skew(link.T_body_link * link.com - com);
+      inertia += R * link.inertia * R.transpose() - link.mass * lever * lever;
+    }
+    const std::array entries{inertia(0, 0), inertia(1, 1), inertia(2, 2),
+                             inertia(0, 1), inertia(0, 2), inertia(1, 2)};
+    text += "<inertial" + Attribute("pos", Numbers(com)) +
+            Attribute("mass", Number(std::max(mass, 1e-6))) +
+            Attribute("fullinertia", Numbers(entries)) + "/>\n";
+  }
+
+  void AddJoint(const std::string& name, bool slides, const Eigen::Vector3d& axis,
+                const Eigen::Vector3d& anchor, const std::array<double, 3>& dynamics) {
+    text += "<joint" + Attribute("name", name) + Attribute("type", slides ? "slide" : "hinge") +
+            Attribute("axis", Numbers(axis)) + Attribute("pos", Numbers(anchor)) +
+            Attribute("stiffness", Number(dynamics[0])) +
+            Attribute("damping", Number(dynamics[1])) + Attribute("armature", Number(dynamics[2])) +
+            "/>\n";
+  }
+
+  void Motor(int k, const Eigen::Vector3d& axis, const Eigen::Vector3d& anchor) {
+    const bool slides = JointAt(k).type == JointType::kPrismatic;
+    const double stiffness = slides ? options_.sliding_servo_stiffness : options_.servo_stiffness;
+    const double omega = options_.servo_frequency;
+    AddJoint("m" + std::to_string(k), slides, axis, anchor,
+             {stiffness, 2.0 * stiffness / omega, stiffness / (omega * omega)});
+  }
+
+  void Spring(const std::string& name, bool slides, const Eigen::Vector3d& axis,
+              const Eigen::Vector3d& anchor, double compliance) {
+    if (compliance <= 0.0) return;
+    const double stiffness = 1.0 / compliance;
+    const double inertia_time = options_.spring_inertia_time_s;
+    AddJoint(name, slides, axis, anchor,
+             {stiffness, stiffness * options_.spring_damping_time_s,
+              stiffness * inertia_time * inertia_time});
+  }
+
+  void JointSpring(int k, const Eigen::Vector3d& axis, const Eigen::Vector3d& anchor) {
+    Spring("e" + std::to_string(k), JointAt(k).type == JointType::kPrismatic, axis, anchor,
+           robot_.compliance[k]);
+  }
+
+  struct NamedSprings {
+    std::string name;
+    const Vector6d& compliance;
+  };
+  NamedSprings CarrierSprings(int k) const {
+    return {"x" + std::to_string(k), robot_.link_compliance[static_cast<std::size_t>(k)]};
+  }
+  NamedSprings FootSprings(int sole) const {
+    const int foot = support_[static_cast<std::size_t>(sole)];
+    std::size_t leg = 0;
+    while (robot_.legs[leg].foot_link != foot) ++leg;
+    return {"y" + std::to_string(sole), robot_.foot_compliance[leg]};
+  }
+
+  /// Springs of a body's link, half way to `p_body_next`, in the frame of the body being written,
+  /// to which T_here_body leads.
+  void LinkSprings(const NamedSprings& springs, const Eigen::Vector3d& p_body_next,
+                   const Transform& T_here_body) {
+    const Eigen::Vector3d anchor = T_here_body * Eigen::Vector3d(0.5 * p_body_next);
+    for (int i = 0; i < 6; ++i) {
+      const Eigen::Vector3d axis = T_here_body.linear().col(i % 3);
+      Spring(springs.name + "_" + std::to_string(i), i < 3, axis, anchor, springs.compliance[i]);
+    }
+  }
+
+  const TrueRobot& robot_;
+  const RobotTree& tree_;
+  const std::vector<int>& support_;
+  const PhysicsOptions& options_;
+};
+
+/// The leg that ends in a foot.
+const Leg& LegOf(const TrueRobot& robot, int foot) {
+  for (const Leg& leg : robot.legs) {
+    if (leg.foot_link == foot) return leg;
+  }
+  throw std::invalid_argument("a robot can stand on the feet of its legs only");
+}
+
+/// A sole held where it was put down.
+std::string Weld(std::size_t sole, const Transform& T_world_sole) {
+  const Transform T_sole_world = T_world_sole.inverse();
+  const Eigen::Quaterniond q(T_sole_world.linear());
+  const Eigen::Vector3d p = T_sole_world.translation();
+  return "<weld" + Attribute("body1", "s" + std::to_string(sole)) +
+         Attribute("relpose",
+                   Numbers(std::array{p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()})) +
+         " solref=\"0.01 1\" solimp=\"0.999 0.9999 0.001\"/>\n";
+}
+
+std::string Header(const PhysicsOptions& options) {
+  const bool contact = options.standing == Standing::kFree;
+  return std::string("<mujoco><compiler angle=\"radian\"/>\n<option") +
+         Attribute("timestep", Number(options.time_step_s)) +
+         Attribute("gravity", "0 0 " + Number(-options.gravity)) +
+         " iterations=\"200\" tolerance=\"1e-12\" solver=\"" + (contact ? "Newton" : "PGS") +
+         "\"><flag" + (contact ? "" : " contact=\"disable\"") + "/></option>\n<worldbody>\n";
+}
+
+}  // namespace
+
+MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
+                    const Eigen::VectorXd& encoders, const PhysicsOptions& options) {
+  if (options.standing == Standing::kFree && support.empty()) {
+    throw std::invalid_argument("a robot that stands free needs feet");
+  }
+  MjcfModel model;
+  MjcfWriter writer(robot, support, options);
+  const std::vector<Transform> T_waist_link =
+      TrueLinkTransforms(robot, TrueJointPositions(robot, encoders));
+  for (int foot : support) {
+    const Transform& T_waist_foot = T_waist_link[static_cast<std::size_t>(foot)];
+    if (model.T_world_foot.empty()) {
+      model.T_world_foot.push_back(Transform(LegOf(robot, foot).R_floor_foot));
+      model.T_world_waist = model.T_world_foot[0] * T_waist_foot.inverse();
+    } else {
+      LegOf(robot, foot);
+      model.T_world_foot.push_back(model.T_world_waist * T_waist_foot);
+    }
+  }
+  std::string constraints;
+  if (support.empty()) {
+    writer.WriteFromWaist(model.T_world_waist, false);
+  } else if (options.standing == Standing::kFree) {
+    writer.text += "<geom type=\"plane\" size=\"5 5 0.1\"" + writer.Friction() + "/>\n";
+    writer.WriteFromWaist(model.T_world_waist, true);
+  } else {
+    writer.WriteFromSole(0, model.T_world_foot[0]);
+    for (std::size_t s = 1; s < support.size(); ++s) constraints += Weld(s, model.T_world_foot[s]);
+  }
+  model.xml = Header(options) + writer.text + "</worldbody>\n<equality>\n" + constraints +
+              "</equality>\n</mujoco>\n";
+  return model;
+}
+
+}  // namespace elastocal

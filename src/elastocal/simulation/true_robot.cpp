@@ -1,0 +1,179 @@
+#include "elastocal/simulation/true_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/simulation/stream_seed.hpp"
+
+namespace elastocal {
+namespace {
+
+class Drawing {
+ public:
+  Drawing(const TruthOptions& options, TrueRobot& robot) : options_(options), robot_(robot) {}
+
+  void Placements() {
+    Random random(StreamSeed(options_.seed, "placement"));
+    for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
+      Joint& joint = robot_.tree.joints[k];
+      const Eigen::Vector3d shift = random.NormalVector(3, 1.0);
+      const Eigen::Vector3d turn = random.NormalVector(3, 1.0);
+      const double scale = GeometryScale(k);
+      const double angle = scale * options_.angle_sd * turn.norm();
+      joint.T_parent_child = joint.T_parent_child *
+                             Eigen::Translation3d(scale * options_.length_sd * shift) *
+                             RotAxis(turn.normalized(), angle);
+    }
+  }
+
+  void Offsets() {
+    Random random(StreamSeed(options_.seed, "offset"));
+    for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
+      const bool slides = robot_.tree.joints[k].type == JointType::kPrismatic;
+      const double sd = slides     ? options_.length_sd
+                        : IsLeg(k) ? options_.leg_offset_sd
+                                   : options_.upper_offset_sd;
+      robot_.offset[Index(k)] = GeometryScale(k) * random.Normal(1.0) * sd;
+    }
+  }
+
+  void JointSprings() {
+    Random random(StreamSeed(options_.seed, "joint springs"));
+    for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
+      const double share = random.Uniform(0.0, 1.0);
+      const double least = IsLeg(k) ? options_.leg_stiffness_least : options_.upper_stiffness_least;
+      const double most = IsLeg(k) ? options_.leg_stiffness_most : options_.upper_stiffness_most;
+      const double scale =
+          IsLeg(k) ? options_.leg_elasticity_scale : options_.upper_elasticity_scale;
+      robot_.compliance[Index(k)] = scale / (least * std::pow(most / least, share));
+    }
+  }
+
+  void LinkSprings() {
+    Random random(StreamSeed(options_.seed, "link springs"));
+    const auto draw = [&](Vector6d compliance) {
+      for (double& c : compliance) {
+        c *= options_.leg_elasticity_scale *
+             (1.0 + options_.link_compliance_spread * random.Uniform(-1.0, 1.0));
+      }
+      return compliance;
+    };
+    for (std::size_t l = 0; l < robot_.legs.size(); ++l) {
+      const std::vector<int>& joints = robot_.legs[l].joints;
+      for (std::size_t i = 0; i < joints.size(); ++i) {
+        robot_.link_compliance[static_cast<std::size_t>(joints[i])] =
+            draw(i == 0                   ? options_.pelvis_compliance
+                 : 2 * i <= joints.size() ? options_.hip_link_compliance
+                                          : options_.shank_link_compliance);
+      }
+      robot_.foot_compliance[l] = draw(options_.shank_link_compliance);
+    }
+  }
+
+  void Inertias() {
+    Random random(StreamSeed(options_.seed, "inertia"));
+    for (Link& link : robot_.tree.links) {
+      const double factor = std::max(0.5, 1.0 + options_.mass_sd * random.Normal(1.0));
+      const Eigen::Vector3d shift = random.NormalVector(3, options_.com_sd);
+      if (link.mass <= 0.0) continue;
+      link.mass *= factor;
+      link.inertia *= factor;
+      link.com += shift;
+    }
+  }
+
+  void Friction() {
+    for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
+      const double effort = robot_.tree.joints[k].limits.effort;
+      if (std::isfinite(effort)) robot_.friction[Index(k)] = options_.friction_share * effort;
+    }
+  }
+
+  void Markers() {
+    Random random(StreamSeed(options_.seed, "markers"));
+    for (Marker& marker : robot_.markers) {
+      marker.p_link_marker += random.NormalVector(3, options_.marker_sd);
+    }
+  }
+
+  void TorqueSensors() {
+    constexpr double kLargestBiasShare = 0.02;
+    Random random(StreamSeed(options_.seed, "torque sensors"));
+    for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
+      const double limit = kLargestBiasShare * robot_.tree.joints[k].limits.effort;
+      robot_.torque_gain[Index(k)] = 1.0 + random.Normal(options_.torque_gain_sd);
+      robot_.torque_bias[Index(k)] =
+          std::clamp(random.Normal(options_.torque_bias_sd), -limit, limit);
+    }
+  }
+
+ private:
+  static Eigen::Index Index(std::size_t k) { return static_cast<Eigen::Index>(k); }
+  bool IsLeg(std::size_t k) const { return InLeg(robot_.legs, static_cast<int>(k)); }
+  double GeometryScale(std::size_t k) const {
+    return IsLeg(k) ? options_.leg_geometry_scale : options_.upper_geometry_scale;
+  }
+
+  const TruthOptions& options_;
+  TrueRobot& robot_;
+};
+
+}  // namespace
+
+TrueRobot NominalRobot(RobotTree tree, std::vector<Marker> markers, std::vector<Leg> legs,
+                       const std::vector<int>& torque_sensors) {
+  TrueRobot robot;
+  const auto joints = static_cast<Eigen::Index>(tree.joints.size());
+  robot.tree = std::move(tree);
+  robot.legs = std::move(legs);
+  robot.markers = std::move(markers);
+  robot.offset = robot.compliance = robot.friction = Eigen::VectorXd::Zero(joints);
+  robot.torque_gain = Eigen::VectorXd::Ones(joints);
+  robot.torque_bias = Eigen::VectorXd::Zero(joints);
+  robot.link_compliance.assign(robot.tree.joints.size(), Vector6d::Zero());
+  robot.foot_compliance.assign(robot.legs.size(), Vector6d::Zero());
+  robot.torque_sensor.assign(robot.tree.joints.size(), false);
+  for (int k : torque_sensors) robot.torque_sensor[static_cast<std::size_t>(k)] = true;
+  return robot;
+}
+
+TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options) {
+  TrueRobot robot = nominal;
+  Drawing drawing(options, robot);
+  drawing.Placements();
+  drawing.Offsets();
+  drawing.JointSprings();
+  drawing.LinkSprings();
+  drawing.Inertias();
+  drawing.Friction();
+  drawing.Markers();
+  drawing.TorqueSensors();
+  return robot;
+}
+
+Eigen::VectorXd TrueJointPositions(const TrueRobot& robot, const Eigen::VectorXd& encoders) {
+  Eigen::VectorXd positions = robot.offset;
+  for (std::size_t k = 0; k < robot.tree.joints.size(); ++k) {
+    positions[static_cast<Eigen::Index>(k)] += JointPosition(robot.tree.joints[k], encoders);
+  }
+  return positions;
+}
+
+std::vector<Transform> TrueLinkTransforms(const TrueRobot& robot,
+                                          const Eigen::VectorXd& positions) {
+  // A tree in which every joint is a coordinate of its own.
+  RobotTree tree = robot.tree;
+  tree.coordinate_joint.clear();
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    Joint& joint = tree.joints[k];
+    joint.coordinate = static_cast<int>(k);
+    joint.multiplier = 1.0;
+    joint.offset = 0.0;
+    tree.coordinate_joint.push_back(static_cast<int>(k));
+  }
+  return LinkTransforms(tree, positions);
+}
+
+}  // namespace elastocal

@@ -1,0 +1,105 @@
+#include "elastocal/simulation/virtual_experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/simulation/faults.hpp"
+#include "elastocal/simulation/stream_seed.hpp"
+
+namespace elastocal {
+namespace {
+
+/// The robot is put down near one place of the laboratory, roughly in one direction.
+std::vector<Transform> DrawPlaces(std::uint64_t seed, std::size_t trials) {
+  Random random(StreamSeed(seed, "place"));
+  const double yaw = random.Uniform(-M_PI, M_PI);
+  const Eigen::Vector3d centre(random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), 0.0);
+  std::vector<Transform> places;
+  for (std::size_t i = 0; i < trials; ++i) {
+    const Eigen::Vector3d shift(random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1), 0.0);
+    places.push_back(Transform(Eigen::Translation3d(centre + shift)) *
+                     RotZ(yaw + random.Uniform(-0.1, 0.1)));
+  }
+  return places;
+}
+
+}  // namespace
+
+void SwitchOffImperfections(VirtualExperimentOptions& options) {
+  TruthOptions& truth = options.truth;
+  truth.upper_geometry_scale = truth.leg_geometry_scale = truth.marker_sd = 0.0;
+  truth.upper_elasticity_scale = truth.leg_elasticity_scale = 0.0;
+  truth.mass_sd = truth.com_sd = truth.friction_share = 0.0;
+  truth.torque_gain_sd = truth.torque_bias_sd = 0.0;
+  SensorOptions& sensors = options.sensors;
+  sensors.marker_noise_sd = sensors.gaps_per_minute = 0.0;
+  sensors.outlier_share = sensors.swaps_per_minute = 0.0;
+  sensors.least_lag_s = sensors.largest_lag_s = sensors.drift_sd_ppm = 0.0;
+  sensors.encoder_bits = 0;
+  sensors.torque_noise_sd = 0.0;
+  options.faults = {};
+}
+
+VirtualExperiment PrepareExperiment(const DescribedRobot& described,
+                                    const VirtualExperimentOptions& options) {
+  VirtualExperiment experiment;
+  experiment.options = options;
+  experiment.options.truth.seed = options.seed;
+  experiment.options.motion.seed = options.seed;
+  experiment.options.sensors.seed = options.seed;
+  experiment.described_tree = described.tree;
+  experiment.clusters = described.clusters;
+  const std::vector<Leg> legs = FindLegs(described.tree, described.chains);
+  experiment.robot =
+      DrawTrueRobot(NominalRobot(described.tree, described.markers, legs, described.torque_sensors),
+                    experiment.options.truth);
+  experiment.trials = PlanTrials(described.tree, described.chains, experiment.options.motion);
+  CheckFaults(options.faults, experiment.robot, experiment.clusters, experiment.trials);
+  experiment.T_camera_world = DrawPlaces(options.seed, experiment.trials.size());
+  const PostureSampler sampler(described.tree, legs, options.motion.postures,
+                               StreamSeed(options.seed, "stand"));
+  for (const Leg& leg : legs) {
+    experiment.legs.push_back(
+        {leg.chain, leg.foot_link, sampler.stand(),
+         LumpedBaseCompliance(experiment.robot, leg, sampler.stand(), options.physics)});
+  }
+  return experiment;
+}
+
+SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) {
+  const PlannedTrial& trial = experiment.trials[index];
+  SimulatedTrial result;
+  result.motion = PlayMotion(experiment.robot, trial.support, trial.motion,
+                             experiment.T_camera_world[index], experiment.options.physics);
+  result.raw = Measure(experiment.robot, experiment.clusters, experiment.trials, index,
+                       result.motion, experiment.options.sensors, experiment.options.faults);
+  return result;
+}
+
+WaistDeflection LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
+                                       const TrueMotion& motion) {
+  const PlannedTrial& trial = experiment.trials[index];
+  WaistDeflection largest;
+  if (trial.support.empty()) return largest;
+  double time_s = 0.0;
+  for (const MotionSegment& segment : trial.motion.segments) {
+    time_s += segment.duration_s;
+    const bool rest = segment.coordinate < 0 && segment.from == segment.to;
+    const auto frame = static_cast<Eigen::Index>(std::lround(time_s * motion.rate_hz)) - 1;
+    if (!rest || frame < 0 || frame >= motion.encoders.rows()) continue;
+    const Eigen::VectorXd q = motion.encoders.row(frame).transpose();
+    const Transform T_waist_foot = TrueLinkTransforms(
+        experiment.robot,
+        TrueJointPositions(experiment.robot, q))[static_cast<std::size_t>(trial.support[0])];
+    const Transform rigid = motion.T_camera_foot[0] * T_waist_foot.inverse();
+    const Transform& found = motion.T_camera_waist[static_cast<std::size_t>(frame)];
+    largest.translation =
+        std::max(largest.translation, (found.translation() - rigid.translation()).norm());
+    largest.rotation =
+        std::max(largest.rotation, RotationAngle(rigid.linear().transpose() * found.linear()));
+  }
+  return largest;
+}
+
+}  // namespace elastocal

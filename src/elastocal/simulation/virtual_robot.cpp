@@ -1,0 +1,207 @@
+#include "elastocal/simulation/virtual_robot.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include <mujoco/mujoco.h>
+
+namespace elastocal {
+namespace {
+
+using ModelPointer = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
+using DataPointer = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
+
+ModelPointer Compile(const std::string& xml) {
+  const auto files = std::make_unique<mjVFS>();  // two megabytes: too large for the stack
+  mj_defaultVFS(files.get());
+  const char* name = "robot.xml";
+  mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(xml.size()) + 1);
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), name)], xml.c_str(), xml.size() + 1);
+  std::array<char, 1000> error{};
+  ModelPointer model(mj_loadXML(name, files.get(), error.data(), error.size()), &mj_deleteModel);
+  mj_deleteVFS(files.get());
+  if (model == nullptr) throw std::runtime_error(std::string("MuJoCo: ") + error.data());
+  return model;
+}
+
+/// Where one of MuJoCo's joints (of one degree of freedom) has its numbers; -1: there is none.
+struct Address {
+  int position = -1, speed = -1;
+  double stiffness = 0.0, damping = 0.0;
+};
+
+Address FindAddress(const mjModel& model, const std::string& joint) {
+  const int id = mj_name2id(&model, mjOBJ_JOINT, joint.c_str());
+  if (id < 0) return {};
+  const int speed = model.jnt_dofadr[id];
+  return {model.jnt_qposadr[id], speed, model.jnt_stiffness[id], model.dof_damping[speed]};
+}
+
+int FindBody(const mjModel& model, const std::string& name) {
+  const int id = mj_name2id(&model, mjOBJ_BODY, name.c_str());
+  if (id < 0) throw std::runtime_error("MuJoCo's model has no body '" + name + "'");
+  return id;
+}
+
+}  // namespace
+
+struct VirtualRobot::Simulation {
+  TrueRobot robot;
+  ModelPointer model;
+  DataPointer data;
+  std::vector<Address> motors, springs;  // by joint
+  std::vector<int> bodies, soles;        // MuJoCo's, by body of the tree and by support
+  Eigen::VectorXd bristle;               // by joint, state of friction in [-1, 1]
+
+  Simulation(const TrueRobot& true_robot, const MjcfModel& mjcf)
+      : robot(true_robot),
+        model(Compile(mjcf.xml)),
+        data(mj_makeData(model.get()), &mj_deleteData),
+        bristle(Eigen::VectorXd::Zero(true_robot.offset.size())) {
+    for (std::size_t k = 0; k < robot.tree.joints.size(); ++k) {
+      motors.push_back(FindAddress(*model, "m" + std::to_string(k)));
+      springs.push_back(FindAddress(*model, "e" + std::to_string(k)));
+    }
+    for (int b = 0; b < robot.tree.body_count(); ++b) {
+      bodies.push_back(FindBody(*model, "b" + std::to_string(b)));
+    }
+    for (std::size_t s = 0; s < mjcf.T_world_foot.size(); ++s) {
+      soles.push_back(FindBody(*model, "s" + std::to_string(s)));
+    }
+  }
+
+  Transform BodyPose(int body) const {
+    Transform T = Transform::Identity();
+    T.linear() =
+        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat + 9 * body);
+    T.translation() = Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body);
+    return T;
+  }
+
+  /// Coulomb friction as the friction of a bristle that bends before it slips (Dahl): it holds at
+  /// rest, and needs no constraint.
+  void ApplyFriction() {
+    constexpr double kBend = 2e-4;  // rad or m until it slips
+    for (std::size_t k = 0; k < motors.size(); ++k) {
+      const auto joint = static_cast<Eigen::Index>(k);
+      const double largest = robot.friction[joint];
+      if (largest <= 0.0) continue;
+      double speed = data->qvel[motors[k].speed];
+      if (springs[k].speed >= 0) speed += data->qvel[springs[k].speed];
+      const double path = speed * model->opt.timestep / kBend;
+      double& z = bristle[joint];
+      z = std::clamp(z + path * (1.0 - std::copysign(z, z * path)), -1.0, 1.0);
+      data->qfrc_applied[motors[k].speed] = -largest * z;
+      if (springs[k].speed >= 0) data->qfrc_applied[springs[k].speed] = -largest * z;
+    }
+  }
+};
+
+VirtualRobot::VirtualRobot(const TrueRobot& robot, const std::vector<int>& support,
+                           const Eigen::VectorXd& encoders, const PhysicsOptions& options)
+    : simulation_(
+          std::make_unique<Simulation>(robot, BuildMjcf(robot, support, encoders, options))) {
+  Command(encoders);
+  for (const Address& motor : simulation_->motors) {
+    simulation_->data->qpos[motor.position] = simulation_->model->qpos_spring[motor.position];
+  }
+  mj_forward(simulation_->model.get(), simulation_->data.get());
+}
+
+VirtualRobot::~VirtualRobot() = default;
+VirtualRobot::VirtualRobot(VirtualRobot&&) noexcept = default;
+
+double VirtualRobot::time_step_s() const { return simulation_->model->opt.timestep; }
+
+void VirtualRobot::Command(const Eigen::VectorXd& encoders) {
+  const Eigen::VectorXd positions = TrueJointPositions(simulation_->robot, encoders);
+  for (std::size_t k = 0; k < simulation_->motors.size(); ++k) {
+    simulation_->model->qpos_spring[simulation_->motors[k].position] =
+        positions[static_cast<Eigen::Index>(k)];
+  }
+}
+
+void VirtualRobot::Step() {
+  simulation_->ApplyFriction();
+  mj_step(simulation_->model.get(), simulation_->data.get());
+}
+
+bool VirtualRobot::Settle(double longest_s) {
+  constexpr double kRest = 1e-7;
+  constexpr int kStepsAtRest = 20;
+  const mjModel& model = *simulation_->model;
+  int resting = 0;
+  for (int i = 0; i < static_cast<int>(longest_s / time_step_s()); ++i) {
+    Step();
+    const Eigen::Map<const Eigen::VectorXd> speeds(simulation_->data->qvel, model.nv);
+    resting = speeds.cwiseAbs().maxCoeff() < kRest ? resting + 1 : 0;
+    if (resting == kStepsAtRest) return true;
+  }
+  return false;
+}
+
+void VirtualRobot::PushWaist(const Vector6d& wrench) {
+  const int body = simulation_->bodies[0];
+  const Eigen::Map<const Eigen::Vector3d> com(simulation_->data->xipos + 3 * body);
+  Eigen::Map<Vector6d> applied(simulation_->data->xfrc_applied + 6 * body);
+  // MuJoCo takes the force at the centre of mass.
+  const Eigen::Vector3d lever = WaistPose().translation() - com;
+  const Eigen::Vector3d force = wrench.head<3>();
+  applied.head<3>() = force;
+  applied.tail<3>() = wrench.tail<3>() + lever.cross(force);
+}
+
+Eigen::VectorXd VirtualRobot::Encoders() const {
+  Eigen::VectorXd encoders = -simulation_->robot.offset;
+  for (std::size_t k = 0; k < simulation_->motors.size(); ++k) {
+    encoders[static_cast<Eigen::Index>(k)] +=
+        simulation_->data->qpos[simulation_->motors[k].position];
+  }
+  return encoders;
+}
+
+Eigen::VectorXd VirtualRobot::Torques() const {
+  const mjModel& model = *simulation_->model;
+  const mjData& data = *simulation_->data;
+  Eigen::VectorXd torques(simulation_->robot.offset.size());
+  for (std::size_t k = 0; k < simulation_->motors.size(); ++k) {
+    const Address& motor = simulation_->motors[k];
+    const Address& spring = simulation_->springs[k];
+    // What passes through the drive bends its spring; a rigid drive hands on what its servo gives.
+    const Address& felt = spring.position >= 0 ? spring : motor;
+    const double rest = spring.position >= 0 ? 0.0 : model.qpos_spring[motor.position];
+    torques[static_cast<Eigen::Index>(k)] =
+        felt.stiffness * (rest - data.qpos[felt.position]) - felt.damping * data.qvel[felt.speed];
+  }
+  return torques;
+}
+
+Transform VirtualRobot::WaistPose() const { return simulation_->BodyPose(simulation_->bodies[0]); }
+
+Transform VirtualRobot::LinkPose(int link) const {
+  const Link& found = simulation_->robot.tree.links[static_cast<std::size_t>(link)];
+  return simulation_->BodyPose(simulation_->bodies[static_cast<std::size_t>(found.body)]) *
+         found.T_body_link;
+}
+
+Transform VirtualRobot::SolePose(int index) const {
+  return simulation_->BodyPose(simulation_->soles[static_cast<std::size_t>(index)]);
+}
+
+Eigen::Matrix3Xd VirtualRobot::MarkerPositions() const {
+  const std::vector<Marker>& markers = simulation_->robot.markers;
+  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(markers.size()));
+  for (std::size_t m = 0; m < markers.size(); ++m) {
+    positions.col(static_cast<Eigen::Index>(m)) =
+        LinkPose(markers[m].link) * markers[m].p_link_marker;
+  }
+  return positions;
+}
+
+int VirtualRobot::coordinate_count() const { return simulation_->model->nv; }
+
+}  // namespace elastocal
