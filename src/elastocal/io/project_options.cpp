@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "elastocal/io/project_sections.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/io/text.hpp"
 
 namespace elastocal {
