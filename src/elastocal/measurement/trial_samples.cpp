@@ -150,8 +150,10 @@ class TrialSampler {
     const int standing = trial_.support.empty() ? 0 : trial_.support[0];
     const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, standing, smoothed_log_,
                                               coordinates_, trajectories_.rate_hz);
-    summary().clock = EstimateTrialClock(speeds, trajectories_.rate_hz, logged,
-                                         options_.expected_lag_s, options_.clock);
+    ClockOptions options = options_.clock;
+    if (trial_.kind != TrialKind::kSine) options.largest_sd_s = options_.largest_rest_lag_sd_s;
+    summary().clock =
+        EstimateTrialClock(speeds, trajectories_.rate_hz, logged, options_.expected_lag_s, options);
   }
 
   double CameraTime(int frame) const { return frame / trajectories_.rate_hz; }
