@@ -77,7 +77,7 @@ class Finder {
     if (!labels.undecided.empty()) {
       Add(
           Format("labels of cluster %s look exchanged in %d frames, but its distances are too much "
-                 "alike to tell",
+                 "alike to put them right; removed there",
                  labels.name.c_str(), FrameCount(labels.undecided)));
     }
   }
