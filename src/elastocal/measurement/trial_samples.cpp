@@ -197,7 +197,7 @@ class TrialSampler {
       sum = sum.size() == 0 ? signals : (sum + signals).eval();
       time += CameraTime(frame);
     }
-    const double count = static_cast<double>(frames.size());
+    const auto count = static_cast<double>(frames.size());
     result_.time_s[posture] = time / count;
     sum /= count;
     const int joints = smoothed_log_.joints;
