@@ -7,6 +7,7 @@
 
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/cli/trial_report.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -28,13 +29,13 @@ std::vector<int> WithStatus(const CalibrationResult& result, ParameterStatus sta
 }
 
 std::string ParameterTable(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.geometric();
+  const CalibrationResult& result = run.comparison.best();
   const std::vector<int> weak =
       HardlyExcited(result.model.parameters, run.base.kept, run.excitation);
   TextTable table({"parameter", "unit", "estimate", "sd", "95 % interval", ""});
   for (int i : WithStatus(result, ParameterStatus::kEstimated)) {
     const Parameter& parameter = result.model.parameters[i];
-    if (parameter.joint < 0) continue;
+    if (parameter.joint < 0 || IsCompliance(parameter.kind)) continue;
     const double value = InUserUnits(parameter, result.delta[i]);
     const double sd = InUserUnits(parameter, result.sd[i]);
     const double half = result.interval_factor * sd;
@@ -52,7 +53,7 @@ std::string ParameterTable(const CalibrationRun& run) {
 
 std::string OutlierText(const CalibrationRun& run) {
   constexpr std::size_t kMost = 10;
-  const auto& outliers = run.comparison.geometric().outliers;
+  const auto& outliers = run.comparison.best().outliers;
   if (outliers.empty()) return "Outliers: none\n";
   std::string text = fmt::format("Outliers (left out of the fit): {}\n", outliers.size());
   for (std::size_t i = 0; i < std::min(kMost, outliers.size()); ++i) {
@@ -85,11 +86,18 @@ std::string MarkerText(const CalibrationResult& result) {
 /// One sentence for whoever reads no table.
 std::string Conclusion(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) return "Verdict: do not deploy (see the errors).\n";
+  if (run.held_out) {
+    const auto& mean = run.held_out->table.mean_rmse_3d;
+    return fmt::format("Verdict: deploy. Markers of held-out motions: from {} to {} mm.\n",
+                       Millimetres(mean.at(ModelKind::kUncalibrated)),
+                       Millimetres(mean.at(run.comparison.best_kind())));
+  }
   const bool held_out = run.cross_validation.folds > 0;
   const auto& metrics = held_out ? run.cross_validation.metrics : run.comparison.metrics;
   return fmt::format(
       "Verdict: from {} to {} mm {}. {}\n", Millimetres(metrics[0].rmse_3d),
-      Millimetres(metrics[2].rmse_3d), held_out ? "on held-out postures" : "in the fit",
+      Millimetres(metrics[static_cast<int>(run.comparison.best_kind())].rmse_3d),
+      held_out ? "on held-out postures" : "in the fit",
       held_out ? "Before deploying, validate on another recording."
                : "Cross-validate (--kfold 10) and validate on another recording before deploying.");
 }
@@ -119,7 +127,7 @@ std::string ModelTable(const CalibrationRun& run) {
     header.push_back("max mm");
   }
   TextTable table(header);
-  for (ModelKind kind : kModelKinds) {
+  for (ModelKind kind : run.comparison.kinds) {
     const ErrorMetrics& fit = run.comparison.metrics[static_cast<int>(kind)];
     std::vector<std::string> row = {ModelKindName(kind), Millimetres(fit.rmse_3d),
                                     Millimetres(fit.rmse_coordinate), Millimetres(fit.maximum)};
@@ -134,23 +142,31 @@ std::string ModelTable(const CalibrationRun& run) {
 }
 
 std::string DescribeRun(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.geometric();
+  const CalibrationResult& result = run.comparison.best();
   const Excitation& excitation = run.excitation;
   std::string text = fmt::format(
       "{}: {} postures, {} markers, {} equations; {} of {} parameters identifiable (theory {})\n\n",
       result.model.tree.name, run.recording.posture_count(), run.recording.marker_count(),
-      result.equations, run.base.kept.size(), result.model.parameter_count(),
+      result.equations, run.base.geometric_count, result.model.parameter_count(),
       run.base.theoretical_count);
+  text += DescribeTrials(run);
   text += ModelTable(run);
-  text += "  RMSE is what remains after fitting where the waist and the markers are\n";
+  text +=
+      run.trials.empty()
+          ? "  RMSE is what remains after fitting where the waist and the markers are\n"
+          : "  RMSE of markers predicted from the standing foot, or from the waist on two feet\n";
+  text += DescribeHeldOut(run);
   text += fmt::format(
-      "\nGeometric model {} after {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms\n"
+      "\n{} model {} after {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms\n"
       "  noise of a marker coordinate {:.4f} mm; prior widened by {:.2f} (angles) and {:.2f} "
       "(lengths); {:.1f} parameters determined by the data\n\n",
-      TerminationName(result.termination), result.iterations, result.initial_cost,
-      result.final_cost, 1e3 * result.solve_seconds, 1e3 * result.marker_sd,
-      result.prior_scale.angles, result.prior_scale.lengths, result.posterior.effective_parameters);
+      result.kind == ModelKind::kFull ? "Full" : "Geometric", TerminationName(result.termination),
+      result.iterations, result.initial_cost, result.final_cost, 1e3 * result.solve_seconds,
+      1e3 * result.marker_sd, result.prior_scale.angles, result.prior_scale.lengths,
+      result.posterior.effective_parameters);
   text += ParameterTable(run);
+  text += DescribeElasticity(run);
+  text += DescribeFeet(run);
   text += "\nNot identifiable with these markers, unchanged in the URDF: " +
           Names(result, WithStatus(result, ParameterStatus::kDropped)) +
           "\nNot supported by the data, held at nominal, not worth deploying: " +

@@ -10,14 +10,14 @@ namespace elastocal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Metrics = std::array<ErrorMetrics, 3>;
 
 /// JSON has no infinity or NaN: null.
 Json Finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json ByModel(const Metrics& metrics, double ErrorMetrics::*figure) {
+Json FigureByModel(const std::vector<ModelKind>& kinds, const ByModel<ErrorMetrics>& metrics,
+                   double ErrorMetrics::*figure) {
   Json json;
-  for (ModelKind kind : kModelKinds) {
+  for (ModelKind kind : kinds) {
     json[ModelKindName(kind)] = Finite(1e3 * metrics[static_cast<int>(kind)].*figure);
   }
   return json;
@@ -25,7 +25,7 @@ Json ByModel(const Metrics& metrics, double ErrorMetrics::*figure) {
 
 Json Outliers(const CalibrationRun& run) {
   Json json = Json::array();
-  for (const Outlier& outlier : run.comparison.geometric().outliers) {
+  for (const Outlier& outlier : run.comparison.best().outliers) {
     Json item;
     item["posture"] = outlier.posture;
     if (!run.recording.line.empty()) item["line"] = run.recording.line[outlier.posture];
@@ -43,7 +43,7 @@ Json Parameters(const CalibrationResult& result) {
     const Parameter& parameter = result.model.parameters[i];
     Json item;
     item["name"] = parameter.name;
-    item["unit"] = parameter.unit == ParameterUnit::kRadian ? "rad" : "m";
+    item["unit"] = UnitName(parameter.unit);
     item["value"] = result.delta[i];
     item["sd"] = Finite(result.sd[i]);
     item["status"] = StatusName(result.status[i]);
@@ -73,7 +73,7 @@ Json ExcitationJson(const CalibrationRun& run) {
   json["O3"] = excitation.indices.o3;
   json["O4"] = excitation.indices.o4;
   json["O5"] = excitation.indices.o5;
-  const auto& parameters = run.comparison.geometric().model.parameters;
+  const auto& parameters = run.comparison.best().model.parameters;
   json["hardly_excited"] = Json::array();
   for (int i : HardlyExcited(parameters, run.base.kept, excitation)) {
     json["hardly_excited"].push_back(parameters[i].name);
@@ -81,16 +81,77 @@ Json ExcitationJson(const CalibrationRun& run) {
   return json;
 }
 
+Json ClockJson(const TrialSummary& trial) {
+  return {{"lag_s", Finite(trial.clock.lag_s)},
+          {"drift_ppm", trial.clock.drift_estimated ? Finite(trial.clock.drift_ppm) : Json()},
+          {"sd_s", Finite(trial.clock.sd_s)},
+          {"reliable", trial.clock.state == ClockState::kReliable}};
+}
+
+/// What only recordings of trials have.
+void AddTrials(const CalibrationRun& run, Json& json) {
+  if (run.trials.empty()) return;
+  int samples = 0;
+  json["trials"] = Json::array();
+  for (const TrialSummary& trial : run.trials) {
+    const bool calibration = trial.trial.kind == TrialKind::kCalibration;
+    if (calibration) samples += trial.samples;
+    json["trials"].push_back({{"name", trial.trial.name},
+                              {"chains", trial.trial.chains},
+                              {"used", trial.refused.empty()},
+                              {"postures", trial.postures},
+                              {"samples", trial.samples},
+                              {"clock", ClockJson(trial)},
+                              {"findings", Findings(trial)}});
+    if (calibration && trial.refused.empty() && !json.contains("clock")) {
+      json["clock"] = ClockJson(trial);  // of the first; each trial has its own above
+    }
+  }
+  json["samples"] = samples;
+  if (run.held_out) {
+    for (const ErrorTableRow& row : run.held_out->table.groups) {
+      for (const auto& [kind, metrics] : row.metrics) {
+        json["held_out"][row.group]["rmse_3d_mm"][ModelKindName(kind)] =
+            Finite(1e3 * metrics.rmse_3d);
+        json["held_out"][row.group]["max_mm"][ModelKindName(kind)] = Finite(1e3 * metrics.maximum);
+      }
+    }
+    for (const auto& [kind, mean] : run.held_out->table.mean_rmse_3d) {
+      json["held_out_rmse_3d_mm"][ModelKindName(kind)] = Finite(1e3 * mean);
+    }
+  }
+  for (ModelKind kind : run.comparison.kinds) {
+    const double error = run.waist_error[static_cast<int>(kind)];
+    if (std::isfinite(error)) json["waist_error_mm"][ModelKindName(kind)] = 1e3 * error;
+  }
+  const CalibrationResult& result = run.comparison.best();
+  for (std::size_t g = 0; g < static_cast<std::size_t>(result.noise.group_count()); ++g) {
+    json["noise"].push_back({{"marker_sd_mm", 1e3 * result.noise.marker_sd[g]},
+                             {"waist_position_sd_mm", 1e3 * result.noise.waist_position_sd[g]},
+                             {"waist_rotation_sd_mrad", 1e3 * result.noise.waist_rotation_sd[g]}});
+  }
+  json["loose_footings"] = Json::array();
+  for (const LooseFooting& footing : result.loose_footings) {
+    json["loose_footings"].push_back({{"posture", footing.posture},
+                                      {"distance_mm", 1e3 * footing.distance},
+                                      {"normalised", footing.normalised}});
+  }
+  json["slips"] = Json::array();
+  for (const Slip& slip : result.slips) {
+    json["slips"].push_back({{"posture", slip.posture}, {"distance_mm", 1e3 * slip.distance}});
+  }
+}
+
 }  // namespace
 
 std::string DescribeObservation(const Recording& recording, int posture, int marker) {
-  std::string text = "posture " + std::to_string(posture + 1);
+  std::string text = DescribePosture(recording, posture);
   if (!recording.line.empty()) text += " (line " + std::to_string(recording.line[posture]) + ")";
   return text + ", marker " + recording.marker_names[marker];
 }
 
 std::string RunStatus(const CalibrationRun& run) {
-  const Termination termination = run.comparison.geometric().termination;
+  const Termination termination = run.comparison.best().termination;
   const bool implausible =
       termination == Termination::kConverged && !run.verdict.objections.empty();
   return implausible ? "implausible" : TerminationName(termination);
@@ -112,8 +173,17 @@ std::string MakeCovarianceCsv(const CalibrationResult& result) {
   return text;
 }
 
+std::string DescribePosture(const Recording& recording, int posture) {
+  std::string text = "posture " + std::to_string(posture + 1);
+  if (recording.trials.empty()) return text;
+  int first = 0;
+  while (recording.trial[first] != recording.trial[posture]) ++first;
+  return "trial " + recording.trials[recording.trial[posture]].name + ", posture " +
+         std::to_string(posture - first + 1);
+}
+
 std::string MakeSummaryJson(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.geometric();
+  const CalibrationResult& result = run.comparison.best();
   Json json;
   json["status"] = RunStatus(run);
   json["message"] = result.message;
@@ -125,26 +195,33 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["postures"] = run.recording.posture_count();
   json["markers"] = run.recording.marker_count();
   json["parameters_total"] = result.model.parameter_count();
-  json["identifiable"] = run.base.kept.size();
+  json["identifiable"] = run.base.geometric_count;
   json["identifiable_theory"] = run.base.theoretical_count;
   json["equations"] = result.equations;
   json["marker_sd_mm"] = 1e3 * result.marker_sd;
   json["prior_scale"] = {{"angles", result.prior_scale.angles},
                          {"lengths", result.prior_scale.lengths}};
   json["effective_parameters"] = result.posterior.effective_parameters;
-  json["rmse_3d_mm"] = ByModel(run.comparison.metrics, &ErrorMetrics::rmse_3d);
-  json["rmse_coordinate_mm"] = ByModel(run.comparison.metrics, &ErrorMetrics::rmse_coordinate);
-  json["max_mm"] = ByModel(run.comparison.metrics, &ErrorMetrics::maximum);
-  json["rmse_3d_mm_with_outliers"] = ByModel(run.comparison.metrics_all, &ErrorMetrics::rmse_3d);
+  json["rmse_3d_mm"] =
+      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::rmse_3d);
+  json["rmse_coordinate_mm"] =
+      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::rmse_coordinate);
+  json["max_mm"] =
+      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::maximum);
+  json["rmse_3d_mm_with_outliers"] =
+      FigureByModel(run.comparison.kinds, run.comparison.metrics_all, &ErrorMetrics::rmse_3d);
   if (run.cross_validation.folds > 0) {
-    const Metrics& metrics = run.cross_validation.metrics;
+    const ByModel<ErrorMetrics>& metrics = run.cross_validation.metrics;
     json["kfold"]["folds"] = run.cross_validation.folds;
-    json["kfold"]["rmse_3d_mm"] = ByModel(metrics, &ErrorMetrics::rmse_3d);
-    json["kfold"]["rmse_coordinate_mm"] = ByModel(metrics, &ErrorMetrics::rmse_coordinate);
-    json["kfold"]["max_mm"] = ByModel(metrics, &ErrorMetrics::maximum);
+    json["kfold"]["rmse_3d_mm"] =
+        FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::rmse_3d);
+    json["kfold"]["rmse_coordinate_mm"] =
+        FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::rmse_coordinate);
+    json["kfold"]["max_mm"] = FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::maximum);
     json["kfold"]["unconverged"] = run.cross_validation.unconverged;
     json["kfold"]["not_predicted"] = run.cross_validation.not_predicted;
   }
+  AddTrials(run, json);
   json["outliers"] = Outliers(run);
   json["excitation"] = ExcitationJson(run);
   json["iterations"] = result.iterations;

@@ -55,7 +55,7 @@ void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& v
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[i];
     const double deviation = std::abs(result.delta[i]) / prior[parameter.kind];
-    if (parameter.joint < 0 || !(deviation > furthest)) continue;
+    if (parameter.joint < 0 || IsElastic(parameter.kind) || !(deviation > furthest)) continue;
     furthest = deviation;
     largest = i;
   }
@@ -95,7 +95,7 @@ void JudgeOutliers(const CalibrationResult& result, const Recording& recording, 
 Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options) {
-  const CalibrationResult& result = comparison.geometric();
+  const CalibrationResult& result = comparison.best();
   Verdict verdict;
   JudgeFit(result, options, verdict);
   if (!std::isfinite(excitation.condition_base)) {
@@ -105,7 +105,8 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   }
   JudgeOutliers(result, recording, verdict);
   if (validation.folds > 0) {
-    if (validation.metrics[2].rmse_3d >= validation.metrics[0].rmse_3d) {
+    if (validation.metrics[static_cast<int>(comparison.best_kind())].rmse_3d >=
+        validation.metrics[0].rmse_3d) {
       verdict.objections.push_back(
           "on held-out postures the calibrated model is no better than the uncalibrated one");
     }
@@ -121,6 +122,22 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   }
   if (!verdict.objections.empty()) NameLargest(result, options.prior, verdict);
   return verdict;
+}
+
+void JudgeHeldOut(const ErrorTable& table, ModelKind model, Verdict& verdict) {
+  for (const ErrorTableRow& row : table.groups) {
+    const auto calibrated = row.metrics.find(model);
+    if (calibrated == row.metrics.end() || !std::isfinite(calibrated->second.rmse_3d)) continue;
+    const double rmse = calibrated->second.rmse_3d;
+    for (const auto& [kind, metrics] : row.metrics) {
+      if (kind == model || !(rmse >= metrics.rmse_3d)) continue;
+      const std::string text = "on held-out trials of " + row.group + " the " +
+                               ModelKindName(model) + " model errs by " + Number(1e3 * rmse, "mm") +
+                               ", the " + ModelKindName(kind) + " one by " +
+                               Number(1e3 * metrics.rmse_3d, "mm");
+      (kind == ModelKind::kUncalibrated ? verdict.objections : verdict.remarks).push_back(text);
+    }
+  }
 }
 
 }  // namespace elastocal
