@@ -31,6 +31,11 @@ std::vector<int> CoordinatesOf(const RobotTree& tree, const std::vector<int>& jo
   return coordinates;
 }
 
+/// A leg that shares joints or has less than six comes only near to a pose, m and rad.
+double PlacementTolerance(const RobotTree& tree, const Leg& leg) {
+  return CoordinatesOf(tree, leg.joints).size() < 6 ? 0.1 : 1e-8;
+}
+
 using Twist = Eigen::Matrix<double, 6, 1>;
 
 /// Displacement [m, rad] that leads from `found` to `wanted`.
@@ -54,17 +59,18 @@ Eigen::VectorXd HomePosture(const RobotTree& tree, const PostureOptions& options
 }
 
 std::optional<Eigen::VectorXd> PlaceFoot(const RobotTree& tree, const Leg& leg,
-                                         const Transform& T_waist_foot, Eigen::VectorXd q) {
+                                         const Transform& T_waist_foot, Eigen::VectorXd q,
+                                         double tolerance) {
   constexpr int kIterations = 50;
   constexpr double kStep = 1e-6;
   constexpr double kDamping = 1e-6;
   constexpr double kLargestMove = 0.3;
   const std::vector<int> moved = CoordinatesOf(tree, leg.joints);
   const auto count = static_cast<Eigen::Index>(moved.size());
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  for (int iteration = 0; iteration <= kIterations; ++iteration) {
     const Transform found = LinkTransforms(tree, q)[Size(leg.foot_link)];
     const Twist error = PoseError(T_waist_foot, found);
-    if (error.norm() < 1e-9) return q;
+    if (error.norm() < 1e-9 || (iteration == kIterations && error.norm() < tolerance)) return q;
     Eigen::Matrix<double, 6, Eigen::Dynamic> J(6, count);
     for (Eigen::Index i = 0; i < count; ++i) {
       Eigen::VectorXd moved_q = q;
@@ -122,7 +128,8 @@ std::optional<Eigen::VectorXd> PostureSampler::Bend(const Leg& leg, Eigen::Vecto
       const auto [lower, upper] = Range(tree_, coordinate, options_.limit_margin);
       q[coordinate] = std::clamp(random_.Uniform(-0.8, 0.8), lower, upper);
     }
-    if (auto found = PlaceFoot(tree_, leg, T_waist_foot, q)) return found;
+    if (auto found = PlaceFoot(tree_, leg, T_waist_foot, q, PlacementTolerance(tree_, leg)))
+      return found;
   }
   return std::nullopt;
 }
@@ -221,7 +228,7 @@ std::optional<Eigen::VectorXd> PostureSampler::DrawSupport(Eigen::VectorXd q, co
     T_floor_waist.linear() = R_floor_waist;
     T_floor_waist.translation() = p_floor_waist;
     Transform T_waist_foot = T_floor_waist.inverse() * Transform(support.R_floor_foot);
-    auto placed = PlaceFoot(tree_, support, T_waist_foot, q);
+    auto placed = PlaceFoot(tree_, support, T_waist_foot, q, PlacementTolerance(tree_, support));
     if (!placed) return std::nullopt;
     q = *placed;
   }

@@ -39,9 +39,12 @@ struct PostureOptions {
 Eigen::VectorXd HomePosture(const RobotTree& tree, const PostureOptions& options);
 
 /// Moves the joints of a leg until its foot has the given pose in the root link's frame, by
-/// Newton's method from `q`, within the limits. Nothing where that fails.
+/// Newton's method from `q`, within the limits. Nothing where the foot stays further away than
+/// `tolerance` (metres and radians, norm): a leg with less than six joints of its own comes only
+/// near.
 std::optional<Eigen::VectorXd> PlaceFoot(const RobotTree& tree, const Leg& leg,
-                                         const Transform& T_waist_foot, Eigen::VectorXd q);
+                                         const Transform& T_waist_foot, Eigen::VectorXd q,
+                                         double tolerance = 1e-8);
 
 /// Centre of mass of the whole robot in the root link's frame, m.
 Eigen::Vector3d CentreOfMass(const RobotTree& tree, const Eigen::VectorXd& q);

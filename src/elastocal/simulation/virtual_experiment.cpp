@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/simulation/faults.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
@@ -43,6 +44,11 @@ void SwitchOffImperfections(VirtualExperimentOptions& options) {
 
 VirtualExperiment PrepareExperiment(const DescribedRobot& described,
                                     const VirtualExperimentOptions& options) {
+  const double steps = 0.01 / options.physics.time_step_s;
+  if (std::abs(steps - std::round(steps)) > 1e-6) {
+    throw InputError("the time step " + std::to_string(options.physics.time_step_s) +
+                     " s: a hundredth of a second must be a whole number of steps");
+  }
   VirtualExperiment experiment;
   experiment.options = options;
   experiment.options.truth.seed = options.seed;
@@ -70,8 +76,12 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
 SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) {
   const PlannedTrial& trial = experiment.trials[index];
   SimulatedTrial result;
-  result.motion = PlayMotion(experiment.robot, trial.support, trial.motion,
-                             experiment.T_camera_world[index], experiment.options.physics);
+  try {
+    result.motion = PlayMotion(experiment.robot, trial.support, trial.motion,
+                               experiment.T_camera_world[index], experiment.options.physics);
+  } catch (const InputError& error) {
+    throw InputError("trial '" + trial.name + "': " + error.what());
+  }
   result.raw = Measure(experiment.robot, experiment.clusters, experiment.trials, index,
                        result.motion, experiment.options.sensors, experiment.options.faults);
   return result;

@@ -128,6 +128,8 @@ void VirtualRobot::Command(const Eigen::VectorXd& encoders) {
 void VirtualRobot::Step() {
   simulation_->ApplyFriction();
   mj_step(simulation_->model.get(), simulation_->data.get());
+  // MuJoCo leaves the bodies where they were before the step.
+  mj_kinematics(simulation_->model.get(), simulation_->data.get());
 }
 
 bool VirtualRobot::Settle(double longest_s) {

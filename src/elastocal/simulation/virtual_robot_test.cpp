@@ -4,6 +4,8 @@
 
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/statics.hpp"
+#include "elastocal/simulation/postures.hpp"
+#include "tests/biped.hpp"
 #include "tests/random_robot.hpp"
 #include "tests/test_robots.hpp"
 
@@ -91,6 +93,95 @@ TEST(VirtualRobot, NominalAndNearlyRigidIsTheForwardKinematics) {
       EXPECT_LT((positions.col(static_cast<Eigen::Index>(m)) - expected).norm(), 1e-9);
     }
   }
+}
+
+TrueRobot NominalBiped() {
+  const Biped biped = MakeBiped();
+  return NominalRobot(biped.tree, biped.markers, FindLegs(biped.tree, biped.chains), {});
+}
+
+/// Any posture with bent legs.
+Eigen::VectorXd BentPosture(const RobotTree& tree) {
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(tree.coordinate_count());
+  for (const char* side : {"left", "right"}) {
+    const int first = FindJoint(tree, std::string(side) + "_1");
+    q.segment<6>(first) << 0.1, 0.05, -0.45, 0.8, -0.35, -0.08;
+  }
+  q[0] = 0.2;
+  q[1] = 0.3;
+  return q;
+}
+
+/// Height of all weight above the sole, times weight: the potential energy, J.
+double Potential(const TrueRobot& robot, const Leg& leg, const Eigen::VectorXd& positions) {
+  const std::vector<Transform> T = TrueLinkTransforms(robot, positions);
+  const Transform T_floor_waist =
+      Transform(leg.R_floor_foot) * T[static_cast<std::size_t>(leg.foot_link)].inverse();
+  double energy = 0.0;
+  for (std::size_t i = 0; i < T.size(); ++i) {
+    const Link& link = robot.tree.links[i];
+    energy += 9.81 * link.mass * (T_floor_waist * T[i] * link.com).z();
+  }
+  return energy;
+}
+
+TEST(VirtualRobot, TorquesOnOneLegAreTheGradientOfThePotential) {
+  TrueRobot robot = NominalBiped();
+  robot.compliance.setConstant(5e-6);
+  const Leg& leg = robot.legs[1];
+  VirtualRobot body(robot, {leg.foot_link}, BentPosture(robot.tree));
+  ASSERT_TRUE(body.Settle());
+  const Eigen::VectorXd torques = body.Torques();
+  const Eigen::VectorXd positions = body.Encoders() - 5e-6 * torques;
+  for (Eigen::Index k = 0; k < positions.size(); ++k) {
+    constexpr double kStep = 1e-5;
+    Eigen::VectorXd up = positions;
+    Eigen::VectorXd down = positions;
+    up[k] += kStep;
+    down[k] -= kStep;
+    const double expected =
+        (Potential(robot, leg, up) - Potential(robot, leg, down)) / (2.0 * kStep);
+    EXPECT_NEAR(torques[k], expected, 1e-3) << robot.tree.joints[static_cast<std::size_t>(k)].name;
+  }
+}
+
+TEST(VirtualRobot, FeetStayWhereTheyWerePutDown) {
+  TrueRobot robot = NominalBiped();
+  robot.compliance.setConstant(5e-6);
+  const std::vector<int> feet = {robot.legs[0].foot_link, robot.legs[1].foot_link};
+  Eigen::VectorXd q = BentPosture(robot.tree);
+  VirtualRobot body(robot, feet, q);
+  const Transform first = body.SolePose(0);
+  const Transform second = body.SolePose(1);
+  ASSERT_TRUE(body.Settle());
+  q[0] = -0.4;  // the trunk turns and leans
+  q[1] = 0.5;
+  body.Command(q);
+  ASSERT_TRUE(body.Settle());
+  EXPECT_EQ(body.SolePose(0).matrix(), first.matrix());
+  // A constraint, not a fixed body: held to a few micrometres.
+  EXPECT_LT((body.SolePose(1).translation() - second.translation()).norm(), 5e-6);
+  EXPECT_LT(RotationAngle(body.SolePose(1).linear().transpose() * second.linear()), 2e-5);
+}
+
+TEST(VirtualRobot, StandsFreeOnBothFeet) {
+  TrueRobot robot = NominalBiped();
+  PhysicsOptions options;
+  options.standing = Standing::kFree;
+  options.time_step_s = 0.002;
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(robot.tree.coordinate_count());
+  VirtualRobot body(robot, {robot.legs[0].foot_link, robot.legs[1].foot_link}, q, options);
+  const double height = body.WaistPose().translation().z();
+  for (int i = 0; i < 1000; ++i) body.Step();
+  EXPECT_NEAR(body.WaistPose().translation().z(), height, 2e-3);
+  EXPECT_LT(RotationAngle(body.WaistPose().linear()), 0.01);
+}
+
+TEST(VirtualRobot, NeedsFeetToStandOn) {
+  const TrueRobot robot = NominalBiped();
+  const Eigen::VectorXd q = BentPosture(robot.tree);
+  EXPECT_THROW(VirtualRobot(robot, {0}, q), std::invalid_argument);
+  EXPECT_THROW(VirtualRobot(robot, {}, q, {.standing = Standing::kFree}), std::invalid_argument);
 }
 
 }  // namespace

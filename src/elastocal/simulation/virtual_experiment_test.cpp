@@ -1,0 +1,116 @@
+#include "elastocal/simulation/virtual_experiment.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/robot/statics.hpp"
+#include "tests/biped.hpp"
+
+namespace elastocal {
+namespace {
+
+DescribedRobot Described() {
+  const Biped biped = MakeBiped();
+  DescribedRobot robot{biped.tree, biped.chains, biped.markers, {{"WAIST", {0, 1, 2}}}, {}};
+  for (int k = 0; k < static_cast<int>(biped.tree.joints.size()); ++k) {
+    robot.torque_sensors.push_back(k);
+  }
+  return robot;
+}
+
+VirtualExperimentOptions Short() {
+  VirtualExperimentOptions options;
+  options.motion.head_postures = options.motion.leg_postures = 2;
+  options.motion.random_postures = 1;
+  options.motion.repetitions = 1;
+  return options;
+}
+
+TEST(VirtualExperiment, TheSameSeedGivesTheSameNumbers) {
+  const VirtualExperiment first = PrepareExperiment(Described(), Short());
+  const VirtualExperiment again = PrepareExperiment(Described(), Short());
+  RunTrial(again, 0);  // the order of trials does not matter
+  const SimulatedTrial a = RunTrial(first, 1);
+  const SimulatedTrial b = RunTrial(again, 1);
+  EXPECT_EQ(a.motion.markers, b.motion.markers);
+  EXPECT_EQ(a.raw.joints.time_s, b.raw.joints.time_s);
+  EXPECT_EQ(a.raw.joints.positions, b.raw.joints.positions);
+  EXPECT_EQ(a.raw.joints.torques, b.raw.joints.torques);
+  EXPECT_EQ(first.legs[0].base.C_foot, again.legs[0].base.C_foot);
+  // Gaps are not equal to themselves.
+  EXPECT_TRUE(((a.raw.markers.positions.array() == b.raw.markers.positions.array()) ||
+               (a.raw.markers.positions.array().isNaN() && b.raw.markers.positions.array().isNaN()))
+                  .all());
+  VirtualExperimentOptions options = Short();
+  options.seed = 2;
+  const VirtualExperiment other = PrepareExperiment(Described(), options);
+  EXPECT_NE(other.robot.offset, first.robot.offset);
+}
+
+TEST(VirtualExperiment, APerfectRobotFollowsTheForwardKinematics) {
+  VirtualExperimentOptions options = Short();
+  SwitchOffImperfections(options);
+  const DescribedRobot described = Described();
+  const VirtualExperiment experiment = PrepareExperiment(described, options);
+  for (std::size_t trial : {std::size_t{0}, std::size_t{1}}) {
+    const SimulatedTrial played = RunTrial(experiment, trial);
+    for (Eigen::Index i = 0; i < played.motion.frame_count(); i += 50) {
+      // Everywhere on the way, not only at rest: the encoders show where the joints are.
+      const Eigen::VectorXd q = played.raw.joints.positions.row(i).transpose();
+      const auto T_waist_link = LinkTransforms(described.tree, q);
+      const Transform& T_camera_waist = played.motion.T_camera_waist[static_cast<std::size_t>(i)];
+      for (std::size_t m = 0; m < described.markers.size(); ++m) {
+        const Marker& marker = described.markers[m];
+        const Eigen::Vector3d expected =
+            T_camera_waist *
+            (T_waist_link[static_cast<std::size_t>(marker.link)] * marker.p_link_marker);
+        const Eigen::Vector3d found = played.raw.markers.positions.row(i)
+                                          .segment<3>(3 * static_cast<Eigen::Index>(m))
+                                          .transpose();
+        EXPECT_LT((found - expected).norm(), 5e-8);  // of logs printed to 1e-8 rad
+      }
+    }
+  }
+}
+
+TEST(VirtualExperiment, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
+  VirtualExperimentOptions options = Short();
+  options.truth.leg_geometry_scale = 0.0;
+  const VirtualExperiment experiment = PrepareExperiment(Described(), options);
+  const SimulatedTrial played = RunTrial(experiment, 1);
+  const WaistDeflection found = LargestWaistDeflection(experiment, 1, played.motion);
+  // The weight alone, on the stiffness in which it acts, is the least that the waist sinks.
+  const double weight = 9.81 * (TotalMass(experiment.robot.tree) - 10.0);
+  EXPECT_GT(found.translation, weight * experiment.legs[1].base.C_foot(2, 2));
+  EXPECT_LT(found.translation, 0.015);
+  EXPECT_GT(found.rotation, 5e-4);
+}
+
+TEST(VirtualExperiment, TheCamerasSeeTheFloorLevel) {
+  const VirtualExperiment experiment = PrepareExperiment(Described(), Short());
+  for (const Transform& T : experiment.T_camera_world) {
+    EXPECT_LT((T.linear().col(2) - Eigen::Vector3d::UnitZ()).norm(), 1e-15);
+    EXPECT_EQ(T.translation().z(), 0.0);
+  }
+}
+
+TEST(VirtualExperiment, ARobotThatStandsFreeOnOneLegFalls) {
+  VirtualExperimentOptions options = Short();
+  options.physics.standing = Standing::kFree;
+  const VirtualExperiment experiment = PrepareExperiment(Described(), options);
+  try {
+    RunTrial(experiment, 1);
+    FAIL() << "it should fall";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("trial 'left': the robot fell"), std::string::npos);
+  }
+}
+
+TEST(VirtualExperiment, RefusesAnUnevenTimeStep) {
+  VirtualExperimentOptions options = Short();
+  options.physics.time_step_s = 0.003;
+  EXPECT_THROW(PrepareExperiment(Described(), options), InputError);
+}
+
+}  // namespace
+}  // namespace elastocal
