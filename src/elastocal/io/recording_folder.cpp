@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <future>
+#include <limits>
 #include <set>
 
 #include "elastocal/io/joint_log.hpp"
@@ -102,6 +103,22 @@ Experiment ReadExperiments(const std::vector<fs::path>& folders, const Project& 
   return all;
 }
 
+/// On two feet nothing tells how the legs share the load and give way: the feet helped to find the
+/// clock, but say nothing about the robot.
+void HideFeetOfTwo(const MarkedRobot& robot, Recording& recording) {
+  const auto body = [&](int link) { return robot.tree.links[link].body; };
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const std::vector<int>& support = recording.trials[recording.trial[i]].support;
+    if (support.size() < 2) continue;
+    for (std::size_t m = 0; m < robot.markers.size(); ++m) {
+      const auto on_foot = [&](int link) { return body(link) == body(robot.markers[m].link); };
+      if (std::none_of(support.begin(), support.end(), on_foot)) continue;
+      recording.markers.block<1, 3>(i, 3 * static_cast<Eigen::Index>(m))
+          .setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
 }  // namespace
 
 bool IsRecordingFolder(const fs::path& path) {
@@ -127,6 +144,8 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   for (const fs::path& folder : folders) source += (source.empty() ? "" : ", ") + folder.string();
   result.calibration = MergeTrials(robot, calibration, source);
   result.validation = MergeTrials(robot, validation, source);
+  HideFeetOfTwo(robot, result.calibration);
+  HideFeetOfTwo(robot, result.validation);
   result.calibration.gravity = result.validation.gravity = experiment.gravity;
   if (result.calibration.posture_count() + result.validation.posture_count() == 0) {
     throw InputError(source + ": no trial can be used; " + result.findings.front());
