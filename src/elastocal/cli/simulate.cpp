@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +15,7 @@
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/simulation_settings.hpp"
 #include "elastocal/io/truth_file.hpp"
@@ -29,7 +31,7 @@ struct SimulateOptions {
   std::string project, output, trials = "all";
   std::string settings;
   int threads = 2;
-  bool nominal = false, free = false;
+  bool nominal = false, free = false, matched = false;
   std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
 };
 
@@ -64,9 +66,41 @@ std::vector<std::size_t> Chosen(const VirtualExperiment& experiment, const std::
   return chosen;
 }
 
+/// The experiment that is played: the virtual one, or that of the error model.
+struct Played {
+  VirtualExperiment experiment;
+  std::optional<MatchedExperiment> matched = {};
+
+  SimulatedTrial Run(std::size_t trial) const {
+    return matched ? RunMatchedTrial(*matched, trial) : RunTrial(experiment, trial);
+  }
+  WaistGive LargestDeflection(std::size_t trial, const TrueMotion& motion) const {
+    return matched ? LargestMatchedDeflection(*matched, trial, motion)
+                   : LargestWaistDeflection(experiment, trial, motion);
+  }
+};
+
+/// The model that a calibration of these trials has.
+MatchedExperiment Match(const VirtualExperiment& experiment, const Project& project,
+                        const std::vector<std::size_t>& chosen) {
+  std::vector<Trial> trials;
+  for (std::size_t i : chosen) {
+    const PlannedTrial& planned = experiment.trials[i];
+    if (planned.kind != TrialKind::kCalibration) continue;
+    Trial trial{planned.name, planned.kind, {}, planned.support};
+    for (int chain : planned.chains) trial.chains.push_back(project.chains[chain].name);
+    trials.push_back(trial);
+  }
+  if (trials.empty()) {
+    throw InputError("--matched: the model is that of calibration trials, and none is played");
+  }
+  const ErrorModel model = MakeProjectModel(project, trials);
+  return MatchExperiment(experiment, model,
+                         FindBaseParameters(model, project.identifiability).kept);
+}
+
 /// Plays and writes all trials, several at a time; the result does not depend on how many.
-std::vector<PlayedTrial> PlayAll(const VirtualExperiment& experiment,
-                                 const std::vector<std::size_t>& chosen,
+std::vector<PlayedTrial> PlayAll(const Played& play, const std::vector<std::size_t>& chosen,
                                  const SimulateOptions& options) {
   std::vector<PlayedTrial> played(chosen.size());
   std::atomic<std::size_t> next = 0;
@@ -77,10 +111,10 @@ std::vector<PlayedTrial> PlayAll(const VirtualExperiment& experiment,
   const auto work = [&] {
     try {
       for (std::size_t i = next++; i < chosen.size(); i = next++) {
-        const SimulatedTrial trial = RunTrial(experiment, chosen[i]);
-        played[i] = {WriteSimulatedTrial(options.output, experiment.trials[chosen[i]], trial),
+        const SimulatedTrial trial = play.Run(chosen[i]);
+        played[i] = {WriteSimulatedTrial(options.output, play.experiment.trials[chosen[i]], trial),
                      trial.raw.truth, trial.motion.frame_count(),
-                     LargestWaistDeflection(experiment, chosen[i], trial.motion)};
+                     play.LargestDeflection(chosen[i], trial.motion)};
         const std::lock_guard lock(guard);
         ++done;
         if (progress) progress(done, static_cast<int>(chosen.size()));
@@ -164,9 +198,14 @@ int Simulate(const SimulateOptions& options) {
   CheckOutputs({options.common.json_file}, {options.project, project.urdf, options.settings});
   VirtualExperimentOptions settings = Settings(options);
   settings.seed = options.common.seed.value_or(1);
-  const VirtualExperiment experiment = PrepareExperiment(DescribeRobot(project), settings);
-  const std::vector<std::size_t> chosen = Chosen(experiment, options.trials);
-  const std::vector<PlayedTrial> played = PlayAll(experiment, chosen, options);
+  Played play{PrepareExperiment(DescribeRobot(project), settings)};
+  const std::vector<std::size_t> chosen = Chosen(play.experiment, options.trials);
+  if (options.matched) {
+    play.matched = Match(play.experiment, project, chosen);
+    play.experiment = play.matched->plan;
+  }
+  const VirtualExperiment& experiment = play.experiment;
+  const std::vector<PlayedTrial> played = PlayAll(play, chosen, options);
 
   Experiment written;
   std::vector<SensorTruth> sensors;
@@ -174,7 +213,11 @@ int Simulate(const SimulateOptions& options) {
     written.trials.push_back(trial.files);
     sensors.push_back(trial.sensors);
   }
-  WriteTruth(options.output, experiment, chosen, sensors);
+  if (play.matched) {
+    WriteMatchedTruth(options.output, *play.matched, chosen, sensors);
+  } else {
+    WriteTruth(options.output, experiment, chosen, sensors);
+  }
   WriteExperiment(options.output, written, project);
   Print(options.common.Silent(),
         TrialTable(played, experiment, chosen) + "\nStiffness of the legs as felt at the waist\n" +
@@ -205,6 +248,10 @@ void AddSimulate(CLI::App& app, Action& action) {
                       "File with any of the options below (YAML; docs/formats.md)");
   command->add_flag("--nominal", options->nominal,
                     "Begin with a robot and sensors without any imperfection");
+  command->add_flag(
+      "--matched", options->matched,
+      "The truth is the estimator's own error model at rest at every instant, instead "
+      "of physics: to see whether it finds what it models");
   command->add_flag("--free", options->free,
                     "Feet lie on the floor by contact instead of being part of it");
   AddCommonOptions(*command, options->common);

@@ -118,6 +118,23 @@ void WriteLegs(const VirtualExperiment& experiment, TruthWriter& writer) {
   writer.yaml << YAML::EndMap;
 }
 
+void WriteTrials(const VirtualExperiment& experiment, const std::vector<std::size_t>& trials,
+                 const std::vector<SensorTruth>& sensors, TruthWriter& writer) {
+  writer.Key("trials");
+  writer.yaml << YAML::BeginMap;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    writer.Key(experiment.trials[trials[i]].name);
+    writer.yaml << YAML::BeginMap;
+    writer.Value("lag_s", sensors[i].lag_s);
+    writer.Value("drift_ppm", sensors[i].drift_ppm);
+    writer.Key("faults");
+    writer.yaml << YAML::BeginSeq;
+    for (const std::string& fault : sensors[i].faults) writer.yaml << fault;
+    writer.yaml << YAML::EndSeq << YAML::EndMap;
+  }
+  writer.yaml << YAML::EndMap;
+}
+
 }  // namespace
 
 DescribedRobot DescribeRobot(const Project& project) {
@@ -193,25 +210,38 @@ void WriteTruth(const fs::path& folder, const VirtualExperiment& experiment,
   writer.Key("seed");
   writer.yaml << experiment.options.seed;
   WriteLegs(experiment, writer);
-  writer.Key("trials");
-  writer.yaml << YAML::BeginMap;
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    writer.Key(experiment.trials[trials[i]].name);
-    writer.yaml << YAML::BeginMap;
-    writer.Value("lag_s", sensors[i].lag_s);
-    writer.Value("drift_ppm", sensors[i].drift_ppm);
-    writer.Key("faults");
-    writer.yaml << YAML::BeginSeq;
-    for (const std::string& fault : sensors[i].faults) writer.yaml << fault;
-    writer.yaml << YAML::EndSeq << YAML::EndMap;
-  }
-  writer.yaml << YAML::EndMap;
+  WriteTrials(experiment, trials, sensors, writer);
   WriteJoints(experiment, experiment.described_tree, writer);
   WriteLinks(experiment.robot, writer);
   writer.Key("markers_mm");
   writer.yaml << YAML::BeginMap;
   for (const Marker& marker : experiment.robot.markers) {
     writer.List(marker.name, Eigen::Vector3d(1e3 * marker.p_link_marker));
+  }
+  writer.yaml << YAML::EndMap << YAML::EndMap;
+  WriteFile(folder / "truth.yaml", std::string(writer.yaml.c_str()) + "\n");
+}
+
+void WriteMatchedTruth(const fs::path& folder, const MatchedExperiment& experiment,
+                       const std::vector<std::size_t>& trials,
+                       const std::vector<SensorTruth>& sensors) {
+  TruthWriter writer;
+  writer.yaml << YAML::BeginMap;
+  writer.Key("matched");
+  writer.yaml << true;
+  writer.Key("seed");
+  writer.yaml << experiment.plan.options.seed;
+  WriteTrials(experiment.plan, trials, sensors, writer);
+  writer.Key("parameters");
+  writer.yaml << YAML::BeginMap;
+  for (int i = 0; i < experiment.model.parameter_count(); ++i) {
+    if (experiment.truth[i] == 0.0) continue;
+    const Parameter& parameter = experiment.model.parameters[i];
+    writer.Key(parameter.name);
+    writer.yaml << YAML::Flow << YAML::BeginMap;
+    writer.Value("value", experiment.truth[i]);
+    writer.Key("unit");
+    writer.yaml << UnitName(parameter.unit) << YAML::EndMap;
   }
   writer.yaml << YAML::EndMap << YAML::EndMap;
   WriteFile(folder / "truth.yaml", std::string(writer.yaml.c_str()) + "\n");

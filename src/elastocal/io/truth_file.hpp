@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "elastocal/io/experiment.hpp"
-#include "elastocal/simulation/virtual_experiment.hpp"
+#include "elastocal/simulation/matched_experiment.hpp"
 
 namespace elastocal {
 
@@ -30,6 +30,12 @@ void WriteWaistTruth(const std::filesystem::path& file, const WaistTruth& truth)
 /// those of the experiment that were run, in its order.
 void WriteTruth(const std::filesystem::path& folder, const VirtualExperiment& experiment,
                 const std::vector<std::size_t>& trials, const std::vector<SensorTruth>& sensors);
+
+/// The same of an experiment whose truth is the error model: the model's parameters that are not
+/// zero, by name, with value and unit (SI).
+void WriteMatchedTruth(const std::filesystem::path& folder, const MatchedExperiment& experiment,
+                       const std::vector<std::size_t>& trials,
+                       const std::vector<SensorTruth>& sensors);
 
 /// Writes the files of one simulated trial into `folder` and returns their names.
 TrialFiles WriteSimulatedTrial(const std::filesystem::path& folder, const PlannedTrial& plan,

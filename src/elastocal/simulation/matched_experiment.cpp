@@ -1,0 +1,169 @@
+#include "elastocal/simulation/matched_experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/robot/leg_load.hpp"
+#include "elastocal/robot/statics.hpp"
+#include "elastocal/simulation/stream_seed.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Flat on the floor, where the experiment puts the robot down.
+Transform FootPose(const MatchedExperiment& experiment, std::size_t index, int foot_link) {
+  Transform T_world_foot = Transform::Identity();
+  for (const Leg& leg : experiment.plan.robot.legs) {
+    if (leg.foot_link == foot_link) T_world_foot.linear() = leg.R_floor_foot;
+  }
+  return experiment.plan.T_camera_world[index] * T_world_foot;
+}
+
+/// One value of a parameter; `leg_joint`: of a joint that belongs to a leg.
+double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions& options,
+                 Random& random) {
+  constexpr double kLeastForce = 2e-6, kMostForce = 9e-6;    // m/N
+  constexpr double kLeastMoment = 2e-6, kMostMoment = 5e-5;  // rad/(N.m)
+  const double scale = leg_joint ? options.leg_geometry_scale : options.upper_geometry_scale;
+  switch (parameter.kind) {
+    case ParameterKind::kBase:
+      return 0.0;
+    case ParameterKind::kMarker:
+      return random.Normal(options.marker_sd);
+    case ParameterKind::kTorsion:
+    case ParameterKind::kBending: {
+      const double least = leg_joint ? options.leg_stiffness_least : options.upper_stiffness_least;
+      const double most = leg_joint ? options.leg_stiffness_most : options.upper_stiffness_most;
+      return (leg_joint ? options.leg_elasticity_scale : options.upper_elasticity_scale) /
+             (least * std::pow(most / least, random.Uniform(0.0, 1.0)));
+    }
+    case ParameterKind::kBaseForce:
+      return options.leg_elasticity_scale * random.Uniform(kLeastForce, kMostForce);
+    case ParameterKind::kBaseMoment:
+      return options.leg_elasticity_scale * random.Uniform(kLeastMoment, kMostMoment);
+    case ParameterKind::kTorqueBias:
+      return random.Normal(options.torque_bias_sd);
+    case ParameterKind::kTheta:
+      if (parameter.unit == ParameterUnit::kMetre) break;
+      return scale * random.Normal(leg_joint ? options.leg_offset_sd : options.upper_offset_sd);
+    default:
+      break;
+  }
+  return scale * random.Normal(parameter.unit == ParameterUnit::kRadian ? options.angle_sd
+                                                                        : options.length_sd);
+}
+
+}  // namespace
+
+Eigen::VectorXd DrawMatchedTruth(const ErrorModel& model, const std::vector<int>& identifiable,
+                                 const std::vector<Leg>& legs, const TruthOptions& options) {
+  Random random(StreamSeed(options.seed, "matched truth"));
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
+  for (int i : identifiable) {
+    const Parameter& parameter = model.parameters[i];
+    const bool leg_joint = parameter.joint >= 0 && InLeg(legs, parameter.joint);
+    truth[i] = DrawValue(parameter, leg_joint, options, random);
+  }
+  return truth;
+}
+
+MatchedExperiment MatchExperiment(VirtualExperiment plan, const ErrorModel& model,
+                                  const std::vector<int>& identifiable) {
+  MatchedExperiment experiment{std::move(plan), model, {}};
+  TrueRobot& robot = experiment.plan.robot;
+  experiment.truth =
+      DrawMatchedTruth(model, identifiable, robot.legs, experiment.plan.options.truth);
+  std::vector<int> sensors;
+  for (std::size_t k = 0; k < robot.torque_sensor.size(); ++k) {
+    if (robot.torque_sensor[k]) sensors.push_back(static_cast<int>(k));
+  }
+  robot = NominalRobot(experiment.plan.described_tree, model.markers, robot.legs, sensors);
+  const Geometry geometry = ApplyErrors(model, experiment.truth);
+  for (LegCompliance& leg : experiment.plan.legs) {
+    const int own = SupportingLeg(model, {leg.foot_link});
+    const Vector6d compliance = own < 0 ? Vector6d(Vector6d::Zero()) : geometry.leg_compliance[own];
+    leg.base.C_foot = compliance.asDiagonal();
+    leg.base.stiffness = compliance.cwiseInverse();
+  }
+  return experiment;
+}
+
+TrueMotion PlayMatchedMotion(const MatchedExperiment& experiment, std::size_t index) {
+  const ErrorModel& model = experiment.model;
+  const PlannedTrial& trial = experiment.plan.trials[index];
+  const Geometry geometry = ApplyErrors(model, experiment.truth);
+  std::vector<int> sensors;
+  TrueMotion result;
+  for (const Marker& marker : model.markers) result.marker_names.push_back(marker.name);
+  for (int k : model.tree.coordinate_joint) {
+    result.joint_names.push_back(model.tree.joints[k].name);
+    if (experiment.plan.robot.torque_sensor[k]) sensors.push_back(k);
+  }
+  const auto frames =
+      static_cast<Eigen::Index>(std::lround(trial.motion.duration_s() * result.rate_hz));
+  result.markers.resize(frames, 3 * static_cast<Eigen::Index>(model.markers.size()));
+  result.encoders.resize(frames, model.tree.coordinate_count());
+  result.torques.resize(frames, model.tree.coordinate_count());
+
+  const int leg = SupportingLeg(model, trial.support);
+  Transform T_camera_foot = experiment.plan.T_camera_world[index];
+  if (!trial.support.empty()) T_camera_foot = FootPose(experiment, index, trial.support[0]);
+  Eigen::VectorXd last;
+  StandingPose pose;
+  for (Eigen::Index i = 0; i < frames; ++i) {
+    const Eigen::VectorXd q = PostureAt(trial.motion, static_cast<double>(i) / result.rate_hz);
+    const std::vector<Transform> T_waist_link = LinkTransforms(model.tree, q);
+    const Transform T_waist_foot =
+        trial.support.empty() ? Transform(Transform::Identity()) : T_waist_link[trial.support[0]];
+    if (last.size() == 0 || q != last) {
+      pose = leg >= 0 ? StandOnLeg(model, geometry, q, leg, T_camera_foot, kGravity, sensors)
+                      : HoldWaist(model, geometry, q, T_camera_foot * T_waist_foot.inverse(),
+                                  kGravity, sensors);
+      last = q;
+    }
+    if (i == 0) {
+      for (int link : trial.support) {
+        result.T_camera_foot.push_back(T_camera_foot * T_waist_foot.inverse() * T_waist_link[link]);
+      }
+    }
+    result.markers.row(i) = pose.markers.reshaped().transpose();
+    result.encoders.row(i) = q.transpose();
+    for (Eigen::Index c = 0; c < result.torques.cols(); ++c) {
+      result.torques(i, c) = pose.torques[model.tree.coordinate_joint[c]];
+    }
+    result.T_camera_waist.push_back(pose.T_ref_waist);
+  }
+  return result;
+}
+
+SimulatedTrial RunMatchedTrial(const MatchedExperiment& experiment, std::size_t index) {
+  SimulatedTrial result;
+  result.motion = PlayMatchedMotion(experiment, index);
+  result.raw =
+      Measure(experiment.plan.robot, experiment.plan.clusters, experiment.plan.trials, index,
+              result.motion, experiment.plan.options.sensors, experiment.plan.options.faults);
+  return result;
+}
+
+WaistGive LargestMatchedDeflection(const MatchedExperiment& experiment, std::size_t index,
+                                   const TrueMotion& motion) {
+  WaistGive largest;
+  const int leg = SupportingLeg(experiment.model, experiment.plan.trials[index].support);
+  if (leg < 0) return largest;
+  const Geometry geometry = ApplyErrors(experiment.model, experiment.truth);
+  for (int i = 0; i < motion.frame_count(); ++i) {
+    const Transform rigid =
+        motion.T_camera_foot[0] *
+        PlaceLeg(experiment.model, geometry, motion.encoders.row(i).transpose(), leg).T_foot_waist;
+    const Transform& found = motion.T_camera_waist[static_cast<std::size_t>(i)];
+    largest.translation =
+        std::max(largest.translation, (found.translation() - rigid.translation()).norm());
+    largest.rotation =
+        std::max(largest.rotation, RotationAngle(rigid.linear().transpose() * found.linear()));
+  }
+  return largest;
+}
+
+}  // namespace elastocal
