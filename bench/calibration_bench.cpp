@@ -76,20 +76,21 @@ BENCHMARK(EstimateGeometric)->Unit(benchmark::kMillisecond);
 struct LastProblem {
   const Experiment& experiment;
   CalibrationResult estimate;
+  Prior prior;
+  std::vector<PostureLoads> loads = {};  // nothing is elastic
 
   explicit LastProblem(const Experiment& e)
       : experiment(e),
-        estimate(Calibrate(e.model, e.recording, e.base, ModelKind::kGeometric,
-                           e.project.calibration)) {}
+        estimate(
+            Calibrate(e.model, e.recording, e.base, ModelKind::kGeometric, e.project.calibration)),
+        prior(e.project.calibration.prior.Scaled(estimate.prior_scale)) {}
 
-  MarkerResiduals Residuals() const {
-    return {estimate.model,
-            experiment.recording,
-            estimate.used,
+  BodyResiduals Residuals() const {
+    return {{estimate.model, experiment.recording, estimate.group, estimate.used, estimate.tied,
+             loads, prior, estimate.noise},
             experiment.base.kept,
             Eigen::VectorXd::Zero(estimate.model.parameter_count()),
-            experiment.project.calibration.prior.Scaled(estimate.prior_scale),
-            estimate.marker_sd};
+            estimate.placement};
   }
   Eigen::VectorXd Start() const {
     return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(experiment.base.kept.size()));
@@ -101,7 +102,7 @@ struct LastProblem {
 /// the library that the analytic problem uses; nothing else is computed.
 class NumericObservation {
  public:
-  NumericObservation(const LastProblem& problem, const MarkerResiduals& shape, int posture)
+  NumericObservation(const LastProblem& problem, const BodyResiduals& shape, int posture)
       : model_(problem.estimate.model),
         shape_(shape),
         marker_sd_(problem.estimate.marker_sd),
@@ -123,7 +124,7 @@ class NumericObservation {
 
  private:
   const ErrorModel& model_;
-  const MarkerResiduals& shape_;  // its blocks and scales
+  const BodyResiduals& shape_;  // its blocks and scales
   double marker_sd_;
   Eigen::VectorXd q_;
   Eigen::Vector3d p_measured_;
@@ -148,8 +149,8 @@ ceres::CostFunction* NumericCost(Functor* functor, int residuals, const std::vec
   return cost;
 }
 
-/// Adds what MarkerResiduals has, block for block.
-void AddNumericResiduals(const LastProblem& problem, const MarkerResiduals& shape,
+/// Adds what BodyResiduals has, block for block.
+void AddNumericResiduals(const LastProblem& problem, const BodyResiduals& shape,
                          const std::vector<double*>& blocks, ceres::Problem& ceres_problem) {
   const ObservationMask& used = problem.estimate.used;
   for (int i = 0; i < used.rows(); ++i) {
@@ -173,7 +174,7 @@ void AddNumericResiduals(const LastProblem& problem, const MarkerResiduals& shap
 
 /// Same start, same linear solver and tolerances as elastocal::Solve has for a single marker.
 ceres::Solver::Summary SolveNumerically(const LastProblem& problem) {
-  const MarkerResiduals shape = problem.Residuals();
+  const BodyResiduals shape = problem.Residuals();
   Eigen::VectorXd x = problem.Start();
   ceres::Problem ceres_problem;
   std::vector<double*> blocks;
@@ -206,7 +207,7 @@ void SolveAgainstNumericDifferentiation(benchmark::State& state) {
   CompareInTurns(
       state, 1,
       [&] {
-        MarkerResiduals residuals = problem.Residuals();
+        BodyResiduals residuals = problem.Residuals();
         analytic = Solve(residuals, problem.Start(), {});
       },
       [&] { numeric = SolveNumerically(problem); });

@@ -10,4 +10,5 @@ set(ELASTOCAL_DEPENDENCIES
   "tinyxml2"
   "yaml-cpp"
   "nlohmann_json"
-  "fmt")
+  "fmt"
+  "Threads")

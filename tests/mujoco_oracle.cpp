@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <Eigen/LU>
+
 namespace elastocal {
 namespace {
 
@@ -79,6 +81,18 @@ Eigen::Isometry3d MujocoOracle::LinkPose(const std::string& link) const {
 
 double MujocoOracle::GravityTorque(const std::string& joint) const {
   return data_->qfrc_bias[model_->jnt_dofadr[JointId(joint)]];
+}
+
+double MujocoOracle::StandingTorque(const std::string& joint, const std::string& fixed_link) const {
+  // The floor's wrench on the link is the one that leaves nothing to the floating joint, the first.
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Jacobian J(6, model_->nv);
+  mj_jacBody(model_.get(), data_.get(), J.data(), J.data() + 3 * model_->nv, LinkId(fixed_link));
+  const Eigen::Map<const Eigen::VectorXd> bias(data_->qfrc_bias, model_->nv);
+  const Eigen::MatrixXd J_base = J.leftCols(6).transpose();
+  const Eigen::VectorXd wrench = J_base.partialPivLu().solve(bias.head(6));
+  const int dof = model_->jnt_dofadr[JointId(joint)];
+  return bias[dof] - J.col(dof).dot(wrench);
 }
 
 Eigen::Vector3d MujocoOracle::PointDerivative(const std::string& joint, const std::string& link,

@@ -34,6 +34,8 @@ class MujocoOracle {
   Eigen::Isometry3d LinkPose(const std::string& link) const;
   /// Torque (or force) by which the joint's motor holds the robot still, N.m or N.
   double GravityTorque(const std::string& joint) const;
+  /// The same while the robot stands on `fixed_link` alone, which is welded to the floor.
+  double StandingTorque(const std::string& joint, const std::string& fixed_link) const;
   /// Derivative of a point fixed to a link [its position in the root's frame, m] with respect to
   /// the position of a joint.
   Eigen::Vector3d PointDerivative(const std::string& joint, const std::string& link,

@@ -114,6 +114,24 @@ TEST_P(AgainstMujoco, GravityTorquesOfALeaningWaist) {
   }
 }
 
+TEST_P(AgainstMujoco, TorquesOfARobotThatStandsOnOneOfItsLinks) {
+  // As above. Any link may stand, a foot among them.
+  const Eigen::Vector3d gravity(1.0, -0.5, -9.7);
+  mujoco_.SetGravity(gravity);
+  for (int i = 0; i < kPostures; ++i) {
+    const Eigen::VectorXd q = NextPosture();
+    mujoco_.Update();
+    const int fixed_link = random_.Index(static_cast<int>(tree_.links.size()));
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(tree_.coordinate_count());
+    for (const Joint& joint : tree_.joints) {
+      expected[joint.coordinate] +=
+          joint.multiplier * mujoco_.StandingTorque(joint.name, tree_.links[fixed_link].name);
+    }
+    const Eigen::VectorXd torques = StaticTorques(tree_, q, gravity, fixed_link);
+    EXPECT_LT((torques - expected).lpNorm<Eigen::Infinity>(), 1e-8) << tree_.links[fixed_link].name;
+  }
+}
+
 TEST_P(AgainstMujoco, TotalMass) { EXPECT_NEAR(TotalMass(tree_), mujoco_.TotalMass(), 1e-9); }
 
 INSTANTIATE_TEST_SUITE_P(Robots, AgainstMujoco,

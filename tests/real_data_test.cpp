@@ -69,8 +69,8 @@ TEST_F(LeftArm, ErrorsAreAsSmallAsPromised) {
   const ModelComparison comparison = CompareModels(model_, recording_, base_, project_.calibration);
   const CrossValidation folds =
       CrossValidate(comparison, model_, recording_, base_, project_.calibration, 10, 1);
-  EXPECT_EQ(comparison.geometric().termination, Termination::kConverged);
-  EXPECT_TRUE(comparison.geometric().outliers.empty());
+  EXPECT_EQ(comparison.best().termination, Termination::kConverged);
+  EXPECT_TRUE(comparison.best().outliers.empty());
   EXPECT_LE(comparison.metrics[0].rmse_3d, 5.2e-3);
   EXPECT_LE(comparison.metrics[1].rmse_3d, 1.5e-3);
   EXPECT_LE(comparison.metrics[2].rmse_3d, 0.65e-3);

@@ -19,13 +19,16 @@ enum class ModelKind {
   kUncalibrated,  ///< waist and marker positions only (NCM)
   kOffsetsOnly,   ///< and joint offsets theta
   kGeometric,     ///< all identifiable geometric parameters (GCM)
+  kFull,          ///< and the elastic ones (FCM)
 };
 
-inline constexpr ModelKind kModelKinds[] = {ModelKind::kUncalibrated, ModelKind::kOffsetsOnly,
-                                            ModelKind::kGeometric};
+inline constexpr int kModelKindCount = 4;
 
-/// uncalibrated, offsets_only, geometric
+/// uncalibrated, offsets_only, geometric, full
 const char* ModelKindName(ModelKind kind);
+
+/// The kinds that mean something for a model: all, or all but kFull where nothing is elastic.
+std::vector<ModelKind> ModelKinds(const ErrorModel& model);
 
 /// What became of a parameter.
 enum class ParameterStatus {
@@ -44,7 +47,9 @@ struct CalibrationResult {
   /// The error model with the nominal pose of the waist that T0 deviates from (found by
   /// registration), in the reference frame of the recording.
   ErrorModel model;
-  Eigen::VectorXd delta;                ///< errors, one a parameter of `model`; rad and m
+  Eigen::VectorXd delta;                ///< errors, one a parameter of `model`; SI units
+  Placement placement;                  ///< where the robot stood; empty for a table of postures
+  std::vector<Slip> slips;              ///< of feet
   std::vector<ParameterStatus> status;  ///< one a parameter
   /// Posterior standard deviation, one a parameter; for an unsupported one it says how little is
   /// known; NaN where none applies.
@@ -55,11 +60,16 @@ struct CalibrationResult {
   Posterior posterior;  ///< of estimated and unsupported parameters together
   std::vector<Correlation> correlations;
 
-  ObservationMask used;           ///< observations that took part
-  std::vector<Outlier> outliers;  ///< those that did not, and why
-  double marker_sd = 0.0;         ///< of one coordinate, m; estimated unless given
-  PriorScale prior_scale;         ///< factors by which the prior was widened
-  int equations = 0;              ///< 3 a used observation
+  ObservationMask used;                      ///< observations that took part
+  std::vector<Outlier> outliers;             ///< those that did not, and why
+  std::vector<char> tied;                    ///< postures whose support constraint took part
+  std::vector<LooseFooting> loose_footings;  ///< those on one foot whose did not, and why
+  LoadReport loads;                          ///< loads that were not measured
+  std::vector<int> group;                    ///< noise group of each posture
+  Noise noise;                               ///< by group; estimated unless given
+  double marker_sd = 0.0;                    ///< of one coordinate, over all groups, m
+  PriorScale prior_scale;                    ///< factors by which the prior was widened
+  int equations = 0;                         ///< 3 a used observation
 
   /// Of the last solve; and whether noise, prior and the verdict on outliers came to rest.
   Termination termination = Termination::kFailure;
@@ -72,7 +82,8 @@ struct CalibrationResult {
 
 /// Estimates the parameters of one kind of model from a recording (paper section 5):
 ///
-/// 1. waist pose by registration, then waist and marker positions alone;
+/// 1. waist pose by registration (of trials: in each posture), then waist and marker positions
+/// alone;
 /// 2. all parameters of the kind under Cauchy's loss; observations beyond what noise and
 ///    uncertainty explain are named outliers and left out;
 /// 3. least squares with Gaussian prior on the rest; the noise of a marker coordinate (unless it is
@@ -82,14 +93,14 @@ struct CalibrationResult {
 ///
 /// Steps 3 and 4 are repeated until the verdict on outliers stands.
 ///
-/// `base` holds the identifiable parameters of `model` for this kind. `fixed_mask`, where given,
-/// says which observations to use, instead of looking for outliers.
+/// `base` holds the identifiable parameters of `model` for this kind. `fixed`, where given, says
+/// which observations and constraints to use, instead of looking for outliers.
+/// Of trials, all are estimated together (eq. 14): see BodyResiduals.
 /// Throws InputError when there are fewer equations than parameters. Non-convergence is told by
 /// `termination`.
 CalibrationResult Calibrate(const ErrorModel& model, const Recording& recording,
                             const BaseParameters& base, ModelKind kind,
-                            const CalibrationOptions& options,
-                            const ObservationMask* fixed_mask = nullptr);
+                            const CalibrationOptions& options, const Selection* fixed = nullptr);
 
 /// Fits only waist and marker positions to a recording, the joints' errors being given by name
 /// [rad or m]: what it takes to use a calibration on another day. Names of joints that move no
@@ -98,7 +109,7 @@ CalibrationResult Calibrate(const ErrorModel& model, const Recording& recording,
 CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recording,
                                  const BaseParameters& base, const CalibrationOptions& options,
                                  const std::map<std::string, double>& joint_errors,
-                                 const ObservationMask* fixed_mask = nullptr);
+                                 const Selection* fixed = nullptr);
 
 /// Whether an estimated parameter differs from nominal by more than its 95 % interval.
 bool Significant(const CalibrationResult& result, int parameter);

@@ -15,11 +15,17 @@ Prior::Prior() {
   for (ParameterKind kind : {ParameterKind::kR, ParameterKind::kD, ParameterKind::kB}) {
     (*this)[kind] = length;
   }
+  (*this)[ParameterKind::kTorsion] = 5e-5;
+  (*this)[ParameterKind::kBending] = 5e-5;
+  (*this)[ParameterKind::kBaseForce] = 1e-5;
+  (*this)[ParameterKind::kBaseMoment] = 5e-5;
+  (*this)[ParameterKind::kTorqueBias] = 2.0;
 }
 
 Prior Prior::Scaled(const PriorScale& scale) const {
   Prior scaled = *this;
   for (int kind = 0; kind < kParameterKindCount; ++kind) {
+    if (IsElastic(static_cast<ParameterKind>(kind))) continue;
     const bool angle = IsAngle(static_cast<ParameterKind>(kind));
     scaled.sd[kind] *= angle ? scale.angles : scale.lengths;
   }

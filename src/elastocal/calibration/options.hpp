@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "elastocal/robot/parameters.hpp"
+#include "elastocal/robot/posture_loads.hpp"
 
 namespace elastocal {
 
@@ -15,16 +16,30 @@ struct PriorScale {
 /// The prior is widened no further than this: what lies beyond is no error of a robot.
 inline constexpr double kMaxPriorScale = 10.0;
 
-/// Standard deviation of the Gaussian prior on each kind of parameter, around nominal: rad or m;
-/// infinite for none. T0 and marker positions have none: nobody knows them beforehand.
+/// Standard deviation of the Gaussian prior on each kind of parameter, around nominal, in the
+/// parameter's SI unit; infinite for none. T0 and marker positions have none: nobody knows them
+/// beforehand.
 struct Prior {
   std::array<double, kParameterKindCount> sd;
 
-  Prior();  ///< 0.5 degrees and 1 mm on joints, none on T0 and markers
-  /// The prior with the standard deviations of angles and of lengths multiplied.
+  /// 0.5 degrees and 1 mm on joints, none on T0 and markers; torsion, bending and legs about an
+  /// axis 5e-5 rad/(N.m), legs along an axis 1e-5 m/N, torque sensors 2 N.m.
+  Prior();
+  /// The prior with the standard deviations of angles and of lengths multiplied; elastic ones stay.
   Prior Scaled(const PriorScale& scale) const;
   double& operator[](ParameterKind kind) { return sd[static_cast<int>(kind)]; }
   double operator[](ParameterKind kind) const { return sd[static_cast<int>(kind)]; }
+};
+
+/// How the support foot's constraint (eq. 14) enters.
+enum class SupportForm {
+  /// The waist of each posture is unknown: tied to the foot by the elastic leg within what that
+  /// model leaves unexplained (estimated), and seen by its markers and those it carries.
+  kNuisance,
+  /// The leg is taken as exact: everything hangs on the foot.
+  kFootRooted,
+  /// The waist's own markers are taken as exact, as eq. 2 does; the foot may vary at a penalty.
+  kPenalty,
 };
 
 struct CalibrationOptions {
@@ -46,6 +61,11 @@ struct CalibrationOptions {
   double support_threshold = 0.9;
   /// Correlations at or above this are reported.
   double correlation_threshold = 0.9;
+  SupportForm support_form = SupportForm::kNuisance;
+  /// A foot whose markers are displaced by more than this between two postures has slipped: it
+  /// stands elsewhere from there on, m.
+  double slip = 1e-3;
+  LoadOptions load = {};
   int max_iterations = 100;
 };
 

@@ -11,36 +11,40 @@
 namespace elastocal {
 namespace {
 
+constexpr double kLeastVariance = 0.05;
+
 /// Squared Mahalanobis distance, with variances no smaller than a part of the noise: an observation
-/// that alone determines a parameter has a residual of zero and a variance of zero.
-double SquaredDistance(const Eigen::Vector3d& residual, const Eigen::Matrix3d& covariance,
-                       double marker_sd) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  const Eigen::Array3d variances = eigen.eigenvalues().array().max(0.05 * marker_sd * marker_sd);
+/// that alone determines a parameter has a residual of zero and a variance of zero. All in units of
+/// the noise.
+double SquaredDistance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+  const Eigen::ArrayXd variances = eigen.eigenvalues().array().max(kLeastVariance);
   return ((eigen.eigenvectors().transpose() * residual).array().square() / variances).sum();
 }
 
-/// Of the squared distance of an observation that the noise was estimated from, among others.
-double UsedThreshold(double level, double freedom) {
-  if (std::isinf(freedom)) return ChiSquareQuantile(level, 3.0);
-  return freedom > 3.0 ? freedom * BetaQuantile(level, 1.5, 0.5 * (freedom - 3.0))
-                       : std::numeric_limits<double>::infinity();
+/// Of the squared distance of an observation of `size` numbers that the noise was estimated from,
+/// among others.
+double UsedThreshold(double level, double size, double freedom) {
+  if (std::isinf(freedom)) return ChiSquareQuantile(level, size);
+  return freedom > size ? freedom * BetaQuantile(level, 0.5 * size, 0.5 * (freedom - size))
+                        : std::numeric_limits<double>::infinity();
 }
 
-double UnusedThreshold(double level, double freedom) {
-  return std::isinf(freedom) ? ChiSquareQuantile(level, 3.0)
-                             : 3.0 * FisherQuantile(level, 3.0, freedom);
+double UnusedThreshold(double level, double size, double freedom) {
+  return std::isinf(freedom) ? ChiSquareQuantile(level, size)
+                             : size * FisherQuantile(level, size, freedom);
 }
 
 }  // namespace
 
 Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recording,
-                              const Eigen::VectorXd& delta) {
+                              const Eigen::VectorXd& delta, const CalibrationOptions& options) {
   const Geometry geometry = ApplyErrors(model, delta);
+  const std::vector<PostureLoads> loads = ComputeLoads(model, recording, delta, {}, options.load);
   Eigen::MatrixXd norms(recording.posture_count(), recording.marker_count());
   for (int i = 0; i < norms.rows(); ++i) {
     const Eigen::Matrix3Xd predicted =
-        MarkerPositions(model, geometry, recording.q.row(i).transpose());
+        MarkerPositions(model, geometry, recording.q.row(i).transpose(), loads[i].joints);
     for (int m = 0; m < norms.cols(); ++m) {
       norms(i, m) = (MarkerPosition(recording, i, m) - predicted.col(m)).norm();
     }
@@ -48,45 +52,40 @@ Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recordin
   return norms;
 }
 
-std::vector<Outlier> FindOutliers(const ErrorModel& model, const Recording& recording,
-                                  const ObservationMask& used, const Eigen::VectorXd& delta,
-                                  const Posterior& posterior, const NoiseLevel& noise,
-                                  double probability) {
-  const ObservationMask seen = SeenMask(recording);
-  const double level = 1.0 - probability / std::max<double>(1.0, seen.count());
-  const double threshold_used = UsedThreshold(level, noise.degrees_of_freedom);
-  const double threshold_unused = UnusedThreshold(level, noise.degrees_of_freedom);
-  const double marker_sd = noise.marker_sd;
-  // Covariance over all parameters, zero for those that are not estimated.
-  Eigen::MatrixXd covariance =
-      Eigen::MatrixXd::Zero(model.parameter_count(), model.parameter_count());
-  covariance(posterior.parameters, posterior.parameters) = posterior.covariance;
-
-  GeneralizedJacobian jacobian(model);
-  const Geometry geometry = ApplyErrors(model, delta);
-  std::vector<Eigen::MatrixXd> by_marker;
-  for (int m = 0; m < model.marker_count(); ++m) {
-    by_marker.emplace_back(covariance(jacobian.Columns(m), jacobian.Columns(m)));
+OutlierVerdict FindOutliers(const Fit& fit, const std::vector<int>& group, const Selection& used,
+                            double probability) {
+  const double level =
+      1.0 - probability / std::max<double>(1.0, static_cast<double>(fit.meanings.size()));
+  // Quantiles of three (markers) and six numbers (constraints), not used and used.
+  double thresholds[2][2];
+  for (int tie = 0; tie < 2; ++tie) {
+    const double size = tie == 0 ? 3.0 : 6.0;
+    thresholds[tie][0] = UnusedThreshold(level, size, fit.degrees_of_freedom);
+    thresholds[tie][1] = UsedThreshold(level, size, fit.degrees_of_freedom);
   }
-  std::vector<Outlier> outliers;
-  for (int i = 0; i < seen.rows(); ++i) {
-    jacobian.Evaluate(geometry, recording.q.row(i).transpose());
-    for (int m = 0; m < seen.cols(); ++m) {
-      if (!seen(i, m)) continue;
-      const auto J = jacobian.Block(m);
-      const Eigen::Vector3d residual = MarkerPosition(recording, i, m) - jacobian.Position(m);
-      // Within three standard deviations of noise nothing can be an outlier: spare the algebra.
-      if (residual.norm() < 3.0 * marker_sd * std::sqrt(0.05)) continue;
-      const Eigen::Matrix3d explained = J * by_marker[m] * J.transpose();
-      const Eigen::Matrix3d white = marker_sd * marker_sd * Eigen::Matrix3d::Identity();
-      const double distance = SquaredDistance(
-          residual, used(i, m) ? Eigen::Matrix3d(white - explained) : white + explained, marker_sd);
-      if (distance > (used(i, m) ? threshold_used : threshold_unused)) {
-        outliers.push_back({i, m, residual.norm(), std::sqrt(distance)});
-      }
+  OutlierVerdict verdict;
+  for (std::size_t block = 0; block < fit.meanings.size(); ++block) {
+    const auto [posture, marker] = fit.meanings[block];
+    const Eigen::VectorXd& residual = fit.residuals[block];
+    // Within three standard deviations of noise nothing can be an outlier: spare the algebra.
+    if (residual.squaredNorm() < 9.0 * kLeastVariance) continue;
+    const bool tie = marker < 0;
+    const bool in_use = tie ? used.tied[posture] != 0 : used.markers(posture, marker);
+    const Eigen::MatrixXd white = Eigen::MatrixXd::Identity(residual.size(), residual.size());
+    const Eigen::MatrixXd& explained = fit.posterior.explained[block];
+    const double distance = SquaredDistance(residual, white + (in_use ? -1.0 : 1.0) * explained);
+    if (!(distance > thresholds[tie ? 1 : 0][in_use ? 1 : 0])) continue;
+    if (tie) {
+      verdict.footings.push_back(
+          {posture, residual.head<3>().norm() * fit.noise.waist_position_sd[group[posture]],
+           std::sqrt(distance)});
+    } else {
+      verdict.markers.push_back({posture, marker,
+                                 residual.norm() * fit.noise.marker_sd[group[posture]],
+                                 std::sqrt(distance)});
     }
   }
-  return outliers;
+  return verdict;
 }
 
 }  // namespace elastocal

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "elastocal/calibration/posterior.hpp"
+#include "elastocal/calibration/fit.hpp"
 
 namespace elastocal {
 
@@ -14,27 +14,33 @@ struct Outlier {
   double normalised = 0.0;
 };
 
-/// Distances between measured and predicted marker positions, m: postures x markers; NaN where a
-/// marker was not seen.
-Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recording,
-                              const Eigen::VectorXd& delta);
-
-/// How sure the noise of a marker coordinate is.
-struct NoiseLevel {
-  double marker_sd = 0.0;  ///< m
-  /// Degrees of freedom of the residuals that it was estimated from; infinite where it was given.
-  double degrees_of_freedom = 0.0;
+/// A posture whose support constraint does not hold: the waist is not where the leg on its foot
+/// puts it, whatever the model's uncertainty.
+struct LooseFooting {
+  int posture = 0;
+  double distance = 0.0;    ///< of the waist from there, m
+  double normalised = 0.0;  ///< Mahalanobis distance
 };
 
+struct OutlierVerdict {
+  std::vector<Outlier> markers;
+  std::vector<LooseFooting> footings;
+};
+
+/// Distances between measured and predicted marker positions, m: postures x markers; NaN where a
+/// marker was not seen. For a recording in a frame fixed to the waist.
+Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recording,
+                              const Eigen::VectorXd& delta, const CalibrationOptions& options = {});
+
 /// Observations that are further from the model than any observation of a clean recording would be,
-/// but for a chance of `probability`. The squared Mahalanobis distance is judged, with a covariance
-/// of sd^2 I less J C J^T where the observation took part in the estimate (`used`), and plus J C
-/// J^T where it did not. Its quantile is that of the chi-square distribution (3 degrees of freedom)
-/// where the noise is known; where it was estimated, of the beta distribution (the observation is
-/// part of the estimate) or of Fisher's F (it is not).
-std::vector<Outlier> FindOutliers(const ErrorModel& model, const Recording& recording,
-                                  const ObservationMask& used, const Eigen::VectorXd& delta,
-                                  const Posterior& posterior, const NoiseLevel& noise,
-                                  double probability);
+/// but for a chance of `probability`, in a fit with its posterior up to date. The squared
+/// Mahalanobis distance is judged, with the covariance that noise and the uncertainty of the
+/// prediction give: noise less what the fit explains where the observation took part in the
+/// estimate
+/// (`used`), plus it where it did not. Its quantile is that of the chi-square distribution where
+/// the noise is known; where it was estimated, of the beta distribution (the observation is part of
+/// the estimate) or of Fisher's F (it is not). Constraints are judged likewise.
+OutlierVerdict FindOutliers(const Fit& fit, const std::vector<int>& group, const Selection& used,
+                            double probability);
 
 }  // namespace elastocal

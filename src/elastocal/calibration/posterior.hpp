@@ -12,20 +12,23 @@ namespace elastocal {
 struct Posterior {
   std::vector<int> parameters;  ///< indices into the model's, ascending
   Eigen::MatrixXd covariance;   ///< of these; rad^2, rad m, m^2
-  /// Number of parameters that the data, rather than the prior, determine: trace of the share of
-  /// the data in the information. What is left of the number of equations after subtracting it is
-  /// the degrees of freedom of the residuals.
+  /// Number of parameters (poses included) that the data, rather than the prior, determine: trace
+  /// of the share of the data in the information. What is left of the number of equations after
+  /// subtracting it is the degrees of freedom of the residuals.
   double effective_parameters = 0.0;
+  /// By residual block: covariance of its prediction, in units of the residual's own variance.
+  std::vector<Eigen::MatrixXd> explained;
 
   Eigen::VectorXd StandardDeviations() const { return covariance.diagonal().cwiseSqrt(); }
 };
 
-/// Inverse of the information J^T J / marker_sd^2 + prior at `delta`, over the observations in
-/// `mask`. A parameter without prior gets one of 1 m or 1 rad here (not in the estimate), so that
-/// one that was never excited has a large uncertainty instead of none.
-Posterior ComputePosterior(const ErrorModel& model, const Recording& recording,
-                           const ObservationMask& mask, const std::vector<int>& parameters,
-                           const Eigen::VectorXd& delta, const Prior& prior, double marker_sd);
+/// Uncertainty of `parameters`, the unknowns of `residuals` in that order, at `x`: inverse of the
+/// information J^T J that observations, constraints and prior give together, poses of waist and
+/// feet being unknown as well. A parameter without prior gets one of 1 m or 1 rad here (not in the
+/// estimate), so that one that was never excited has a large uncertainty instead of none.
+Posterior ComputePosterior(const ErrorModel& model, BodyResiduals& residuals,
+                           const std::vector<int>& parameters, const Eigen::VectorXd& x,
+                           const Prior& prior);
 
 /// Two parameters that the data can hardly tell apart.
 struct Correlation {

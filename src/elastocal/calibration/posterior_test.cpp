@@ -18,6 +18,7 @@ class PosteriorTest : public ::testing::Test {
     Random random(4);
     recording_.q.resize(12, model_.tree.coordinate_count());
     for (int i = 0; i < 12; ++i) recording_.q.row(i) = RandomPosture(model_.tree, random);
+    recording_.markers.setZero(12, 27);
     mask_.setConstant(12, 9, true);
     mask_(3, 4) = false;
     delta_ = random.NormalVector(model_.parameter_count(), 1e-3);
@@ -42,6 +43,17 @@ class PosteriorTest : public ::testing::Test {
     return information / (marker_sd * marker_sd);
   }
 
+  Posterior Compute(double marker_sd) const {
+    const std::vector<char> tied(12, 1);
+    const std::vector<int> group(12, 0);
+    const Noise noise{Eigen::VectorXd::Constant(1, marker_sd), {}, {}};
+    const std::vector<PostureLoads> loads;
+    const Placement placement;
+    BodyResiduals residuals({model_, recording_, group, mask_, tied, loads, prior_, noise},
+                            parameters_, delta_, placement);
+    return ComputePosterior(model_, residuals, parameters_, residuals.Start(), prior_);
+  }
+
   ErrorModel model_ = TalosLegModel();
   Recording recording_;
   ObservationMask mask_;
@@ -56,20 +68,15 @@ TEST_F(PosteriorTest, CovarianceIsTheInverseOfDataAndPriorInformation) {
   information(0, 0) += std::pow(prior_[ParameterKind::kTheta], -2);
   information(1, 1) += std::pow(prior_[ParameterKind::kD], -2);
   information(2, 2) += 1.0;  // no prior: one of a metre
-  const Posterior posterior =
-      ComputePosterior(model_, recording_, mask_, parameters_, delta_, prior_, kMarkerSd);
+  const Posterior posterior = Compute(kMarkerSd);
   const Eigen::Matrix3d expected = information.inverse();
   EXPECT_LT((posterior.covariance - expected).norm(), 1e-10 * expected.norm());
 }
 
 TEST_F(PosteriorTest, EffectiveParametersGoFromNoneToAll) {
   // Exact measurements determine everything, worthless ones nothing but the prior.
-  EXPECT_NEAR(ComputePosterior(model_, recording_, mask_, parameters_, delta_, prior_, 1e-6)
-                  .effective_parameters,
-              3.0, 1e-4);
-  EXPECT_NEAR(ComputePosterior(model_, recording_, mask_, parameters_, delta_, prior_, 1e4)
-                  .effective_parameters,
-              0.0, 1e-4);
+  EXPECT_NEAR(Compute(1e-6).effective_parameters, 3.0, 1e-4);
+  EXPECT_NEAR(Compute(1e4).effective_parameters, 0.0, 1e-4);
 }
 
 TEST(StrongCorrelations, StrongestFirstAndNoneBelowTheThreshold) {

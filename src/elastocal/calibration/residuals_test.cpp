@@ -31,8 +31,17 @@ class Residuals : public ::testing::Test {
   Recording recording_ = RecordingWithGaps(model_);
   std::vector<int> free_ = FindBaseParameters(model_, {.postures = 100}).kept;
   Eigen::VectorXd fixed_ = Random(2).NormalVector(model_.parameter_count(), 0.01);
-  MarkerResiduals problem_{
-      model_, recording_, SeenMask(recording_), free_, fixed_, CalibrationOptions().prior, 0.2e-3};
+  ObservationMask used_ = SeenMask(recording_);
+  std::vector<char> tied_ = std::vector<char>(4, 1);
+  std::vector<int> group_ = NoiseGroups(model_, recording_);
+  std::vector<PostureLoads> loads_;
+  Prior prior_;
+  Noise noise_{Eigen::VectorXd::Constant(1, 0.2e-3), {}, {}};
+  Placement placement_;
+  BodyResiduals problem_{{model_, recording_, group_, used_, tied_, loads_, prior_, noise_},
+                         free_,
+                         fixed_,
+                         placement_};
 
   Eigen::VectorXd All(const Eigen::VectorXd& x) {
     problem_.Evaluate(x, false);
@@ -77,7 +86,9 @@ TEST_F(Residuals, UnseenMarkersTakeNoPart) {
 TEST_F(Residuals, ErrorsAndUnknownsAreOneToOne) {
   const Eigen::VectorXd x = Random(3).NormalVector(static_cast<Eigen::Index>(free_.size()), 1.0);
   const Eigen::VectorXd delta = problem_.ToErrors(x);
-  EXPECT_LT((problem_.FromErrors(delta) - x).norm(), 1e-14);
+  const BodyResiduals again({model_, recording_, group_, used_, tied_, loads_, prior_, noise_},
+                            free_, delta, placement_);
+  EXPECT_LT((again.Start() - x).norm(), 1e-14);
   for (int i = 0; i < model_.parameter_count(); ++i) {
     if (std::binary_search(free_.begin(), free_.end(), i)) continue;
     EXPECT_EQ(delta[i], fixed_[i]) << i;

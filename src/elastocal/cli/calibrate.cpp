@@ -35,7 +35,7 @@ CalibrationRun Calculate(const Session& session, const CalibrateOptions& options
                       options.folds, options.common.seed.value_or(1),
                       TerminalProgress("cross-validation", options.common.quiet));
   }
-  run.excitation = ExcitationOf(session, run.comparison.geometric());
+  run.excitation = ExcitationOf(session, run.comparison.best());
   run.verdict =
       Judge(run.comparison, run.cross_validation, run.excitation, run.recording, settings);
   run.warnings.insert(run.warnings.end(), run.verdict.remarks.begin(), run.verdict.remarks.end());
@@ -57,7 +57,7 @@ Files DeployableFiles(const CalibrateOptions& options, const Session& session,
                       CalibrationRun& run) {
   const ZeroOffsets zero_offsets =
       options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin;
-  const CalibrationResult& result = run.comparison.geometric();
+  const CalibrationResult& result = run.comparison.best();
   const CalibratedUrdf urdf = MakeCalibratedUrdf(
       ReadFile(session.project.urdf), session.project.urdf.string(), result, zero_offsets);
   run.warnings.insert(run.warnings.end(), urdf.warnings.begin(), urdf.warnings.end());

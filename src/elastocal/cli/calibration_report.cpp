@@ -28,7 +28,7 @@ std::vector<int> WithStatus(const CalibrationResult& result, ParameterStatus sta
 }
 
 std::string ParameterTable(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.geometric();
+  const CalibrationResult& result = run.comparison.best();
   const std::vector<int> weak =
       HardlyExcited(result.model.parameters, run.base.kept, run.excitation);
   TextTable table({"parameter", "unit", "estimate", "sd", "95 % interval", ""});
@@ -52,7 +52,7 @@ std::string ParameterTable(const CalibrationRun& run) {
 
 std::string OutlierText(const CalibrationRun& run) {
   constexpr std::size_t kMost = 10;
-  const auto& outliers = run.comparison.geometric().outliers;
+  const auto& outliers = run.comparison.best().outliers;
   if (outliers.empty()) return "Outliers: none\n";
   std::string text = fmt::format("Outliers (left out of the fit): {}\n", outliers.size());
   for (std::size_t i = 0; i < std::min(kMost, outliers.size()); ++i) {
@@ -89,7 +89,8 @@ std::string Conclusion(const CalibrationRun& run) {
   const auto& metrics = held_out ? run.cross_validation.metrics : run.comparison.metrics;
   return fmt::format(
       "Verdict: from {} to {} mm {}. {}\n", Millimetres(metrics[0].rmse_3d),
-      Millimetres(metrics[2].rmse_3d), held_out ? "on held-out postures" : "in the fit",
+      Millimetres(metrics[static_cast<int>(run.comparison.best_kind())].rmse_3d),
+      held_out ? "on held-out postures" : "in the fit",
       held_out ? "Before deploying, validate on another recording."
                : "Cross-validate (--kfold 10) and validate on another recording before deploying.");
 }
@@ -119,7 +120,7 @@ std::string ModelTable(const CalibrationRun& run) {
     header.push_back("max mm");
   }
   TextTable table(header);
-  for (ModelKind kind : kModelKinds) {
+  for (ModelKind kind : run.comparison.kinds) {
     const ErrorMetrics& fit = run.comparison.metrics[static_cast<int>(kind)];
     std::vector<std::string> row = {ModelKindName(kind), Millimetres(fit.rmse_3d),
                                     Millimetres(fit.rmse_coordinate), Millimetres(fit.maximum)};
@@ -134,12 +135,12 @@ std::string ModelTable(const CalibrationRun& run) {
 }
 
 std::string DescribeRun(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.geometric();
+  const CalibrationResult& result = run.comparison.best();
   const Excitation& excitation = run.excitation;
   std::string text = fmt::format(
       "{}: {} postures, {} markers, {} equations; {} of {} parameters identifiable (theory {})\n\n",
       result.model.tree.name, run.recording.posture_count(), run.recording.marker_count(),
-      result.equations, run.base.kept.size(), result.model.parameter_count(),
+      result.equations, run.base.geometric_count, result.model.parameter_count(),
       run.base.theoretical_count);
   text += ModelTable(run);
   text += "  RMSE is what remains after fitting where the waist and the markers are\n";

@@ -39,6 +39,7 @@ using Action = std::function<int()>;
 void AddInspect(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
 void AddValidate(CLI::App& app, Action& action);
+void AddCompare(CLI::App& app, Action& action);
 void AddDemo(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);
 

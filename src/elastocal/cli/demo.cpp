@@ -116,7 +116,7 @@ int Demo(const DemoOptions& options) {
       "origin"};
   CalibrationRun run;
   const int exit_code = RunCalibration(calibrate, &run);
-  Print(options.common.Silent(), TruthTable(truth, run.comparison.geometric()));
+  Print(options.common.Silent(), TruthTable(truth, run.comparison.best()));
   return exit_code;
 }
 

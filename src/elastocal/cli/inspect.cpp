@@ -92,8 +92,7 @@ ChainReport InspectChain(const std::string& name, const RobotTree& tree,
   ChainReport report{name, 0, MakeErrorModel(tree, markers, project.placement), {}, {}};
   report.joints = static_cast<int>(report.model.active_joints.size());
   report.base = FindBaseParameters(report.model, options);
-  if (static_cast<int>(report.base.kept.size()) < report.base.theoretical_count &&
-      options.hold.empty()) {
+  if (report.base.geometric_count < report.base.theoretical_count && options.hold.empty()) {
     report.lost = LostBySpecialMarkers(report.model, options);
   }
   return report;
@@ -125,7 +124,7 @@ std::string CountTable(const std::vector<ChainReport>& reports) {
     table.Add(
         {report.name, std::to_string(report.joints), std::to_string(report.model.marker_count()),
          std::to_string(report.model.parameter_count()), std::to_string(report.base.held.size()),
-         std::to_string(report.base.kept.size()), std::to_string(report.base.theoretical_count),
+         std::to_string(report.base.geometric_count), std::to_string(report.base.theoretical_count),
          fmt::format("{:.1e}", report.base.smallest_kept),
          fmt::format("{:.1e}", report.base.largest_dropped)});
   }
@@ -163,7 +162,7 @@ Json ChainJson(const ChainReport& report) {
           {"joints", report.joints},
           {"markers", report.model.marker_count()},
           {"parameters", report.model.parameter_count()},
-          {"identifiable", report.base.kept.size()},
+          {"identifiable", report.base.geometric_count},
           {"identifiable_theory", report.base.theoretical_count},
           {"smallest_kept", report.base.smallest_kept},
           {"largest_dropped", report.base.largest_dropped},

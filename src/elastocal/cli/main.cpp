@@ -48,6 +48,7 @@ int Run(int argc, char** argv) {
   AddInspect(app, action);
   AddCalibrate(app, action);
   AddValidate(app, action);
+  AddCompare(app, action);
   AddDemo(app, action);
   AddSimulate(app, action);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {

@@ -26,11 +26,11 @@ std::string StuckJoints(const ErrorModel& model) {
 
 void WarnOfLostRank(const ErrorModel& model, const IdentifiabilityOptions& options,
                     const BaseParameters& base, std::vector<std::string>& warnings) {
-  if (static_cast<int>(base.kept.size()) >= base.theoretical_count) return;
+  if (base.geometric_count >= base.theoretical_count) return;
   const std::string stuck = StuckJoints(model);
   const std::vector<int> lost = LostBySpecialMarkers(model, options);
-  const std::string count =
-      fmt::format("{} of {} parameters are identifiable", base.kept.size(), base.theoretical_count);
+  const std::string count = fmt::format("{} of {} parameters are identifiable",
+                                        base.geometric_count, base.theoretical_count);
   if (!lost.empty()) {
     warnings.push_back(fmt::format(
         "only {}: the nominal marker positions are special (on a joint axis?). Lost: {}. Give "
@@ -92,11 +92,32 @@ void PrintWarnings(const std::vector<std::string>& warnings) {
 }
 
 double InUserUnits(const Parameter& parameter, double value) {
-  return value * (parameter.unit == ParameterUnit::kRadian ? 180.0 / M_PI : 1e3);
+  switch (parameter.unit) {
+    case ParameterUnit::kRadian:
+      return value * 180.0 / M_PI;
+    case ParameterUnit::kMetre:
+      return value * 1e3;
+    case ParameterUnit::kRadianPerNewtonMetre:
+    case ParameterUnit::kMetrePerNewton:
+      return value * 1e6;
+    default:
+      return value;
+  }
 }
 
 const char* UserUnit(const Parameter& parameter) {
-  return parameter.unit == ParameterUnit::kRadian ? "deg" : "mm";
+  switch (parameter.unit) {
+    case ParameterUnit::kRadian:
+      return "deg";
+    case ParameterUnit::kMetre:
+      return "mm";
+    case ParameterUnit::kRadianPerNewtonMetre:
+      return "urad/(N.m)";
+    case ParameterUnit::kMetrePerNewton:
+      return "um/N";
+    default:
+      return UnitName(parameter.unit);
+  }
 }
 
 std::string JoinNames(const std::vector<Parameter>& parameters, const std::vector<int>& which) {

@@ -31,9 +31,14 @@ int PriorityClass(ParameterKind kind, ExternalPriority external) {
   }
 }
 
+/// Of the joints that move a marker; a leg that only carries shows nothing in the markers.
 int TheoreticalCount(const ErrorModel& model) {
+  std::set<int> joints;
+  for (const Marker& marker : model.markers) {
+    for (int k : JointsToBody(model.tree, model.tree.links[marker.link].body)) joints.insert(k);
+  }
   int count = 3 * model.marker_count();
-  for (int joint : model.active_joints) {
+  for (int joint : joints) {
     count += model.tree.joints[joint].type == JointType::kRevolute ? 4 : 2;
   }
   return count;
@@ -50,6 +55,25 @@ std::vector<int> SortingOrder(const std::vector<int>& values) {
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
   std::sort(order.begin(), order.end(), [&](int a, int b) { return values[a] < values[b]; });
   return order;
+}
+
+/// Geometry does not decide on elastic parameters: they are kept, and nothing is regrouped into
+/// them.
+void KeepElastic(const ErrorModel& model, BaseParameters& base) {
+  std::vector<int> kept = base.kept;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const bool held = std::binary_search(base.held.begin(), base.held.end(), i);
+    if (IsElastic(model.parameters[i].kind) && !held) kept.push_back(i);
+  }
+  std::sort(kept.begin(), kept.end());
+  Eigen::MatrixXd regrouping =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kept.size()), base.regrouping.cols());
+  for (std::size_t i = 0; i < base.kept.size(); ++i) {
+    const auto at = std::lower_bound(kept.begin(), kept.end(), base.kept[i]) - kept.begin();
+    regrouping.row(at) = base.regrouping.row(static_cast<Eigen::Index>(i));
+  }
+  base.kept = std::move(kept);
+  base.regrouping = std::move(regrouping);
 }
 
 }  // namespace
@@ -78,6 +102,7 @@ BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd
   base.held = MatchParameters(model.parameters, options.hold);
   std::vector<int> order;
   for (int i = 0; i < model.parameter_count(); ++i) {
+    if (IsElastic(model.parameters[i].kind)) continue;
     if (!std::binary_search(base.held.begin(), base.held.end(), i)) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -98,6 +123,8 @@ BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd
   base.regrouping = qr.regrouping(SortingOrder(kept), SortingOrder(dropped));
   base.kept = Sorted(kept);
   base.dropped = Sorted(dropped);
+  base.geometric_count = static_cast<int>(kept.size());
+  KeepElastic(model, base);
   base.theoretical_count = TheoreticalCount(model);
   return base;
 }

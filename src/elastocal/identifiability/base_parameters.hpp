@@ -33,15 +33,19 @@ struct IdentifiabilityOptions {
 
 /// The identifiable (base) parameters of an error model: decided at nominal geometry, then frozen.
 struct BaseParameters {
-  std::vector<int> kept;     ///< indices into the model's parameters, ascending
+  /// Indices into the model's parameters, ascending. Elastic ones are among them unless held: the
+  /// data decide on these (IsElastic).
+  std::vector<int> kept;
+  int geometric_count = 0;   ///< of the kept ones, those that are not elastic
   std::vector<int> dropped;  ///< not identifiable beside the kept ones, ascending
   std::vector<int> held;     ///< held by the user's setting, ascending
   /// kept x dropped: what the data determine is delta(kept) + regrouping * delta(dropped).
   Eigen::MatrixXd regrouping;
   double smallest_kept = 1.0;    ///< smallest relative remainder among the kept columns
   double largest_dropped = 0.0;  ///< largest among the dropped ones
-  /// 4 R + 2 P + 3 N_M for R revolute and P prismatic joints and N_M markers, nothing held (see
-  /// docs/algorithms.md): a lower count with nothing held means special marker positions.
+  /// 4 R + 2 P + 3 N_M for R revolute and P prismatic joints that move one of the N_M markers,
+  /// nothing held and elastic ones not counted (see docs/algorithms.md): a lower count with nothing
+  /// held means special marker positions.
   int theoretical_count = 0;
 };
 

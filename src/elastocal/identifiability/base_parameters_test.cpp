@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -168,6 +169,56 @@ TEST(BaseParameters, SharesOfADroppedParameterLeaveOutRounding) {
   EXPECT_EQ(shares[0].coefficient, -0.5);
   EXPECT_EQ(shares[1].parameter, 7);
   EXPECT_EQ(shares[1].coefficient, -1e-8);
+}
+
+TEST(BaseParameters, ElasticParametersAreKeptAndChangeNothing) {
+  // The leg with everything elastic, and a branch that only carries.
+  const ErrorModel rigid = TalosLegModel();
+  RobotTree tree = TalosLeg();
+  AddJoint(tree, "other", 0, Offset(0, -0.2, 0), {0, 1, 0});
+  const ErrorModel model = MakeErrorModel(tree, rigid.markers, {},
+                                          {.torsion = {0, 1, 2, 3, 4, 5, 6},
+                                           .bending = {3},
+                                           .legs = {{"leg", 6}, {"other", 7}},
+                                           .torque_bias = true});
+  IdentifiabilityOptions options;
+  options.hold = {"leg.compliance_rz", "*.torque_bias", "leg_2.d"};
+  const BaseParameters expected = FindBaseParameters(rigid, {.hold = {"leg_2.d"}});
+  const BaseParameters base = FindBaseParameters(model, options);
+
+  Names geometric;
+  int elastic = 0;
+  for (std::size_t i = 0; i < base.kept.size(); ++i) {
+    const Parameter& p = model.parameters[base.kept[i]];
+    if (IsElastic(p.kind)) {
+      ++elastic;
+      EXPECT_TRUE(base.regrouping.row(static_cast<Eigen::Index>(i)).isZero(0.0)) << p.name;
+    } else {
+      geometric.push_back(p.name);
+    }
+  }
+  EXPECT_EQ(geometric, NamesOf(rigid, expected.kept));
+  EXPECT_EQ(elastic, 7 + 2 + 6 + 6 - 1);
+  EXPECT_EQ(base.geometric_count, static_cast<int>(geometric.size()));
+  EXPECT_EQ(base.held.size(), 1u + 7u + 1u);
+  EXPECT_EQ(base.theoretical_count, 51);
+  // Shares are those of the rigid model: the regrouping's rows follow `kept`.
+  const auto share = [](const ErrorModel& m, const BaseParameters& b, const std::string& name) {
+    std::map<std::string, double> shares;
+    for (std::size_t d = 0; d < b.dropped.size(); ++d) {
+      if (m.parameters[b.dropped[d]].name != name) continue;
+      for (const Share& s : RegroupedInto(b, static_cast<int>(d))) {
+        shares[m.parameters[s.parameter].name] = s.coefficient;
+      }
+    }
+    return shares;
+  };
+  for (const char* name : {"leg_5.r", "leg_1.b"}) {
+    const auto a = share(model, base, name), b = share(rigid, expected, name);
+    EXPECT_FALSE(b.empty()) << name;
+    ASSERT_EQ(a.size(), b.size()) << name;
+    for (const auto& [kept, coefficient] : b) EXPECT_NEAR(a.at(kept), coefficient, 1e-6) << kept;
+  }
 }
 
 TEST(BaseParameters, AMarkerOnTheLastAxisLosesRank) {

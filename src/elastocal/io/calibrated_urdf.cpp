@@ -82,7 +82,7 @@ std::map<int, Transform> ChangedOrigins(const CalibrationResult& calibration,
   std::set<int> changed;
   for (int i = 0; i < model.parameter_count(); ++i) {
     const Parameter& parameter = model.parameters[i];
-    if (parameter.joint < 0) continue;
+    if (parameter.joint < 0 || IsElastic(parameter.kind)) continue;
     if (IsZeroOffset(model.tree, parameter)) {
       in_origins[i] -= offset(model.tree.joints[parameter.joint]);
     }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <set>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -40,7 +42,12 @@ std::uint64_t Fnv1a(const std::string& text) {
   return hash;
 }
 
-const char* UnitName(ParameterUnit unit) { return unit == ParameterUnit::kRadian ? "rad" : "m"; }
+bool IsUnitName(const std::string& text) {
+  for (int unit = 0; unit < kParameterUnitCount; ++unit) {
+    if (text == UnitName(static_cast<ParameterUnit>(unit))) return true;
+  }
+  return false;
+}
 
 /// Pairs (kept parameter, coefficient) that a dropped parameter is regrouped into.
 void EmitRegrouping(const CalibrationResult& result, const BaseParameters& base, int dropped,
@@ -73,6 +80,51 @@ void EmitParameter(const CalibrationResult& result, const BaseParameters& base, 
   yaml << YAML::EndMap;
 }
 
+constexpr ParameterStatus kStatuses[] = {ParameterStatus::kEstimated, ParameterStatus::kUnsupported,
+                                         ParameterStatus::kDropped, ParameterStatus::kHeld,
+                                         ParameterStatus::kNotInModel};
+
+ParameterStatus ReadStatus(const YamlValue& value) {
+  const std::string text = value.Text();
+  std::string known;
+  for (const ParameterStatus status : kStatuses) {
+    if (text == StatusName(status)) return status;
+    known += (known.empty() ? "" : ", ") + std::string(StatusName(status));
+  }
+  value.Expect(false, "one of " + known);
+  return ParameterStatus::kNotInModel;
+}
+
+ParameterEstimate ReadParameter(const YamlValue& item) {
+  ParameterEstimate parameter;
+  parameter.name = item.Get("name").Text();
+  const YamlValue unit = item.Get("unit");
+  parameter.unit = unit.Text();
+  unit.Expect(IsUnitName(parameter.unit), "rad, m, rad/(N.m), m/N, N.m or N");
+  parameter.external =
+      parameter.name.starts_with("waist.T0.") || parameter.name.starts_with("marker.");
+  parameter.value = item.Get("value").Number();
+  parameter.status = ReadStatus(item.Get("status"));
+  parameter.sd = std::numeric_limits<double>::quiet_NaN();
+  if (parameter.status == ParameterStatus::kEstimated || item.Find("sd")) {
+    parameter.sd = item.Get("sd").Number();
+    item.Get("sd").Expect(parameter.sd > 0.0, "a number above 0");
+  }
+  if (const auto shares = item.Find("regrouped_into")) {
+    for (const auto& [name, coefficient] : shares->Entries()) {
+      parameter.regrouped_into[name] = coefficient.Number();
+    }
+  }
+  return parameter;
+}
+
+/// All keys of a mapping must be names of parameters.
+void CheckNames(const YamlValue& mapping, const std::set<std::string>& names) {
+  for (const auto& [name, coefficient] : mapping.Entries()) {
+    coefficient.Expect(names.contains(name), "a parameter of this file as key");
+  }
+}
+
 }  // namespace
 
 std::string NominalFingerprint(const ErrorModel& model) {
@@ -100,8 +152,7 @@ std::string NominalFingerprint(const ErrorModel& model) {
 std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
                                 const std::string& recording, ZeroOffsets zero_offsets) {
   YAML::Emitter yaml;
-  yaml << YAML::Comment(
-      "Written by elastocal: deviations from the nominal URDF, radians and metres.");
+  yaml << YAML::Comment("Written by elastocal: deviations from the nominal URDF, in SI units.");
   yaml << YAML::BeginMap;
   yaml << YAML::Key << "format" << YAML::Value << kFormat;
   yaml << YAML::Key << "robot" << YAML::Value << result.model.tree.name;
@@ -126,21 +177,40 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParam
   return std::string(yaml.c_str()) + "\n";
 }
 
-StoredCalibration ReadCalibration(const std::filesystem::path& file) {
+CalibrationEstimate ReadEstimate(const std::filesystem::path& file) {
   const YamlValue root = YamlValue::Parse(ReadFile(file), file.string());
   root.Get("format").Expect(root.Get("format").Text() == kFormat,
                             std::string("format ") + kFormat + ", which calibrate writes");
+  CalibrationEstimate estimate;
+  estimate.source = file.string();
+  estimate.robot = root.Get("robot").Text();
+  estimate.nominal = root.Get("nominal").Text();
+  estimate.recording = root.Get("recording").Text();
+  std::set<std::string> names;
+  for (const YamlValue& item : root.Get("parameters").Items()) {
+    estimate.parameters.push_back(ReadParameter(item));
+    item.Get("name").Expect(names.insert(estimate.parameters.back().name).second,
+                            "every parameter once");
+  }
+  for (const YamlValue& item : root.Get("parameters").Items()) {
+    if (const auto shares = item.Find("regrouped_into")) CheckNames(*shares, names);
+  }
+  estimate.model = root.Get("model").Text();
+  const YamlValue factor = root.Get("interval_95_in_sd");
+  estimate.interval_factor = factor.Number();
+  factor.Expect(estimate.interval_factor >= 1.95 && estimate.interval_factor <= 12.8,
+                "1.96 (normal distribution) to 12.7 (one degree of freedom)");
+  return estimate;
+}
+
+StoredCalibration ReadCalibration(const std::filesystem::path& file) {
+  const CalibrationEstimate estimate = ReadEstimate(file);
   StoredCalibration stored;
-  stored.robot = root.Get("robot").Text();
-  stored.nominal = root.Get("nominal").Text();
-  stored.recording = root.Get("recording").Text();
-  for (const YamlValue& parameter : root.Get("parameters").Items()) {
-    const std::string name = parameter.Get("name").Text();
-    const YamlValue unit = parameter.Get("unit");
-    unit.Expect(unit.Text() == "rad" || unit.Text() == "m", "rad or m");
-    const double value = parameter.Get("value").Number();
-    const bool external = name.starts_with("waist.T0.") || name.starts_with("marker.");
-    if (!external) stored.joint_errors[name] = value;
+  stored.robot = estimate.robot;
+  stored.nominal = estimate.nominal;
+  stored.recording = estimate.recording;
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (!parameter.external) stored.joint_errors[parameter.name] = parameter.value;
   }
   return stored;
 }

@@ -6,6 +6,7 @@
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/validation/common_parameters.hpp"
 
 namespace elastocal {
 
@@ -20,12 +21,16 @@ std::string NominalFingerprint(const ErrorModel& model);
 std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
                                 const std::string& recording, ZeroOffsets zero_offsets);
 
+/// Reads all of a calibration.yaml that a comparison needs; the covariance is in another file.
+/// Throws InputError naming file, line and key.
+CalibrationEstimate ReadEstimate(const std::filesystem::path& file);
+
 /// What another run needs of such a file.
 struct StoredCalibration {
   std::string robot;
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
-  std::map<std::string, double> joint_errors;  ///< by parameter name, rad or m
+  std::map<std::string, double> joint_errors;  ///< by parameter name, SI
 };
 
 /// Reads a calibration.yaml. Throws InputError naming file, line and key.

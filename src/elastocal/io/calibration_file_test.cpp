@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/io/covariance_file.hpp"
 #include "elastocal/io/output_files.hpp"
+#include "elastocal/io/summary.hpp"
 #include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
@@ -53,12 +55,71 @@ TEST_F(CalibrationFile, ReadsBackWhatWasWrittenToTheLastBit) {
   EXPECT_EQ(stored.joint_errors.size(), static_cast<std::size_t>(joint_parameters));
 }
 
+TEST_F(CalibrationFile, ReadsBackWhatAComparisonNeeds) {
+  Write(MakeCalibrationYaml(result_, base_, "there.csv", ZeroOffsets::kOrigin));
+  CalibrationEstimate estimate = ReadEstimate(file_);
+  EXPECT_EQ(estimate.source, file_.string());
+  EXPECT_EQ(estimate.model, "geometric");
+  EXPECT_EQ(estimate.interval_factor, result_.interval_factor);
+  ASSERT_EQ(estimate.parameters.size(), result_.model.parameters.size());
+  for (int i = 0; i < result_.model.parameter_count(); ++i) {
+    const ParameterEstimate& read = estimate.parameters[i];
+    EXPECT_EQ(read.name, result_.model.parameters[i].name);
+    EXPECT_EQ(read.external, IsExternal(result_.model.parameters[i].kind)) << read.name;
+    EXPECT_EQ(read.status, result_.status[i]) << read.name;
+    EXPECT_EQ(std::isfinite(read.sd), std::isfinite(result_.sd[i])) << read.name;
+    if (std::isfinite(read.sd)) {
+      EXPECT_EQ(read.sd, result_.sd[i]) << read.name;
+    }
+  }
+  for (std::size_t d = 0; d < base_.dropped.size(); ++d) {
+    const auto& shares = estimate.parameters[base_.dropped[d]].regrouped_into;
+    for (const Share& share : RegroupedInto(base_, static_cast<int>(d))) {
+      EXPECT_NEAR(shares.at(result_.model.parameters[share.parameter].name), share.coefficient,
+                  1e-9);
+    }
+  }
+  const std::string csv = scratch_.Write("covariance.csv", MakeCovarianceCsv(result_));
+  ReadCovariance(csv, estimate);
+  EXPECT_EQ(estimate.covariance, result_.posterior.covariance);
+  for (std::size_t i = 0; i < estimate.covariance_names.size(); ++i) {
+    EXPECT_EQ(estimate.covariance_names[i],
+              result_.model.parameters[result_.posterior.parameters[i]].name);
+  }
+}
+
+TEST_F(CalibrationFile, ACovarianceThatDoesNotBelongIsNamedByLine) {
+  CalibrationEstimate two;
+  two.parameters = {{.name = "a.theta", .unit = "rad", .value = 0.0, .sd = 2.0},
+                    {.name = "a.d", .unit = "m", .value = 0.0, .sd = 3.0}};
+  const auto refused = [&](const std::string& text, std::initializer_list<std::string> parts) {
+    const std::string file = scratch_.Write("covariance.csv", text);
+    CalibrationEstimate estimate = two;
+    ExpectInputError([&] { ReadCovariance(file, estimate); }, parts);
+  };
+  const std::string header = "parameter,a.theta,a.d\n";
+  CalibrationEstimate fine = two;
+  ReadCovariance(scratch_.Write("covariance.csv", header + "a.theta,4,1\na.d,1,9\n"), fine);
+  EXPECT_EQ(fine.covariance(0, 1), 1.0);
+  refused("", {"covariance.csv:1", "'parameter'"});
+  refused("parameter,a.theta,a.r\n", {"covariance.csv:1", "a.r"});
+  refused("parameter,a.d,a.d\n", {"covariance.csv:1", "a.d", "twice"});
+  refused("parameter,a.d\na.d,9\n", {"covariance.csv:1", "a.theta"});
+  refused(header + "a.theta,4,1\n", {"covariance.csv", "ends", "a.d"});
+  refused(header + "a.theta,4,1\na.theta,1,9\n", {"covariance.csv:3", "a.d"});
+  refused(header + "a.theta,4\n", {"covariance.csv:2", "2 cells"});
+  refused(header + "a.theta,4,x\n", {"covariance.csv:2", "a.d", "'x'"});
+  refused(header + "a.theta,4.1,1\n", {"covariance.csv:2", "a.theta", "another calibration"});
+  refused(header + "a.theta,4,1\na.d,2,9\n", {"covariance.csv:3", "symmetric"});
+  refused(header + "a.theta,4,1\na.d,1,9\na.d,1,9\n", {"covariance.csv:4", "too many"});
+}
+
 TEST_F(CalibrationFile, EveryParameterHasAUnitAndAStatus) {
   const std::string text = MakeCalibrationYaml(result_, base_, "there.csv", ZeroOffsets::kOrigin);
   for (const Parameter& parameter : result_.model.parameters) {
-    const char* unit = parameter.unit == ParameterUnit::kRadian ? "rad" : "m";
-    EXPECT_NE(text.find("name: " + parameter.name + ", unit: " + unit + ", value: "),
-              std::string::npos)
+    EXPECT_NE(
+        text.find("name: " + parameter.name + ", unit: " + UnitName(parameter.unit) + ", value: "),
+        std::string::npos)
         << parameter.name;
   }
   EXPECT_NE(text.find("status: dropped, regrouped_into: {"), std::string::npos);
@@ -76,14 +137,27 @@ TEST_F(CalibrationFile, BadFilesAreNamedByLine) {
   Write(head + "recording: f\nparameters: []\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":1", "'nominal'"});
   const std::string before = head + "nominal: 0\nrecording: f\nparameters:\n";
+  const std::string fine = "  - {name: a.theta, unit: rad, value: 1, sd: 1, status: estimated}\n";
   Write(before + "  - {name: a.theta, unit: rad, value: much}\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "number"});
-  Write(before +
-        "  - {name: a.theta, unit: rad, value: 1}\n  - {name: b.d, unit: deg, value: 1}\n");
+  Write(before + fine + "  - {name: b.d, unit: deg, value: 1}\n");
   ExpectInputError([&] { ReadCalibration(file_); },
-                   {file_.string() + ":7", "unit", "'deg'", "rad or m"});
+                   {file_.string() + ":7", "unit", "'deg'", "rad, m, rad/(N.m)"});
   Write(before + "  - {name: a.theta, value: 1}\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "'unit'"});
+  Write(before + fine + fine);
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":7", "a.theta", "once"});
+  Write(before + "  - {name: a.theta, unit: rad, value: 1, status: lost}\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "lost", "estimated"});
+  Write(before + "  - {name: a.theta, unit: rad, value: 1, status: estimated}\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "'sd'"});
+  Write(before + "  - {name: a.theta, unit: rad, value: 1, sd: 0, status: estimated}\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "above 0"});
+  Write(before + fine +
+        "  - {name: b.d, unit: m, value: 0, status: dropped, regrouped_into: {c.d: 1}}\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":7", "c.d", "parameter"});
+  Write(before + fine + "model: geometric\ninterval_95_in_sd: 1\n");
+  ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":8", "1.96"});
   Write("format: elastocal-calibration-1\nrobot: [r]\nrecording: f\nparameters: []\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":2"});
 }

@@ -100,7 +100,8 @@ fs::path ReadFileName(const YamlValue& value, const fs::path& folder, std::vecto
 
 TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Project& project,
                      std::vector<fs::path>& used) {
-  value.ExpectKeys({"name", "kind", "chain", "chains", "support", "markers", "joints", "truth"});
+  value.ExpectKeys({"name", "kind", "chain", "chains", "support", "markers", "joints",
+                    "expected_lag_s", "truth"});
   TrialFiles trial;
   trial.name = value.Get("name").Text();
   if (const auto kind = value.Find("kind")) trial.kind = ReadKind(*kind);
@@ -108,8 +109,16 @@ TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Proje
   if (const auto support = value.Find("support")) trial.support = ReadSupport(*support, project);
   trial.markers = ReadFileName(value.Get("markers"), folder, used);
   trial.joints = ReadFileName(value.Get("joints"), folder, used);
+  if (const auto lag = value.Find("expected_lag_s")) trial.expected_lag_s = lag->Number();
   if (const auto truth = value.Find("truth")) trial.truth = ReadFileName(*truth, folder, used);
   return trial;
+}
+
+/// The axis of the cameras' frame that points up: `z` or `y`.
+Eigen::Vector3d ReadGravity(const YamlValue& up) {
+  const std::string axis = up.Text();
+  up.Expect(axis == "z" || axis == "y", "z or y");
+  return axis == "z" ? Eigen::Vector3d(0.0, 0.0, -9.81) : Eigen::Vector3d(0.0, -9.81, 0.0);
 }
 
 void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& project,
@@ -131,6 +140,9 @@ void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& p
   };
   emit_file("markers", trial.markers);
   emit_file("joints", trial.joints);
+  if (trial.expected_lag_s) {
+    yaml << YAML::Key << "expected_lag_s" << YAML::Value << FormatNumber(*trial.expected_lag_s);
+  }
   if (!trial.truth.empty()) emit_file("truth", trial.truth);
   yaml << YAML::EndMap;
 }
@@ -158,9 +170,10 @@ Experiment ReadExperiment(const fs::path& folder, const Project& project) {
 Experiment ParseExperiment(const std::string& text, const fs::path& folder,
                            const Project& project) {
   const YamlValue root = YamlValue::Parse(text, (folder / kFileName).string());
-  root.ExpectKeys({"trials"});
+  root.ExpectKeys({"up", "trials"});
   const YamlValue list = root.Get("trials");
   Experiment experiment;
+  if (const auto up = root.Find("up")) experiment.gravity = ReadGravity(*up);
   std::vector<fs::path> used;
   for (const YamlValue& value : list.Items()) {
     TrialFiles trial = ReadTrial(value, folder, project, used);
@@ -175,7 +188,9 @@ Experiment ParseExperiment(const std::string& text, const fs::path& folder,
 
 void WriteExperiment(const fs::path& folder, const Experiment& experiment, const Project& project) {
   YAML::Emitter yaml;
-  yaml << YAML::BeginMap << YAML::Key << "trials" << YAML::Value << YAML::BeginSeq;
+  yaml << YAML::BeginMap;
+  if (experiment.gravity.y() != 0.0) yaml << YAML::Key << "up" << YAML::Value << "y";
+  yaml << YAML::Key << "trials" << YAML::Value << YAML::BeginSeq;
   for (const TrialFiles& trial : experiment.trials) EmitTrial(trial, folder, project, yaml);
   yaml << YAML::EndSeq << YAML::EndMap;
   WriteFile(folder / kFileName, std::string(yaml.c_str()) + "\n");

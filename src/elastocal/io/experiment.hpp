@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,15 @@ struct TrialFiles {
   std::vector<int>
       support;  ///< links that stand on the floor, of the tree; empty: the root is held
   std::filesystem::path markers, joints;  ///< Qualisys TSV and joint log
+  /// Camera time less robot time at the beginning, s, where it is known.
+  std::optional<double> expected_lag_s = {};
   std::filesystem::path truth = {};  ///< of a simulated trial, see ReadWaistTruth; empty: unknown
 };
 
 /// The contents of a recording folder.
 struct Experiment {
-  std::vector<TrialFiles> trials;  ///< one or more, names and files all different
+  std::vector<TrialFiles> trials;            ///< one or more, names and files all different
+  Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the cameras' frame, m/s^2
 };
 
 /// Reads `folder`/experiment.yaml (docs/formats.md). Files in it are seen from the folder and must

@@ -68,6 +68,21 @@ TEST_F(ExperimentTest, ReadsTrials) {
   EXPECT_EQ(arms.markers, folder_ / "sub" / "c.tsv");
 }
 
+TEST_F(ExperimentTest, ReadsTheAxisThatIsUpAndTheExpectedLag) {
+  const std::string trials =
+      "trials: [{name: a, chain: head, markers: a.tsv, joints: a.csv, expected_lag_s: -2.5}]";
+  EXPECT_EQ(Parse(trials).trials[0].expected_lag_s, -2.5);
+  EXPECT_EQ(Parse(trials).gravity, Eigen::Vector3d(0.0, 0.0, -9.81));
+  EXPECT_EQ(Parse("up: z\n" + trials).gravity, Eigen::Vector3d(0.0, 0.0, -9.81));
+  const Experiment experiment = Parse("up: y\n" + trials);
+  EXPECT_EQ(experiment.gravity, Eigen::Vector3d(0.0, -9.81, 0.0));
+  ExpectError("up: x\n" + trials, {"experiment.yaml:1: up", "z or y"});
+  WriteExperiment(folder_, experiment, project_);
+  const Experiment read = ReadExperiment(folder_, project_);
+  EXPECT_EQ(read.gravity, experiment.gravity);
+  EXPECT_EQ(read.trials[0].expected_lag_s, -2.5);
+}
+
 TEST_F(ExperimentTest, NamesWrongKeys) {
   ExpectError("", {"experiment.yaml:1: ", "'trials' is missing"});
   ExpectError("trails: []", {"experiment.yaml:1: ", "'trails'", "did you mean 'trials'"});

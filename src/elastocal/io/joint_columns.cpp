@@ -11,9 +11,11 @@ namespace {
 
 /// What a column name stands for in this project.
 struct Role {
-  enum class Kind { kTime, kPosition, kTorque, kIgnored } kind = Kind::kIgnored;
-  int joint = 0;
+  enum class Kind { kTime, kPosition, kTorque, kWrench, kIgnored } kind = Kind::kIgnored;
+  int index = 0;  ///< joint or, of a wrench, 6 x sensor + component
 };
+
+constexpr std::array kComponents = {"_fx", "_fy", "_fz", "_tx", "_ty", "_tz"};
 
 using Roles = std::map<std::string, Role>;
 
@@ -39,6 +41,13 @@ Roles FindRoles(const Project& project) {
     roles.emplace(column + "_position", role(Role::Kind::kPosition, k));
     roles.emplace(column + "_torque", role(Role::Kind::kTorque, k));
     roles.emplace(column + "_effort", role(Role::Kind::kTorque, k));
+  }
+  for (std::size_t i = 0; i < project.force_torque_sensors.size(); ++i) {
+    for (std::size_t c = 0; c < kComponents.size(); ++c) {
+      const int index = static_cast<int>(kComponents.size() * i + c);
+      roles.emplace(project.force_torque_sensors[i].name + kComponents[c],
+                    Role{Role::Kind::kWrench, index});
+    }
   }
   for (const std::string& column : project.recording.ignore) roles[column] = Role{};
   return roles;
@@ -78,6 +87,28 @@ void KeepJoints(const std::vector<int>& position, const std::vector<int>& torque
   }
 }
 
+/// Keeps the force-torque sensors that have columns: all six.
+void KeepWrenches(const std::vector<int>& wrench, const std::string& place, const Project& project,
+                  JointColumns& result) {
+  for (std::size_t i = 0; i < project.force_torque_sensors.size(); ++i) {
+    std::array<int, 6> columns{};
+    int missing = 0;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      columns[c] = wrench[columns.size() * i + c];
+      missing += columns[c] < 0 ? 1 : 0;
+    }
+    if (missing == 6) continue;
+    const std::string& name = project.force_torque_sensors[i].name;
+    if (missing > 0) {
+      throw InputError(place + "force-torque sensor " + Quote(name) +
+                       " has only some of its columns; expected " + name + "_fx, " + name +
+                       "_fy, " + name + "_fz, " + name + "_tx, " + name + "_ty, " + name + "_tz");
+    }
+    result.wrench_sensors.push_back(static_cast<int>(i));
+    result.wrenches.push_back(columns);
+  }
+}
+
 }  // namespace
 
 JointColumns FindJointColumns(const std::vector<std::string>& header, const std::string& place,
@@ -86,15 +117,17 @@ JointColumns FindJointColumns(const std::vector<std::string>& header, const std:
   JointColumns result;
   result.names = header;
   std::vector<int> position(project.tree.joints.size(), -1), torque = position;
+  std::vector<int> wrench(kComponents.size() * project.force_torque_sensors.size(), -1);
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto role = roles.find(header[i]);
     if (role == roles.end() && header[i].ends_with("_velocity")) continue;
     if (role == roles.end()) FailUnknown(header[i], place, roles, project);
-    const auto& [kind, joint] = role->second;
+    const auto& [kind, index] = role->second;
     if (kind == Role::Kind::kIgnored) continue;
     int& column = kind == Role::Kind::kTime       ? result.time
-                  : kind == Role::Kind::kPosition ? position[joint]
-                                                  : torque[joint];
+                  : kind == Role::Kind::kPosition ? position[index]
+                  : kind == Role::Kind::kTorque   ? torque[index]
+                                                  : wrench[index];
     if (column >= 0) {
       throw InputError(place + "the columns " + Quote(header[column]) + " and " + Quote(header[i]) +
                        " stand for the same");
@@ -106,6 +139,7 @@ JointColumns FindJointColumns(const std::vector<std::string>& header, const std:
                      Quote(project.recording.time) + " or 'time'");
   }
   KeepJoints(position, torque, place, project.tree, result);
+  KeepWrenches(wrench, place, project, result);
   if (result.joints.empty()) {
     throw InputError(place + "there is no column of any joint; expected the names of the joints");
   }

@@ -43,9 +43,12 @@ class LogReader {
     time_.push_back(time);
     for (int column : columns_.positions) positions_.push_back(Number(cells, column));
     for (int column : columns_.torques) torques_.push_back(Torque(cells, column));
+    for (const auto& sensor : columns_.wrenches) {
+      for (int column : sensor) wrenches_.push_back(Number(cells, column));
+    }
   }
 
-  JointLog Finish(const RobotTree& tree) {
+  JointLog Finish(const Project& project) {
     if (time_.empty()) throw InputError(source_ + ": no row below the header");
     const auto rows = static_cast<Eigen::Index>(time_.size());
     const auto joints = static_cast<Eigen::Index>(columns_.joints.size());
@@ -54,8 +57,13 @@ class LogReader {
     log.time_s = Eigen::Map<const Eigen::VectorXd>(time_.data(), rows);
     log.positions = Eigen::Map<const RowMajor>(positions_.data(), rows, joints);
     log.torques = Eigen::Map<const RowMajor>(torques_.data(), rows, joints);
+    log.wrenches = Eigen::Map<const RowMajor>(
+        wrenches_.data(), rows, static_cast<Eigen::Index>(6 * columns_.wrenches.size()));
+    for (int sensor : columns_.wrench_sensors) {
+      log.wrench_sensors.push_back(project.force_torque_sensors[sensor]);
+    }
     for (Eigen::Index i = 0; i < joints; ++i) {
-      const Joint& joint = tree.joints[columns_.joints[i]];
+      const Joint& joint = project.tree.joints[columns_.joints[i]];
       log.names.push_back(joint.name);
       CheckRadians(joint, log.positions.col(i), [&](Eigen::Index row) { return PlaceOf(row); });
       CheckTorques(log.torques.col(i), columns_.torques[i]);
@@ -93,7 +101,7 @@ class LogReader {
   const JointColumns& columns_;
   const TableLines& lines_;
   const std::string& source_;
-  std::vector<double> time_, positions_, torques_;
+  std::vector<double> time_, positions_, torques_, wrenches_;
 };
 
 }  // namespace
@@ -110,7 +118,7 @@ JointLog ReadJointLog(std::istream& stream, const std::string& source, const Pro
   const JointColumns columns = FindJointColumns(cells, Place(source, lines.line()), project);
   LogReader reader(columns, lines, source);
   while (lines.Next(cells)) reader.Add(cells);
-  return reader.Finish(project.tree);
+  return reader.Finish(project);
 }
 
 void WriteJointLog(const std::filesystem::path& file, const JointLog& log) {
@@ -122,11 +130,19 @@ void WriteJointLog(const std::filesystem::path& file, const JointLog& log) {
     sensors.push_back(i);
     text += "," + MakeCell(log.names[static_cast<std::size_t>(i)] + "_torque");
   }
+  for (const ForceTorqueSensor& sensor : log.wrench_sensors) {
+    for (const char* component : {"_fx", "_fy", "_fz", "_tx", "_ty", "_tz"}) {
+      text += "," + MakeCell(sensor.name + component);
+    }
+  }
   text += '\n';
   for (Eigen::Index row = 0; row < log.time_s.size(); ++row) {
     text += FormatNumber(log.time_s[row]);
     for (double position : log.positions.row(row)) text += "," + FormatNumber(position);
     for (Eigen::Index i : sensors) text += "," + FormatNumber(log.torques(row, i));
+    for (Eigen::Index i = 0; i < log.wrenches.cols(); ++i) {
+      text += "," + FormatNumber(log.wrenches(row, i));
+    }
     text += '\n';
   }
   WriteFile(file, text);

@@ -12,7 +12,8 @@ namespace elastocal {
 /// Reads a log of joint positions and torques (docs/formats.md): CSV with a header row; a column of
 /// the time in s, `t` or `time` or as the project names it; for each joint `JOINT` or
 /// `JOINT_position` in rad or m and, where it has a sensor, `JOINT_torque` or `JOINT_effort` in N.m
-/// or N, JOINT being the joint's name or its column in the project. Velocities, mimic joints and
+/// or N, JOINT being the joint's name or its column in the project; for each force-torque sensor of
+/// the project none or six, `NAME_fx` to `NAME_tz`, in N and N.m. Velocities, mimic joints and
 /// what the project ignores are passed over. A joint without a torque column, or with one that is
 /// empty or NaN from the first to the last row, has NaN torques.
 /// Throws InputError naming file, line and column: unknown columns (with the nearest known one),
@@ -24,7 +25,7 @@ JointLog ReadJointLog(const std::filesystem::path& file, const Project& project)
 JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& project);
 
 /// Writes such a table, with a torque column for each joint that has a torque: `t`, JOINT, ...,
-/// JOINT_torque, ... All digits are kept.
+/// JOINT_torque, ..., and then those of force-torque sensors. All digits are kept.
 void WriteJointLog(const std::filesystem::path& file, const JointLog& log);
 
 }  // namespace elastocal

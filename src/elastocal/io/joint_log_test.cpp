@@ -13,12 +13,12 @@
 namespace elastocal {
 namespace {
 
-Project ArmProject(const std::string& recording = "{}") {
+Project ArmProject(const std::string& recording = "{}", const std::string& more = "") {
   return ParseProject(
       "robot: {urdf: arm6.urdf}\n"
       "markers: {single: [{name: A, link: tool, position_mm: [10, 20, 30]}]}\n"
       "recording: " +
-          recording,
+          recording + "\n" + more,
       SourceFile("tests/robots/p.yaml"));
 }
 
@@ -44,6 +44,31 @@ TEST(JointLog, ReadsPositionsAndTorques) {
   EXPECT_EQ(log.positions.row(1), Eigen::RowVector3d(-1.1, 1e-3, 0.4));
   EXPECT_EQ(log.torques.leftCols(2), (Eigen::Matrix2d() << -5, 7, -6, 8).finished());
   EXPECT_TRUE(log.torques.col(2).array().isNaN().all());
+}
+
+TEST(JointLog, ReadsAndWritesForceTorqueSensors) {
+  const Project project = ArmProject(
+      "{}", "force_torque_sensors: [{name: base, link: pedestal}, {name: tip, link: tool}]");
+  const JointLog log = Read(
+      "t,tip_tz,elbow_joint,tip_fx,tip_fy,tip_fz,tip_tx,tip_ty\n1,6,0.5,1,2,3,4,5\n"
+      "2,-6,0.5,-1,-2,-3,-4,-5\n",
+      project);
+  ASSERT_EQ(log.wrench_sensors.size(), 1u);
+  EXPECT_EQ(log.wrench_sensors[0].name, "tip");
+  EXPECT_EQ(log.wrench_sensors[0].link, FindLink(project.tree, "tool"));
+  ASSERT_EQ(log.wrenches.rows(), 2);
+  const Eigen::RowVectorXd expected = Eigen::RowVectorXd::LinSpaced(6, 1.0, 6.0);
+  EXPECT_EQ(log.wrenches.row(0), expected);
+  EXPECT_EQ(log.wrenches.row(1), -expected);
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "wrenches.csv";
+  WriteJointLog(file, log);
+  EXPECT_EQ(ReadJointLog(file, project).wrenches, log.wrenches);
+  std::filesystem::remove(file);
+  ExpectInputError([&] { Read("t,elbow_joint,tip_fx\n1,2,3\n", project); },
+                   {"j.csv:1: ", "'tip' has only some of its columns", "tip_tz"});
+  ExpectInputError([&] { Read("t,elbow_joint,tip_fa\n1,2,3\n", project); },
+                   {"'tip_fa'", "did you mean 'tip_f"});
+  EXPECT_EQ(Read("t,elbow_joint\n1,2\n", project).wrenches.size(), 0);
 }
 
 TEST(JointLog, UsesTheNamesOfTheProject) {

@@ -70,6 +70,21 @@ void ReadTorqueSensors(const YamlValue& section, Project& project) {
   }
 }
 
+void ReadForceTorqueSensors(const YamlValue& section, Project& project) {
+  for (const YamlValue& value : section.Items()) {
+    value.ExpectKeys({"name", "link"});
+    ForceTorqueSensor sensor;
+    sensor.name = value.Get("name").Text();
+    sensor.link = LinkNamedBy(value.Get("link"), project.tree);
+    for (const ForceTorqueSensor& other : project.force_torque_sensors) {
+      if (other.name == sensor.name)
+        value.Fail("a second sensor of the name " + Quote(sensor.name));
+      if (other.link == sensor.link) value.Fail("a second sensor on the same link");
+    }
+    project.force_torque_sensors.push_back(std::move(sensor));
+  }
+}
+
 /// Patterns can only be checked when joints and markers are known.
 void CheckHeld(const YamlValue& section, const Project& project) {
   const auto hold = section.Find("hold");
@@ -88,6 +103,9 @@ void CheckHeld(const YamlValue& section, const Project& project) {
 void ReadSettings(const YamlValue& root, Project& project) {
   if (const auto section = root.Find("placement")) {
     ReadPlacementOptions(*section, project.placement);
+  }
+  if (const auto section = root.Find("measurement")) {
+    ReadMeasurementOptions(*section, project.measurement);
   }
   if (const auto section = root.Find("identifiability")) {
     ReadIdentifiabilityOptions(*section, project.identifiability);
@@ -130,14 +148,17 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
     throw InputError(Place(file.string(), 1) + "this is XML; a project file (YAML) was expected");
   }
   const YamlValue root = YamlValue::Parse(text, file.string());
-  root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "recording", "placement",
-                   "identifiability", "calibration"});
+  root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "force_torque_sensors",
+                   "recording", "placement", "measurement", "identifiability", "calibration"});
   Project project;
   project.file = file;
   ReadRobot(root.Get("robot"), project);
   if (const auto section = root.Find("chains")) ReadChains(*section, project);
   ReadMarkers(root.Get("markers"), project);
   if (const auto section = root.Find("torque_sensors")) ReadTorqueSensors(*section, project);
+  if (const auto section = root.Find("force_torque_sensors")) {
+    ReadForceTorqueSensors(*section, project);
+  }
   if (const auto section = root.Find("recording")) ReadRecordingColumns(*section, project);
   ReadSettings(root, project);
   return project;

@@ -8,6 +8,7 @@
 
 #include "elastocal/calibration/options.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/measurement/trial_samples.hpp"
 #include "elastocal/robot/error_model.hpp"
 
 namespace elastocal {
@@ -44,8 +45,10 @@ struct Project {
   std::vector<MarkerCluster> clusters;
   std::string reference_cluster;    ///< on the waist; empty where there is none
   std::vector<int> torque_sensors;  ///< joints
+  std::vector<ForceTorqueSensor> force_torque_sensors;
   RecordingColumns recording;
   PlacementOptions placement;
+  MeasurementOptions measurement;
   IdentifiabilityOptions identifiability;
   CalibrationOptions calibration;
 };

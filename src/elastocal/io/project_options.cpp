@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kRadiansPerDegree = M_PI / 180.0;
 constexpr double kMetresPerMm = 1e-3;
+constexpr double kMicro = 1e-6;
 
 /// A number above 0 and below 1.
 double Fraction(const YamlValue& value) {
@@ -39,6 +40,11 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
       {"d_mm", ParameterKind::kD, kMetresPerMm},
       {"b_mm", ParameterKind::kB, kMetresPerMm},
       {"marker_mm", ParameterKind::kMarker, kMetresPerMm},
+      {"torsion_urad_per_Nm", ParameterKind::kTorsion, kMicro},
+      {"bending_urad_per_Nm", ParameterKind::kBending, kMicro},
+      {"base_force_um_per_N", ParameterKind::kBaseForce, kMicro},
+      {"base_moment_urad_per_Nm", ParameterKind::kBaseMoment, kMicro},
+      {"torque_bias_Nm", ParameterKind::kTorqueBias, 1.0},
   };
   std::vector<std::string> keys;
   for (const Entry& entry : kEntries) keys.emplace_back(entry.key);

@@ -10,6 +10,7 @@ namespace elastocal {
 void ReadMarkers(const YamlValue& section, Project& project);
 void ReadRecordingColumns(const YamlValue& section, Project& project);
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options);
+void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& options);
 void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options);
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options);
 

@@ -29,6 +29,41 @@ void ExpectMarkerError(const std::string& markers, std::initializer_list<std::st
   ExpectInputError([&] { Parse("", markers); }, parts);
 }
 
+TEST(Project, ReadsMeasurementAndForceTorqueSensors) {
+  const Project project = Parse(
+      "force_torque_sensors: [{name: tip_ft, link: tool}]\n"
+      "measurement: {cutoff_hz: 6, filter_order: 4, longest_gap_s: 0, expected_lag_s: -3.5,\n"
+      "  longest_lag_s: 20, largest_lag_sd_ms: 4, rest_speed_mm_per_s: 8, hold_s: 0.6,\n"
+      "  samples_per_rest: 12, sine_rate_hz: 5}\n");
+  ASSERT_EQ(project.force_torque_sensors.size(), 1u);
+  EXPECT_EQ(project.force_torque_sensors[0].name, "tip_ft");
+  EXPECT_EQ(project.force_torque_sensors[0].link, FindLink(project.tree, "tool"));
+  const MeasurementOptions& options = project.measurement;
+  EXPECT_EQ(options.smoothing.cutoff_hz, 6.0);
+  EXPECT_EQ(options.smoothing.filter_order, 4);
+  EXPECT_EQ(options.smoothing.longest_fill_s, 0.0);
+  EXPECT_EQ(options.expected_lag_s, -3.5);
+  EXPECT_EQ(options.clock.longest_lag_s, 20.0);
+  EXPECT_DOUBLE_EQ(options.clock.largest_sd_s, 4e-3);
+  EXPECT_DOUBLE_EQ(options.rest.threshold_m_per_s, 8e-3);
+  EXPECT_EQ(options.rest.hold_s, 0.6);
+  EXPECT_EQ(options.rest.samples_per_run, 12);
+  EXPECT_EQ(options.sine_rate_hz, 5.0);
+  EXPECT_FALSE(Parse().measurement.expected_lag_s);
+  EXPECT_EQ(Parse("measurement:\n").measurement.rest.samples_per_run, 8);
+  ExpectError("measurement: {cutoff_hz: 0}", {"p.yaml:3: ", "measurement.cutoff_hz", "above 0"});
+  ExpectError("measurement: {filter_order: 11}", {"measurement.filter_order", "10"});
+  ExpectError("measurement: {longest_gap_s: -1}", {"longest_gap_s", "at least 0"});
+  ExpectError("measurement: {longest_lag_s: 4000}", {"longest_lag_s", "at most 3600"});
+  ExpectError("measurement: {samples_per_rest: 0}", {"samples_per_rest"});
+  ExpectError("measurement: {cutof_hz: 5}", {"did you mean 'cutoff_hz'"});
+  ExpectError("force_torque_sensors: [{name: a, link: tol}]", {"p.yaml:3: ", "'tool'"});
+  ExpectError("force_torque_sensors: [{name: a, link: tool}, {name: a, link: wrist}]",
+              {"second sensor of the name 'a'"});
+  ExpectError("force_torque_sensors: [{name: a, link: tool}, {name: b, link: tool}]",
+              {"second sensor on the same link"});
+}
+
 TEST(Project, ReadsRobotMarkersAndRecording) {
   const Project project = Parse(
       "chains:\n"
@@ -98,7 +133,9 @@ TEST(Project, ReadsSettingsInTheirUnits) {
       "  hold: ['*_joint.theta', waist.T0.b]}\n"
       "calibration:\n"
       "  marker_sd_mm: 0.2\n"
-      "  prior: {theta_deg: 90, r_mm: 3, marker_mm: 20, beta_deg: .inf}\n"
+      "  prior: {theta_deg: 90, r_mm: 3, marker_mm: 20, beta_deg: .inf,\n"
+      "          torsion_urad_per_Nm: 20, bending_urad_per_Nm: 30, base_force_um_per_N: 4,\n"
+      "          base_moment_urad_per_Nm: .inf, torque_bias_Nm: 0.5}\n"
       "  widen_prior: false\n"
       "  outlier_probability: 0.05\n"
       "  support_threshold: 0.8\n"
@@ -117,6 +154,11 @@ TEST(Project, ReadsSettingsInTheirUnits) {
   EXPECT_NEAR(calibration.prior[ParameterKind::kMarker], 0.02, 1e-16);
   EXPECT_EQ(calibration.prior[ParameterKind::kBeta], std::numeric_limits<double>::infinity());
   EXPECT_EQ(calibration.prior[ParameterKind::kD], CalibrationOptions().prior[ParameterKind::kD]);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kTorsion], 20e-6, 1e-18);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kBending], 30e-6, 1e-18);
+  EXPECT_NEAR(calibration.prior[ParameterKind::kBaseForce], 4e-6, 1e-18);
+  EXPECT_EQ(calibration.prior[ParameterKind::kBaseMoment], std::numeric_limits<double>::infinity());
+  EXPECT_EQ(calibration.prior[ParameterKind::kTorqueBias], 0.5);
   EXPECT_FALSE(calibration.widen_prior);
   EXPECT_EQ(calibration.outlier_probability, 0.05);
   EXPECT_EQ(calibration.support_threshold, 0.8);

@@ -10,14 +10,14 @@ namespace elastocal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Metrics = std::array<ErrorMetrics, 3>;
 
 /// JSON has no infinity or NaN: null.
 Json Finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json ByModel(const Metrics& metrics, double ErrorMetrics::*figure) {
+Json FigureByModel(const std::vector<ModelKind>& kinds, const ByModel<ErrorMetrics>& metrics,
+                   double ErrorMetrics::*figure) {
   Json json;
-  for (ModelKind kind : kModelKinds) {
+  for (ModelKind kind : kinds) {
     json[ModelKindName(kind)] = Finite(1e3 * metrics[static_cast<int>(kind)].*figure);
   }
   return json;
@@ -25,7 +25,7 @@ Json ByModel(const Metrics& metrics, double ErrorMetrics::*figure) {
 
 Json Outliers(const CalibrationRun& run) {
   Json json = Json::array();
-  for (const Outlier& outlier : run.comparison.geometric().outliers) {
+  for (const Outlier& outlier : run.comparison.best().outliers) {
     Json item;
     item["posture"] = outlier.posture;
     if (!run.recording.line.empty()) item["line"] = run.recording.line[outlier.posture];
@@ -43,7 +43,7 @@ Json Parameters(const CalibrationResult& result) {
     const Parameter& parameter = result.model.parameters[i];
     Json item;
     item["name"] = parameter.name;
-    item["unit"] = parameter.unit == ParameterUnit::kRadian ? "rad" : "m";
+    item["unit"] = UnitName(parameter.unit);
     item["value"] = result.delta[i];
     item["sd"] = Finite(result.sd[i]);
     item["status"] = StatusName(result.status[i]);
@@ -73,7 +73,7 @@ Json ExcitationJson(const CalibrationRun& run) {
   json["O3"] = excitation.indices.o3;
   json["O4"] = excitation.indices.o4;
   json["O5"] = excitation.indices.o5;
-  const auto& parameters = run.comparison.geometric().model.parameters;
+  const auto& parameters = run.comparison.best().model.parameters;
   json["hardly_excited"] = Json::array();
   for (int i : HardlyExcited(parameters, run.base.kept, excitation)) {
     json["hardly_excited"].push_back(parameters[i].name);
@@ -90,7 +90,7 @@ std::string DescribeObservation(const Recording& recording, int posture, int mar
 }
 
 std::string RunStatus(const CalibrationRun& run) {
-  const Termination termination = run.comparison.geometric().termination;
+  const Termination termination = run.comparison.best().termination;
   const bool implausible =
       termination == Termination::kConverged && !run.verdict.objections.empty();
   return implausible ? "implausible" : TerminationName(termination);
@@ -113,7 +113,7 @@ std::string MakeCovarianceCsv(const CalibrationResult& result) {
 }
 
 std::string MakeSummaryJson(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.geometric();
+  const CalibrationResult& result = run.comparison.best();
   Json json;
   json["status"] = RunStatus(run);
   json["message"] = result.message;
@@ -125,23 +125,29 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["postures"] = run.recording.posture_count();
   json["markers"] = run.recording.marker_count();
   json["parameters_total"] = result.model.parameter_count();
-  json["identifiable"] = run.base.kept.size();
+  json["identifiable"] = run.base.geometric_count;
   json["identifiable_theory"] = run.base.theoretical_count;
   json["equations"] = result.equations;
   json["marker_sd_mm"] = 1e3 * result.marker_sd;
   json["prior_scale"] = {{"angles", result.prior_scale.angles},
                          {"lengths", result.prior_scale.lengths}};
   json["effective_parameters"] = result.posterior.effective_parameters;
-  json["rmse_3d_mm"] = ByModel(run.comparison.metrics, &ErrorMetrics::rmse_3d);
-  json["rmse_coordinate_mm"] = ByModel(run.comparison.metrics, &ErrorMetrics::rmse_coordinate);
-  json["max_mm"] = ByModel(run.comparison.metrics, &ErrorMetrics::maximum);
-  json["rmse_3d_mm_with_outliers"] = ByModel(run.comparison.metrics_all, &ErrorMetrics::rmse_3d);
+  json["rmse_3d_mm"] =
+      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::rmse_3d);
+  json["rmse_coordinate_mm"] =
+      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::rmse_coordinate);
+  json["max_mm"] =
+      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::maximum);
+  json["rmse_3d_mm_with_outliers"] =
+      FigureByModel(run.comparison.kinds, run.comparison.metrics_all, &ErrorMetrics::rmse_3d);
   if (run.cross_validation.folds > 0) {
-    const Metrics& metrics = run.cross_validation.metrics;
+    const ByModel<ErrorMetrics>& metrics = run.cross_validation.metrics;
     json["kfold"]["folds"] = run.cross_validation.folds;
-    json["kfold"]["rmse_3d_mm"] = ByModel(metrics, &ErrorMetrics::rmse_3d);
-    json["kfold"]["rmse_coordinate_mm"] = ByModel(metrics, &ErrorMetrics::rmse_coordinate);
-    json["kfold"]["max_mm"] = ByModel(metrics, &ErrorMetrics::maximum);
+    json["kfold"]["rmse_3d_mm"] =
+        FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::rmse_3d);
+    json["kfold"]["rmse_coordinate_mm"] =
+        FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::rmse_coordinate);
+    json["kfold"]["max_mm"] = FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::maximum);
     json["kfold"]["unconverged"] = run.cross_validation.unconverged;
     json["kfold"]["not_predicted"] = run.cross_validation.not_predicted;
   }

@@ -23,6 +23,33 @@ double FisherQuantile(double probability, double numerator, double denominator) 
   return boost::math::quantile(boost::math::fisher_f(numerator, denominator), probability);
 }
 
+double StudentTwoSidedTail(double value, double degrees_of_freedom) {
+  const boost::math::students_t student(degrees_of_freedom);
+  return 2.0 * boost::math::cdf(boost::math::complement(student, std::abs(value)));
+}
+
+double FisherUpperTail(double value, double numerator, double denominator) {
+  using boost::math::complement;
+  if (std::isinf(denominator)) {
+    const boost::math::chi_squared chi_squared(numerator);
+    return boost::math::cdf(complement(chi_squared, numerator * value));
+  }
+  return boost::math::cdf(complement(boost::math::fisher_f(numerator, denominator), value));
+}
+
+double StudentDegreesOfFreedom(double probability, double quantile) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (quantile <= StudentQuantile(probability, kInfinity)) return kInfinity;
+  // The quantile falls with the logarithm of the degrees of freedom.
+  double low = 0.0;
+  double high = std::log(1e12);
+  for (int step = 0; step < 100; ++step) {
+    const double middle = 0.5 * (low + high);
+    (StudentQuantile(probability, std::exp(middle)) > quantile ? low : high) = middle;
+  }
+  return std::exp(low);
+}
+
 double BetaQuantile(double probability, double alpha, double beta) {
   return boost::math::quantile(boost::math::beta_distribution<>(alpha, beta), probability);
 }

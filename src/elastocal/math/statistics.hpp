@@ -14,6 +14,18 @@ double ChiSquareQuantile(double probability, double degrees_of_freedom);
 /// Quantile of Fisher's F distribution with both degrees of freedom > 0.
 double FisherQuantile(double probability, double numerator, double denominator);
 
+/// Chance that Student's t is further from zero than `value`, to either side; infinite degrees of
+/// freedom: the normal distribution.
+double StudentTwoSidedTail(double value, double degrees_of_freedom);
+
+/// Chance that Fisher's F exceeds `value` >= 0; infinite `denominator`: chi-square / `numerator`.
+double FisherUpperTail(double value, double numerator, double denominator);
+
+/// Degrees of freedom with which Student's t has the quantile `quantile` at `probability` in
+/// (0.5, 1): the inverse of StudentQuantile. At least 1; infinite for the normal distribution's
+/// quantile or less.
+double StudentDegreesOfFreedom(double probability, double quantile);
+
 /// Quantile of the beta distribution with both shapes > 0.
 double BetaQuantile(double probability, double alpha, double beta);
 

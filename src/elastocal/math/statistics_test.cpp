@@ -1,6 +1,7 @@
 #include "elastocal/math/statistics.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -21,6 +22,28 @@ TEST(ChiSquareQuantile, AgreesWithTables) {
   EXPECT_NEAR(ChiSquareQuantile(0.99, 3), 11.3449, 5e-5);
   EXPECT_NEAR(ChiSquareQuantile(0.95, 10), 18.3070, 5e-5);
   EXPECT_NEAR(ChiSquareQuantile(0.5, 2), 2.0 * std::log(2.0), 1e-12);
+}
+
+TEST(FisherUpperTail, AgreesWithTables) {
+  EXPECT_NEAR(FisherUpperTail(4.1028, 2, 10), 0.05, 5e-6);
+  EXPECT_NEAR(FisherUpperTail(3.8415, 1, std::numeric_limits<double>::infinity()), 0.05, 5e-6);
+  EXPECT_NEAR(FisherUpperTail(3.8415, 1, 1e9), 0.05, 5e-6);
+  EXPECT_EQ(FisherUpperTail(0.0, 3, 7), 1.0);
+}
+
+TEST(StudentTwoSidedTail, CountsBothSidesAndIsTheSquareRootOfFisher) {
+  EXPECT_NEAR(StudentTwoSidedTail(2.2281, 10), 0.05, 5e-6);
+  EXPECT_NEAR(StudentTwoSidedTail(-1.95996, std::numeric_limits<double>::infinity()), 0.05, 5e-7);
+  EXPECT_NEAR(StudentTwoSidedTail(1.7, 12), FisherUpperTail(1.7 * 1.7, 1, 12), 1e-14);
+}
+
+TEST(StudentDegreesOfFreedom, InvertsTheQuantile) {
+  for (const double freedom : {1.0, 7.5, 300.0, 3e4}) {
+    EXPECT_NEAR(StudentDegreesOfFreedom(0.975, StudentQuantile(0.975, freedom)), freedom,
+                1e-6 * freedom);
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(StudentDegreesOfFreedom(0.975, StudentQuantile(0.975, infinity)), infinity);
 }
 
 TEST(Median, MiddleValueOrMeanOfTheMiddleTwo) {

@@ -68,6 +68,11 @@ struct ClockFit {
   double overlap_s = 0.0;        ///< time for which both speeds are known
   std::vector<WindowLag> windows;
 
+  /// Camera time of a robot time, s.
+  double CameraTime(double robot_time_s) const {
+    return (robot_time_s + lag_s) / (1.0 + 1e-6 * drift_ppm);
+  }
+
   /// Robot time of a camera time, s.
   double RobotTime(double camera_time_s) const {
     return camera_time_s + 1e-6 * drift_ppm * camera_time_s - lag_s;

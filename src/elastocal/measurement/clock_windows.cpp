@@ -120,7 +120,17 @@ Eigen::VectorXd AddCommonVariance(const std::vector<WindowLag>& windows,
   return variances.array() + std::max(0.0, scatter * scatter - Median(variances));
 }
 
-// Weighted least squares; standard deviations from the scatter, or the weights where that is less.
+// By which the windows' variances are multiplied: up to what the scatter about the line is, down to
+// what it is surely (95 %) below. A window's own residuals also contain what the model of the speed
+// does not explain, which need not shift its lag.
+double VarianceScale(double chi_square, double degrees_of_freedom) {
+  if (degrees_of_freedom < 1.0) return std::max(1.0, chi_square);
+  const double mean = chi_square / degrees_of_freedom;
+  if (mean > 1.0) return mean;
+  return std::min(1.0, chi_square / ChiSquareQuantile(0.05, degrees_of_freedom));
+}
+
+// Weighted least squares; standard deviations from the weights and the scatter.
 LagLine FitWeighted(const std::vector<WindowLag>& windows, const Eigen::VectorXd& weights) {
   LagLine line;
   const double total = weights.sum();
@@ -141,7 +151,8 @@ LagLine FitWeighted(const std::vector<WindowLag>& windows, const Eigen::VectorXd
     chi_square += weights[i] * std::pow(windows[i].lag_s - line.Lag(windows[i].time_s), 2);
   }
   const double used = static_cast<double>((weights.array() > 0.0).count());
-  const double scale = std::max(1.0, chi_square / std::max(1.0, used - 2.0));
+  // Never nothing: with three windows the scatter is zero now and then.
+  const double scale = std::max(0.01, VarianceScale(chi_square, used - 2.0));
   line.level_sd_s = std::sqrt(scale / total);
   line.slope_sd = std::sqrt(scale / spread);
   line.residual_s = std::sqrt(chi_square / total);

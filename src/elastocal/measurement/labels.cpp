@@ -165,7 +165,7 @@ class LabelFinder {
   bool ambiguous_;
 };
 
-void CheckCluster(const MarkerCluster& cluster, int marker_count) {
+void CheckCluster(const LabelCluster& cluster, int marker_count) {
   std::vector<int> sorted = cluster.markers;
   std::sort(sorted.begin(), sorted.end());
   const bool in_range = sorted.empty() || (sorted.front() >= 0 && sorted.back() < marker_count);
@@ -199,10 +199,11 @@ void Apply(const Plan& plan, const ClusterShape& shape, const std::vector<int>& 
   }
 }
 
-ClusterLabels Report(const Plan& plan, const LabelFinder& finder, const MarkerCluster& cluster) {
+ClusterLabels Report(const Plan& plan, const LabelFinder& finder, const LabelCluster& cluster) {
   const ClusterShape& shape = finder.shape();
   ClusterLabels labels;
   labels.name = cluster.name;
+  labels.markers = cluster.markers;
   labels.ambiguous = finder.ambiguous();
   labels.distances = shape.distances;
   labels.tolerances = shape.tolerances;
@@ -224,15 +225,16 @@ ClusterLabels Report(const Plan& plan, const LabelFinder& finder, const MarkerCl
 
 }  // namespace
 
-std::vector<ClusterLabels> CorrectLabels(const std::vector<MarkerCluster>& clusters,
+std::vector<ClusterLabels> CorrectLabels(const std::vector<LabelCluster>& clusters,
                                          const LabelOptions& options,
                                          MarkerTrajectories& trajectories) {
   std::vector<ClusterLabels> reports;
-  for (const MarkerCluster& cluster : clusters) {
+  for (const LabelCluster& cluster : clusters) {
     CheckCluster(cluster, trajectories.marker_count());
     if (cluster.markers.size() < 2) {
       reports.emplace_back();
       reports.back().name = cluster.name;
+      reports.back().markers = cluster.markers;
       reports.back().ambiguous = true;
       continue;
     }

@@ -9,8 +9,8 @@
 
 namespace elastocal {
 
-/// Markers fixed to one rigid plate or cover.
-struct MarkerCluster {
+/// Markers fixed to one rigid plate or cover, whose labels the cameras' software may exchange.
+struct LabelCluster {
   std::string name;
   std::vector<int> markers;  ///< of the trajectories' names
 };
@@ -37,6 +37,7 @@ struct OutlyingMarker {
 
 struct ClusterLabels {
   std::string name;
+  std::vector<int> markers;  ///< of the trajectories' names, as the cluster's
   /// Exchanged labels cannot be told from right ones: one or two markers, or distances much alike.
   /// Labels are then left as they are; outliers are still removed.
   bool ambiguous = false;
@@ -58,7 +59,7 @@ struct ClusterLabels {
 /// looked at. Linear in the number of frames.
 ///
 /// Throws std::invalid_argument for a marker out of range or listed twice in a cluster.
-std::vector<ClusterLabels> CorrectLabels(const std::vector<MarkerCluster>& clusters,
+std::vector<ClusterLabels> CorrectLabels(const std::vector<LabelCluster>& clusters,
                                          const LabelOptions& options,
                                          MarkerTrajectories& trajectories);
 

@@ -67,7 +67,7 @@ void ExpectSame(const MarkerTrajectories& found, const MarkerTrajectories& expec
   EXPECT_EQ(different, 0);
 }
 
-const std::vector<MarkerCluster> kThree{{"wrist", {0, 1, 2}}};
+const std::vector<LabelCluster> kThree{{"wrist", {0, 1, 2}}};
 
 TEST(CorrectLabels, LeavesACleanClusterAlone) {
   MarkerTrajectories trajectories = Move(Triangle(), 3000);
@@ -169,7 +169,7 @@ TEST(CorrectLabels, TakesClustersOfAnySize) {
     for (double& value : places.reshaped()) value = random.Uniform(-0.1, 0.1);
     MarkerTrajectories trajectories = Move(places, 1000);
     const MarkerTrajectories truth = trajectories;
-    MarkerCluster cluster{"c", {}};
+    LabelCluster cluster{"c", {}};
     for (int m = 0; m < size; ++m) cluster.markers.push_back(m);
     if (size > 2) Exchange(trajectories, 0, size - 1, {300, 500});
     const auto labels = CorrectLabels({cluster}, {}, trajectories);

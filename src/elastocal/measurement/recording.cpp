@@ -20,6 +20,10 @@ Recording SelectPostures(const Recording& recording, const std::vector<int>& pos
     selected.trial.clear();
     for (int posture : postures) selected.trial.push_back(recording.trial[posture]);
   }
+  if (!recording.frames.empty()) {
+    selected.frames.clear();
+    for (int posture : postures) selected.frames.push_back(recording.frames[posture]);
+  }
   if (recording.time_s.size() > 0) selected.time_s = recording.time_s(postures);
   if (!recording.line.empty()) {
     selected.line.clear();

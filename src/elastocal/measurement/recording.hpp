@@ -45,8 +45,9 @@ struct Recording {
   std::vector<Trial> trials;  ///< empty for a table of postures
   std::vector<int> trial;     ///< of each posture, index into `trials`; empty with it
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the frame of `markers`, m/s^2
-  Eigen::VectorXd time_s;                    ///< empty, or one time a posture
-  std::vector<int> line;  ///< line of each posture in the file; empty where there is no file
+  Eigen::VectorXd time_s;   ///< empty, or one time a posture; of trials, of the cameras' clock
+  std::vector<int> frames;  ///< that each posture is the mean of; empty: one
+  std::vector<int> line;    ///< line of each posture in the file; empty where there is no file
 
   int posture_count() const { return static_cast<int>(q.rows()); }
   int marker_count() const { return static_cast<int>(marker_names.size()); }

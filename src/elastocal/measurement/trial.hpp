@@ -20,6 +20,12 @@ struct MarkerTrajectories {
   int marker_count() const { return static_cast<int>(names.size()); }
 };
 
+/// A sensor that measures the force and moment between a link and what it touches.
+struct ForceTorqueSensor {
+  std::string name;
+  int link = 0;  ///< of the robot tree
+};
+
 /// What the robot logged, on its own clock.
 struct JointLog {
   std::string source;
@@ -27,6 +33,8 @@ struct JointLog {
   Eigen::VectorXd time_s;          ///< strictly increasing, of the robot's clock
   Eigen::MatrixXd positions;       ///< samples x joints, rad or m
   Eigen::MatrixXd torques;         ///< samples x joints, N.m or N; NaN for joints without sensor
+  std::vector<ForceTorqueSensor> wrench_sensors = {};
+  Eigen::MatrixXd wrenches = {};  ///< samples x 6 a sensor: force [N], moment [N.m], as Recording
 
   int sample_count() const { return static_cast<int>(time_s.size()); }
 };

@@ -67,6 +67,10 @@ std::vector<double*> AddParameterBlocks(const LeastSquaresProblem& problem, Eige
   double* at = x.data();
   for (int size : problem.parameter_blocks) {
     ceres_problem.AddParameterBlock(at, size);
+    const auto begin = static_cast<int>(at - x.data());
+    for (int i : problem.nonnegative) {
+      if (begin <= i && i < begin + size) ceres_problem.SetParameterLowerBound(at, i - begin, 0.0);
+    }
     blocks.push_back(at);
     at += size;
   }
@@ -136,6 +140,7 @@ LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0
                          const LeastSquaresOptions& options) {
   LeastSquaresResult result;
   result.x = x0;
+  for (int i : problem.nonnegative) result.x[i] = std::max(0.0, result.x[i]);
 
   PointCallback callback(problem, result.x);
   ceres::CauchyLoss loss(options.cauchy_scale > 0.0 ? options.cauchy_scale : 1.0);
@@ -147,6 +152,7 @@ LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0
   const std::vector<double*> blocks = AddParameterBlocks(problem, result.x, ceres_problem);
   for (std::size_t i = 0; i < problem.residual_blocks.size(); ++i) {
     const auto& shape = problem.residual_blocks[i];
+    if (!shape.active) continue;
     std::vector<double*> used;
     for (int k : shape.parameter_blocks) used.push_back(blocks[k]);
     const bool robust = shape.robust && options.cauchy_scale > 0.0;

@@ -22,6 +22,8 @@ class LeastSquaresProblem {
     int size = 0;
     std::vector<int> parameter_blocks;  ///< that it depends on, each once
     bool robust = true;                 ///< whether the loss applies to it
+    /// Whether it takes part in the minimum; one that does not is only evaluated.
+    bool active = true;
   };
 
   virtual ~LeastSquaresProblem() = default;
@@ -32,6 +34,8 @@ class LeastSquaresProblem {
   /// Blocks of x that are eliminated first (Schur complement). No two may meet in one residual
   /// block; there must be others besides them.
   std::vector<int> eliminated_blocks;
+  /// Entries of x that may not become negative, ascending.
+  std::vector<int> nonnegative;
 
   virtual void Evaluate(const Eigen::VectorXd& x, bool with_jacobians) = 0;
   virtual void Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const = 0;

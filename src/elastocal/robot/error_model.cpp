@@ -11,11 +11,17 @@ namespace {
 
 using Kind = ParameterKind;
 
-std::vector<int> ActiveJoints(const RobotTree& tree, const std::vector<Marker>& markers) {
+std::vector<int> JointsToLink(const RobotTree& tree, int link) {
+  return JointsToBody(tree, tree.links[link].body);
+}
+
+std::vector<int> ActiveJoints(const RobotTree& tree, const std::vector<Marker>& markers,
+                              const std::vector<SupportLeg>& legs) {
   std::set<int> active;
   for (const Marker& marker : markers) {
-    for (int joint : JointsToBody(tree, tree.links[marker.link].body)) active.insert(joint);
+    for (int joint : JointsToLink(tree, marker.link)) active.insert(joint);
   }
+  for (const SupportLeg& leg : legs) active.insert(leg.joints.begin(), leg.joints.end());
   return {active.begin(), active.end()};
 }
 
@@ -43,6 +49,50 @@ void AddJointParameters(const RobotTree& tree, int joint, const JointPlacement& 
   add(Kind::kR, ParameterUnit::kMetre);
 }
 
+bool Contains(const std::vector<int>& values, int value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+void AddJointCompliances(const ErrorModel& model, int k, std::vector<Parameter>& parameters) {
+  const Joint& joint = model.tree.joints[k];
+  const bool slides = joint.type == JointType::kPrismatic;
+  const auto add = [&](const char* name, Kind kind, int axis) {
+    parameters.push_back(
+        {joint.name + name, kind,
+         slides ? ParameterUnit::kMetrePerNewton : ParameterUnit::kRadianPerNewtonMetre, k, -1, -1,
+         axis});
+  };
+  if (Contains(model.elasticity.torsion, k)) add(".compliance_z", Kind::kTorsion, 2);
+  if (Contains(model.elasticity.bending, k)) {
+    add(".compliance_x", Kind::kBending, 0);
+    add(".compliance_y", Kind::kBending, 1);
+  }
+}
+
+/// A joint that two legs share has one sensor, hence one bias: the first leg's.
+void AddLegParameters(const ErrorModel& model, int leg, std::set<int>& biased,
+                      std::vector<Parameter>& parameters) {
+  const std::string prefix = model.legs[leg].name + ".compliance_";
+  const char* const axes[] = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) {
+    parameters.push_back(
+        {prefix + axes[i], Kind::kBaseForce, ParameterUnit::kMetrePerNewton, -1, -1, leg, i});
+  }
+  for (int i = 0; i < 3; ++i) {
+    parameters.push_back({prefix + "r" + axes[i], Kind::kBaseMoment,
+                          ParameterUnit::kRadianPerNewtonMetre, -1, -1, leg, i});
+  }
+  if (!model.elasticity.torque_bias) return;
+  for (int k : model.legs[leg].joints) {
+    if (!biased.insert(k).second) continue;
+    const Joint& joint = model.tree.joints[k];
+    const bool slides = joint.type == JointType::kPrismatic;
+    parameters.push_back({joint.name + ".torque_bias", Kind::kTorqueBias,
+                          slides ? ParameterUnit::kNewton : ParameterUnit::kNewtonMetre, k, -1,
+                          leg});
+  }
+}
+
 void AddMarkerParameters(const std::vector<Marker>& markers, std::vector<Parameter>& parameters) {
   for (std::size_t i = 0; i < markers.size(); ++i) {
     for (const char* coordinate : {"x", "y", "z"}) {
@@ -64,14 +114,44 @@ void CheckMarkers(const RobotTree& tree, const std::vector<Marker>& markers) {
   }
 }
 
+void CheckElasticity(const RobotTree& tree, const Elasticity& elasticity) {
+  for (const auto* joints : {&elasticity.torsion, &elasticity.bending}) {
+    for (int k : *joints) {
+      if (k < 0 || k >= static_cast<int>(tree.joints.size())) {
+        throw std::invalid_argument("a joint that does not exist is elastic");
+      }
+    }
+  }
+  for (int k : elasticity.bending) {
+    if (tree.joints[k].type == JointType::kPrismatic) {
+      throw std::invalid_argument("prismatic joint '" + tree.joints[k].name + "' cannot bend");
+    }
+  }
+  std::set<std::string> names;
+  for (const Elasticity::Leg& leg : elasticity.legs) {
+    if (!names.insert(leg.name).second) {
+      throw std::invalid_argument("two legs are called '" + leg.name + "'");
+    }
+    if (leg.link < 0 || leg.link >= static_cast<int>(tree.links.size()) ||
+        tree.links[leg.link].body == 0) {
+      throw std::invalid_argument("leg '" + leg.name + "' has no joints");
+    }
+  }
+}
+
 /// Gives the model its markers, and the parameters of these and of the joints that move them.
 void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
   CheckMarkers(model.tree, markers);
-  model.active_joints = ActiveJoints(model.tree, markers);
+  model.active_joints = ActiveJoints(model.tree, markers, model.legs);
   model.parameters.clear();
   AddBaseParameters(model.parameters);
   for (int joint : model.active_joints) {
     AddJointParameters(model.tree, joint, model.placements[joint], model.parameters);
+    AddJointCompliances(model, joint, model.parameters);
+  }
+  std::set<int> biased;
+  for (int leg = 0; leg < model.leg_count(); ++leg) {
+    AddLegParameters(model, leg, biased, model.parameters);
   }
   AddMarkerParameters(markers, model.parameters);
   model.markers = std::move(markers);
@@ -80,10 +160,15 @@ void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
 }  // namespace
 
 ErrorModel MakeErrorModel(RobotTree tree, std::vector<Marker> markers,
-                          const PlacementOptions& options) {
+                          const PlacementOptions& options, const Elasticity& elasticity) {
+  CheckElasticity(tree, elasticity);
   ErrorModel model;
   model.placements = PlaceJoints(tree, options);
   model.tree = std::move(tree);
+  model.elasticity = elasticity;
+  for (const Elasticity::Leg& leg : elasticity.legs) {
+    model.legs.push_back({leg.name, leg.link, JointsToLink(model.tree, leg.link)});
+  }
   SetMarkers(model, std::move(markers));
   return model;
 }

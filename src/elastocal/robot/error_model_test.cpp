@@ -67,6 +67,97 @@ TEST(ErrorModel, RefusesDuplicateNamesAndStrangeLinks) {
   EXPECT_THROW(MakeErrorModel(PlanarArm(), {{"A", -1, {}}}), std::invalid_argument);
 }
 
+/// The planar arm as a leg with everything elastic.
+ErrorModel ElasticArm(std::vector<Marker> markers) {
+  return MakeErrorModel(
+      PlanarArm(), std::move(markers), {},
+      {.torsion = {0, 1}, .bending = {1}, .legs = {{"leg", 3}}, .torque_bias = true});
+}
+
+TEST(ErrorModel, ElasticParametersFollowTheirJointsAndTheLegsTheJoints) {
+  const ErrorModel model = ElasticArm({{"A", 0, {}}});
+  Names names = ParameterNames(model);
+  names.erase(names.begin(), names.begin() + 6);
+  EXPECT_EQ(names, (Names{"shoulder.gamma",
+                          "shoulder.b",
+                          "shoulder.alpha",
+                          "shoulder.d",
+                          "shoulder.theta",
+                          "shoulder.r",
+                          "shoulder.compliance_z",
+                          "elbow.beta",
+                          "elbow.alpha",
+                          "elbow.d",
+                          "elbow.theta",
+                          "elbow.r",
+                          "elbow.compliance_z",
+                          "elbow.compliance_x",
+                          "elbow.compliance_y",
+                          "leg.compliance_x",
+                          "leg.compliance_y",
+                          "leg.compliance_z",
+                          "leg.compliance_rx",
+                          "leg.compliance_ry",
+                          "leg.compliance_rz",
+                          "shoulder.torque_bias",
+                          "elbow.torque_bias",
+                          "marker.A.x",
+                          "marker.A.y",
+                          "marker.A.z"}));
+  ASSERT_EQ(model.leg_count(), 1);
+  EXPECT_EQ(model.legs[0].joints, (std::vector<int>{0, 1}));
+  EXPECT_EQ(model.active_joints, (std::vector<int>{0, 1}));
+}
+
+TEST(ErrorModel, ElasticParametersKnowWhatTheyAre) {
+  const ErrorModel model = ElasticArm({});
+  const auto expect = [&](const char* name, ParameterKind kind, const char* unit, int joint,
+                          int leg, int axis) {
+    const Parameter& p = model.parameters[FindParameter(model.parameters, name)];
+    EXPECT_EQ(p.kind, kind) << name;
+    EXPECT_STREQ(UnitName(p.unit), unit) << name;
+    EXPECT_EQ(p.joint, joint) << name;
+    EXPECT_EQ(p.leg, leg) << name;
+    EXPECT_EQ(p.axis, axis) << name;
+  };
+  expect("shoulder.compliance_z", ParameterKind::kTorsion, "rad/(N.m)", 0, -1, 2);
+  expect("elbow.compliance_x", ParameterKind::kBending, "rad/(N.m)", 1, -1, 0);
+  expect("elbow.compliance_y", ParameterKind::kBending, "rad/(N.m)", 1, -1, 1);
+  expect("leg.compliance_y", ParameterKind::kBaseForce, "m/N", -1, 0, 1);
+  expect("leg.compliance_rz", ParameterKind::kBaseMoment, "rad/(N.m)", -1, 0, 2);
+  expect("elbow.torque_bias", ParameterKind::kTorqueBias, "N.m", 1, 0, -1);
+}
+
+TEST(ErrorModel, SlidingJointsGiveWayInMetres) {
+  const ErrorModel model = MakeErrorModel(
+      RailArm(), {}, {}, {.torsion = {0}, .legs = {{"leg", 2}, {"other", 3}}, .torque_bias = true});
+  const auto unit = [&](const char* name) {
+    return std::string(UnitName(model.parameters[FindParameter(model.parameters, name)].unit));
+  };
+  EXPECT_EQ(unit("rail.compliance_z"), "m/N");
+  EXPECT_EQ(unit("rail.torque_bias"), "N");
+  // One sensor, two legs.
+  EXPECT_EQ(MatchParameters(model.parameters, {"rail.torque_bias"}).size(), 1u);
+}
+
+TEST(ErrorModel, RefusesImpossibleElasticity) {
+  const auto make = [](const Elasticity& elasticity) {
+    return MakeErrorModel(RailArm(), {}, {}, elasticity);
+  };
+  EXPECT_THROW(make({.torsion = {7}}), std::invalid_argument);
+  EXPECT_THROW(make({.bending = {-1}}), std::invalid_argument);
+  EXPECT_THROW(make({.bending = {0}}), std::invalid_argument);  // slides
+  EXPECT_THROW(make({.legs = {{"a", 3}, {"a", 4}}}), std::invalid_argument);
+  EXPECT_THROW(make({.legs = {{"a", 0}}}), std::invalid_argument);
+  EXPECT_THROW(make({.legs = {{"a", 99}}}), std::invalid_argument);
+}
+
+TEST(SelectMarkers, KeepsElasticityAndLegs) {
+  const ErrorModel model = ElasticArm({{"A", 0, {}}, {"B", 3, {}}});
+  EXPECT_EQ(ParameterNames(SelectMarkers(model, {"A"})),
+            ParameterNames(ElasticArm({{"A", 0, {}}})));
+}
+
 TEST(SelectMarkers, IsTheModelOfTheseMarkers) {
   ErrorModel leg = TalosLegModel();
   leg.T_ref_waist = Offset(1, 2, 3);

@@ -19,44 +19,78 @@ void SetTranslation(Screws& screws, int row, const Vector3d& direction) {
 GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
     : model_(model),
       first_parameter_(model.tree.joints.size(), -1),
+      compliances_(model.tree.joints.size(), 0),
       frames_(model.tree.body_count()),
-      positions_(3, model.marker_count()) {
+      positions_(3, model.marker_count()),
+      T_ref_foot_(model.legs.size(), Transform::Identity()) {
   const int screw_count = model.parameter_count() - 3 * model.marker_count();
   std::vector<int> parameter_count(model.tree.joints.size(), 0);
   for (int i = screw_count - 1; i >= kBaseParameterCount; --i) {
-    first_parameter_[model.parameters[i].joint] = i;
-    ++parameter_count[model.parameters[i].joint];
+    const Parameter& parameter = model.parameters[i];
+    if (parameter.leg >= 0) continue;
+    first_parameter_[parameter.joint] = i;
+    ++parameter_count[parameter.joint];
+    if (IsCompliance(parameter.kind)) ++compliances_[parameter.joint];
   }
   screws_.setZero(screw_count, 6);
 
   Eigen::Index offset = 0;
   for (int m = 0; m < model.marker_count(); ++m) {
-    MarkerLayout layout;
-    layout.body = model.tree.links[model.markers[m].link].body;
-    layout.segments = {{0, kBaseParameterCount}};
-    for (int joint : JointsToBody(model.tree, layout.body)) {
-      Segment& last = layout.segments.back();
-      if (last.begin + last.size == first_parameter_[joint]) {
-        last.size += parameter_count[joint];
-      } else {
-        layout.segments.push_back({first_parameter_[joint], parameter_count[joint]});
-      }
-    }
-    for (const Segment& segment : layout.segments) {
-      for (int i = 0; i < segment.size; ++i) layout.columns.push_back(segment.begin + i);
-    }
+    MarkerLayout layout{LayOut(model.tree.links[model.markers[m].link].body, parameter_count),
+                        offset};
     for (int i = 0; i < 3; ++i) layout.columns.push_back(screw_count + 3 * m + i);
-    layout.offset = offset;
     offset += 3 * static_cast<Eigen::Index>(layout.columns.size());
     layout_.push_back(std::move(layout));
   }
   values_.setZero(offset);
+  for (const SupportLeg& leg : model.legs) {
+    legs_.push_back(LayOut(model.tree.links[leg.link].body, parameter_count));
+    leg_screws_.emplace_back(6, static_cast<Eigen::Index>(legs_.back().columns.size()));
+  }
 }
 
-void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q) {
+GeneralizedJacobian::BodyLayout GeneralizedJacobian::LayOut(
+    int body, const std::vector<int>& parameter_count) const {
+  BodyLayout layout{body, {{0, kBaseParameterCount}}, {}};
+  for (int joint : JointsToBody(model_.tree, body)) {
+    Segment& last = layout.segments.back();
+    if (last.begin + last.size == first_parameter_[joint]) {
+      last.size += parameter_count[joint];
+    } else {
+      layout.segments.push_back({first_parameter_[joint], parameter_count[joint]});
+    }
+  }
+  for (const Segment& segment : layout.segments) {
+    for (int i = 0; i < segment.size; ++i) layout.columns.push_back(segment.begin + i);
+  }
+  return layout;
+}
+
+void GeneralizedJacobian::SetCompliances(int joint, int row,
+                                         const Geometry::JointConstants& constants,
+                                         const MdhFrame& twisted, const JointLoads& loads) {
+  const bool loaded = loads.cols() > 0;
+  const Vector3d load = loaded ? Vector3d(loads.col(joint)) : Vector3d::Zero();
+  const bool revolute = model_.tree.joints[joint].type == JointType::kRevolute;
+  Eigen::Matrix3d axes = twisted.R;
+  if (revolute && loaded) axes *= LeftJacobian(constants.compliance.cwiseProduct(load));
+  const Vector3d centre = twisted.p + constants.centre * twisted.R.col(2);
+  for (const int end = row + compliances_[joint]; row < end; ++row) {
+    const int axis = model_.parameters[row].axis;
+    if (revolute) {
+      SetRotation(screws_, row, load[axis] * axes.col(axis), centre);
+    } else {
+      SetTranslation(screws_, row, load[axis] * axes.col(axis));
+    }
+  }
+}
+
+void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q,
+                                         const JointLoads& loads) {
   // In the order of the parameters of one joint, or of the waist.
-  const auto visit = [this](int joint, const Geometry::JointConstants& constants,
-                            const MdhFrame& parent, const MdhFrame& twisted) {
+  const auto visit = [&](int joint, const Geometry::JointConstants& constants,
+                         const MdhFrame& parent, const MdhFrame& twisted,
+                         const MdhFrame& deflected) {
     const bool waist = joint == kWaist;
     int row = waist ? 0 : first_parameter_[joint];
     if (waist || model_.placements[joint].general) {
@@ -70,10 +104,12 @@ void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::
     }
     SetRotation(screws_, row++, twisted.R.col(0), twisted.p);
     SetTranslation(screws_, row++, twisted.R.col(0));
-    SetRotation(screws_, row++, twisted.R.col(2), twisted.p);
-    SetTranslation(screws_, row, twisted.R.col(2));
+    SetRotation(screws_, row++, deflected.R.col(2), deflected.p);
+    // An error of r moves the physical centre along: the axis before deflection.
+    SetTranslation(screws_, row++, twisted.R.col(2));
+    if (!waist && compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, loads);
   };
-  EvaluateMdhFrames(model_, geometry, q, frames_, visit);
+  EvaluateMdhFrames(model_, geometry, q, loads, frames_, visit);
 }
 
 void GeneralizedJacobian::EvaluateMarker(int marker) {
@@ -99,8 +135,32 @@ void GeneralizedJacobian::EvaluateMarker(int marker) {
   }
 }
 
-void GeneralizedJacobian::Evaluate(const Geometry& geometry, const Eigen::VectorXd& q) {
-  EvaluateScrews(geometry, q);
+Transform GeneralizedJacobian::WaistPose() const {
+  Transform T_ref_waist = Transform::Identity();
+  T_ref_waist.linear() = frames_[0].R;
+  T_ref_waist.translation() = frames_[0].p;
+  return T_ref_waist;
+}
+
+void GeneralizedJacobian::EvaluateLeg(int leg) {
+  const Link& foot = model_.tree.links[model_.legs[leg].link];
+  const MdhFrame& frame = frames_[foot.body];
+  Transform T_ref_joint = Transform::Identity();
+  T_ref_joint.linear() = frame.R;
+  T_ref_joint.translation() = frame.p;
+  T_ref_foot_[leg] = T_ref_joint * model_.placements[foot.body - 1].T_joint_body * foot.T_body_link;
+  Eigen::Index at = 0;
+  for (const Segment& segment : legs_[leg].segments) {
+    leg_screws_[leg].middleCols(at, segment.size) =
+        screws_.middleRows(segment.begin, segment.size).matrix().transpose();
+    at += segment.size;
+  }
+}
+
+void GeneralizedJacobian::Evaluate(const Geometry& geometry, const Eigen::VectorXd& q,
+                                   const JointLoads& loads) {
+  EvaluateScrews(geometry, q, loads);
+  for (int leg = 0; leg < model_.leg_count(); ++leg) EvaluateLeg(leg);
   for (int m = 0; m < model_.marker_count(); ++m) {
     const MdhFrame& frame = frames_[layout_[m].body];
     positions_.col(m) = frame.p + frame.R * geometry.p_joint_marker[m];

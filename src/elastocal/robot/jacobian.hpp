@@ -15,14 +15,17 @@ namespace elastocal {
 ///
 /// A displacement of any parameter moves the bodies beyond it as a screw, so that every column is
 /// a x p + m: for a rotation, a is its axis and m = o x a with o on the axis; for a translation a
-/// is zero and m its direction. The structure is laid out once; Evaluate allocates nothing.
+/// is zero and m its direction. Loads, where given, are taken as they are: the columns of
+/// compliances are derivatives under these loads. They have no column of a torque bias, which
+/// through a joint's torsion would be the same as an error of theta. The structure is laid out
+/// once; Evaluate allocates nothing.
 class GeneralizedJacobian {
  public:
   /// Keeps a reference: the model must outlive it.
   explicit GeneralizedJacobian(const ErrorModel& model);
 
   /// Positions and derivatives for one posture.
-  void Evaluate(const Geometry& geometry, const Eigen::VectorXd& q);
+  void Evaluate(const Geometry& geometry, const Eigen::VectorXd& q, const JointLoads& loads = {});
 
   /// Position of a marker in the reference frame, m; of the last evaluation, as all below.
   auto Position(int marker) const { return positions_.col(marker); }
@@ -40,27 +43,57 @@ class GeneralizedJacobian {
   /// The whole matrix, 3 N_M x parameters, zeros included.
   Eigen::MatrixXd Dense() const;
 
+  /// Pose of the root link in the reference frame, and its motion by T0: 6 x 6, as LegScrews.
+  Transform WaistPose() const;
+  Eigen::Matrix<double, 6, 6> WaistScrews() const {
+    return screws_.topRows<kBaseParameterCount>().matrix().transpose();
+  }
+
+  /// Pose of a leg's foot link in the reference frame.
+  const Transform& LegPose(int leg) const { return T_ref_foot_[leg]; }
+
+  /// Indices of the parameters that the foot's pose depends on, ascending: T0 and those of the
+  /// leg's joints. (The compliances of the leg act through the waist: see leg_load.hpp.)
+  const std::vector<int>& LegColumns(int leg) const { return legs_[leg].columns; }
+
+  /// 6 x LegColumns(leg).size(): the motion of the foot by each parameter, as a screw [a; m] in the
+  /// reference frame: the rotation a, and the velocity m of the point that is at the reference
+  /// origin. Any point p of the foot moves by a x p + m.
+  const Eigen::Matrix<double, 6, Eigen::Dynamic>& LegScrews(int leg) const {
+    return leg_screws_[leg];
+  }
+
  private:
   struct Segment {
     int begin, size;  // run of consecutive parameters
   };
-  struct MarkerLayout {
+  struct BodyLayout {
     int body;
     std::vector<Segment> segments;  // T0 and joint parameters
-    std::vector<int> columns;
-    Eigen::Index offset;  // of the block in values_
+    std::vector<int> columns;       // the same, one by one
+  };
+  struct MarkerLayout : BodyLayout {  // its columns end with the marker's own
+    Eigen::Index offset;              // of the block in values_
   };
 
-  void EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q);
+  BodyLayout LayOut(int body, const std::vector<int>& parameter_count) const;
+  void EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q, const JointLoads& loads);
+  void SetCompliances(int joint, int row, const Geometry::JointConstants& constants,
+                      const MdhFrame& twisted, const JointLoads& loads);
   void EvaluateMarker(int marker);
+  void EvaluateLeg(int leg);
 
   const ErrorModel& model_;
   std::vector<int> first_parameter_;                // by joint
+  std::vector<int> compliances_;                    // by joint: how many it has
   std::vector<MarkerLayout> layout_;                // by marker
+  std::vector<BodyLayout> legs_;                    // by leg
   std::vector<MdhFrame> frames_;                    // by body
   Eigen::Array<double, Eigen::Dynamic, 6> screws_;  // parameters (T0, joints) x [a, m]
   Eigen::Matrix3Xd positions_;
   Eigen::VectorXd values_;
+  std::vector<Transform> T_ref_foot_;                                 // by leg
+  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> leg_screws_;  // by leg
 };
 
 }  // namespace elastocal

@@ -24,6 +24,8 @@ Geometry::JointConstants MakeConstants(const JointPlacement& placement) {
   constants.p_parent_twisted = T.translation();
   constants.theta = placement.theta;
   constants.r = placement.r;
+  constants.centre = placement.r + placement.T_joint_body.translation().z();
+  constants.compliance.setZero();
   return constants;
 }
 
@@ -46,7 +48,7 @@ double& Constant(JointPlacement& placement, Kind kind) {
   }
 }
 
-JointPlacement BasePlacement(const Transform& T_ref_waist, const Eigen::VectorXd& delta) {
+JointPlacement BasePlacement(const Transform& T_ref_waist, const Vector6d& delta) {
   JointPlacement base;
   base.T_parent_pre = T_ref_waist;
   base.gamma = delta[0];
@@ -59,27 +61,58 @@ JointPlacement BasePlacement(const Transform& T_ref_waist, const Eigen::VectorXd
 }
 
 std::vector<MdhFrame> MdhFrames(const ErrorModel& model, const Geometry& geometry,
-                                const Eigen::VectorXd& q) {
+                                const Eigen::VectorXd& q, const JointLoads& loads) {
   std::vector<MdhFrame> frames(model.tree.body_count());
-  EvaluateMdhFrames(model, geometry, q, frames, [](auto&&...) {});
+  EvaluateMdhFrames(model, geometry, q, loads, frames, [](auto&&...) {});
   return frames;
+}
+
+/// Errors of a joint, which follow one another in `delta` from the index `i` on; moves `i` behind
+/// them.
+Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
+                                         const Eigen::VectorXd& delta, int& i) {
+  JointPlacement placement = model.placements[joint];
+  Vector3d compliance = Vector3d::Zero();
+  for (; i < model.parameter_count() && model.parameters[i].joint == joint; ++i) {
+    const Parameter& parameter = model.parameters[i];
+    if (IsCompliance(parameter.kind)) {
+      compliance[parameter.axis] = delta[i];
+    } else {
+      Constant(placement, parameter.kind) += delta[i];
+    }
+  }
+  Geometry::JointConstants constants = MakeConstants(placement);
+  constants.compliance = compliance;
+  return constants;
+}
+
+/// Errors of the legs, from the index `i` on; moves `i` behind them.
+void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& i,
+                    Geometry& geometry) {
+  if (model.legs.empty()) return;
+  geometry.leg_compliance.assign(model.legs.size(), Vector6d::Zero());
+  geometry.torque_bias.setZero(static_cast<Eigen::Index>(model.tree.joints.size()));
+  for (; i < model.parameter_count() && model.parameters[i].leg >= 0; ++i) {
+    const Parameter& parameter = model.parameters[i];
+    if (parameter.kind == Kind::kTorqueBias) {
+      geometry.torque_bias[parameter.joint] = delta[i];
+    } else {
+      const int first = parameter.kind == Kind::kBaseForce ? 0 : 3;
+      geometry.leg_compliance[parameter.leg][first + parameter.axis] = delta[i];
+    }
+  }
 }
 
 }  // namespace
 
 Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
   Geometry geometry;
-  geometry.base = MakeConstants(BasePlacement(model.T_ref_waist, delta));
+  PlaceWaist(model.T_ref_waist, delta.head<kBaseParameterCount>(), geometry);
   geometry.T_joint_waist = RotX(-0.5 * M_PI);
   geometry.joints.resize(model.tree.joints.size());
   int i = kBaseParameterCount;
-  for (int k : model.active_joints) {
-    JointPlacement placement = model.placements[k];
-    for (; i < model.parameter_count() && model.parameters[i].joint == k; ++i) {
-      Constant(placement, model.parameters[i].kind) += delta[i];
-    }
-    geometry.joints[k] = MakeConstants(placement);
-  }
+  for (int k : model.active_joints) geometry.joints[k] = JointWithErrors(model, k, delta, i);
+  ApplyLegErrors(model, delta, i, geometry);
   geometry.p_joint_marker.reserve(model.markers.size());
   geometry.R_joint_link.reserve(model.markers.size());
   for (const Marker& marker : model.markers) {
@@ -94,9 +127,20 @@ Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
   return geometry;
 }
 
+void PlaceWaist(const Transform& T_ref_waist, const Vector6d& t0_errors, Geometry& geometry) {
+  geometry.base = MakeConstants(BasePlacement(T_ref_waist, t0_errors));
+}
+
+Transform WaistPose(const Geometry& geometry) {
+  Transform T_ref_twisted = Transform::Identity();
+  T_ref_twisted.linear() = geometry.base.R_parent_twisted;
+  T_ref_twisted.translation() = geometry.base.p_parent_twisted;
+  return T_ref_twisted * RotZ(geometry.base.theta) * TrZ(geometry.base.r) * geometry.T_joint_waist;
+}
+
 Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geometry,
-                                 const Eigen::VectorXd& q) {
-  const std::vector<MdhFrame> frames = MdhFrames(model, geometry, q);
+                                 const Eigen::VectorXd& q, const JointLoads& loads) {
+  const std::vector<MdhFrame> frames = MdhFrames(model, geometry, q, loads);
   Eigen::Matrix3Xd positions(3, model.marker_count());
   for (int m = 0; m < model.marker_count(); ++m) {
     const MdhFrame& frame = frames[model.tree.links[model.markers[m].link].body];
@@ -105,9 +149,18 @@ Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geomet
   return positions;
 }
 
+MarkerInLink PlaceMarker(const ErrorModel& model, const Geometry& geometry, int marker, int link) {
+  const Link& on = model.tree.links[link];
+  const Transform T_joint_link =
+      on.body == 0 ? on.T_body_link : model.placements[on.body - 1].T_joint_body * on.T_body_link;
+  const Transform T_link_joint = T_joint_link.inverse();
+  return {T_link_joint * geometry.p_joint_marker[marker],
+          T_link_joint.linear() * geometry.R_joint_link[marker]};
+}
+
 std::vector<Transform> BodyTransforms(const ErrorModel& model, const Geometry& geometry,
-                                      const Eigen::VectorXd& q) {
-  const std::vector<MdhFrame> frames = MdhFrames(model, geometry, q);
+                                      const Eigen::VectorXd& q, const JointLoads& loads) {
+  const std::vector<MdhFrame> frames = MdhFrames(model, geometry, q, loads);
   std::vector<Transform> T_ref_body(frames.size(), Transform::Identity());
   const auto set = [&](int body, const Transform& T_joint_body) {
     T_ref_body[body].linear() = frames[body].R;
@@ -117,6 +170,21 @@ std::vector<Transform> BodyTransforms(const ErrorModel& model, const Geometry& g
   set(0, Transform::Identity());
   for (int k : model.active_joints) set(k + 1, model.placements[k].T_joint_body);
   return T_ref_body;
+}
+
+std::vector<Transform> CalibratedLinkTransforms(const ErrorModel& model, const Geometry& geometry,
+                                                const Eigen::VectorXd& q, const JointLoads& loads) {
+  const RobotTree& tree = model.tree;
+  std::vector<Transform> T_ref_body = BodyTransforms(model, geometry, q, loads);
+  auto active = model.active_joints.begin();
+  for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
+    if (active != model.active_joints.end() && *active == k) {
+      ++active;
+    } else {
+      T_ref_body[k + 1] = T_ref_body[tree.joints[k].parent_body] * ParentBodyToChild(tree, k, q);
+    }
+  }
+  return LinkTransforms(tree, T_ref_body);
 }
 
 }  // namespace elastocal

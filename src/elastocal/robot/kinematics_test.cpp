@@ -134,6 +134,32 @@ TEST_P(KinematicsOfRandomRobots, ErrorsGoWhereTheFormulasPutThem) {
   }
 }
 
+TEST_P(KinematicsOfRandomRobots, LinksOffTheChainsAreCarriedAtTheirPositions) {
+  // Of two models of one robot, the one with a marker on one body alone has the other links too.
+  RandomModel m(GetParam());
+  const ErrorModel part =
+      MakeErrorModel(m.model.tree, {{"M", m.random.Index(m.model.tree.body_count()), {0, 0, 0}}});
+  const Eigen::VectorXd nominal = Eigen::VectorXd::Zero(part.parameter_count());
+  const Eigen::VectorXd q = RandomPosture(part.tree, m.random);
+  const auto T = CalibratedLinkTransforms(part, ApplyErrors(part, nominal), q);
+  const auto expected = LinkTransforms(part.tree, q);
+  ASSERT_EQ(T.size(), expected.size());
+  for (std::size_t i = 0; i < T.size(); ++i) {
+    EXPECT_LT((T[i].matrix() - expected[i].matrix()).norm(), kRounding) << i;
+  }
+}
+
+TEST_P(KinematicsOfRandomRobots, PlaceWaistIsWhatApplyErrorsDoes) {
+  RandomModel m(GetParam());
+  const Eigen::VectorXd q = RandomPosture(m.model.tree, m.random);
+  const Eigen::Matrix3Xd expected = MarkerPositions(m.model, ApplyErrors(m.model, m.delta), q);
+  Eigen::VectorXd elsewhere = m.delta;
+  elsewhere.head<6>() = m.random.NormalVector(6, 1.0);
+  Geometry geometry = ApplyErrors(m.model, elsewhere);
+  PlaceWaist(m.model.T_ref_waist, m.delta.head<6>(), geometry);
+  EXPECT_EQ(MarkerPositions(m.model, geometry, q), expected);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, KinematicsOfRandomRobots, testing::Range(1, 31));
 
 TEST(Kinematics, MimicJointsMoveWithTheirLeader) {

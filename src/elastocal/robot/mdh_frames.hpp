@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
@@ -17,40 +18,60 @@ struct MdhFrame {
 
 inline constexpr int kWaist = -1;  ///< stands for eq. 2 where otherwise a joint's index is
 
+/// The twisted frame of a joint after its elastic rotation phi = compliance .* load: rotated by
+/// Exp(phi), about its physical centre. A prismatic joint gives way along z instead.
+inline MdhFrame Deflected(const Geometry::JointConstants& constants, bool revolute,
+                          const Eigen::Vector3d& load, const MdhFrame& twisted) {
+  const Eigen::Vector3d phi = constants.compliance.cwiseProduct(load);
+  if (!revolute) return {twisted.R, twisted.p + phi.z() * twisted.R.col(2)};
+  MdhFrame deflected;
+  deflected.R = twisted.R * RotationFromVector(phi);
+  deflected.p = twisted.p + constants.centre * (twisted.R.col(2) - deflected.R.col(2));
+  return deflected;
+}
+
 /// Walks along the tree from the reference frame outwards (eq. 3) and fills `frames` (one a body):
 /// the root link's frame and the MDH frames that active joints move. At the waist and at each joint
 /// it calls
 ///
-///   visit(joint or kWaist, its constants, parent frame, twisted frame)
+///   visit(joint or kWaist, its constants, parent frame, twisted frame, deflected frame)
 ///
 /// where the twisted frame is the one after Trx(d) in eq. 1: its x is the axis of alpha and d, its
-/// z that of theta and r. Forward kinematics and the Jacobian are the same walk.
+/// z the joint's axis. The deflected frame is the same with the joint's elastic rotation under
+/// `loads`, which acts on the fixed side, before the joint's own rotation: its z is the axis of
+/// theta. Forward kinematics and the Jacobian are the same walk.
 template <typename Visit>
 inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
-                              const Eigen::VectorXd& q, std::vector<MdhFrame>& frames,
-                              const Visit& visit) {
+                              const Eigen::VectorXd& q, const JointLoads& loads,
+                              std::vector<MdhFrame>& frames, const Visit& visit) {
+  const bool loaded = loads.cols() > 0;
   const auto place = [&](int joint, const Geometry::JointConstants& constants,
-                         const MdhFrame& parent, double theta, double r, MdhFrame& frame) {
+                         const MdhFrame& parent, bool revolute, double position, MdhFrame& frame) {
     const MdhFrame twisted{parent.R * constants.R_parent_twisted,
                            parent.p + parent.R * constants.p_parent_twisted};
-    visit(joint, constants, parent, twisted);
+    MdhFrame bent;
+    const MdhFrame* deflected = &twisted;
+    if (loaded && joint != kWaist && !constants.compliance.isZero(0.0)) {
+      bent = Deflected(constants, revolute, loads.col(joint), twisted);
+      deflected = &bent;
+    }
+    visit(joint, constants, parent, twisted, *deflected);
+    const double theta = constants.theta + (revolute ? position : 0.0);
+    const double r = constants.r + (revolute ? 0.0 : position);
     const double c = std::cos(theta);
     const double s = std::sin(theta);
-    frame.R.col(0) = c * twisted.R.col(0) + s * twisted.R.col(1);
-    frame.R.col(1) = c * twisted.R.col(1) - s * twisted.R.col(0);
-    frame.R.col(2) = twisted.R.col(2);
-    frame.p = twisted.p + r * twisted.R.col(2);
+    frame.R.col(0) = c * deflected->R.col(0) + s * deflected->R.col(1);
+    frame.R.col(1) = c * deflected->R.col(1) - s * deflected->R.col(0);
+    frame.R.col(2) = deflected->R.col(2);
+    frame.p = deflected->p + r * deflected->R.col(2);
   };
   const MdhFrame reference{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
-  place(kWaist, geometry.base, reference, geometry.base.theta, geometry.base.r, frames[0]);
+  place(kWaist, geometry.base, reference, true, 0.0, frames[0]);
   frames[0].R = frames[0].R * geometry.T_joint_waist.linear();
   for (int k : model.active_joints) {
     const Joint& joint = model.tree.joints[k];
-    const Geometry::JointConstants& constants = geometry.joints[k];
-    const double position = JointPosition(joint, q);
-    const bool revolute = joint.type == JointType::kRevolute;
-    place(k, constants, frames[joint.parent_body], constants.theta + (revolute ? position : 0.0),
-          constants.r + (revolute ? 0.0 : position), frames[k + 1]);
+    place(k, geometry.joints[k], frames[joint.parent_body], joint.type == JointType::kRevolute,
+          JointPosition(joint, q), frames[k + 1]);
   }
 }
 

@@ -40,8 +40,15 @@ bool Matches(std::string_view pattern, std::string_view name) {
 
 const char* KindName(ParameterKind kind) {
   static constexpr std::array<const char*, kParameterKindCount> kNames = {
-      "theta", "r", "d", "b", "alpha", "beta", "gamma", "T0", "marker"};
+      "theta", "r",      "d",       "b",       "alpha",      "beta",        "gamma",
+      "T0",    "marker", "torsion", "bending", "base_force", "base_moment", "torque_bias"};
   return kNames[static_cast<int>(kind)];
+}
+
+const char* UnitName(ParameterUnit unit) {
+  static constexpr std::array<const char*, kParameterUnitCount> kNames = {"rad", "m",   "rad/(N.m)",
+                                                                          "m/N", "N.m", "N"};
+  return kNames[static_cast<int>(unit)];
 }
 
 bool IsAngle(ParameterKind kind) {
@@ -51,6 +58,15 @@ bool IsAngle(ParameterKind kind) {
 
 bool IsExternal(ParameterKind kind) {
   return kind == ParameterKind::kBase || kind == ParameterKind::kMarker;
+}
+
+bool IsCompliance(ParameterKind kind) {
+  return kind == ParameterKind::kTorsion || kind == ParameterKind::kBending ||
+         kind == ParameterKind::kBaseForce || kind == ParameterKind::kBaseMoment;
+}
+
+bool IsElastic(ParameterKind kind) {
+  return IsCompliance(kind) || kind == ParameterKind::kTorqueBias;
 }
 
 int FindParameter(const std::vector<Parameter>& parameters, const std::string& name) {

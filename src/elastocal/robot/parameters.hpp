@@ -6,26 +6,59 @@
 namespace elastocal {
 
 /// What an error parameter is. Angles in rad, lengths in m; the kinds of eq. 1 and, for the first
-/// joint after the waist and after a branch, `kGamma` and `kB` (see placement.hpp).
-enum class ParameterKind { kTheta, kR, kD, kB, kAlpha, kBeta, kGamma, kBase, kMarker };
-inline constexpr int kParameterKindCount = 9;
+/// joint after the waist and after a branch, `kGamma` and `kB` (see placement.hpp). Then the
+/// elastic ones of eq. 5 to 7, as compliances (inverse stiffnesses): of joints about their axes
+/// (`kTorsion`) and across them (`kBending`), of a leg between its foot and the waist
+/// (`kBaseForce`, `kBaseMoment`), and the bias of a joint's torque sensor.
+enum class ParameterKind {
+  kTheta,
+  kR,
+  kD,
+  kB,
+  kAlpha,
+  kBeta,
+  kGamma,
+  kBase,
+  kMarker,
+  kTorsion,
+  kBending,
+  kBaseForce,
+  kBaseMoment,
+  kTorqueBias
+};
+inline constexpr int kParameterKindCount = 14;
 
-enum class ParameterUnit { kRadian, kMetre };
+enum class ParameterUnit {
+  kRadian,
+  kMetre,
+  kRadianPerNewtonMetre,
+  kMetrePerNewton,
+  kNewtonMetre,
+  kNewton
+};
+inline constexpr int kParameterUnitCount = 6;
 
 /// One entry of the vector of errors: a deviation from the nominal model, zero at nominal.
 struct Parameter {
   /// `<joint>.theta|r|d|b|alpha|beta|gamma`, `waist.T0.gamma|b|alpha|d|theta|r` or
-  /// `marker.<marker>.x|y|z` (in the frame of the link that carries the marker).
+  /// `marker.<marker>.x|y|z` (in the frame of the link that carries the marker); elastic ones
+  /// `<joint>.compliance_x|y|z` (axes of its twisted frame, see mdh_frames.hpp: z is torsion),
+  /// `<leg>.compliance_x|y|z|rx|ry|rz` (axes of its foot) and `<joint>.torque_bias`.
   std::string name;
   ParameterKind kind;
   ParameterUnit unit;
   int joint = -1;   ///< of the robot tree, for joint parameters
   int marker = -1;  ///< of the error model, for marker positions
+  int leg = -1;     ///< of the error model, for compliances of a leg and torque biases
+  int axis = -1;    ///< of a compliance: 0, 1, 2 for x, y, z (rx, ry, rz)
 };
 
 /// Name of a kind as it appears in names and settings: theta, r, d, b, alpha, beta, gamma, T0,
-/// marker.
+/// marker, torsion, bending, base_force, base_moment, torque_bias.
 const char* KindName(ParameterKind kind);
+
+/// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N.
+const char* UnitName(ParameterUnit unit);
 
 /// Whether a kind of joint parameter is an angle: theta, alpha, beta, gamma.
 bool IsAngle(ParameterKind kind);
@@ -33,6 +66,13 @@ bool IsAngle(ParameterKind kind);
 /// Whether the parameter belongs to the experiment (where the waist and the markers are), not to
 /// the robot: fitted anew for every recording, never deployed.
 bool IsExternal(ParameterKind kind);
+
+/// Whether the kind is a compliance: zero for a rigid robot, and never less.
+bool IsCompliance(ParameterKind kind);
+
+/// Whether the parameter acts through loads (a compliance or a torque bias). Geometry alone says
+/// nothing of it: whether it is identifiable is judged by the data, not by QR.
+bool IsElastic(ParameterKind kind);
 
 /// Index of the parameter called `name`. Throws InputError with the nearest known name.
 int FindParameter(const std::vector<Parameter>& parameters, const std::string& name);

@@ -27,10 +27,24 @@ TEST(Parameters, NamesOfKinds) {
   EXPECT_STREQ(KindName(ParameterKind::kTheta), "theta");
   EXPECT_STREQ(KindName(ParameterKind::kGamma), "gamma");
   EXPECT_STREQ(KindName(ParameterKind::kMarker), "marker");
+  EXPECT_STREQ(KindName(ParameterKind::kTorsion), "torsion");
+  EXPECT_STREQ(KindName(ParameterKind::kTorqueBias), "torque_bias");
   for (int i = 0; i < kParameterKindCount; ++i) {
     const auto kind = static_cast<ParameterKind>(i);
     EXPECT_EQ(IsExternal(kind), kind == ParameterKind::kBase || kind == ParameterKind::kMarker);
   }
+}
+
+TEST(Parameters, CompliancesAndBiasesAreElastic) {
+  std::string compliances, elastic;
+  for (int i = 0; i < kParameterKindCount; ++i) {
+    const auto kind = static_cast<ParameterKind>(i);
+    if (IsCompliance(kind)) compliances += std::string(KindName(kind)) + " ";
+    if (IsElastic(kind)) elastic += std::string(KindName(kind)) + " ";
+    EXPECT_FALSE(IsElastic(kind) && (IsAngle(kind) || IsExternal(kind))) << KindName(kind);
+  }
+  EXPECT_EQ(compliances, "torsion bending base_force base_moment ");
+  EXPECT_EQ(elastic, "torsion bending base_force base_moment torque_bias ");
 }
 
 TEST(Parameters, FindsByName) {

@@ -41,20 +41,28 @@ double JointPosition(const Joint& joint, const Eigen::VectorXd& q) {
   return joint.multiplier * q[joint.coordinate] + joint.offset;
 }
 
+Transform ParentBodyToChild(const RobotTree& tree, int joint, const Eigen::VectorXd& q) {
+  const Joint& moving = tree.joints[joint];
+  return tree.links[moving.parent_link].T_body_link * moving.T_parent_child *
+         JointMotion(moving, JointPosition(moving, q));
+}
+
+std::vector<Transform> LinkTransforms(const RobotTree& tree,
+                                      const std::vector<Transform>& T_ref_body) {
+  std::vector<Transform> T_ref_link;
+  T_ref_link.reserve(tree.links.size());
+  for (const Link& link : tree.links) {
+    T_ref_link.push_back(T_ref_body[link.body] * link.T_body_link);
+  }
+  return T_ref_link;
+}
+
 std::vector<Transform> LinkTransforms(const RobotTree& tree, const Eigen::VectorXd& q) {
   std::vector<Transform> T_root_body(tree.body_count(), Transform::Identity());
-  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
-    const Joint& joint = tree.joints[k];
-    T_root_body[k + 1] = T_root_body[joint.parent_body] *
-                         tree.links[joint.parent_link].T_body_link * joint.T_parent_child *
-                         JointMotion(joint, JointPosition(joint, q));
+  for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
+    T_root_body[k + 1] = T_root_body[tree.joints[k].parent_body] * ParentBodyToChild(tree, k, q);
   }
-  std::vector<Transform> T_root_link;
-  T_root_link.reserve(tree.links.size());
-  for (const Link& link : tree.links) {
-    T_root_link.push_back(T_root_body[link.body] * link.T_body_link);
-  }
-  return T_root_link;
+  return LinkTransforms(tree, T_root_body);
 }
 
 std::vector<int> JointsToBody(const RobotTree& tree, int body) {

@@ -67,6 +67,14 @@ int FindJoint(const RobotTree& tree, const std::string& name);
 /// Position of a joint [rad or m] for the position vector `q` of the whole tree.
 double JointPosition(const Joint& joint, const Eigen::VectorXd& q);
 
+/// Pose of the body that joint `joint` moves in the frame of the body it is mounted on, straight
+/// from the URDF's origin and axis.
+Transform ParentBodyToChild(const RobotTree& tree, int joint, const Eigen::VectorXd& q);
+
+/// Poses of the links from those of the bodies.
+std::vector<Transform> LinkTransforms(const RobotTree& tree,
+                                      const std::vector<Transform>& T_ref_body);
+
 /// Pose of every link in the root link's frame, straight from the URDF's own origins and axes.
 std::vector<Transform> LinkTransforms(const RobotTree& tree, const Eigen::VectorXd& q);
 

@@ -1,34 +1,91 @@
 #include "elastocal/robot/statics.hpp"
 
-#include <vector>
+#include <cmath>
+
+#include "elastocal/robot/mdh_frames.hpp"
 
 namespace elastocal {
+namespace {
 
-Eigen::VectorXd GravityTorques(const RobotTree& tree, const Eigen::VectorXd& q,
-                               const Eigen::Vector3d& gravity_waist) {
-  const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
+using Eigen::Vector3d;
 
-  // Mass and first moment (mass times centre of mass) of each body, then of all that it carries.
-  std::vector<double> mass(tree.body_count(), 0.0);
-  std::vector<Eigen::Vector3d> moment(tree.body_count(), Eigen::Vector3d::Zero());
+/// Moment of what a joint carries about `point`, as it turns the child, N.m.
+Vector3d TurningMoment(const CarriedLoad& carried, const Vector3d& point, const Vector3d& gravity) {
+  return carried.side * (carried.moment - carried.mass * point).cross(gravity);
+}
+
+}  // namespace
+
+std::vector<CarriedLoad> CarriedLoads(const RobotTree& tree,
+                                      const std::vector<Transform>& T_ref_link, int fixed_link) {
+  // Of each body, then of all beyond it as well.
+  std::vector<CarriedLoad> beyond(tree.body_count());
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     const Link& link = tree.links[i];
-    mass[link.body] += link.mass;
-    moment[link.body] += link.mass * (T_root_link[i] * link.com);
+    beyond[link.body].mass += link.mass;
+    beyond[link.body].moment += link.mass * (T_ref_link[i] * link.com);
   }
-  Eigen::VectorXd torques = Eigen::VectorXd::Zero(tree.coordinate_count());
   for (int k = static_cast<int>(tree.joints.size()) - 1; k >= 0; --k) {
+    CarriedLoad& parent = beyond[tree.joints[k].parent_body];
+    parent.mass += beyond[k + 1].mass;
+    parent.moment += beyond[k + 1].moment;
+  }
+  const CarriedLoad all = beyond.front();
+  for (int k : JointsToBody(tree, tree.links[fixed_link].body)) {
+    CarriedLoad& load = beyond[k + 1];
+    load = {all.mass - load.mass, all.moment - load.moment, -1};
+  }
+  beyond.erase(beyond.begin());
+  return beyond;
+}
+
+Eigen::VectorXd StaticTorques(const RobotTree& tree, const Eigen::VectorXd& q,
+                              const Vector3d& gravity_waist, int fixed_link) {
+  const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
+  const std::vector<CarriedLoad> carried = CarriedLoads(tree, T_root_link, fixed_link);
+  Eigen::VectorXd torques = Eigen::VectorXd::Zero(tree.coordinate_count());
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     const Joint& joint = tree.joints[k];
     const Transform& T_root_child = T_root_link[joint.child_link];
-    const Eigen::Vector3d axis = T_root_child.linear() * joint.axis;
-    const Eigen::Vector3d lever = moment[k + 1] - mass[k + 1] * T_root_child.translation();
-    const double load = joint.type == JointType::kRevolute ? axis.dot(lever.cross(gravity_waist))
-                                                           : mass[k + 1] * axis.dot(gravity_waist);
-    torques[joint.coordinate] -= joint.multiplier * load;
-    mass[joint.parent_body] += mass[k + 1];
-    moment[joint.parent_body] += moment[k + 1];
+    const Vector3d axis = T_root_child.linear() * joint.axis;
+    const Vector3d load = joint.type == JointType::kRevolute
+                              ? TurningMoment(carried[k], T_root_child.translation(), gravity_waist)
+                              : Vector3d(carried[k].side * carried[k].mass * gravity_waist);
+    torques[joint.coordinate] -= joint.multiplier * axis.dot(load);
   }
   return torques;
+}
+
+Eigen::VectorXd GravityTorques(const RobotTree& tree, const Eigen::VectorXd& q,
+                               const Vector3d& gravity_waist) {
+  return StaticTorques(tree, q, gravity_waist, 0);
+}
+
+JointLoads GravityLoads(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
+                        const Vector3d& gravity_ref, int fixed_link,
+                        const JointLoads& deflected_by) {
+  const std::vector<CarriedLoad> carried = CarriedLoads(
+      model.tree, CalibratedLinkTransforms(model, geometry, q, deflected_by), fixed_link);
+  JointLoads loads = JointLoads::Zero(3, static_cast<Eigen::Index>(model.tree.joints.size()));
+  const auto visit = [&](int k, const Geometry::JointConstants& constants, const MdhFrame&,
+                         const MdhFrame& twisted, const MdhFrame&) {
+    if (k == kWaist) return;
+    if (model.tree.joints[k].type == JointType::kRevolute) {
+      const Vector3d centre = twisted.p + constants.centre * twisted.R.col(2);
+      loads.col(k) = twisted.R.transpose() * TurningMoment(carried[k], centre, gravity_ref);
+    } else {
+      loads(2, k) = carried[k].side * carried[k].mass * twisted.R.col(2).dot(gravity_ref);
+    }
+  };
+  std::vector<MdhFrame> frames(model.tree.body_count());
+  EvaluateMdhFrames(model, geometry, q, deflected_by, frames, visit);
+  return loads;
+}
+
+void UseMeasuredTorques(const Eigen::VectorXd& torques, JointLoads& loads) {
+  for (Eigen::Index k = 0; k < torques.size(); ++k) {
+    if (!std::isnan(torques[k])) loads(2, k) = -torques[k];
+  }
 }
 
 double TotalMass(const RobotTree& tree) {

@@ -14,7 +14,7 @@ ErrorMetrics ComputeMetrics(const Eigen::MatrixXd& distances, const ObservationM
     double marker_total = 0.0;
     int marker_count = 0;
     for (Eigen::Index i = 0; i < mask.rows(); ++i) {
-      if (!mask(i, m)) continue;
+      if (!mask(i, m) || !std::isfinite(distances(i, m))) continue;
       marker_total += distances(i, m) * distances(i, m);
       metrics.maximum = std::max(metrics.maximum, distances(i, m));
       ++marker_count;

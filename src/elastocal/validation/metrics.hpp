@@ -18,7 +18,7 @@ struct ErrorMetrics {
 };
 
 /// Metrics of `distances` (postures x markers, as ResidualNorms gives them, m) over the
-/// observations in `mask`. NaN where there are none.
+/// observations in `mask` that were predicted (finite distances). NaN where there are none.
 ErrorMetrics ComputeMetrics(const Eigen::MatrixXd& distances, const ObservationMask& mask);
 
 }  // namespace elastocal

@@ -23,10 +23,10 @@ std::vector<int> DealFolds(int postures, int folds, std::uint64_t seed) {
 
 CalibrationResult CalibrateFold(const ErrorModel& model, const Recording& recording,
                                 const BaseParameters& base, ModelKind kind,
-                                const CalibrationOptions& options, const ObservationMask& mask,
+                                const CalibrationOptions& options, const Selection& selection,
                                 int fold, int folds) {
   try {
-    return Calibrate(model, recording, base, kind, options, &mask);
+    return Calibrate(model, recording, base, kind, options, &selection);
   } catch (const InputError& error) {
     throw InputError("cross-validation, without fold " + std::to_string(fold) + " of " +
                      std::to_string(folds) + ": " + error.what());
@@ -38,15 +38,17 @@ CalibrationResult CalibrateFold(const ErrorModel& model, const Recording& record
 ModelComparison CompareModels(const ErrorModel& model, const Recording& recording,
                               const BaseParameters& base, const CalibrationOptions& options) {
   ModelComparison comparison;
-  comparison.results[2] = Calibrate(model, recording, base, ModelKind::kGeometric, options);
-  const ObservationMask& used = comparison.results[2].used;
-  for (int k = 0; k < 2; ++k) {
-    comparison.results[k] = Calibrate(model, recording, base, kModelKinds[k], options, &used);
-  }
-  for (int k = 0; k < 3; ++k) {
-    const CalibrationResult& result = comparison.results[k];
-    const Eigen::MatrixXd distances = ResidualNorms(result.model, recording, result.delta);
-    comparison.metrics[k] = ComputeMetrics(distances, used);
+  comparison.kinds = ModelKinds(model);
+  const auto best = static_cast<int>(comparison.best_kind());
+  comparison.results[best] = Calibrate(model, recording, base, comparison.best_kind(), options);
+  const Selection used{comparison.best().used, comparison.best().tied};
+  for (ModelKind kind : comparison.kinds) {
+    const auto k = static_cast<int>(kind);
+    CalibrationResult& result = comparison.results[k];
+    if (k != best) result = Calibrate(model, recording, base, kind, options, &used);
+    comparison.predictions[k] = Predict(result.model, result.delta, recording, options);
+    const Eigen::MatrixXd& distances = comparison.predictions[k].distances;
+    comparison.metrics[k] = ComputeMetrics(distances, used.markers);
     comparison.metrics_all[k] = ComputeMetrics(distances, SeenMask(recording));
   }
   return comparison;
@@ -62,9 +64,11 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
                      " folds for as many postures, not " + std::to_string(folds));
   }
   const std::vector<int> fold_of = DealFolds(postures, folds, seed);
-  ObservationMask predicted = comparison.geometric().used;
-  std::array<Eigen::MatrixXd, 3> distances;
+  const int steps = folds * static_cast<int>(comparison.kinds.size());
+  ObservationMask predicted = comparison.best().used;
+  ByModel<Eigen::MatrixXd> distances;
   distances.fill(Eigen::MatrixXd::Zero(postures, recording.marker_count()));
+  int done = 0;
   CrossValidation validation;
   validation.folds = folds;
   for (int fold = 0; fold < folds; ++fold) {
@@ -72,24 +76,29 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
     for (int i = 0; i < postures; ++i) (fold_of[i] == fold ? held_out : training).push_back(i);
     const Recording training_data = SelectPostures(recording, training);
     const Recording held_out_data = SelectPostures(recording, held_out);
-    const ObservationMask training_mask = comparison.geometric().used(training, Eigen::all);
-    for (int k = 0; k < 3; ++k) {
-      const CalibrationResult result = CalibrateFold(model, training_data, base, kModelKinds[k],
-                                                     options, training_mask, fold + 1, folds);
+    Selection selection{comparison.best().used(training, Eigen::all), {}};
+    for (int i : training) selection.tied.push_back(comparison.best().tied[i]);
+    for (ModelKind kind : comparison.kinds) {
+      const CalibrationResult result = CalibrateFold(model, training_data, base, kind, options,
+                                                     selection, fold + 1, folds);
       validation.unconverged += result.termination == Termination::kConverged ? 0 : 1;
-      distances[k](held_out, Eigen::all) = ResidualNorms(result.model, held_out_data, result.delta);
-      if (progress) progress(3 * fold + k + 1, 3 * folds);
+      distances[static_cast<int>(kind)](held_out, Eigen::all) =
+          Predict(result.model, result.delta, held_out_data, options, &result.placement).distances;
+      if (progress) progress(++done, steps);
     }
     // A marker that is in no other fold has no estimated position to predict it from.
     for (int m = 0; m < recording.marker_count(); ++m) {
-      if (training_mask.col(m).any()) continue;
+      if (selection.markers.col(m).any()) continue;
       for (int i : held_out) {
         validation.not_predicted += predicted(i, m) ? 1 : 0;
         predicted(i, m) = false;
       }
     }
   }
-  for (int k = 0; k < 3; ++k) validation.metrics[k] = ComputeMetrics(distances[k], predicted);
+  for (ModelKind kind : comparison.kinds) {
+    const auto k = static_cast<int>(kind);
+    validation.metrics[k] = ComputeMetrics(distances[k], predicted);
+  }
   return validation;
 }
 

@@ -5,31 +5,40 @@
 #include <functional>
 
 #include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/prediction.hpp"
 #include "elastocal/validation/metrics.hpp"
 
 namespace elastocal {
 
-/// The models of paper section 6.1.4 on one recording, by ModelKind.
-struct ModelComparison {
-  std::array<CalibrationResult, 3> results;
-  std::array<ErrorMetrics, 3> metrics;      ///< over the observations that the geometric model kept
-  std::array<ErrorMetrics, 3> metrics_all;  ///< over all, outliers included
+/// Something for each ModelKind.
+template <typename T>
+using ByModel = std::array<T, kModelKindCount>;
 
-  const CalibrationResult& geometric() const { return results[2]; }
+/// The models of paper section 6.1.4 on one recording.
+struct ModelComparison {
+  std::vector<ModelKind> kinds;  ///< those compared; of others the entries below mean nothing
+  ByModel<CalibrationResult> results;
+  ByModel<Prediction> predictions;    ///< of the same recording
+  ByModel<ErrorMetrics> metrics;      ///< of these, over the observations that the best model kept
+  ByModel<ErrorMetrics> metrics_all;  ///< over all, outliers included
+
+  /// The model with most parameters: full, or geometric where nothing is elastic.
+  ModelKind best_kind() const { return kinds.back(); }
+  const CalibrationResult& best() const { return results[static_cast<int>(best_kind())]; }
 };
 
 /// Called with the number of finished steps and of all steps; may be empty.
 using Progress = std::function<void(int done, int total)>;
 
-/// Calibrates all three models. The geometric one comes first and decides which observations are
-/// outliers, so that the three are judged on the same data.
+/// Calibrates all models. The one with most parameters comes first and decides which observations
+/// are outliers, so that all are judged on the same data.
 ModelComparison CompareModels(const ErrorModel& model, const Recording& recording,
                               const BaseParameters& base, const CalibrationOptions& options);
 
 struct CrossValidation {
   int folds = 0;
-  std::array<ErrorMetrics, 3> metrics;  ///< of held-out observations, by ModelKind
-  int unconverged = 0;                  ///< fits that did not converge
+  ByModel<ErrorMetrics> metrics;  ///< of held-out observations
+  int unconverged = 0;            ///< fits that did not converge
   int not_predicted = 0;  ///< held-out observations left out: the marker was in no other fold
 };
 

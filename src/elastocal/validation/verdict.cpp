@@ -55,7 +55,7 @@ void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& v
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[i];
     const double deviation = std::abs(result.delta[i]) / prior[parameter.kind];
-    if (parameter.joint < 0 || !(deviation > furthest)) continue;
+    if (parameter.joint < 0 || IsElastic(parameter.kind) || !(deviation > furthest)) continue;
     furthest = deviation;
     largest = i;
   }
@@ -95,7 +95,7 @@ void JudgeOutliers(const CalibrationResult& result, const Recording& recording, 
 Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options) {
-  const CalibrationResult& result = comparison.geometric();
+  const CalibrationResult& result = comparison.best();
   Verdict verdict;
   JudgeFit(result, options, verdict);
   if (!std::isfinite(excitation.condition_base)) {
@@ -105,7 +105,8 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   }
   JudgeOutliers(result, recording, verdict);
   if (validation.folds > 0) {
-    if (validation.metrics[2].rmse_3d >= validation.metrics[0].rmse_3d) {
+    if (validation.metrics[static_cast<int>(comparison.best_kind())].rmse_3d >=
+        validation.metrics[0].rmse_3d) {
       verdict.objections.push_back(
           "on held-out postures the calibrated model is no better than the uncalibrated one");
     }

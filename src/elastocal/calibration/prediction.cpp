@@ -1,0 +1,175 @@
+#include "elastocal/calibration/prediction.hpp"
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "elastocal/calibration/loads.hpp"
+#include "elastocal/calibration/outliers.hpp"
+#include "elastocal/robot/leg_load.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Pairs of points that a rigid motion shall bring together.
+class Registration {
+ public:
+  void Add(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    from_.push_back(from);
+    to_.push_back(to);
+  }
+  std::optional<Transform> Solve() const {
+    if (from_.size() < 3) return std::nullopt;
+    using Points = Eigen::Map<const Eigen::Matrix3Xd>;
+    const auto count = static_cast<Eigen::Index>(from_.size());
+    return Transform(
+        Eigen::umeyama(Points(from_[0].data(), 3, count), Points(to_[0].data(), 3, count), false));
+  }
+
+ private:
+  std::vector<Eigen::Vector3d> from_, to_;
+};
+
+/// Registration of the markers seen in a posture that `takes(marker)`.
+template <typename Takes>
+void AddMarkers(const Recording& recording, int posture, const Eigen::Matrix3Xd& positions,
+                const Takes& takes, Registration& registration) {
+  for (int m = 0; m < recording.marker_count(); ++m) {
+    if (takes(m) && Seen(recording, posture, m)) {
+      registration.Add(positions.col(m), MarkerPosition(recording, posture, m));
+    }
+  }
+}
+
+/// The footing of `known` that stands for one of a recording: same trial and leg. None where that
+/// foot slipped: which of its footings it was is unknown.
+const Transform* FindKnown(const Placement* known, const Footing& footing) {
+  const Transform* found = nullptr;
+  for (std::size_t f = 0; known != nullptr && f < known->footings.size(); ++f) {
+    const Footing& candidate = known->footings[f];
+    if (candidate.trial != footing.trial || candidate.leg != footing.leg) continue;
+    if (found != nullptr) return nullptr;
+    found = &known->T_ref_footing[f];
+  }
+  return found;
+}
+
+class Predictor {
+ public:
+  Predictor(const ErrorModel& model, const Eigen::VectorXd& delta, const Recording& recording,
+            const CalibrationOptions& options, const Placement* known)
+      : model_(model), recording_(recording), geometry_(ApplyErrors(model, delta)) {
+    placement_ = RegisterPlacement(model, recording, options.slip);
+    PlaceWaist(Transform::Identity(), Vector6d::Zero(), geometry_);
+    const auto all = [](int) { return true; };
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      Registration registration;
+      AddMarkers(recording, i, MarkerPositions(model, geometry_, Q(i)), all, registration);
+      if (const auto T = registration.Solve()) placement_.T_ref_waist[i] = *T;
+    }
+    loads_ = ComputeLoads(model, recording, delta, placement_, options.load);
+    for (std::size_t f = 0; f < placement_.footings.size(); ++f) PlaceFooting(f, known);
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (placement_.footing[i] < 0) PlaceByWaistMarkers(i);
+    }
+  }
+
+  Prediction Result() && {
+    Prediction prediction;
+    prediction.distances.setConstant(recording_.posture_count(), recording_.marker_count(), kNaN);
+    for (int i = 0; i < recording_.posture_count(); ++i) {
+      const Eigen::Matrix3Xd predicted = Markers(i);
+      for (int m = 0; m < recording_.marker_count(); ++m) {
+        prediction.distances(i, m) = (MarkerPosition(recording_, i, m) - predicted.col(m)).norm();
+      }
+    }
+    prediction.placement = std::move(placement_);
+    return prediction;
+  }
+
+ private:
+  Eigen::VectorXd Q(int posture) const { return recording_.q.row(posture).transpose(); }
+  Eigen::Matrix3Xd MarkersInWaist(int posture) const {
+    return MarkerPositions(model_, geometry_, Q(posture), loads_[posture].joints);
+  }
+  /// By the footing; those on the foot itself without what is between it and the waist.
+  Eigen::Matrix3Xd MarkersInFoot(int leg, int posture, const Transform& T_foot_waist) const {
+    Eigen::Matrix3Xd positions = T_foot_waist * MarkersInWaist(posture);
+    if (leg < 0) return positions;
+    const int foot = model_.legs[leg].link;
+    for (int m = 0; m < model_.marker_count(); ++m) {
+      const bool on_foot =
+          model_.tree.links[model_.markers[m].link].body == model_.tree.links[foot].body;
+      if (on_foot) positions.col(m) = PlaceMarker(model_, geometry_, m, foot).position;
+    }
+    return positions;
+  }
+
+  Eigen::Matrix3Xd Markers(int posture) const {
+    const int footing = placement_.footing[posture];
+    if (footing < 0) return placement_.T_ref_waist[posture] * MarkersInWaist(posture);
+    const Transform& T_ref_foot = placement_.T_ref_footing[footing];
+    return T_ref_foot * MarkersInFoot(placement_.footings[footing].leg, posture,
+                                      T_ref_foot.inverse() * placement_.T_ref_waist[posture]);
+  }
+
+  Transform WaistOnFoot(int leg, int posture) const {
+    if (leg < 0) return Transform::Identity();
+    const LegPosture rigid = PlaceLeg(model_, geometry_, Q(posture), leg, loads_[posture].joints);
+    const Vector6d wrench = loads_[posture].WaistLoad(model_, geometry_, leg);
+    return DeflectWaist(rigid.T_foot_waist, geometry_.leg_compliance[leg], wrench).T_foot_waist;
+  }
+
+  void PlaceFooting(std::size_t f, const Placement* known) {
+    const Footing& footing = placement_.footings[f];
+    std::vector<Transform> T_foot_waist;
+    Registration registration;
+    for (int i : footing.postures) {
+      T_foot_waist.push_back(WaistOnFoot(footing.leg, i));
+      AddMarkers(
+          recording_, i, T_foot_waist.back() * MarkersInWaist(i), [](int) { return true; },
+          registration);
+    }
+    if (const Transform* T = FindKnown(known, footing)) {
+      placement_.T_ref_footing[f] = *T;
+    } else if (const auto fitted = registration.Solve()) {
+      placement_.T_ref_footing[f] = *fitted;
+    }
+    for (std::size_t k = 0; k < footing.postures.size(); ++k) {
+      placement_.T_ref_waist[footing.postures[k]] = placement_.T_ref_footing[f] * T_foot_waist[k];
+    }
+  }
+
+  void PlaceByWaistMarkers(int posture) {
+    Registration registration;
+    const auto on_waist = [&](int m) {
+      return model_.tree.links[model_.markers[m].link].body == 0;
+    };
+    AddMarkers(recording_, posture, MarkersInWaist(posture), on_waist, registration);
+    const auto T = registration.Solve();
+    if (T) {
+      placement_.T_ref_waist[posture] = *T;
+    } else {
+      placement_.T_ref_waist[posture].matrix().setConstant(kNaN);
+    }
+  }
+
+  const ErrorModel& model_;
+  const Recording& recording_;
+  Geometry geometry_;
+  Placement placement_;
+  std::vector<PostureLoads> loads_;
+};
+
+}  // namespace
+
+Prediction Predict(const ErrorModel& model, const Eigen::VectorXd& delta,
+                   const Recording& recording, const CalibrationOptions& options,
+                   const Placement* footings) {
+  if (recording.trials.empty()) return {ResidualNorms(model, recording, delta, options), {}};
+  return Predictor(model, delta, recording, options, footings).Result();
+}
+
+}  // namespace elastocal

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "elastocal/calibration/options.hpp"
+#include "elastocal/calibration/placement.hpp"
+
+namespace elastocal {
+
+/// Where a model says that the markers of a recording are.
+struct Prediction {
+  /// Distances between measured and predicted positions, m: postures x markers; NaN where a marker
+  /// was not seen or the waist could not be placed.
+  Eigen::MatrixXd distances;
+  /// Where the model says that the robot stood: the waist of each posture as the leg on its foot
+  /// gives it. Empty for a table of postures.
+  Placement placement;
+};
+
+/// Predicts the markers of a recording by a model with errors `delta`, as a user of the robot
+/// would: nothing is fitted to a single posture that the robot does not know itself.
+///
+/// Where the robot stands on one foot, or its root is held, the pose of that footing is constant
+/// (fitted to all its postures in closed form, or taken from `footings` where the same footing is
+/// there) and the elastic leg carries the waist, eq. 6. On two feet the waist is placed by its own
+/// markers alone (three or more), as in section 6 for head, arms and trunk. In a table of postures
+/// the waist is where T0 says.
+Prediction Predict(const ErrorModel& model, const Eigen::VectorXd& delta,
+                   const Recording& recording, const CalibrationOptions& options,
+                   const Placement* footings = nullptr);
+
+}  // namespace elastocal

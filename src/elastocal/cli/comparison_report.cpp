@@ -1,0 +1,238 @@
+#include "elastocal/cli/comparison_report.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/cli/session.hpp"
+#include "elastocal/cli/text_table.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Units that people use, as InUserUnits has them.
+struct UserScale {
+  double factor;
+  std::string unit;
+};
+
+UserScale ScaleOf(const std::string& unit) {
+  if (unit == "rad") return {180.0 / M_PI, "deg"};
+  if (unit == "m") return {1e3, "mm"};
+  if (unit == "rad/(N.m)") return {1e6, "urad/(N.m)"};
+  if (unit == "m/N") return {1e6, "um/N"};
+  return {1.0, unit};
+}
+
+std::string Shown(double value, const std::string& unit) {
+  return fmt::format("{:.4f}", value * ScaleOf(unit).factor);
+}
+
+std::string Probability(double p) {
+  if (p < 1e-16) return "<1e-16";
+  return p < 1e-4 ? fmt::format("{:.0e}", p) : fmt::format("{:.4f}", p);
+}
+
+std::string JointTable(const CalibrationComparison& comparison) {
+  TextTable table({"joint", "parameters", "F", "p", "p of all joints", "verdict"});
+  for (const JointDifference& joint : comparison.joints) {
+    table.Add({joint.joint, std::to_string(joint.test.parameters),
+               std::isnan(joint.test.statistic) ? "-" : fmt::format("{:.2f}", joint.test.statistic),
+               Probability(joint.test.p), Probability(joint.p_adjusted),
+               joint.moved ? "moved" : "-"});
+  }
+  return table.Render();
+}
+
+/// Joint by joint, the most significant first, and so within each.
+std::string ParameterTable(const CalibrationComparison& comparison) {
+  TextTable table({"parameter", "unit", "A", "B", "B - A", "95 % interval", ""});
+  for (const JointDifference& joint : comparison.joints) {
+    for (const int i : joint.parameters) {
+      const ParameterDifference& one = comparison.parameters[i];
+      table.Add({one.name + (one.weights_b.empty() ? "" : " (sum)"), ScaleOf(one.unit).unit,
+                 Shown(one.a, one.unit), Shown(one.b, one.unit), Shown(one.difference, one.unit),
+                 "[" + Shown(one.difference - one.half_width, one.unit) + ", " +
+                     Shown(one.difference + one.half_width, one.unit) + "]",
+                 std::string(one.significant() ? "*" : "") + (joint.moved ? " moved" : "")});
+    }
+  }
+  return table.Render();
+}
+
+std::string Combination(const std::map<std::string, double>& weights) {
+  std::string text;
+  for (const auto& [name, weight] : weights) {
+    const std::string sign = weight < 0.0   ? (text.empty() ? "-" : " - ")
+                             : text.empty() ? ""
+                                            : " + ";
+    const double size = std::abs(weight);
+    text += sign + (std::abs(size - 1.0) < 1e-6 ? "" : fmt::format("{:.4g} ", size)) + name;
+  }
+  return text;
+}
+
+/// What a name does not say: combinations, and what no measurement can tell from a moved parameter.
+std::string Footnotes(const CalibrationComparison& comparison) {
+  std::string text;
+  for (const JointDifference& joint : comparison.joints) {
+    for (const int i : joint.parameters) {
+      const ParameterDifference& one = comparison.parameters[i];
+      if (!one.weights_b.empty()) {
+        text += fmt::format("  {} (sum): A's {}; B's {}\n", one.name, Combination(one.weights_a),
+                            Combination(one.weights_b));
+      }
+      if (joint.moved && one.significant() && !one.stands_for.empty()) {
+        text += fmt::format("  {} cannot be told from {}\n", one.name, Combination(one.stands_for));
+      }
+    }
+  }
+  return text;
+}
+
+/// One line a reason.
+std::string NotComparedText(const CalibrationComparison& comparison) {
+  std::vector<std::pair<std::string, std::vector<Parameter>>> groups;
+  for (const NotCompared& one : comparison.not_compared) {
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const auto& known) { return known.first == one.reason; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {one.reason, {}});
+    Parameter named{};
+    named.name = one.name;
+    group->second.push_back(named);
+  }
+  std::string text;
+  for (const auto& [reason, parameters] : groups) {
+    std::vector<int> all;
+    for (std::size_t i = 0; i < parameters.size(); ++i) all.push_back(static_cast<int>(i));
+    text += fmt::format("  {}: {}\n", reason, JoinNames(parameters, all));
+  }
+  return text.empty() ? "" : "\nNot compared\n" + text;
+}
+
+std::string Joined(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<std::string> MovedJoints(const CalibrationComparison& comparison) {
+  std::vector<std::string> names;
+  for (const JointDifference& joint : comparison.joints) {
+    if (joint.moved) names.push_back(joint.joint);
+  }
+  return names;
+}
+
+std::string Conclusion(const CalibrationComparison& comparison, double level) {
+  const std::vector<std::string> moved = MovedJoints(comparison);
+  if (!moved.empty()) return "Moved by more than their uncertainty: " + Joined(moved) + "\n";
+  if (!comparison.changed) {
+    return fmt::format(
+        "No joint moved by more than its uncertainty (chance of a false alarm {:.3g} %).\n",
+        100.0 * level);
+  }
+  const std::string together = fmt::format(
+      "Together the differences are more than their uncertainty (p {}), but no joint can be "
+      "singled "
+      "out",
+      Probability(comparison.overall.p));
+  if (!comparison.with_covariance) return together + ".\n";
+  const std::string alone =
+      comparison.suspects.empty()
+          ? "no joint alone would explain it"
+          : "any one of these alone would explain it: " + Joined(comparison.suspects);
+  return together + "; " + alone +
+         ".\nErrors that the model does not have, such as elasticity, look the same.\n";
+}
+
+Json SideJson(const CalibrationEstimate& estimate) {
+  return {{"calibration", estimate.source},
+          {"recording", estimate.recording},
+          {"model", estimate.model}};
+}
+
+Json TestJson(const DifferenceTest& test) {
+  Json json;
+  json["parameters"] = test.parameters;
+  json["F"] = std::isnan(test.statistic) ? Json(nullptr) : Json(test.statistic);
+  json["degrees_of_freedom"] =
+      std::isinf(test.degrees_of_freedom) ? Json(nullptr) : Json(test.degrees_of_freedom);
+  json["p"] = test.p;
+  return json;
+}
+
+Json ParameterJson(const ParameterDifference& one) {
+  Json json;
+  json["name"] = one.name;
+  json["joint"] = one.joint;
+  json["unit"] = one.unit;
+  json["a"] = one.a;
+  json["b"] = one.b;
+  json["difference"] = one.difference;
+  json["sd"] = one.sd;
+  json["interval_95"] = {one.difference - one.half_width, one.difference + one.half_width};
+  json["p"] = one.p;
+  json["significant"] = one.significant();
+  if (!one.stands_for.empty()) json["stands_also_for"] = one.stands_for;
+  if (!one.weights_b.empty()) {
+    json["combination_a"] = one.weights_a;
+    json["combination_b"] = one.weights_b;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEstimate& b,
+                               const CalibrationComparison& comparison,
+                               const ComparisonOptions& options) {
+  std::string text = fmt::format("{}\n  A: {}, from {}\n  B: {}, from {}\n\n", b.robot, a.source,
+                                 a.recording, b.source, b.recording);
+  text += JointTable(comparison);
+  text +=
+      "  all parameters of a joint together, whatever other joints did; p of all joints: adjusted "
+      "for their number\n\n";
+  text += ParameterTable(comparison);
+  text += "  * differs at 95 %, looked at alone; one in twenty does so by chance\n";
+  text += Footnotes(comparison) + NotComparedText(comparison);
+  return text + "\n" + Conclusion(comparison, options.level);
+}
+
+Json MakeComparisonJson(const CalibrationEstimate& a, const CalibrationEstimate& b,
+                        const CalibrationComparison& comparison, const ComparisonOptions& options) {
+  const std::vector<std::string> moved = MovedJoints(comparison);
+  Json json;
+  json["status"] = !moved.empty()       ? "moved"
+                   : comparison.changed ? "changed, no joint singled out"
+                                        : "unchanged";
+  json["robot"] = b.robot;
+  json["a"] = SideJson(a);
+  json["b"] = SideJson(b);
+  json["level"] = options.level;
+  json["with_covariance"] = comparison.with_covariance;
+  json["moved"] = moved;
+  json["suspects"] = comparison.suspects;
+  json["overall"] = TestJson(comparison.overall);
+  json["joints"] = Json::array();
+  json["parameters"] = Json::array();
+  for (const JointDifference& joint : comparison.joints) {
+    Json item{{"joint", joint.joint}};
+    item.update(TestJson(joint.test));
+    item["p_adjusted"] = joint.p_adjusted;
+    item["moved"] = joint.moved;
+    json["joints"].push_back(item);
+    for (const int i : joint.parameters) {
+      json["parameters"].push_back(ParameterJson(comparison.parameters[i]));
+    }
+  }
+  json["not_compared"] = Json::array();
+  for (const NotCompared& one : comparison.not_compared) {
+    json["not_compared"].push_back({{"name", one.name}, {"reason", one.reason}});
+  }
+  json["warnings"] = comparison.warnings;
+  return json;
+}
+
+}  // namespace elastocal::cli

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "elastocal/validation/calibration_comparison.hpp"
+
+namespace elastocal::cli {
+
+/// What a person should read of a comparison: joints, parameters by significance, what could not be
+/// compared, the conclusion. Degrees and mm.
+std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEstimate& b,
+                               const CalibrationComparison& comparison,
+                               const ComparisonOptions& options);
+
+/// The same for programs, SI (docs/formats.md).
+nlohmann::ordered_json MakeComparisonJson(const CalibrationEstimate& a,
+                                          const CalibrationEstimate& b,
+                                          const CalibrationComparison& comparison,
+                                          const ComparisonOptions& options);
+
+}  // namespace elastocal::cli

@@ -1,0 +1,171 @@
+#include "elastocal/io/recording_folder.hpp"
+
+#include <algorithm>
+#include <future>
+#include <set>
+
+#include "elastocal/io/joint_log.hpp"
+#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/io/text.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/measurement/merge_trials.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every joint between the root and a marker or support must have a position.
+void CheckJoints(const JointLog& log, const std::vector<int>& markers, const TrialFiles& trial,
+                 const Project& project) {
+  const RobotTree& tree = project.tree;
+  const auto check = [&](int link, const std::string& what) {
+    for (int joint : JointsToBody(tree, tree.links[link].body)) {
+      const int driver = tree.coordinate_joint[tree.joints[joint].coordinate];
+      const std::string& name = tree.joints[driver].name;
+      if (std::find(log.names.begin(), log.names.end(), name) != log.names.end() ||
+          project.recording.not_recorded.contains(name)) {
+        continue;
+      }
+      const bool revolute = tree.joints[driver].type == JointType::kRevolute;
+      throw InputError(
+          log.source + ": there is no column of joint " + Quote(name) + ", which moves " + what +
+          " of trial " + Quote(trial.name) + "; a joint that stood still is given in recording." +
+          (revolute ? "not_recorded_deg" : "not_recorded_mm") + " of " + project.file.string());
+    }
+  };
+  for (int marker : markers) {
+    check(project.markers[marker].link, "marker " + project.markers[marker].name);
+  }
+  for (int link : trial.support) check(link, "the support " + tree.links[link].name);
+}
+
+Trial TrialOf(const TrialFiles& files, const Project& project) {
+  Trial trial{.name = files.name, .kind = files.kind, .chains = {}, .support = files.support};
+  for (int chain : files.chains) trial.chains.push_back(project.chains[chain].name);
+  return trial;
+}
+
+TrialSamples Sample(const TrialFiles& files, const MarkedRobot& robot, const Project& project,
+                    MarkerTrajectories trajectories, const JointLog& log) {
+  const std::vector<int> markers = TrialMarkers(project, files);
+  CheckJoints(log, markers, files, project);
+  MeasurementOptions options = project.measurement;
+  if (files.expected_lag_s) options.expected_lag_s = files.expected_lag_s;
+  return SampleTrial(robot, TrialOf(files, project), markers, std::move(trajectories), log,
+                     options);
+}
+
+/// Samples all trials; while one is sampled, the markers of the next are read on another thread.
+std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const MarkedRobot& robot,
+                                    const Project& project) {
+  std::vector<TrialSamples> samples;
+  const auto start_reading = [&](std::size_t i) {
+    return std::async(std::launch::async, [file = trials[i].markers] { return ReadQtmTsv(file); });
+  };
+  std::future<MarkerTrajectories> markers = start_reading(0);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const JointLog log = ReadJointLog(trials[i].joints, project);
+    MarkerTrajectories trajectories = markers.get();
+    if (i + 1 < trials.size()) markers = start_reading(i + 1);
+    samples.push_back(Sample(trials[i], robot, project, std::move(trajectories), log));
+  }
+  return samples;
+}
+
+std::string NameOf(const fs::path& folder) {
+  const fs::path normal = (folder / "").lexically_normal();
+  return normal.parent_path().filename().string();
+}
+
+/// The trials of all folders, under names of their own.
+Experiment ReadExperiments(const std::vector<fs::path>& folders, const Project& project) {
+  Experiment all;
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    Experiment one = ReadExperiment(folders[i], project);
+    if (i > 0 && one.gravity != all.gravity) {
+      throw InputError(folders[i].string() + ": the cameras have another axis up than in " +
+                       folders[0].string());
+    }
+    all.gravity = one.gravity;
+    for (TrialFiles& trial : one.trials) {
+      if (folders.size() > 1) trial.name = NameOf(folders[i]) + "/" + trial.name;
+      all.trials.push_back(std::move(trial));
+    }
+  }
+  std::set<std::string> names;
+  for (const TrialFiles& trial : all.trials) {
+    if (names.insert(trial.name).second) continue;
+    throw InputError("two trials of the name " + Quote(trial.name) +
+                     "; is a recording folder given twice?");
+  }
+  return all;
+}
+
+}  // namespace
+
+bool IsRecordingFolder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path / "experiment.yaml", error);
+}
+
+RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const Project& project) {
+  if (folders.empty()) throw InputError("no recording folder; one or more were expected");
+  const Experiment experiment = ReadExperiments(folders, project);
+  const MarkedRobot robot = MakeMarkedRobot(project);
+  std::vector<TrialSamples> calibration, validation;
+  RecordingFolder result;
+  for (TrialSamples& samples : SampleAll(experiment.trials, robot, project)) {
+    result.trials.push_back(samples.summary);
+    for (std::string& finding : Findings(samples.summary)) {
+      result.findings.push_back(std::move(finding));
+    }
+    auto& group = samples.summary.trial.kind == TrialKind::kCalibration ? calibration : validation;
+    group.push_back(std::move(samples));
+  }
+  std::string source;
+  for (const fs::path& folder : folders) source += (source.empty() ? "" : ", ") + folder.string();
+  result.calibration = MergeTrials(robot, calibration, source);
+  result.validation = MergeTrials(robot, validation, source);
+  result.calibration.gravity = result.validation.gravity = experiment.gravity;
+  if (result.calibration.posture_count() + result.validation.posture_count() == 0) {
+    throw InputError(source + ": no trial can be used; " + result.findings.front());
+  }
+  return result;
+}
+
+std::vector<int> TrialMarkers(const Project& project, const TrialFiles& trial) {
+  std::set<std::string> names;
+  for (int chain : trial.chains) {
+    for (std::string& name : ChainMarkers(project, project.chains[chain])) {
+      names.insert(std::move(name));
+    }
+  }
+  std::set<int> bodies = {0};
+  for (int link : trial.support) bodies.insert(project.tree.links[link].body);
+  std::vector<int> markers;
+  for (std::size_t m = 0; m < project.markers.size(); ++m) {
+    const Marker& marker = project.markers[m];
+    if (names.contains(marker.name) || bodies.contains(project.tree.links[marker.link].body)) {
+      markers.push_back(static_cast<int>(m));
+    }
+  }
+  return markers;
+}
+
+MarkedRobot MakeMarkedRobot(const Project& project) {
+  MarkedRobot robot;
+  robot.tree = project.tree;
+  robot.markers = project.markers;
+  for (const MarkerCluster& cluster : project.clusters) {
+    robot.clusters.push_back({cluster.name, cluster.markers});
+  }
+  robot.torque_sensors = project.torque_sensors;
+  robot.q_not_logged.setZero(project.tree.coordinate_count());
+  for (const auto& [name, position] : project.recording.not_recorded) {
+    robot.q_not_logged[project.tree.joints[FindJoint(project.tree, name)].coordinate] = position;
+  }
+  return robot;
+}
+
+}  // namespace elastocal

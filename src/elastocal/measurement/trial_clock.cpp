@@ -1,0 +1,212 @@
+#include "elastocal/measurement/trial_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "elastocal/measurement/stable_samples.hpp"
+#include "elastocal/robot/kinematics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kWidest_s = 600.0;  // keeps the search linear
+constexpr double kMostSamples = 1e8;
+constexpr double kRestWindow_s = 0.3;
+constexpr double kJump = 0.02;        // of the mean speed's standard deviation
+constexpr double kJumpReach_s = 0.1;  // to either side of a jump
+constexpr int kMostPasses = 3;
+constexpr double kSettled_s = 5e-3;  // well within a jump's reach
+constexpr double kLeastSeen = 0.5;   // of the trial, for a marker to count without being seen
+
+// Nominal positions of markers in the frame of the link that stands still.
+class StandingKinematics {
+ public:
+  StandingKinematics(const MarkedRobot& robot, const std::vector<int>& markers, int standing)
+      : standing_(robot.tree.links[standing]) {
+    std::vector<Marker> carried;
+    for (const int marker : markers) carried.push_back(robot.markers[marker]);
+    for (const Marker& marker : carried) {
+      const Link& link = robot.tree.links[marker.link];
+      bodies_.push_back(link.body);
+      p_body_marker_.push_back(link.T_body_link * marker.p_link_marker);
+    }
+    // Also the joints of the standing link have to be moved, whether or not it has markers.
+    carried.push_back({.name = "standing link", .link = standing});
+    model_ = MakeErrorModel(robot.tree, std::move(carried));
+    geometry_ = ApplyErrors(model_, Eigen::VectorXd::Zero(model_.parameter_count()));
+  }
+
+  Eigen::Matrix3Xd Positions(const Eigen::VectorXd& q) const {
+    const std::vector<Transform> T_root_body = BodyTransforms(model_, geometry_, q);
+    const Transform T_standing_root =
+        (T_root_body[standing_.body] * standing_.T_body_link).inverse(Eigen::Isometry);
+    Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(bodies_.size()));
+    for (std::size_t m = 0; m < bodies_.size(); ++m) {
+      positions.col(static_cast<Eigen::Index>(m)) =
+          T_standing_root * (T_root_body[bodies_[m]] * p_body_marker_[m]);
+    }
+    return positions;
+  }
+
+ private:
+  Link standing_;
+  std::vector<int> bodies_;
+  std::vector<Eigen::Vector3d> p_body_marker_;
+  ErrorModel model_;
+  Geometry geometry_;
+};
+
+// Mean of each row's known values; NaN where fewer than `least` are known.
+Eigen::VectorXd MeanKnown(const Eigen::MatrixXd& values, const std::vector<bool>& columns,
+                          double least) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(values.rows());
+  Eigen::VectorXd count = sum;
+  for (Eigen::Index column = 0; column < values.cols(); ++column) {
+    if (!columns[static_cast<std::size_t>(column)]) continue;
+    for (Eigen::Index row = 0; row < values.rows(); ++row) {
+      if (std::isnan(values(row, column))) continue;
+      sum[row] += values(row, column);
+      count[row] += 1.0;
+    }
+  }
+  return (count.array() >= least).select(sum.array() / count.array(), kNan);
+}
+
+// The two mean speeds, over the same markers in each moment.
+struct MeansOfSeen {
+  Eigen::VectorXd measured;  // by frame
+  Eigen::VectorXd logged;    // by logged time
+};
+
+// The logged mean at a time, over the markers that are seen in a frame.
+double MeanOfSeen(const Eigen::MatrixXd& logged, Eigen::Index row, const Eigen::MatrixXd& measured,
+                  Eigen::Index frame) {
+  double sum = 0.0;
+  int count = 0;
+  for (Eigen::Index m = 0; m < measured.cols(); ++m) {
+    if (std::isnan(measured(frame, m))) continue;
+    sum += logged(row, m);
+    ++count;
+  }
+  return count > 0 ? sum / count : logged.row(row).mean();
+}
+
+// Which frame is at which logged time is known by `clock`. Where markers come or go and the mean
+// jumps, it would jump in both signals just as this clock has it, whatever is true: frames around
+// such jumps are left out.
+MeansOfSeen TakeMeansOfSeen(const Eigen::MatrixXd& measured, const Eigen::VectorXd& measured_mean,
+                            double rate_hz, const LoggedSpeeds& logged, const ClockFit& clock) {
+  MeansOfSeen means{measured_mean, logged.speeds.rowwise().mean()};
+  const double jump =
+      kJump * std::sqrt((means.logged.array() - means.logged.mean()).square().mean());
+  const auto reach = static_cast<Eigen::Index>(std::ceil(kJumpReach_s * rate_hz));
+  for (Eigen::Index i = 0; i < logged.time_s.size(); ++i) {
+    const Eigen::Index frame = std::llround(clock.CameraTime(logged.time_s[i]) * rate_hz);
+    if (frame < 0 || frame >= measured.rows()) continue;
+    means.logged[i] = MeanOfSeen(logged.speeds, i, measured, frame);
+    if (frame == 0) continue;
+    const double before = MeanOfSeen(logged.speeds, i, measured, frame - 1);
+    if (std::abs(means.logged[i] - before) <= jump) continue;
+    const Eigen::Index begin = std::max<Eigen::Index>(0, frame - reach);
+    const Eigen::Index end = std::min(measured.rows(), frame + reach);
+    means.measured.segment(begin, end - begin).setConstant(kNan);
+  }
+  return means;
+}
+
+void ChooseRange(double camera_s, const Eigen::VectorXd& log_time_s, ClockOptions& options) {
+  const double together = -log_time_s[0];
+  const double ending = camera_s - log_time_s[log_time_s.size() - 1];
+  const double half = 0.5 * std::clamp(ending - together, -kWidest_s, kWidest_s);
+  options.expected_lag_s = together + half;
+  options.longest_lag_s += std::abs(half);
+}
+
+}  // namespace
+
+LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& markers, int standing,
+                           const SmoothedLog& log, const std::vector<int>& coordinates,
+                           double rate_hz) {
+  const StandingKinematics kinematics(robot, markers, standing);
+  Eigen::VectorXd q = robot.q_not_logged;
+  std::vector<double> times;
+  std::vector<Eigen::MatrixXd> speeds;
+  Eigen::Index rows = 0;
+  for (const LogPiece& piece : log.pieces) {
+    const auto stride = std::max<Eigen::Index>(
+        1, static_cast<Eigen::Index>(piece.rate_hz / rate_hz * (1.0 + 1e-9)));
+    const Eigen::Index count = piece.values.rows() / stride;
+    if (count < 3) continue;
+    const double step_s = static_cast<double>(stride) / piece.rate_hz;
+    Eigen::MatrixXd& speed =
+        speeds.emplace_back(count - 2, static_cast<Eigen::Index>(markers.size()));
+    Eigen::Matrix3Xd before, here, after;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      for (int c = 0; c < log.joints; ++c) q[coordinates[c]] = piece.values(k * stride, c);
+      after = kinematics.Positions(q);
+      if (k >= 2) {
+        speed.row(k - 2) = (after - before).colwise().norm() / (2.0 * step_s);
+        times.push_back(piece.start_s + static_cast<double>(k - 1) * step_s);
+      }
+      before.swap(here);
+      here.swap(after);
+    }
+    rows += speed.rows();
+  }
+  LoggedSpeeds logged;
+  logged.time_s = Eigen::VectorXd::Map(times.data(), rows);
+  logged.speeds.resize(rows, static_cast<Eigen::Index>(markers.size()));
+  Eigen::Index row = 0;
+  for (const Eigen::MatrixXd& speed : speeds) {
+    logged.speeds.middleRows(row, speed.rows()) = speed;
+    row += speed.rows();
+  }
+  return logged;
+}
+
+ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, LoggedSpeeds logged,
+                            const std::optional<double>& expected_lag_s, ClockOptions options) {
+  if (logged.time_s.size() < 2 || measured.rows() == 0) return {};
+  const double span_s = logged.time_s[logged.time_s.size() - 1] - logged.time_s[0];
+  if (!(span_s * rate_hz < kMostSamples)) return {};  // a log of years, with one hole
+  options.expected_lag_s = expected_lag_s.value_or(0.0);
+  if (!expected_lag_s) {
+    ChooseRange(static_cast<double>(measured.rows()) / rate_hz, logged.time_s, options);
+  }
+  // The length of a noisy velocity is never zero. Without this the two speeds differ at each rest,
+  // which hides how well they agree.
+  std::vector<int> columns(static_cast<std::size_t>(measured.cols()));
+  std::iota(columns.begin(), columns.end(), 0);
+  const double resting = EstimateRestingSpeed(measured, columns, rate_hz, kRestWindow_s);
+  if (std::isfinite(resting)) {
+    logged.speeds = (logged.speeds.array().square() + resting * resting).sqrt();
+  }
+  std::vector<bool> mostly_seen;
+  for (const auto& speed : measured.colwise()) {
+    const auto known = speed.size() - speed.array().isNaN().count();
+    mostly_seen.push_back(static_cast<double>(known) >=
+                          kLeastSeen * static_cast<double>(speed.size()));
+  }
+  const auto markers =
+      static_cast<double>(std::count(mostly_seen.begin(), mostly_seen.end(), true));
+  if (markers == 0.0) return {};
+  const Eigen::VectorXd all = MeanKnown(logged.speeds, mostly_seen, 1.0);
+  const MeasuredSpeed seen{rate_hz, MeanKnown(measured, mostly_seen, 0.5 * markers)};
+  const ClockFit first = EstimateClock(seen, {logged.time_s, all}, options);
+  if (first.state == ClockState::kNoOverlap || first.state == ClockState::kWeak) return first;
+  const std::vector<bool> every(mostly_seen.size(), true);
+  const Eigen::VectorXd mean = MeanKnown(measured, every, 0.5 * markers);
+  ClockFit fit = first;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const ClockFit last = fit;
+    const MeansOfSeen means = TakeMeansOfSeen(measured, mean, rate_hz, logged, last);
+    fit = EstimateClock({rate_hz, means.measured}, {logged.time_s, means.logged}, options);
+    if (std::abs(fit.lag_s - last.lag_s) < kSettled_s) break;
+  }
+  return first.state == ClockState::kAmbiguous ? first : fit;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,99 @@
+#include "elastocal/measurement/trial_clock.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/measurement/stable_samples.hpp"
+#include "tests/test_robots.hpp"
+#include "tests/trial_player.hpp"
+
+namespace elastocal {
+namespace {
+
+MarkedRobot Leg() {
+  MarkedRobot robot;
+  robot.tree = TalosLeg();
+  robot.markers = TalosLegModel().markers;
+  robot.markers.push_back({"WAIST", 0, {0.1, 0.2, 0.0}});
+  robot.q_not_logged.setZero(6);
+  return robot;
+}
+
+std::vector<int> AllMarkers() {
+  std::vector<int> markers(10);
+  std::iota(markers.begin(), markers.end(), 0);
+  return markers;
+}
+
+LoggedSpeeds Predict(const MarkedRobot& robot, const JointLog& log, int standing) {
+  return PredictSpeeds(robot, AllMarkers(), standing, SmoothLog(log, {}), {0, 1, 2, 3, 4, 5},
+                       100.0);
+}
+
+TEST(PredictSpeeds, AreThoseThatCamerasSee) {
+  const MarkedRobot robot = Leg();
+  for (const int standing : {0, 6}) {
+    PlayOptions options{.postures = 5, .marker_sd = 0.0, .standing = standing};
+    const PlayedTrial played = Play(robot, options);
+    MarkerTrajectories markers = played.markers;
+    SmoothTrajectories({}, markers);
+    const Eigen::MatrixXd measured = MarkerSpeeds(markers);
+    // At the cameras' rate: every second sample of the log.
+    const LoggedSpeeds logged = Predict(robot, played.log, standing);
+    EXPECT_NEAR(logged.time_s[1] - logged.time_s[0], 0.01, 1e-12);
+    for (Eigen::Index i = 20; i + 20 < logged.time_s.size(); ++i) {
+      const auto frame = std::lround(100.0 * logged.time_s[i]);
+      // A filtered rotation is not quite the rotation by filtered angles; speeds reach 0.5 m/s.
+      EXPECT_LT((logged.speeds.row(i) - measured.row(frame)).cwiseAbs().maxCoeff(), 2e-3) << i;
+    }
+    EXPECT_EQ(logged.speeds.col(9).maxCoeff() > 0.01, standing == 6);
+  }
+}
+
+TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {
+  const MarkedRobot robot = Leg();
+  PlayedTrial played = Play(robot, {.postures = 40, .lag_s = 3.0, .drift_ppm = 20.0});
+  Random random(3);
+  // The markers of the foot, the fastest, are gone half of the time, in the midst of motions.
+  for (int begin = 0; begin + 150 < played.markers.frame_count(); begin += 300) {
+    const int late = random.Index(100);
+    for (const int marker : {6, 7, 8}) Hide(played.markers, marker, begin + late, 150);
+  }
+  SmoothTrajectories({}, played.markers);
+  const ClockFit clock = EstimateTrialClock(MarkerSpeeds(played.markers), 100.0,
+                                            Predict(robot, played.log, 0), std::nullopt, {});
+  EXPECT_EQ(clock.state, ClockState::kReliable) << Describe(clock);
+  for (const double time : {0.0, 200.0}) {
+    EXPECT_LT(std::abs(clock.RobotTime(time) - ((1.0 + 20e-6) * time - 3.0)), 1e-3);
+  }
+}
+
+TEST(EstimateTrialClock, SearchesAllWaysInWhichCamerasAndLogCanHaveRunTogether) {
+  const MarkedRobot robot = Leg();
+  PlayedTrial played = Play(robot, {.postures = 40, .lag_s = 1e6});
+  SmoothTrajectories({}, played.markers);
+  const Eigen::MatrixXd speeds = MarkerSpeeds(played.markers);
+  const LoggedSpeeds logged = Predict(robot, played.log, 0);
+  // The cameras ran for a minute in the middle of the log's three.
+  const Eigen::MatrixXd middle = speeds.middleRows(7000, 6000);
+  const ClockFit clock = EstimateTrialClock(middle, 100.0, logged, std::nullopt, {});
+  EXPECT_EQ(clock.state, ClockState::kReliable) << Describe(clock);
+  EXPECT_NEAR(clock.lag_s, 1e6 - 70.0, 2e-3);
+  EXPECT_NE(EstimateTrialClock(middle, 100.0, logged, 1e6, {}).state, ClockState::kReliable);
+  EXPECT_EQ(EstimateTrialClock(middle, 100.0, logged, 1e6 - 65.0, {}).state, ClockState::kReliable);
+}
+
+TEST(EstimateTrialClock, HasAStateForNoDataAtAll) {
+  EXPECT_EQ(EstimateTrialClock({}, 100.0, {}, std::nullopt, {}).state, ClockState::kNoOverlap);
+  const Eigen::MatrixXd unseen =
+      Eigen::MatrixXd::Constant(100, 2, std::numeric_limits<double>::quiet_NaN());
+  const LoggedSpeeds logged{Eigen::VectorXd::LinSpaced(100, 0.0, 1.0),
+                            Eigen::MatrixXd::Ones(100, 2)};
+  EXPECT_EQ(EstimateTrialClock(unseen, 100.0, logged, std::nullopt, {}).state,
+            ClockState::kNoOverlap);
+}
+
+}  // namespace
+}  // namespace elastocal

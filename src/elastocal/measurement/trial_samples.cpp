@@ -1,0 +1,326 @@
+#include "elastocal/measurement/trial_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/measurement/smoothed_log.hpp"
+#include "elastocal/measurement/trial_clock.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+constexpr double kMoved = 2e-3;  // rad or m
+
+// Frames of which a posture is the mean.
+using PostureFrames = std::vector<std::vector<int>>;
+
+// One trial on its way through the steps of SampleTrial.
+class TrialSampler {
+ public:
+  TrialSampler(const MarkedRobot& robot, const Trial& trial, const JointLog& log,
+               const MeasurementOptions& options, TrialSamples& result)
+      : robot_(robot), trial_(trial), log_(log), options_(options), result_(result) {
+    summary().trial = trial;
+    summary().joints_source = log.source;
+  }
+
+  void Run(const std::vector<int>& markers, MarkerTrajectories trajectories) {
+    coordinates_ = LoggedCoordinates(robot_.tree, log_);
+    TakeMarkers(markers, std::move(trajectories));
+    if (markers_.empty()) return Refuse("none of its markers is in the marker file");
+    CheckTorques();
+    Smooth();
+    Eigen::MatrixXd speeds = SpeedsWithinPieces();
+    FitClock(speeds);
+    if (summary().clock.state != ClockState::kReliable) return Refuse(Describe(summary().clock));
+    LeaveOutUnlogged(speeds);
+    Average(ChooseFrames(speeds));
+    if (result_.frames.empty()) Refuse("the robot is never at rest for long enough");
+  }
+
+ private:
+  TrialSummary& summary() { return result_.summary; }
+
+  void Refuse(const std::string& reason) { summary().refused = reason; }
+
+  // Keeps the columns of the markers that take part; `markers_` are those, of the robot.
+  void TakeMarkers(const std::vector<int>& markers, MarkerTrajectories all) {
+    summary().markers_source = all.source;
+    summary().rate_hz = all.rate_hz;
+    summary().frame_count = all.frame_count();
+    std::map<std::string, int> column_of;
+    for (int column = 0; column < all.marker_count(); ++column)
+      column_of[all.names[column]] = column;
+    std::vector<int> columns;
+    for (const int marker : markers) {
+      const std::string& name = robot_.markers[marker].name;
+      const auto found = column_of.find(name);
+      if (found == column_of.end() || all.positions.col(3 * found->second).array().isNaN().all()) {
+        summary().markers_missing.push_back(name);
+        continue;
+      }
+      markers_.push_back(marker);
+      summary().markers.push_back(name);
+      for (int axis = 0; axis < 3; ++axis) columns.push_back(3 * found->second + axis);
+    }
+    for (const Marker& marker : robot_.markers) column_of.erase(marker.name);
+    for (const auto& [name, column] : column_of) summary().markers_unknown.push_back(name);
+    trajectories_.source = std::move(all.source);
+    trajectories_.names = summary().markers;
+    trajectories_.rate_hz = all.rate_hz;
+    trajectories_.positions = all.positions(Eigen::all, columns);
+  }
+
+  // Which columns of the log have torques to be used.
+  void CheckTorques() {
+    torques_used_.assign(log_.names.size(), false);
+    for (const int joint : robot_.torque_sensors) {
+      const std::string& name = robot_.tree.joints[joint].name;
+      const auto column =
+          std::find(log_.names.begin(), log_.names.end(), name) - log_.names.begin();
+      if (column < log_.torques.cols() && !std::isnan(log_.torques(0, column))) {
+        torques_used_[static_cast<std::size_t>(column)] = true;
+      } else {
+        summary().torques_missing.push_back(name);
+      }
+    }
+    for (const TorqueFinding& finding : CheckTorqueSensors(log_, options_.torques)) {
+      if (!torques_used_[finding.column]) continue;
+      summary().bad_torque_sensors.push_back({log_.names[finding.column], finding});
+      torques_used_[finding.column] = false;
+    }
+  }
+
+  // The robot's clusters, as far as they take part, by columns of the trajectories.
+  std::vector<LabelCluster> TakeClusters() const {
+    std::vector<LabelCluster> clusters;
+    for (const LabelCluster& cluster : robot_.clusters) {
+      LabelCluster taken{cluster.name, {}};
+      for (const int marker : cluster.markers) {
+        const auto found = std::find(markers_.begin(), markers_.end(), marker);
+        if (found != markers_.end())
+          taken.markers.push_back(static_cast<int>(found - markers_.begin()));
+      }
+      if (taken.markers.size() > 1) clusters.push_back(std::move(taken));
+    }
+    return clusters;
+  }
+
+  void Smooth() {
+    const double least_rate = 2.0 * options_.smoothing.cutoff_hz;
+    if (!(trajectories_.rate_hz > least_rate)) {
+      char text[160];
+      std::snprintf(text, sizeof(text),
+                    ": has %.3g frames a second; more than %.3g were expected, twice the cutoff of "
+                    "the filter",
+                    trajectories_.rate_hz, least_rate);
+      throw InputError(trajectories_.source + text);
+    }
+    summary().labels = CorrectLabels(TakeClusters(), options_.labels, trajectories_);
+    summary().smoothing = SmoothTrajectories(options_.smoothing, trajectories_);
+    smoothed_log_ = SmoothLog(log_, options_.smoothing);
+  }
+
+  // At the ends of a piece the filter knows only one side and lets more noise pass, more than the
+  // speed at rest. Positions there are good enough for a mean.
+  Eigen::MatrixXd SpeedsWithinPieces() const {
+    Eigen::MatrixXd speeds = MarkerSpeeds(trajectories_);
+    const int margin = static_cast<int>(smoothed_log_.margin_s * trajectories_.rate_hz);
+    for (int m = 0; m < static_cast<int>(speeds.cols()); ++m) {
+      const auto unseen = [&](int frame) { return !Seen(trajectories_, frame, m); };
+      std::vector<FrameInterval> gaps = RunsWhere(trajectories_.frame_count(), unseen);
+      gaps.push_back({0, 0});
+      gaps.push_back({trajectories_.frame_count(), trajectories_.frame_count()});
+      for (const FrameInterval& gap : gaps) {
+        const int begin = std::max(0, gap.begin - margin);
+        const int end = std::min(trajectories_.frame_count(), gap.end + margin);
+        speeds.col(m).segment(begin, end - begin).setConstant(kNan);
+      }
+    }
+    return speeds;
+  }
+
+  void FitClock(const Eigen::MatrixXd& speeds) {
+    const int standing = trial_.support.empty() ? 0 : trial_.support[0];
+    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, standing, smoothed_log_,
+                                              coordinates_, trajectories_.rate_hz);
+    summary().clock = EstimateTrialClock(speeds, trajectories_.rate_hz, logged,
+                                         options_.expected_lag_s, options_.clock);
+  }
+
+  double CameraTime(int frame) const { return frame / trajectories_.rate_hz; }
+  double RobotTime(int frame) const { return result_.summary.clock.RobotTime(CameraTime(frame)); }
+
+  // Frames without joint positions are of no use, however still the robot is.
+  void LeaveOutUnlogged(Eigen::MatrixXd& speeds) {
+    summary().log_begin_s = summary().clock.CameraTime(log_.time_s[0]);
+    summary().log_end_s = summary().clock.CameraTime(log_.time_s[log_.time_s.size() - 1]);
+    for (int frame = 0; frame < trajectories_.frame_count(); ++frame) {
+      if (smoothed_log_.Covers(RobotTime(frame))) continue;
+      speeds.row(frame).setConstant(kNan);
+      ++summary().outside_log;
+    }
+  }
+
+  PostureFrames ChooseFrames(const Eigen::MatrixXd& speeds) {
+    std::vector<int> all(markers_.size());
+    for (std::size_t m = 0; m < all.size(); ++m) all[m] = static_cast<int>(m);
+    summary().rests = FindStableSamples(speeds, all, trajectories_.rate_hz, options_.rest);
+    const StableSamples& rests = *summary().rests;
+    if (trial_.kind == TrialKind::kSine) return MomentsOfMotion(rests);
+    PostureFrames runs(rests.runs.size());
+    for (std::size_t i = 0; i < rests.frames.size(); ++i) {
+      runs[static_cast<std::size_t>(rests.run_of_frame[i])].push_back(rests.frames[i]);
+    }
+    return BestOfEachRest(rests.runs, runs);
+  }
+
+  // A marker with a noisy speed can break a rest in two. It is still one posture: of the runs
+  // between which no joint moved, the one with most markers stands for all.
+  PostureFrames BestOfEachRest(const std::vector<FrameInterval>& runs,
+                               const PostureFrames& frames) const {
+    PostureFrames postures;
+    int best = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const int seen = MarkersSeen(frames[i]);
+      if (i == 0 || JointsMove(runs[i - 1].end - 1, runs[i].begin)) {
+        postures.push_back(frames[i]);
+        best = seen;
+      } else if (seen > best) {
+        postures.back() = frames[i];
+        best = seen;
+      }
+    }
+    return postures;
+  }
+
+  int MarkersSeen(const std::vector<int>& frames) const {
+    int seen = 0;
+    for (int m = 0; m < static_cast<int>(markers_.size()); ++m) {
+      seen += std::all_of(frames.begin(), frames.end(),
+                          [&](int frame) { return Seen(trajectories_, frame, m); });
+    }
+    return seen;
+  }
+
+  bool JointsMove(int first, int last) const {
+    const auto joints = [&](int frame) -> std::optional<Eigen::VectorXd> {
+      const auto signals = smoothed_log_.At(RobotTime(frame));
+      if (!signals) return std::nullopt;
+      return signals->head(smoothed_log_.joints);
+    };
+    const auto before = joints(first);
+    for (int frame = first; frame <= last; ++frame) {
+      const auto now = joints(frame);
+      if (!before || !now || (*now - *before).cwiseAbs().maxCoeff() > kMoved) return true;
+    }
+    return false;
+  }
+
+  // From the first frame in motion to the last, at a constant rate.
+  PostureFrames MomentsOfMotion(const StableSamples& rests) const {
+    int first = trajectories_.frame_count();
+    int last = -1;
+    for (const UnusedFrames& unused : rests.unused) {
+      if (unused.reason != UnusedReason::kMoving) continue;
+      first = std::min(first, unused.frames.begin);
+      last = unused.frames.end - 1;
+    }
+    const double step = std::max(1.0, trajectories_.rate_hz / options_.sine_rate_hz);
+    PostureFrames postures;
+    for (int k = 0;; ++k) {
+      const int frame = first + static_cast<int>(std::lround(k * step));
+      if (frame > last) return postures;
+      if (smoothed_log_.Covers(RobotTime(frame))) postures.push_back({frame});
+    }
+  }
+
+  void Average(const PostureFrames& postures) {
+    const auto count = static_cast<Eigen::Index>(postures.size());
+    const auto joints = static_cast<Eigen::Index>(robot_.tree.joints.size());
+    result_.time_s.resize(count);
+    result_.q = robot_.q_not_logged.transpose().replicate(count, 1);
+    result_.markers.setConstant(count, 3 * static_cast<Eigen::Index>(robot_.markers.size()), kNan);
+    result_.torques.setConstant(count, joints, kNan);
+    for (const ForceTorqueSensor& sensor : log_.wrench_sensors) {
+      result_.wrench_links.push_back(sensor.link);
+    }
+    result_.wrenches.resize(count, log_.wrenches.cols());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const std::vector<int>& frames = postures[static_cast<std::size_t>(i)];
+      result_.frames.push_back(static_cast<int>(frames.size()));
+      AverageMarkers(frames, i);
+      AverageLog(frames, i);
+    }
+    CountSamples();
+  }
+
+  void AverageMarkers(const std::vector<int>& frames, Eigen::Index posture) {
+    for (std::size_t m = 0; m < markers_.size(); ++m) {
+      Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+      // NaN in one frame is NaN in the mean.
+      for (const int frame : frames)
+        sum += trajectories_.positions.block<1, 3>(frame, 3 * static_cast<Eigen::Index>(m));
+      result_.markers.block<1, 3>(posture, 3 * markers_[m]) =
+          sum / static_cast<double>(frames.size());
+    }
+  }
+
+  void AverageLog(const std::vector<int>& frames, Eigen::Index posture) {
+    Eigen::VectorXd sum;
+    double time = 0.0;
+    for (const int frame : frames) {
+      const Eigen::VectorXd signals = *smoothed_log_.At(RobotTime(frame));
+      sum = sum.size() == 0 ? signals : (sum + signals).eval();
+      time += CameraTime(frame);
+    }
+    const double count = static_cast<double>(frames.size());
+    result_.time_s[posture] = time / count;
+    sum /= count;
+    const int joints = smoothed_log_.joints;
+    for (int c = 0; c < joints; ++c) {
+      result_.q(posture, coordinates_[c]) = sum[c];
+      if (!torques_used_[static_cast<std::size_t>(c)]) continue;
+      result_.torques(posture, robot_.tree.coordinate_joint[coordinates_[c]]) = sum[joints + c];
+    }
+    result_.wrenches.row(posture) = sum.tail(log_.wrenches.cols()).transpose();
+  }
+
+  void CountSamples() {
+    summary().postures = static_cast<int>(result_.frames.size());
+    for (const int count : result_.frames) summary().samples += count;
+    for (const int marker : markers_) {
+      const auto missing = result_.markers.col(3 * marker).array().isNaN().count();
+      summary().postures_seen.push_back(summary().postures - static_cast<int>(missing));
+    }
+  }
+
+  const MarkedRobot& robot_;
+  const Trial& trial_;
+  const JointLog& log_;
+  const MeasurementOptions& options_;
+  TrialSamples& result_;
+  std::vector<int> coordinates_;    // of the log's joints
+  std::vector<bool> torques_used_;  // as the log's joints
+  std::vector<int> markers_;        // of the robot: the columns of the trajectories
+  MarkerTrajectories trajectories_;
+  SmoothedLog smoothed_log_;
+};
+
+}  // namespace
+
+TrialSamples SampleTrial(const MarkedRobot& robot, const Trial& trial,
+                         const std::vector<int>& markers, MarkerTrajectories trajectories,
+                         const JointLog& log, const MeasurementOptions& options) {
+  TrialSamples result;
+  TrialSampler(robot, trial, log, options, result).Run(markers, std::move(trajectories));
+  return result;
+}
+
+}  // namespace elastocal

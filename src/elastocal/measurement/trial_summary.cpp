@@ -1,0 +1,150 @@
+#include "elastocal/measurement/trial_summary.hpp"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+namespace elastocal {
+namespace {
+
+constexpr double kLostLong = 0.1;  // of a trial, for a marker to be worth a sentence
+
+std::string Format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+std::string Format(const char* pattern, ...) {
+  char text[512];
+  va_list values;
+  va_start(values, pattern);
+  std::vsnprintf(text, sizeof(text), pattern, values);
+  va_end(values);
+  return text;
+}
+
+std::string Join(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  if (names.size() > kMost) text += Format(" and %zu more", names.size() - kMost);
+  return text;
+}
+
+// The findings of one trial as sentences.
+class Finder {
+ public:
+  explicit Finder(const TrialSummary& summary) : summary_(summary) {}
+
+  std::vector<std::string> Find() {
+    if (!summary_.refused.empty()) Add("not used: " + summary_.refused);
+    for (const BadTorqueSensor& bad : summary_.bad_torque_sensors) {
+      Add("the torque sensor of " + bad.joint + " is " + Describe(bad.finding) +
+          "; its torques are not used");
+    }
+    if (!summary_.torques_missing.empty()) {
+      Add("no torques were logged of " + Join(summary_.torques_missing));
+    }
+    for (const ClusterLabels& labels : summary_.labels) AddLabels(labels);
+    if (!summary_.markers_missing.empty()) {
+      Add("never seen: " + Join(summary_.markers_missing));
+    }
+    for (std::size_t m = 0; m < summary_.smoothing.size(); ++m) AddLostMarker(m);
+    AddLog();
+    return findings_;
+  }
+
+ private:
+  void Add(const std::string& text) {
+    findings_.push_back("trial " + summary_.trial.name + ": " + text);
+  }
+
+  double Seconds(int frames) const { return frames / summary_.rate_hz; }
+
+  void AddLabels(const ClusterLabels& labels) {
+    for (const SwappedLabels& swap : labels.swaps) {
+      std::vector<std::string> names;
+      for (std::size_t i = 0; i < swap.permutation.size(); ++i) {
+        if (swap.permutation[i] != static_cast<int>(i)) {
+          names.push_back(summary_.markers[labels.markers[i]]);
+        }
+      }
+      Add(Format("the labels of %s were exchanged from %.2f s to %.2f s; corrected",
+                 Join(names).c_str(), Seconds(swap.frames.begin), Seconds(swap.frames.end)));
+    }
+    if (!labels.undecided.empty()) {
+      Add(
+          Format("labels of cluster %s look exchanged in %d frames, but its distances are too much "
+                 "alike to tell",
+                 labels.name.c_str(), FrameCount(labels.undecided)));
+    }
+    for (std::size_t m = 0; m < summary_.markers.size(); ++m) {
+      AddOutliers(labels, static_cast<int>(m));
+    }
+  }
+
+  void AddOutliers(const ClusterLabels& labels, int marker) {
+    int frames = 0;
+    int first = -1;
+    for (const OutlyingMarker& outlier : labels.outliers) {
+      if (outlier.marker != marker) continue;
+      if (first < 0) first = outlier.frames.begin;
+      frames += outlier.frames.size();
+    }
+    if (frames == 0) return;
+    Add(Format("%s was off its cluster's shape in %d frames, first at %.2f s; removed there",
+               summary_.markers[static_cast<std::size_t>(marker)].c_str(), frames, Seconds(first)));
+  }
+
+  void AddLostMarker(std::size_t marker) {
+    int longest = 0;
+    for (const FrameInterval& gap : summary_.smoothing[marker].open) {
+      longest = std::max(longest, gap.size());
+    }
+    const double share = static_cast<double>(FrameCount(summary_.smoothing[marker].open)) /
+                         std::max(1, summary_.frame_count);
+    if (share < kLostLong) return;
+    Add(Format("%s was lost for %.0f %% of the time, at most %.1f s on end",
+               summary_.markers[marker].c_str(), 100.0 * share, Seconds(longest)));
+  }
+
+  void AddLog() {
+    const double end_s = Seconds(summary_.frame_count);
+    // The filter's margin, at either end, is no news.
+    constexpr double kNews_s = 1.0;
+    if (!summary_.refused.empty() || Seconds(summary_.outside_log) < kNews_s) return;
+    Add(
+        Format("the joint log covers %.1f s to %.1f s of the marker file's %.1f s; %d frames "
+               "without joint positions are not used",
+               std::max(0.0, summary_.log_begin_s), std::min(end_s, summary_.log_end_s), end_s,
+               summary_.outside_log));
+  }
+
+  const TrialSummary& summary_;
+  std::vector<std::string> findings_;
+};
+
+}  // namespace
+
+std::string Describe(const TrialSummary& summary) {
+  const std::string beginning = "trial " + summary.trial.name + ": ";
+  if (!summary.refused.empty()) return beginning + "not used: " + summary.refused;
+  return beginning +
+         Format("%d postures from %d of %d frames at %.4g Hz, %zu markers; ", summary.postures,
+                summary.samples, summary.frame_count, summary.rate_hz, summary.markers.size()) +
+         Describe(summary.clock);
+}
+
+std::vector<std::string> Findings(const TrialSummary& summary) { return Finder(summary).Find(); }
+
+std::string DescribeUnused(const TrialSummary& summary) {
+  if (!summary.rests) return "";
+  const auto count = [&](UnusedReason reason) { return summary.rests->UnusedCount(reason); };
+  return Format(
+      "not used: %d frames in motion (above %.1f mm/s), %d at rest too shortly, %d outside the "
+      "joint log, %d with too few markers, %d spare",
+      count(UnusedReason::kMoving), 1e3 * summary.rests->threshold_m_per_s,
+      count(UnusedReason::kTooShort), summary.outside_log,
+      count(UnusedReason::kTooFewVisible) - summary.outside_log, count(UnusedReason::kSpare));
+}
+
+}  // namespace elastocal

@@ -1,0 +1,175 @@
+#include "elastocal/validation/calibration_comparison.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/statistics.hpp"
+#include "tests/expect_input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Three joints with theta and d each, sd 1 mrad and 1 mm, uncorrelated unless a test says so.
+CalibrationEstimate ThreeJoints(const std::string& source) {
+  CalibrationEstimate estimate;
+  estimate.source = source;
+  estimate.robot = "robot";
+  estimate.nominal = "0123456789abcdef";
+  estimate.recording = source + ".csv";
+  estimate.model = "geometric";
+  estimate.interval_factor = StudentQuantile(0.975, 300.0);
+  for (const char* joint : {"j1", "j2", "j3"}) {
+    for (const char* kind : {"theta", "d"}) {
+      estimate.parameters.push_back({.name = std::string(joint) + "." + kind,
+                                     .unit = *kind == 't' ? "rad" : "m",
+                                     .value = 0.02,
+                                     .sd = 1e-3});
+      estimate.covariance_names.push_back(estimate.parameters.back().name);
+    }
+  }
+  estimate.parameters.push_back(
+      {.name = "marker.M.x", .unit = "m", .external = true, .value = 1.0, .sd = 1e-6});
+  estimate.covariance = 1e-6 * Eigen::MatrixXd::Identity(6, 6);
+  return estimate;
+}
+
+class CalibrationComparisonTest : public ::testing::Test {
+ protected:
+  CalibrationComparison Compared() const { return CompareCalibrations(a_, b_, {}); }
+
+  CalibrationEstimate a_ = ThreeJoints("A"), b_ = ThreeJoints("B");
+};
+
+TEST_F(CalibrationComparisonTest, NothingMoved) {
+  b_.parameters[0].value += 1e-3;
+  b_.parameters[6].value += 1.0;  // markers are no part of the robot
+  const CalibrationComparison comparison = Compared();
+  EXPECT_FALSE(comparison.changed);
+  EXPECT_TRUE(comparison.suspects.empty());
+  EXPECT_TRUE(comparison.warnings.empty());
+  ASSERT_EQ(comparison.parameters.size(), 6u);
+  for (const JointDifference& joint : comparison.joints) EXPECT_FALSE(joint.moved);
+}
+
+TEST_F(CalibrationComparisonTest, IntervalAndTestByHand) {
+  b_.parameters[2].value += 6e-3;  // j2.theta
+  const CalibrationComparison comparison = Compared();
+  const ParameterDifference& theta = comparison.parameters[2];
+  EXPECT_EQ(theta.name, "j2.theta");
+  EXPECT_NEAR(theta.difference, 6e-3, 1e-15);
+  EXPECT_NEAR(theta.sd, std::sqrt(2.0) * 1e-3, 1e-15);
+  EXPECT_NEAR(theta.degrees_of_freedom, 600.0, 1e-3);  // two equal variances of 300
+  EXPECT_NEAR(theta.half_width, theta.sd * StudentQuantile(0.975, 600.0), 1e-12);
+  EXPECT_TRUE(theta.significant());
+  const JointDifference& first = comparison.joints[0];
+  EXPECT_EQ(first.joint, "j2");
+  EXPECT_TRUE(first.moved);
+  EXPECT_NEAR(first.test.statistic, 36.0 / 2.0 / 2.0, 1e-9);
+  EXPECT_NEAR(first.p_adjusted, 3.0 * FisherUpperTail(9.0, 2, 600.0), 1e-9);
+  EXPECT_EQ(first.parameters, (std::vector<int>{2, 3}));
+  EXPECT_TRUE(comparison.changed);
+  EXPECT_FALSE(comparison.joints[1].moved);
+  EXPECT_FALSE(comparison.joints[2].moved);
+}
+
+// Each parameter of j1 alone is within its interval; together, against their correlation, not.
+TEST_F(CalibrationComparisonTest, AJointIsTestedAsAWhole) {
+  for (CalibrationEstimate* side : {&a_, &b_}) {
+    side->covariance(0, 1) = side->covariance(1, 0) = 0.99e-6;
+  }
+  b_.parameters[0].value += 1e-3;
+  b_.parameters[1].value -= 1e-3;
+  const CalibrationComparison comparison = Compared();
+  EXPECT_FALSE(comparison.parameters[0].significant());
+  EXPECT_FALSE(comparison.parameters[1].significant());
+  EXPECT_EQ(comparison.joints[0].joint, "j1");
+  EXPECT_TRUE(comparison.joints[0].moved);
+  // Without the covariance of both nobody can see it.
+  a_.covariance_names.clear();
+  const CalibrationComparison blind = Compared();
+  EXPECT_FALSE(blind.with_covariance);
+  EXPECT_FALSE(blind.changed);
+  EXPECT_TRUE(std::isnan(blind.joints[0].test.statistic));
+  ASSERT_EQ(blind.warnings.size(), 1u);
+  EXPECT_NE(blind.warnings[0].find("covariance.csv"), std::string::npos);
+}
+
+// j1.theta and j2.theta can hardly be told apart: their difference is known, their sum is not.
+TEST_F(CalibrationComparisonTest, SuspectsWhereNoJointCanBeSingledOut) {
+  for (CalibrationEstimate* side : {&a_, &b_}) {
+    side->covariance(0, 2) = side->covariance(2, 0) = 0.999e-6;
+  }
+  b_.parameters[0].value += 0.5e-3;
+  const CalibrationComparison comparison = Compared();
+  EXPECT_TRUE(comparison.changed);
+  for (const JointDifference& joint : comparison.joints) EXPECT_FALSE(joint.moved) << joint.joint;
+  EXPECT_EQ(comparison.suspects, (std::vector<std::string>{"j1", "j2"}));
+}
+
+TEST_F(CalibrationComparisonTest, WithoutCovarianceBonferroniWithinAJoint) {
+  a_.covariance_names.clear();
+  b_.covariance_names.clear();
+  b_.parameters[5].value += 6e-3;
+  const CalibrationComparison comparison = Compared();
+  EXPECT_EQ(comparison.joints[0].joint, "j3");
+  EXPECT_TRUE(comparison.joints[0].moved);
+  EXPECT_NEAR(comparison.joints[0].test.p, 2.0 * comparison.parameters[5].p, 1e-15);
+  EXPECT_NEAR(comparison.overall.p, 6.0 * comparison.parameters[5].p, 1e-15);
+}
+
+// The sum of two lengths: one name in A, both in B. Variances add with the correlation.
+TEST_F(CalibrationComparisonTest, CombinationsHaveTheirOwnUncertainty) {
+  a_.parameters[3] = {.name = "j2.d",
+                      .unit = "m",
+                      .status = ParameterStatus::kDropped,
+                      .value = 0.0,
+                      .sd = NAN,
+                      .regrouped_into = {{"j1.d", 1.0}}};
+  a_.covariance_names[3] = "unused";
+  a_.parameters[1].value = 0.05;
+  b_.covariance(1, 3) = b_.covariance(3, 1) = -0.5e-6;
+  const CalibrationComparison comparison = Compared();
+  ASSERT_EQ(comparison.parameters.size(), 5u);
+  const ParameterDifference& sum = comparison.parameters[4];
+  EXPECT_EQ(sum.name, "j2.d");
+  EXPECT_NEAR(sum.a, 0.05, 1e-12);
+  EXPECT_NEAR(sum.b, 0.04, 1e-12);
+  EXPECT_NEAR(sum.difference, -0.01, 1e-12);
+  EXPECT_NEAR(sum.sd, std::sqrt(1e-6 + 2e-6 - 1e-6), 1e-12);
+  EXPECT_EQ(sum.weights_a.size(), 1u);
+  EXPECT_NEAR(sum.weights_a.at("j1.d"), 1.0, 1e-12);
+  EXPECT_NEAR(sum.weights_b.at("j1.d"), 1.0, 1e-12);
+  EXPECT_NEAR(sum.weights_b.at("j2.d"), 1.0, 1e-12);
+  EXPECT_TRUE(comparison.parameters[0].weights_a.empty());
+}
+
+TEST_F(CalibrationComparisonTest, Warnings) {
+  b_.recording = a_.recording;
+  b_.model = "offsets_only";
+  b_.parameters[3].status = ParameterStatus::kHeld;
+  const CalibrationComparison comparison = Compared();
+  ASSERT_EQ(comparison.warnings.size(), 3u);
+  EXPECT_NE(comparison.warnings[0].find("A.csv"), std::string::npos);
+  EXPECT_NE(comparison.warnings[1].find("offsets_only"), std::string::npos);
+  EXPECT_NE(comparison.warnings[2].find("j2.d"), std::string::npos);
+}
+
+TEST_F(CalibrationComparisonTest, WhatCannotBeCompared) {
+  const auto compare = [&] { Compared(); };
+  b_.robot = "other robot";
+  b_.nominal = "f";
+  ExpectInputError(compare, {"A", "'robot'", "B", "'other robot'", "nominal"});
+  b_ = ThreeJoints("B");
+  for (ParameterEstimate& parameter : b_.parameters) parameter.name = "left_" + parameter.name;
+  ExpectInputError(compare, {"A", "B", "nothing"});
+  b_ = ThreeJoints("B");
+  b_.covariance_names[2] = "other";
+  ExpectInputError(compare, {"B", "'j2.theta'"});
+  b_ = ThreeJoints("B");
+  b_.covariance(0, 1) = b_.covariance(1, 0) = 3e-6;
+  ExpectInputError(compare, {"A, B", "positive definite"});
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,119 @@
+// The whole body at once, standing on its feet: recovery of truths from the estimator's own model.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+#include "tests/standing_robot.hpp"
+
+namespace elastocal {
+namespace {
+
+/// All residuals of a problem as one vector.
+Eigen::VectorXd AllResiduals(BodyResiduals& problem, const Eigen::VectorXd& x) {
+  problem.Evaluate(x, false);
+  std::vector<double> all;
+  for (std::size_t i = 0; i < problem.residual_blocks.size(); ++i) {
+    Eigen::VectorXd r(problem.residual_blocks[i].size);
+    problem.Residual(static_cast<int>(i), Eigen::Map<Eigen::VectorXd>(r.data(), r.size()));
+    all.insert(all.end(), r.begin(), r.end());
+  }
+  return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+Eigen::MatrixXd DenseJacobian(BodyResiduals& problem, const Eigen::VectorXd& x) {
+  problem.Evaluate(x, true);
+  std::vector<int> start = {0};
+  for (int size : problem.parameter_blocks) start.push_back(start.back() + size);
+  int rows = 0;
+  for (const auto& block : problem.residual_blocks) rows += block.size;
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, x.size());
+  int row = 0;
+  for (std::size_t i = 0; i < problem.residual_blocks.size(); ++i) {
+    const auto& shape = problem.residual_blocks[i];
+    for (std::size_t k = 0; k < shape.parameter_blocks.size(); ++k) {
+      const int block = shape.parameter_blocks[k];
+      LeastSquaresProblem::RowMajorMatrix part(shape.size, problem.parameter_blocks[block]);
+      problem.Jacobian(
+          static_cast<int>(i), static_cast<int>(k),
+          Eigen::Map<LeastSquaresProblem::RowMajorMatrix>(part.data(), part.rows(), part.cols()));
+      J.block(row, start[block], part.rows(), part.cols()) = part;
+    }
+    row += shape.size;
+  }
+  return J;
+}
+
+// Markers, feet and ties of trials; residuals in mm, unknowns of the order of one. The loads are
+// held, as in a solve.
+TEST(WholeBody, JacobianEqualsDifferences) {
+  const StandingRobot robot(2, 5, true);
+  const Eigen::VectorXd truth = robot.DrawTruth(6);
+  const Recording recording =
+      robot.Record(truth, {.torque_sensors = robot.project.torque_sensors});
+  const Placement placement = RegisterPlacement(robot.model, recording, 1e-3);
+  const std::vector<int> group = NoiseGroups(robot.model, recording);
+  const ObservationMask used = SeenMask(recording);
+  const std::vector<char> tied(recording.posture_count(), 1);
+  const std::vector<PostureLoads> loads = ComputeLoads(robot.model, recording, truth, placement, {});
+  const Prior prior;
+  const Noise noise{Eigen::Vector3d::Constant(1e-3), Eigen::Vector3d::Constant(1e-3),
+                    Eigen::Vector3d::Constant(1e-3)};
+  std::vector<int> free = robot.base.kept;
+  std::erase_if(free, [&](int i) { return robot.model.parameters[i].kind == ParameterKind::kBase; });
+  BodyResiduals problem({robot.model, recording, group, used, tied, loads, prior, noise}, free,
+                        truth, placement);
+  Eigen::VectorXd x = problem.Start();
+  Random random(7);
+  for (double& value : x) value += random.Uniform(0.0, 0.3);
+  const Eigen::MatrixXd J = DenseJacobian(problem, x);
+  constexpr double kStep = 1e-4;
+  for (Eigen::Index u = 0; u < x.size(); ++u) {
+    Eigen::VectorXd plus = x;
+    Eigen::VectorXd minus = x;
+    plus[u] += kStep;
+    minus[u] -= kStep;
+    const Eigen::VectorXd difference =
+        (AllResiduals(problem, plus) - AllResiduals(problem, minus)) / (2.0 * kStep);
+    EXPECT_LT((difference - J.col(u)).norm(), 1e-6 * (1.0 + J.col(u).norm()))
+        << u << " " << (u < static_cast<Eigen::Index>(free.size())
+                            ? robot.model.parameters[free[static_cast<std::size_t>(u)]].name
+                            : "pose");
+  }
+}
+
+TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
+  const StandingRobot robot(24);
+  const Eigen::VectorXd truth = robot.DrawTruth(3);
+  const Recording recording =
+      robot.Record(truth, {.marker_sd = 0.0, .torque_sensors = robot.project.torque_sensors});
+  const CalibrationResult result =
+      Calibrate(robot.model, recording, robot.base, ModelKind::kFull, {});
+  EXPECT_EQ(result.termination, Termination::kConverged) << result.message;
+  std::printf("%d iterations, %.2f s, marker sd %g\n", result.iterations, result.solve_seconds,
+              result.marker_sd);
+  std::printf("loose %zu settled %d", result.loose_footings.size(), result.settled);
+  for (int g = 0; g < result.noise.group_count(); ++g) {
+    std::printf(" | %g %g %g", result.noise.marker_sd[g], result.noise.waist_position_sd[g],
+                result.noise.waist_rotation_sd[g]);
+  }
+  std::printf(" bad loads %zu\n", result.loads.badly_conditioned.size());
+  for (std::size_t o = 0; o < std::min<std::size_t>(5, result.outliers.size()); ++o) {
+    std::printf("outlier %d %s\n", result.outliers[o].posture, recording.marker_names[result.outliers[o].marker].c_str());
+  }
+  for (int i : robot.base.kept) {
+    const Parameter& parameter = robot.model.parameters[i];
+    if (parameter.kind == ParameterKind::kBase) continue;
+    if (result.status[i] == ParameterStatus::kUnsupported) {
+      std::printf("unsupported %s\n", parameter.name.c_str());
+      continue;
+    }
+    const double scale = ParameterScale(parameter, CalibrationOptions().prior);
+    EXPECT_NEAR(result.delta[i] / scale, truth[i] / scale, 1e-7) << parameter.name;
+  }
+}
+
+}  // namespace
+}  // namespace elastocal
