@@ -1,3 +1,4 @@
+#include <limits>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +23,17 @@ Excitation ExcitationOf(const Session& session, const CalibrationResult& result)
                           result.marker_sd);
 }
 
+/// On trials for validation where there are any, else on those of the estimate.
+void AssessWaist(const Session& session, CalibrationRun& run) {
+  run.waist_error.fill(std::numeric_limits<double>::quiet_NaN());
+  for (ModelKind kind : run.comparison.kinds) {
+    const auto k = static_cast<int>(kind);
+    run.waist_error[k] =
+        run.held_out ? WaistError(run.held_out->predictions[k].placement, session.validation_truth)
+                     : WaistError(run.comparison.predictions[k].placement, session.recording_truth);
+  }
+}
+
 CalibrationRun Calculate(const Session& session, const CalibrateOptions& options) {
   const CalibrationOptions& settings = session.project.calibration;
   CalibrationRun run;
@@ -35,9 +47,15 @@ CalibrationRun Calculate(const Session& session, const CalibrateOptions& options
                       options.folds, options.common.seed.value_or(1),
                       TerminalProgress("cross-validation", options.common.quiet));
   }
+  run.trials = session.trials;
+  if (session.validation.posture_count() > 0) {
+    run.held_out = JudgeOnTrials(run.comparison, session.validation, settings);
+  }
+  AssessWaist(session, run);
   run.excitation = ExcitationOf(session, run.comparison.best());
   run.verdict =
       Judge(run.comparison, run.cross_validation, run.excitation, run.recording, settings);
+  if (run.held_out) JudgeHeldOut(run.held_out->table, run.comparison.best_kind(), run.verdict);
   run.warnings.insert(run.warnings.end(), run.verdict.remarks.begin(), run.verdict.remarks.end());
   return run;
 }
@@ -72,13 +90,20 @@ Files DeployableFiles(const CalibrateOptions& options, const Session& session,
 
 int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const bool quiet = options.common.Silent();
-  const Session session = OpenSession(options.project, options.recording, options.common.seed);
+  const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
+                                                      options.recordings.end());
+  const Session session = OpenSession(options.project, recordings, options.common.seed);
   const std::filesystem::path summary_file = std::filesystem::path(options.output) / "summary.json";
   const std::vector<std::filesystem::path> deployable_paths =
       DeployablePaths(options, session.project);
   std::vector<std::filesystem::path> outputs = deployable_paths;
   outputs.insert(outputs.end(), {summary_file, options.common.json_file});
-  CheckOutputs(outputs, {options.project, session.project.urdf, options.recording});
+  std::vector<std::filesystem::path> inputs = {options.project, session.project.urdf};
+  for (const std::filesystem::path& recording : recordings) {
+    inputs.push_back(recording);
+    inputs.push_back(recording / "experiment.yaml");
+  }
+  CheckOutputs(outputs, inputs);
 
   CalibrationRun run = Calculate(session, options);
   const bool deployable = run.verdict.objections.empty();
@@ -107,7 +132,9 @@ void AddCalibrate(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "calibrate", "Estimate the robot's errors from a recording; write the calibrated URDF");
   command->add_option("project", options->project, "Project file (YAML)")->required();
-  command->add_option("--recording", options->recording, "Table of static postures (CSV)")
+  command
+      ->add_option("--recording", options->recordings,
+                   "Table of static postures (CSV), or folders with experiment.yaml")
       ->required();
   command->add_option("-o,--output", options->output, "Folder for the results")
       ->required()

@@ -7,6 +7,7 @@
 
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/cli/trial_report.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -34,7 +35,7 @@ std::string ParameterTable(const CalibrationRun& run) {
   TextTable table({"parameter", "unit", "estimate", "sd", "95 % interval", ""});
   for (int i : WithStatus(result, ParameterStatus::kEstimated)) {
     const Parameter& parameter = result.model.parameters[i];
-    if (parameter.joint < 0) continue;
+    if (parameter.joint < 0 || IsCompliance(parameter.kind)) continue;
     const double value = InUserUnits(parameter, result.delta[i]);
     const double sd = InUserUnits(parameter, result.sd[i]);
     const double half = result.interval_factor * sd;
@@ -85,6 +86,12 @@ std::string MarkerText(const CalibrationResult& result) {
 /// One sentence for whoever reads no table.
 std::string Conclusion(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) return "Verdict: do not deploy (see the errors).\n";
+  if (run.held_out) {
+    const auto& mean = run.held_out->table.mean_rmse_3d;
+    return fmt::format("Verdict: deploy. Markers of held-out motions: from {} to {} mm.\n",
+                       Millimetres(mean.at(ModelKind::kUncalibrated)),
+                       Millimetres(mean.at(run.comparison.best_kind())));
+  }
   const bool held_out = run.cross_validation.folds > 0;
   const auto& metrics = held_out ? run.cross_validation.metrics : run.comparison.metrics;
   return fmt::format(
@@ -142,16 +149,24 @@ std::string DescribeRun(const CalibrationRun& run) {
       result.model.tree.name, run.recording.posture_count(), run.recording.marker_count(),
       result.equations, run.base.geometric_count, result.model.parameter_count(),
       run.base.theoretical_count);
+  text += DescribeTrials(run);
   text += ModelTable(run);
-  text += "  RMSE is what remains after fitting where the waist and the markers are\n";
+  text +=
+      run.trials.empty()
+          ? "  RMSE is what remains after fitting where the waist and the markers are\n"
+          : "  RMSE of markers predicted from the standing foot, or from the waist on two feet\n";
+  text += DescribeHeldOut(run);
   text += fmt::format(
-      "\nGeometric model {} after {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms\n"
+      "\n{} model {} after {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms\n"
       "  noise of a marker coordinate {:.4f} mm; prior widened by {:.2f} (angles) and {:.2f} "
       "(lengths); {:.1f} parameters determined by the data\n\n",
-      TerminationName(result.termination), result.iterations, result.initial_cost,
-      result.final_cost, 1e3 * result.solve_seconds, 1e3 * result.marker_sd,
-      result.prior_scale.angles, result.prior_scale.lengths, result.posterior.effective_parameters);
+      result.kind == ModelKind::kFull ? "Full" : "Geometric", TerminationName(result.termination),
+      result.iterations, result.initial_cost, result.final_cost, 1e3 * result.solve_seconds,
+      1e3 * result.marker_sd, result.prior_scale.angles, result.prior_scale.lengths,
+      result.posterior.effective_parameters);
   text += ParameterTable(run);
+  text += DescribeElasticity(run);
+  text += DescribeFeet(run);
   text += "\nNot identifiable with these markers, unchanged in the URDF: " +
           Names(result, WithStatus(result, ParameterStatus::kDropped)) +
           "\nNot supported by the data, held at nominal, not worth deploying: " +

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/session.hpp"
@@ -12,7 +13,8 @@ namespace elastocal::cli {
 
 struct CalibrateOptions {
   CommonOptions common;
-  std::string project, recording, output;
+  std::string project, output;
+  std::vector<std::string> recordings;  ///< a posture table, or recording folders
   int folds = 0;
   std::string zero_offsets = "origin";
 };

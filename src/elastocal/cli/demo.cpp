@@ -112,7 +112,7 @@ int Demo(const DemoOptions& options) {
                   options.postures, (folder / "recording.csv").string()));
 
   CalibrateOptions calibrate{
-      options.common, source.string(), (folder / "recording.csv").string(), folder.string(), 5,
+      options.common, source.string(), folder.string(), {(folder / "recording.csv").string()}, 5,
       "origin"};
   CalibrationRun run;
   const int exit_code = RunCalibration(calibrate, &run);

@@ -1,5 +1,6 @@
 #include "elastocal/cli/session.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -8,6 +9,8 @@
 #include <unistd.h>
 
 #include "elastocal/io/output_files.hpp"
+#include "elastocal/io/recording_folder.hpp"
+#include "elastocal/io/truth_file.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal::cli {
@@ -44,19 +47,77 @@ void WarnOfLostRank(const ErrorModel& model, const IdentifiabilityOptions& optio
   }
 }
 
+/// Only the markers that were seen for calibration: a model has no position for others.
+Recording WithMarkers(const Recording& recording, const std::vector<int>& markers) {
+  Recording selected = recording;
+  selected.marker_names.clear();
+  selected.markers.resize(recording.posture_count(), 3 * static_cast<Eigen::Index>(markers.size()));
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    selected.marker_names.push_back(recording.marker_names[markers[k]]);
+    selected.markers.middleCols<3>(3 * static_cast<Eigen::Index>(k)) =
+        recording.markers.middleCols<3>(3 * markers[k]);
+  }
+  return selected;
+}
+
+/// True waists at the times of the postures, of trials that have a file of them.
+std::vector<std::optional<Transform>> TrueWaists(const std::vector<std::filesystem::path>& folders,
+                                                 const Project& project,
+                                                 const Recording& recording) {
+  std::vector<std::optional<Transform>> waists(recording.posture_count());
+  for (const std::filesystem::path& folder : folders) {
+    for (const TrialFiles& files : ReadExperiment(folder, project).trials) {
+      if (files.truth.empty()) continue;
+      const WaistTruth truth = ReadWaistTruth(files.truth);
+      for (int i = 0; i < recording.posture_count(); ++i) {
+        const std::string& name = recording.trials[recording.trial[i]].name;
+        const bool same = folders.size() == 1 ? name == files.name : name.ends_with(files.name);
+        if (!same || truth.time_s.size() == 0) continue;
+        Eigen::Index nearest = 0;
+        (truth.time_s.array() - recording.time_s[i]).abs().minCoeff(&nearest);
+        waists[i] = truth.T_camera_waist[static_cast<std::size_t>(nearest)];
+      }
+    }
+  }
+  return waists;
+}
+
+void OpenFolders(const std::vector<std::filesystem::path>& folders, Session& session) {
+  RecordingFolder read = ReadRecordingFolders(folders, session.project);
+  session.trials = std::move(read.trials);
+  session.warnings = std::move(read.findings);
+  std::vector<int> seen;
+  const ObservationMask mask = SeenMask(read.calibration);
+  for (int m = 0; m < mask.cols(); ++m) {
+    if (mask.col(m).any()) seen.push_back(m);
+  }
+  session.recording = WithMarkers(read.calibration, seen);
+  session.recording_truth = TrueWaists(folders, session.project, session.recording);
+  if (read.validation.posture_count() == 0) return;
+  session.validation = WithMarkers(read.validation, seen);
+  session.validation_truth = TrueWaists(folders, session.project, session.validation);
+}
+
 }  // namespace
 
-Session OpenSession(const std::filesystem::path& project, const std::filesystem::path& recording,
+Session OpenSession(const std::filesystem::path& project,
+                    const std::vector<std::filesystem::path>& recordings,
                     std::optional<std::uint64_t> seed) {
   Session session;
   session.project = ReadProject(project);
   if (seed) session.project.identifiability.seed = *seed;
-  PostureTable table = ReadPostureTable(recording, session.project);
-  session.recording = std::move(table.recording);
-  session.warnings = std::move(table.warnings);
-  const ErrorModel all =
-      MakeErrorModel(session.project.tree, session.project.markers, session.project.placement);
-  session.model = SelectMarkers(all, session.recording.marker_names);
+  if (std::any_of(recordings.begin(), recordings.end(), IsRecordingFolder)) {
+    OpenFolders(recordings, session);
+  } else if (recordings.size() == 1) {
+    PostureTable table = ReadPostureTable(recordings[0], session.project);
+    session.recording = std::move(table.recording);
+    session.warnings = std::move(table.warnings);
+  } else {
+    throw InputError(recordings[1].string() +
+                     ": no experiment.yaml in it; only recording folders can be taken together");
+  }
+  session.model = SelectMarkers(MakeProjectModel(session.project, session.recording.trials),
+                                session.recording.marker_names);
   const IdentifiabilityOptions& options = session.project.identifiability;
   session.base = FindBaseParameters(session.model, options);
   WarnOfLostRank(session.model, options, session.base, session.warnings);

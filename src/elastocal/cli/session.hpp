@@ -8,6 +8,7 @@
 
 #include "elastocal/io/posture_table.hpp"
 #include "elastocal/io/project.hpp"
+#include "elastocal/measurement/trial_summary.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 
 namespace elastocal::cli {
@@ -15,14 +16,20 @@ namespace elastocal::cli {
 /// A project with a recording: what calibrate, validate and demo begin with.
 struct Session {
   Project project;
-  Recording recording;  ///< without markers that were never seen
-  ErrorModel model;     ///< with the recording's markers
+  Recording recording;   ///< without markers that were never seen
+  Recording validation;  ///< of recording folders: trials of other kinds, with the same markers
+  std::vector<TrialSummary> trials;  ///< of recording folders: what was used of each
+  /// True poses of the waist in each posture, where the recording was simulated; else empty.
+  std::vector<std::optional<Transform>> recording_truth, validation_truth;
+  ErrorModel model;  ///< with the recording's markers
   BaseParameters base;
   std::vector<std::string> warnings;  ///< of reading, and of special marker positions
 };
 
 /// Reads both and decides the base parameters; a seed replaces the project's. Throws InputError.
-Session OpenSession(const std::filesystem::path& project, const std::filesystem::path& recording,
+/// `recordings`: one posture table, or one or more recording folders.
+Session OpenSession(const std::filesystem::path& project,
+                    const std::vector<std::filesystem::path>& recordings,
                     std::optional<std::uint64_t> seed);
 
 /// Throws InputError where an output (empty ones aside) would replace an input.

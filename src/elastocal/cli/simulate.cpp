@@ -43,7 +43,7 @@ struct PlayedTrial {
   TrialFiles files;
   SensorTruth sensors;
   int frames = 0;
-  WaistDeflection waist;
+  WaistGive waist;
 };
 
 std::vector<std::size_t> Chosen(const VirtualExperiment& experiment, const std::string& which) {

@@ -73,7 +73,7 @@ Json MakeJson(const Session& session, const TransferValidation& validation,
 
 int Validate(const ValidateOptions& options) {
   const StoredCalibration stored = ReadCalibration(options.calibration);
-  Session session = OpenSession(options.project, options.recording, options.common.seed);
+  Session session = OpenSession(options.project, {options.recording}, options.common.seed);
   CheckRobot(stored, session, options.calibration);
   CheckOutputs({options.common.json_file},
                {options.project, session.project.urdf, options.recording, options.calibration});

@@ -111,6 +111,7 @@ void ReadSettings(const YamlValue& root, Project& project) {
     ReadIdentifiabilityOptions(*section, project.identifiability);
     CheckHeld(*section, project);
   }
+  if (const auto section = root.Find("elasticity")) ReadElasticity(*section, project);
   if (const auto section = root.Find("calibration")) {
     ReadCalibrationOptions(*section, project.calibration);
   }
@@ -149,7 +150,8 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
   }
   const YamlValue root = YamlValue::Parse(text, file.string());
   root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "force_torque_sensors",
-                   "recording", "placement", "measurement", "identifiability", "calibration"});
+                   "recording", "placement", "measurement", "identifiability", "calibration",
+                   "elasticity"});
   Project project;
   project.file = file;
   ReadRobot(root.Get("robot"), project);

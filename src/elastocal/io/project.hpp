@@ -3,11 +3,13 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "elastocal/calibration/options.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_samples.hpp"
 #include "elastocal/robot/error_model.hpp"
 
@@ -36,6 +38,16 @@ struct RecordingColumns {
   std::map<std::string, double> not_recorded;
 };
 
+/// Which parts of the robot are estimated as elastic (eq. 5 to 7).
+struct ElasticityChoice {
+  /// Joints that give way about their axis; name patterns. Not given: in a recording of trials all
+  /// that no foot stands on (the paper's head, arms and trunk), in a table of postures none.
+  std::optional<std::vector<std::string>> torsion = {};
+  std::vector<std::string> bending = {};  ///< joints that give way across their axis; patterns
+  bool base = true;          ///< legs that stand alone in a trial: lumped compliance, eq. 6
+  bool torque_bias = false;  ///< of the torque sensors of these legs
+};
+
 /// Everything a project file says, checked and in SI units.
 struct Project {
   std::filesystem::path file, urdf;
@@ -51,6 +63,7 @@ struct Project {
   MeasurementOptions measurement;
   IdentifiabilityOptions identifiability;
   CalibrationOptions calibration;
+  ElasticityChoice elasticity;
 };
 
 /// Reads a project file and the URDF that it names (docs/formats.md).
@@ -60,6 +73,10 @@ Project ReadProject(const std::filesystem::path& file);
 
 /// The same from the text of the file; paths in it are seen from the folder of `file`.
 Project ParseProject(const std::string& text, const std::filesystem::path& file);
+
+/// The error model of the project's robot for a recording of these trials (none: of a table of
+/// postures). Legs are the chains on whose tip alone a trial stands.
+ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& trials);
 
 /// Markers carried by the links of a chain, beyond its `from` link up to and including its tip.
 std::vector<std::string> ChainMarkers(const Project& project, const Chain& chain);

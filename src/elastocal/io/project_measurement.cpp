@@ -17,8 +17,8 @@ void ReadPositive(const YamlValue& section, const char* key, double& option, dou
 
 void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& options) {
   section.ExpectKeys({"cutoff_hz", "filter_order", "longest_gap_s", "expected_lag_s",
-                      "longest_lag_s", "largest_lag_sd_ms", "rest_speed_mm_per_s", "hold_s",
-                      "samples_per_rest", "sine_rate_hz"});
+                      "longest_lag_s", "largest_lag_sd_ms", "largest_rest_lag_sd_ms",
+                      "rest_speed_mm_per_s", "hold_s", "samples_per_rest", "sine_rate_hz"});
   ReadPositive(section, "cutoff_hz", options.smoothing.cutoff_hz);
   if (const auto order = section.Find("filter_order")) {
     options.smoothing.filter_order = static_cast<int>(order->Integer(1, 10));
@@ -33,6 +33,7 @@ void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& option
     options.clock.longest_lag_s = lag->Number();
   }
   ReadPositive(section, "largest_lag_sd_ms", options.clock.largest_sd_s, 1e-3);
+  ReadPositive(section, "largest_rest_lag_sd_ms", options.largest_rest_lag_sd_s, 1e-3);
   ReadPositive(section, "rest_speed_mm_per_s", options.rest.threshold_m_per_s, kMetresPerMm);
   ReadPositive(section, "hold_s", options.rest.hold_s);
   if (const auto samples = section.Find("samples_per_rest")) {

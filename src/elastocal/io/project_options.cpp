@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "elastocal/io/project_sections.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/io/text.hpp"
 
 namespace elastocal {
@@ -56,6 +57,24 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
   }
 }
 
+std::string Listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) text += (i == 0 ? "" : " or ") + words[i];
+  return text;
+}
+
+/// One of a few words.
+template <typename Enum>
+Enum Choice(const YamlValue& value, const std::vector<std::pair<std::string, Enum>>& choices) {
+  std::vector<std::string> words;
+  for (const auto& [word, meaning] : choices) {
+    if (value.Text() == word) return meaning;
+    words.push_back(word);
+  }
+  value.Fail("unknown word '" + value.Text() + "'" + DidYouMean(value.Text(), words) +
+             "; expected " + Listed(words));
+}
+
 }  // namespace
 
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {
@@ -85,7 +104,7 @@ void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options) {
   section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "plausible_marker_sd_mm",
                       "outlier_probability", "support_threshold", "correlation_threshold",
-                      "max_iterations"});
+                      "max_iterations", "support", "load", "slip_mm"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
   if (const auto widen = section.Find("widen_prior")) options.widen_prior = widen->Boolean();
   if (const auto sd = section.Find("marker_sd_mm")) {
@@ -103,6 +122,19 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
   }
   if (const auto threshold = section.Find("correlation_threshold")) {
     options.correlation_threshold = Threshold(*threshold);
+  }
+  if (const auto form = section.Find("support")) {
+    options.support_form = Choice<SupportForm>(*form, {{"nuisance", SupportForm::kNuisance},
+                                                       {"foot_rooted", SupportForm::kFootRooted},
+                                                       {"penalty", SupportForm::kPenalty}});
+  }
+  if (const auto load = section.Find("load")) {
+    options.load.source = Choice<LoadSource>(*load, {{"torques", LoadSource::kTorques},
+                                                     {"wrench", LoadSource::kWrench},
+                                                     {"statics", LoadSource::kStatics}});
+  }
+  if (const auto slip = section.Find("slip_mm")) {
+    options.slip = kMetresPerMm * slip->PositiveOrInfinity();
   }
   if (const auto iterations = section.Find("max_iterations")) {
     options.max_iterations = static_cast<int>(iterations->Integer(1, 1000000));

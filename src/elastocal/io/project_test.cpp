@@ -33,7 +33,8 @@ TEST(Project, ReadsMeasurementAndForceTorqueSensors) {
   const Project project = Parse(
       "force_torque_sensors: [{name: tip_ft, link: tool}]\n"
       "measurement: {cutoff_hz: 6, filter_order: 4, longest_gap_s: 0, expected_lag_s: -3.5,\n"
-      "  longest_lag_s: 20, largest_lag_sd_ms: 4, rest_speed_mm_per_s: 8, hold_s: 0.6,\n"
+      "  longest_lag_s: 20, largest_lag_sd_ms: 4, largest_rest_lag_sd_ms: 20, rest_speed_mm_per_s: "
+      "8, hold_s: 0.6,\n"
       "  samples_per_rest: 12, sine_rate_hz: 5}\n");
   ASSERT_EQ(project.force_torque_sensors.size(), 1u);
   EXPECT_EQ(project.force_torque_sensors[0].name, "tip_ft");
@@ -45,6 +46,7 @@ TEST(Project, ReadsMeasurementAndForceTorqueSensors) {
   EXPECT_EQ(options.expected_lag_s, -3.5);
   EXPECT_EQ(options.clock.longest_lag_s, 20.0);
   EXPECT_DOUBLE_EQ(options.clock.largest_sd_s, 4e-3);
+  EXPECT_DOUBLE_EQ(options.largest_rest_lag_sd_s, 20e-3);
   EXPECT_DOUBLE_EQ(options.rest.threshold_m_per_s, 8e-3);
   EXPECT_EQ(options.rest.hold_s, 0.6);
   EXPECT_EQ(options.rest.samples_per_run, 12);

@@ -81,10 +81,71 @@ Json ExcitationJson(const CalibrationRun& run) {
   return json;
 }
 
+Json ClockJson(const TrialSummary& trial) {
+  return {{"lag_s", Finite(trial.clock.lag_s)},
+          {"drift_ppm", trial.clock.drift_estimated ? Finite(trial.clock.drift_ppm) : Json()},
+          {"sd_s", Finite(trial.clock.sd_s)},
+          {"reliable", trial.clock.state == ClockState::kReliable}};
+}
+
+/// What only recordings of trials have.
+void AddTrials(const CalibrationRun& run, Json& json) {
+  if (run.trials.empty()) return;
+  int samples = 0;
+  json["trials"] = Json::array();
+  for (const TrialSummary& trial : run.trials) {
+    const bool calibration = trial.trial.kind == TrialKind::kCalibration;
+    if (calibration) samples += trial.samples;
+    json["trials"].push_back({{"name", trial.trial.name},
+                              {"chains", trial.trial.chains},
+                              {"used", trial.refused.empty()},
+                              {"postures", trial.postures},
+                              {"samples", trial.samples},
+                              {"clock", ClockJson(trial)},
+                              {"findings", Findings(trial)}});
+    if (calibration && trial.refused.empty() && !json.contains("clock")) {
+      json["clock"] = ClockJson(trial);  // of the first; each trial has its own above
+    }
+  }
+  json["samples"] = samples;
+  if (run.held_out) {
+    for (const ErrorTableRow& row : run.held_out->table.groups) {
+      for (const auto& [kind, metrics] : row.metrics) {
+        json["held_out"][row.group]["rmse_3d_mm"][ModelKindName(kind)] =
+            Finite(1e3 * metrics.rmse_3d);
+        json["held_out"][row.group]["max_mm"][ModelKindName(kind)] = Finite(1e3 * metrics.maximum);
+      }
+    }
+    for (const auto& [kind, mean] : run.held_out->table.mean_rmse_3d) {
+      json["held_out_rmse_3d_mm"][ModelKindName(kind)] = Finite(1e3 * mean);
+    }
+  }
+  for (ModelKind kind : run.comparison.kinds) {
+    const double error = run.waist_error[static_cast<int>(kind)];
+    if (std::isfinite(error)) json["waist_error_mm"][ModelKindName(kind)] = 1e3 * error;
+  }
+  const CalibrationResult& result = run.comparison.best();
+  for (std::size_t g = 0; g < static_cast<std::size_t>(result.noise.group_count()); ++g) {
+    json["noise"].push_back({{"marker_sd_mm", 1e3 * result.noise.marker_sd[g]},
+                             {"waist_position_sd_mm", 1e3 * result.noise.waist_position_sd[g]},
+                             {"waist_rotation_sd_mrad", 1e3 * result.noise.waist_rotation_sd[g]}});
+  }
+  json["loose_footings"] = Json::array();
+  for (const LooseFooting& footing : result.loose_footings) {
+    json["loose_footings"].push_back({{"posture", footing.posture},
+                                      {"distance_mm", 1e3 * footing.distance},
+                                      {"normalised", footing.normalised}});
+  }
+  json["slips"] = Json::array();
+  for (const Slip& slip : result.slips) {
+    json["slips"].push_back({{"posture", slip.posture}, {"distance_mm", 1e3 * slip.distance}});
+  }
+}
+
 }  // namespace
 
 std::string DescribeObservation(const Recording& recording, int posture, int marker) {
-  std::string text = "posture " + std::to_string(posture + 1);
+  std::string text = DescribePosture(recording, posture);
   if (!recording.line.empty()) text += " (line " + std::to_string(recording.line[posture]) + ")";
   return text + ", marker " + recording.marker_names[marker];
 }
@@ -110,6 +171,15 @@ std::string MakeCovarianceCsv(const CalibrationResult& result) {
     text += "\n";
   }
   return text;
+}
+
+std::string DescribePosture(const Recording& recording, int posture) {
+  std::string text = "posture " + std::to_string(posture + 1);
+  if (recording.trials.empty()) return text;
+  int first = 0;
+  while (recording.trial[first] != recording.trial[posture]) ++first;
+  return "trial " + recording.trials[recording.trial[posture]].name + ", posture " +
+         std::to_string(posture - first + 1);
 }
 
 std::string MakeSummaryJson(const CalibrationRun& run) {
@@ -151,6 +221,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
     json["kfold"]["unconverged"] = run.cross_validation.unconverged;
     json["kfold"]["not_predicted"] = run.cross_validation.not_predicted;
   }
+  AddTrials(run, json);
   json["outliers"] = Outliers(run);
   json["excitation"] = ExcitationJson(run);
   json["iterations"] = result.iterations;

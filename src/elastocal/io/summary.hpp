@@ -1,10 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/measurement/recording.hpp"
+#include "elastocal/measurement/trial_summary.hpp"
+#include "elastocal/validation/held_out.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "elastocal/validation/verdict.hpp"
 
@@ -17,6 +20,9 @@ struct CalibrationRun {
   Excitation excitation;
   ModelComparison comparison;
   CrossValidation cross_validation;  ///< folds 0: not asked for
+  std::vector<TrialSummary> trials;  ///< of recording folders
+  std::optional<HeldOut> held_out;   ///< where trials for validation were recorded
+  ByModel<double> waist_error = {};  ///< m, see WaistError; NaN where the truth is unknown
   Verdict verdict;
   std::vector<std::string> warnings;
 };
@@ -31,6 +37,9 @@ std::string MakeSummaryJson(const CalibrationRun& run);
 /// covariance.csv: covariance of the estimated and unsupported parameters together, rad and m, with
 /// their names as header row and first column.
 std::string MakeCovarianceCsv(const CalibrationResult& result);
+
+/// A posture as people find it again: "posture 12", or "trial leg_left, posture 3".
+std::string DescribePosture(const Recording& recording, int posture);
 
 /// The marker seen in a posture as people find it again: "posture 12 (line 14), marker LHAND_1".
 std::string DescribeObservation(const Recording& recording, int posture, int marker);

@@ -50,7 +50,7 @@ class LabelFinder {
       if (plan.order[frame] != kOpen) {
         before = plan.order[frame];
       } else if (plan.undecided[frame]) {
-        plan.order[frame] = 0;
+        RemoveAll(frame, plan);
       } else {
         DecideByNeighbours(frame, before, after[frame], plan);
       }
@@ -214,8 +214,9 @@ ClusterLabels Report(const Plan& plan, const LabelFinder& finder, const LabelClu
     labels.swaps.push_back({{begin, end}, shape.permutations[plan.order[begin]]});
   }
   for (int i = 0; i < shape.size; ++i) {
-    for (const FrameInterval& run :
-         RunsWhere(frames, [&](int frame) { return IsRemoved(plan, shape, frame, i); })) {
+    for (const FrameInterval& run : RunsWhere(frames, [&](int frame) {
+           return !plan.undecided[frame] && IsRemoved(plan, shape, frame, i);
+         })) {
       labels.outliers.push_back({run, cluster.markers[i]});
     }
   }

@@ -38,14 +38,15 @@ struct OutlyingMarker {
 struct ClusterLabels {
   std::string name;
   std::vector<int> markers;  ///< of the trajectories' names, as the cluster's
-  /// Exchanged labels cannot be told from right ones: one or two markers, or distances much alike.
-  /// Labels are then left as they are; outliers are still removed.
+  /// Exchanged labels cannot be put right for certain: one or two markers, or distances much alike.
+  /// Positions that look exchanged are then removed, as outliers are.
   bool ambiguous = false;
   Eigen::VectorXd distances;   ///< a pair of markers, m, as ClusterShape
   Eigen::VectorXd tolerances;  ///< m
   std::vector<SwappedLabels> swaps;
   std::vector<OutlyingMarker> outliers;
-  std::vector<FrameInterval> undecided;  ///< frames of an ambiguous cluster that look exchanged
+  std::vector<FrameInterval>
+      undecided;  ///< frames of an ambiguous cluster that look exchanged; removed
 };
 
 /// Finds and corrects exchanged labels within clusters, and removes outlying markers, in place, by

@@ -143,18 +143,19 @@ TEST(CorrectLabels, RemovesAClusterThatNothingExplains) {
   EXPECT_TRUE(trajectories.positions.row(499).allFinite());
 }
 
-TEST(CorrectLabels, DoesNotTouchAmbiguousClusters) {
+TEST(CorrectLabels, RemovesWhatItCannotPutRight) {
   Eigen::Matrix3Xd places = Triangle();
   places.col(2) << 0.030, 0.0645, 0.0295;  // isosceles: 0 and 1 look alike
   MarkerTrajectories trajectories = Move(places, 2000);
   Exchange(trajectories, 0, 2, {500, 600});
   Exchange(trajectories, 0, 1, {800, 900});
-  const MarkerTrajectories before = trajectories;
+  MarkerTrajectories expected = trajectories;
+  expected.positions.middleRows(500, 100).setConstant(kNan);
   const auto labels = CorrectLabels(kThree, {}, trajectories);
   EXPECT_TRUE(labels[0].ambiguous);
   EXPECT_TRUE(labels[0].swaps.empty() && labels[0].outliers.empty());
   EXPECT_EQ(labels[0].undecided, (std::vector<FrameInterval>{{500, 600}}));
-  ExpectSame(trajectories, before);
+  ExpectSame(trajectories, expected);
 
   // Its outliers are removed all the same.
   trajectories.positions(1500, 8) += 0.05;

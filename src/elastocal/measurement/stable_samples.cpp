@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "elastocal/measurement/gaps.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -162,6 +164,22 @@ Eigen::MatrixXd MarkerSpeeds(const MarkerTrajectories& trajectories) {
     speed = 0.5 * trajectories.rate_hz * speed.cwiseSqrt();
   }
   return speeds;
+}
+
+void ForgetEdges(const MarkerTrajectories& trajectories, double margin_s, Eigen::MatrixXd& speeds) {
+  const int frames = trajectories.frame_count();
+  const int margin = static_cast<int>(margin_s * trajectories.rate_hz);
+  for (int marker = 0; marker < trajectories.marker_count(); ++marker) {
+    std::vector<FrameInterval> gaps =
+        RunsWhere(frames, [&](int frame) { return !Seen(trajectories, frame, marker); });
+    gaps.push_back({0, 0});
+    gaps.push_back({frames, frames});
+    for (const FrameInterval& gap : gaps) {
+      const int begin = std::max(0, gap.begin - margin);
+      const int end = std::min(frames, gap.end + margin);
+      speeds.col(marker).segment(begin, end - begin).setConstant(kNan);
+    }
+  }
 }
 
 double EstimateRestingSpeed(const Eigen::MatrixXd& speeds, const std::vector<int>& markers,

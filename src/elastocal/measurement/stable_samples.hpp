@@ -59,6 +59,11 @@ struct StableSamples {
 /// be filtered); NaN where the marker or one of its two neighbours in time is not seen.
 Eigen::MatrixXd MarkerSpeeds(const MarkerTrajectories& trajectories);
 
+/// Sets the speeds of each marker to NaN within `margin_s` of the ends of its unbroken pieces, and
+/// of the trial: there a filter knows only one side and lets more noise pass, which at rest would
+/// look like motion.
+void ForgetEdges(const MarkerTrajectories& trajectories, double margin_s, Eigen::MatrixXd& speeds);
+
 /// Speed that noise and vibration leave to a marker at rest, m/s: over windows of `window_s`, the
 /// median speed of all given markers and frames, and of these medians the one that 5 % of the
 /// windows stay below. Valid if the robot rests for a tenth of the time or so, or if most markers

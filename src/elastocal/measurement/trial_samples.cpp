@@ -7,6 +7,7 @@
 #include <map>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/measurement/posture_frames.hpp"
 #include "elastocal/measurement/smoothed_log.hpp"
 #include "elastocal/measurement/trial_clock.hpp"
 
@@ -14,11 +15,6 @@ namespace elastocal {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-constexpr double kMoved = 2e-3;  // rad or m
-
-// Frames of which a posture is the mean.
-using PostureFrames = std::vector<std::vector<int>>;
 
 // One trial on its way through the steps of SampleTrial.
 class TrialSampler {
@@ -36,7 +32,8 @@ class TrialSampler {
     if (markers_.empty()) return Refuse("none of its markers is in the marker file");
     CheckTorques();
     Smooth();
-    Eigen::MatrixXd speeds = SpeedsWithinPieces();
+    Eigen::MatrixXd speeds = MarkerSpeeds(trajectories_);
+    ForgetEdges(trajectories_, smoothed_log_.margin_s, speeds);
     FitClock(speeds);
     if (summary().clock.state != ClockState::kReliable) return Refuse(Describe(summary().clock));
     LeaveOutUnlogged(speeds);
@@ -127,31 +124,14 @@ class TrialSampler {
     smoothed_log_ = SmoothLog(log_, options_.smoothing);
   }
 
-  // At the ends of a piece the filter knows only one side and lets more noise pass, more than the
-  // speed at rest. Positions there are good enough for a mean.
-  Eigen::MatrixXd SpeedsWithinPieces() const {
-    Eigen::MatrixXd speeds = MarkerSpeeds(trajectories_);
-    const int margin = static_cast<int>(smoothed_log_.margin_s * trajectories_.rate_hz);
-    for (int m = 0; m < static_cast<int>(speeds.cols()); ++m) {
-      const auto unseen = [&](int frame) { return !Seen(trajectories_, frame, m); };
-      std::vector<FrameInterval> gaps = RunsWhere(trajectories_.frame_count(), unseen);
-      gaps.push_back({0, 0});
-      gaps.push_back({trajectories_.frame_count(), trajectories_.frame_count()});
-      for (const FrameInterval& gap : gaps) {
-        const int begin = std::max(0, gap.begin - margin);
-        const int end = std::min(trajectories_.frame_count(), gap.end + margin);
-        speeds.col(m).segment(begin, end - begin).setConstant(kNan);
-      }
-    }
-    return speeds;
-  }
-
   void FitClock(const Eigen::MatrixXd& speeds) {
     const int standing = trial_.support.empty() ? 0 : trial_.support[0];
     const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, standing, smoothed_log_,
                                               coordinates_, trajectories_.rate_hz);
-    summary().clock = EstimateTrialClock(speeds, trajectories_.rate_hz, logged,
-                                         options_.expected_lag_s, options_.clock);
+    ClockOptions options = options_.clock;
+    if (trial_.kind != TrialKind::kSine) options.largest_sd_s = options_.largest_rest_lag_sd_s;
+    summary().clock =
+        EstimateTrialClock(speeds, trajectories_.rate_hz, logged, options_.expected_lag_s, options);
   }
 
   double CameraTime(int frame) const { return frame / trajectories_.rate_hz; }
@@ -173,72 +153,9 @@ class TrialSampler {
     for (std::size_t m = 0; m < all.size(); ++m) all[m] = static_cast<int>(m);
     summary().rests = FindStableSamples(speeds, all, trajectories_.rate_hz, options_.rest);
     const StableSamples& rests = *summary().rests;
-    if (trial_.kind == TrialKind::kSine) return MomentsOfMotion(rests);
-    PostureFrames runs(rests.runs.size());
-    for (std::size_t i = 0; i < rests.frames.size(); ++i) {
-      runs[static_cast<std::size_t>(rests.run_of_frame[i])].push_back(rests.frames[i]);
-    }
-    return BestOfEachRest(rests.runs, runs);
-  }
-
-  // A marker with a noisy speed can break a rest in two. It is still one posture: of the runs
-  // between which no joint moved, the one with most markers stands for all.
-  PostureFrames BestOfEachRest(const std::vector<FrameInterval>& runs,
-                               const PostureFrames& frames) const {
-    PostureFrames postures;
-    int best = 0;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      const int seen = MarkersSeen(frames[i]);
-      if (i == 0 || JointsMove(runs[i - 1].end - 1, runs[i].begin)) {
-        postures.push_back(frames[i]);
-        best = seen;
-      } else if (seen > best) {
-        postures.back() = frames[i];
-        best = seen;
-      }
-    }
-    return postures;
-  }
-
-  int MarkersSeen(const std::vector<int>& frames) const {
-    int seen = 0;
-    for (int m = 0; m < static_cast<int>(markers_.size()); ++m) {
-      seen += std::all_of(frames.begin(), frames.end(),
-                          [&](int frame) { return Seen(trajectories_, frame, m); });
-    }
-    return seen;
-  }
-
-  bool JointsMove(int first, int last) const {
-    const auto joints = [&](int frame) -> std::optional<Eigen::VectorXd> {
-      const auto signals = smoothed_log_.At(RobotTime(frame));
-      if (!signals) return std::nullopt;
-      return signals->head(smoothed_log_.joints);
-    };
-    const auto before = joints(first);
-    for (int frame = first; frame <= last; ++frame) {
-      const auto now = joints(frame);
-      if (!before || !now || (*now - *before).cwiseAbs().maxCoeff() > kMoved) return true;
-    }
-    return false;
-  }
-
-  // From the first frame in motion to the last, at a constant rate.
-  PostureFrames MomentsOfMotion(const StableSamples& rests) const {
-    int first = trajectories_.frame_count();
-    int last = -1;
-    for (const UnusedFrames& unused : rests.unused) {
-      if (unused.reason != UnusedReason::kMoving) continue;
-      first = std::min(first, unused.frames.begin);
-      last = unused.frames.end - 1;
-    }
-    const double step = std::max(1.0, trajectories_.rate_hz / options_.sine_rate_hz);
-    PostureFrames postures;
-    for (int k = 0;; ++k) {
-      const int frame = first + static_cast<int>(std::lround(k * step));
-      if (frame > last) return postures;
-      if (smoothed_log_.Covers(RobotTime(frame))) postures.push_back({frame});
-    }
+    const TimedTrial timed{trajectories_, smoothed_log_, summary().clock};
+    return trial_.kind == TrialKind::kSine ? MotionPostures(timed, rests, options_.sine_rate_hz)
+                                           : RestPostures(timed, rests);
   }
 
   void Average(const PostureFrames& postures) {
@@ -280,7 +197,7 @@ class TrialSampler {
       sum = sum.size() == 0 ? signals : (sum + signals).eval();
       time += CameraTime(frame);
     }
-    const double count = static_cast<double>(frames.size());
+    const auto count = static_cast<double>(frames.size());
     result_.time_s[posture] = time / count;
     sum /= count;
     const int joints = smoothed_log_.joints;

@@ -21,12 +21,15 @@ namespace elastocal {
 struct MeasurementOptions {
   LabelOptions labels = {};
   SmoothingOptions smoothing = {};  ///< of markers, joint positions, torques and wrenches alike
-  ClockOptions clock = {};          ///< but for the next
+  /// But for the next. People start cameras and log within a few seconds.
+  ClockOptions clock = {.longest_lag_s = 5.0};
   /// Camera time less robot time when the cameras start, s, where it is known; by default all lags
   /// at which cameras and log could have run together are looked at.
   std::optional<double> expected_lag_s = {};
   /// Eight frames of a rest of a second are far enough apart for the filtered noise to average out.
   StableSampleOptions rest = {.samples_per_run = 8};
+  /// ClockOptions::largest_sd_s for trials of rests: a robot at rest does the same a little later.
+  double largest_rest_lag_sd_s = 0.010;
   double sine_rate_hz = 10.0;  ///< of moments taken from a motion without rests
   TorqueCheckOptions torques = {};
 };

@@ -202,7 +202,7 @@ TEST(SampleTrial, RemovesOutliers) {
   const TrialSamples samples = Sample(played);
   EXPECT_EQ(samples.summary.postures, 24) << samples.summary.refused;
   ExpectTrue(samples, played);
-  EXPECT_TRUE(Names(samples.summary, {"off its cluster's shape"}));
+  EXPECT_TRUE(Names(samples.summary, {"outlying positions of 12 markers removed"}));
 }
 
 TEST(SampleTrial, LeavesBadTorqueSensorsOut) {

@@ -8,6 +8,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kLostLong = 0.1;  // of a trial, for a marker to be worth a sentence
+constexpr double kOffLong = 0.01;  // the same, for outliers
+constexpr double kUnlogged = 0.1;  // the same, for a log to be too short
 
 std::string Format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
@@ -45,6 +47,7 @@ class Finder {
       Add("no torques were logged of " + Join(summary_.torques_missing));
     }
     for (const ClusterLabels& labels : summary_.labels) AddLabels(labels);
+    AddOutliers();
     if (!summary_.markers_missing.empty()) {
       Add("never seen: " + Join(summary_.markers_missing));
     }
@@ -74,25 +77,34 @@ class Finder {
     if (!labels.undecided.empty()) {
       Add(
           Format("labels of cluster %s look exchanged in %d frames, but its distances are too much "
-                 "alike to tell",
+                 "alike to put them right; removed there",
                  labels.name.c_str(), FrameCount(labels.undecided)));
-    }
-    for (std::size_t m = 0; m < summary_.markers.size(); ++m) {
-      AddOutliers(labels, static_cast<int>(m));
     }
   }
 
-  void AddOutliers(const ClusterLabels& labels, int marker) {
-    int frames = 0;
-    int first = -1;
-    for (const OutlyingMarker& outlier : labels.outliers) {
-      if (outlier.marker != marker) continue;
-      if (first < 0) first = outlier.frames.begin;
-      frames += outlier.frames.size();
+  // A few here and there are as cameras are; a marker that is off for long was touched.
+  void AddOutliers() {
+    std::vector<int> frames(summary_.markers.size(), 0);
+    std::vector<int> first(summary_.markers.size(), 0);
+    for (const ClusterLabels& labels : summary_.labels) {
+      for (const OutlyingMarker& outlier : labels.outliers) {
+        if (frames[outlier.marker] == 0) first[outlier.marker] = outlier.frames.begin;
+        frames[outlier.marker] += outlier.frames.size();
+      }
     }
-    if (frames == 0) return;
-    Add(Format("%s was off its cluster's shape in %d frames, first at %.2f s; removed there",
-               summary_.markers[static_cast<std::size_t>(marker)].c_str(), frames, Seconds(first)));
+    int few = 0;
+    int markers = 0;
+    for (std::size_t m = 0; m < frames.size(); ++m) {
+      if (frames[m] > kOffLong * summary_.frame_count) {
+        Add(Format("%s is off its cluster's shape in %d frames, from %.2f s on; not used there",
+                   summary_.markers[m].c_str(), frames[m], Seconds(first[m])));
+      } else if (frames[m] > 0) {
+        few += frames[m];
+        ++markers;
+      }
+    }
+    if (few == 0) return;
+    Add(Format("%d outlying positions of %d markers removed", few, markers));
   }
 
   void AddLostMarker(std::size_t marker) {
@@ -109,9 +121,7 @@ class Finder {
 
   void AddLog() {
     const double end_s = Seconds(summary_.frame_count);
-    // The filter's margin, at either end, is no news.
-    constexpr double kNews_s = 1.0;
-    if (!summary_.refused.empty() || Seconds(summary_.outside_log) < kNews_s) return;
+    if (summary_.outside_log <= kUnlogged * summary_.frame_count) return;
     Add(
         Format("the joint log covers %.1f s to %.1f s of the marker file's %.1f s; %d frames "
                "without joint positions are not used",

@@ -87,10 +87,10 @@ SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) 
   return result;
 }
 
-WaistDeflection LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
+WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
                                        const TrueMotion& motion) {
   const PlannedTrial& trial = experiment.trials[index];
-  WaistDeflection largest;
+  WaistGive largest;
   if (trial.support.empty()) return largest;
   double time_s = 0.0;
   for (const MotionSegment& segment : trial.motion.segments) {

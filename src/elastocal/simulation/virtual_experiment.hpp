@@ -69,10 +69,10 @@ SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index);
 /// How far the waist is from where rigid kinematics has it, at rest at the end of each posture of a
 /// trial: of the true geometry, from the encoders and the foot's true pose. Largest displacement
 /// [m] and rotation [rad].
-struct WaistDeflection {
+struct WaistGive {
   double translation = 0.0, rotation = 0.0;
 };
-WaistDeflection LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
+WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
                                        const TrueMotion& motion);
 
 }  // namespace elastocal

@@ -124,4 +124,20 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   return verdict;
 }
 
+void JudgeHeldOut(const ErrorTable& table, ModelKind model, Verdict& verdict) {
+  for (const ErrorTableRow& row : table.groups) {
+    const auto calibrated = row.metrics.find(model);
+    if (calibrated == row.metrics.end() || !std::isfinite(calibrated->second.rmse_3d)) continue;
+    const double rmse = calibrated->second.rmse_3d;
+    for (const auto& [kind, metrics] : row.metrics) {
+      if (kind == model || !(rmse >= metrics.rmse_3d)) continue;
+      const std::string text = "on held-out trials of " + row.group + " the " +
+                               ModelKindName(model) + " model errs by " + Number(1e3 * rmse, "mm") +
+                               ", the " + ModelKindName(kind) + " one by " +
+                               Number(1e3 * metrics.rmse_3d, "mm");
+      (kind == ModelKind::kUncalibrated ? verdict.objections : verdict.remarks).push_back(text);
+    }
+  }
+}
+
 }  // namespace elastocal

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "elastocal/identifiability/observability.hpp"
+#include "elastocal/validation/error_table.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 
 namespace elastocal {
@@ -24,5 +25,10 @@ struct Verdict {
 Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options);
+
+/// Adds what trials say that took no part in the estimate (`model`: the calibrated one): an
+/// objection for each group of chains whose markers it does not predict better than the
+/// uncalibrated robot does, a remark for each that it predicts worse than a simpler model.
+void JudgeHeldOut(const ErrorTable& table, ModelKind model, Verdict& verdict);
 
 }  // namespace elastocal

@@ -1,0 +1,97 @@
+#include "elastocal/cli/trial_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "elastocal/cli/error_table_report.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/cli/text_table.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+std::string Stiffness(double compliance, const char* unit, double factor) {
+  if (!(compliance > 0.0)) return "rigid";
+  return fmt::format("{:.3g} {}", factor / compliance, unit);
+}
+
+/// N/mm along an axis, N.m/rad about one.
+std::string StiffnessOf(const Parameter& parameter, double compliance) {
+  const bool linear = parameter.unit == ParameterUnit::kMetrePerNewton;
+  return Stiffness(compliance, linear ? "N/mm" : "N.m/rad", linear ? 1e-3 : 1.0);
+}
+
+/// Why the data say little about a compliance.
+std::string Reason(const CalibrationRun& run, const Parameter& parameter) {
+  if (parameter.leg < 0) return "its load varies too little in this recording";
+  const std::vector<int>& bad = run.comparison.best().loads.badly_conditioned;
+  if (!bad.empty()) {
+    return fmt::format("the knee was straight in {} postures: loads by statics there", bad.size());
+  }
+  return "the leg's load about this axis varies too little in this recording";
+}
+
+}  // namespace
+
+std::string DescribeTrials(const CalibrationRun& run) {
+  if (run.trials.empty()) return "";
+  std::string text = "Trials\n";
+  for (const TrialSummary& trial : run.trials) text += "  " + Describe(trial) + "\n";
+  return text + "\n";
+}
+
+std::string DescribeElasticity(const CalibrationRun& run) {
+  const CalibrationResult& result = run.comparison.best();
+  if (result.kind != ModelKind::kFull) return "";
+  TextTable table({"compliance", "unit", "estimate", "sd", "stiffness", "95 % interval"});
+  std::string unsupported;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[i];
+    if (!IsCompliance(parameter.kind)) continue;
+    if (result.status[i] == ParameterStatus::kUnsupported) {
+      unsupported += fmt::format("  {}: {}\n", parameter.name, Reason(run, parameter));
+    }
+    if (result.status[i] != ParameterStatus::kEstimated) continue;
+    const double half = result.interval_factor * result.sd[i];
+    table.Add({parameter.name, UserUnit(parameter),
+               fmt::format("{:.4f}", InUserUnits(parameter, result.delta[i])),
+               fmt::format("{:.4f}", InUserUnits(parameter, result.sd[i])),
+               StiffnessOf(parameter, result.delta[i]),
+               fmt::format("{} to {}", StiffnessOf(parameter, result.delta[i] + half),
+                           StiffnessOf(parameter, result.delta[i] - half))});
+  }
+  return "\nElasticity\n" + table.Render() +
+         (unsupported.empty() ? ""
+                              : "Not determined by these data, held at rigid:\n" + unsupported);
+}
+
+std::string DescribeFeet(const CalibrationRun& run) {
+  const CalibrationResult& result = run.comparison.best();
+  std::string text;
+  for (const Slip& slip : result.slips) {
+    text += fmt::format("  foot of {} slipped by {:.1f} mm before {}\n",
+                        result.model.legs[slip.leg].name, 1e3 * slip.distance,
+                        DescribePosture(run.recording, slip.posture));
+  }
+  for (const LooseFooting& footing : result.loose_footings) {
+    text += fmt::format("  {}: the waist is {:.1f} mm from where its leg puts it, left out\n",
+                        DescribePosture(run.recording, footing.posture), 1e3 * footing.distance);
+  }
+  return text.empty() ? "" : "\nSupporting feet\n" + text;
+}
+
+std::string DescribeHeldOut(const CalibrationRun& run) {
+  if (!run.held_out) return "";
+  std::string text = "\nHeld-out motions (Table 2), mm\n" + DescribeErrorTable(run.held_out->table);
+  for (ModelKind kind : run.comparison.kinds) {
+    const double error = run.waist_error[static_cast<int>(kind)];
+    if (!std::isfinite(error)) continue;
+    text += fmt::format("  waist on one foot, {} model: {:.2f} mm from the truth\n",
+                        ModelKindName(kind), 1e3 * error);
+  }
+  return text;
+}
+
+}  // namespace elastocal::cli
