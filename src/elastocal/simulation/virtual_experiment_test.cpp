@@ -78,7 +78,7 @@ TEST(VirtualExperiment, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
   options.truth.leg_geometry_scale = 0.0;
   const VirtualExperiment experiment = PrepareExperiment(Described(), options);
   const SimulatedTrial played = RunTrial(experiment, 1);
-  const WaistDeflection found = LargestWaistDeflection(experiment, 1, played.motion);
+  const auto found = LargestWaistDeflection(experiment, 1, played.motion);
   // The weight alone, on the stiffness in which it acts, is the least that the waist sinks.
   const double weight = 9.81 * (TotalMass(experiment.robot.tree) - 10.0);
   EXPECT_GT(found.translation, weight * experiment.legs[1].base.C_foot(2, 2));
