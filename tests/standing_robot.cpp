@@ -16,7 +16,6 @@ int FindLinkIndex(const RobotTree& tree, const std::string& name) {
   throw std::runtime_error("no link " + name);
 }
 
-
 /// Yaw, roll, pitch, knee, ankle pitch, ankle roll.
 void SetLeg(const RobotTree& tree, const std::string& side, const std::vector<double>& values,
             Eigen::VectorXd& q) {
@@ -35,9 +34,9 @@ std::vector<double> Standing(Random& random) {
 }
 
 std::vector<double> Swinging(Random& random, double outwards) {
-  return {random.Uniform(-0.3, 0.3),  outwards * random.Uniform(0.0, 0.4),
-          random.Uniform(-1.2, 0.2),  random.Uniform(0.2, 1.6),
-          random.Uniform(-0.7, 0.4),  random.Uniform(-0.35, 0.35)};
+  return {random.Uniform(-0.3, 0.3), outwards * random.Uniform(0.0, 0.4),
+          random.Uniform(-1.2, 0.2), random.Uniform(0.2, 1.6),
+          random.Uniform(-0.7, 0.4), random.Uniform(-0.35, 0.35)};
 }
 
 PlayedTrial Play(const RobotTree& tree, const std::string& chain, int postures, Random& random) {

@@ -9,8 +9,8 @@
 
 namespace elastocal {
 
-/// The embedded humanoid as it is calibrated whole: head, trunk and arms on both feet, each leg while
-/// the other one carries.
+/// The embedded humanoid as it is calibrated whole: head, trunk and arms on both feet, each leg
+/// while the other one carries.
 struct StandingRobot {
   Project project;
   ErrorModel model;  ///< torsion of the trunk and the arms, both legs elastic

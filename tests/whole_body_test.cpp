@@ -51,18 +51,19 @@ Eigen::MatrixXd DenseJacobian(BodyResiduals& problem, const Eigen::VectorXd& x) 
 TEST(WholeBody, JacobianEqualsDifferences) {
   const StandingRobot robot(2, 5, true);
   const Eigen::VectorXd truth = robot.DrawTruth(6);
-  const Recording recording =
-      robot.Record(truth, {.torque_sensors = robot.project.torque_sensors});
+  const Recording recording = robot.Record(truth, {.torque_sensors = robot.project.torque_sensors});
   const Placement placement = RegisterPlacement(robot.model, recording, 1e-3);
   const std::vector<int> group = NoiseGroups(robot.model, recording);
   const ObservationMask used = SeenMask(recording);
   const std::vector<char> tied(recording.posture_count(), 1);
-  const std::vector<PostureLoads> loads = ComputeLoads(robot.model, recording, truth, placement, {});
+  const std::vector<PostureLoads> loads =
+      ComputeLoads(robot.model, recording, truth, placement, {});
   const Prior prior;
   const Noise noise{Eigen::Vector3d::Constant(1e-3), Eigen::Vector3d::Constant(1e-3),
                     Eigen::Vector3d::Constant(1e-3)};
   std::vector<int> free = robot.base.kept;
-  std::erase_if(free, [&](int i) { return robot.model.parameters[i].kind == ParameterKind::kBase; });
+  std::erase_if(free,
+                [&](int i) { return robot.model.parameters[i].kind == ParameterKind::kBase; });
   BodyResiduals problem({robot.model, recording, group, used, tied, loads, prior, noise}, free,
                         truth, placement);
   Eigen::VectorXd x = problem.Start();
@@ -78,9 +79,10 @@ TEST(WholeBody, JacobianEqualsDifferences) {
     const Eigen::VectorXd difference =
         (AllResiduals(problem, plus) - AllResiduals(problem, minus)) / (2.0 * kStep);
     EXPECT_LT((difference - J.col(u)).norm(), 1e-6 * (1.0 + J.col(u).norm()))
-        << u << " " << (u < static_cast<Eigen::Index>(free.size())
-                            ? robot.model.parameters[free[static_cast<std::size_t>(u)]].name
-                            : "pose");
+        << u << " "
+        << (u < static_cast<Eigen::Index>(free.size())
+                ? robot.model.parameters[free[static_cast<std::size_t>(u)]].name
+                : "pose");
   }
 }
 
@@ -92,27 +94,22 @@ TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
   const CalibrationResult result =
       Calibrate(robot.model, recording, robot.base, ModelKind::kFull, {});
   EXPECT_EQ(result.termination, Termination::kConverged) << result.message;
-  std::printf("%d iterations, %.2f s, marker sd %g\n", result.iterations, result.solve_seconds,
-              result.marker_sd);
-  std::printf("loose %zu settled %d", result.loose_footings.size(), result.settled);
-  for (int g = 0; g < result.noise.group_count(); ++g) {
-    std::printf(" | %g %g %g", result.noise.marker_sd[g], result.noise.waist_position_sd[g],
-                result.noise.waist_rotation_sd[g]);
-  }
-  std::printf(" bad loads %zu\n", result.loads.badly_conditioned.size());
-  for (std::size_t o = 0; o < std::min<std::size_t>(5, result.outliers.size()); ++o) {
-    std::printf("outlier %d %s\n", result.outliers[o].posture, recording.marker_names[result.outliers[o].marker].c_str());
-  }
+  EXPECT_TRUE(result.outliers.empty());
+  EXPECT_TRUE(result.loose_footings.empty());
+  std::printf("%d iterations, %.2f s\n", result.iterations, result.solve_seconds);
+  double largest = 0.0;
   for (int i : robot.base.kept) {
     const Parameter& parameter = robot.model.parameters[i];
     if (parameter.kind == ParameterKind::kBase) continue;
-    if (result.status[i] == ParameterStatus::kUnsupported) {
-      std::printf("unsupported %s\n", parameter.name.c_str());
-      continue;
-    }
     const double scale = ParameterScale(parameter, CalibrationOptions().prior);
-    EXPECT_NEAR(result.delta[i] / scale, truth[i] / scale, 1e-7) << parameter.name;
+    largest = std::max(largest, std::abs(result.delta[i] - truth[i]) / scale);
+    // Turning a foot about the vertical is all but what turning the robot is: the compliance about
+    // it is determined a hundred times worse.
+    const bool vertical = parameter.name.ends_with(".compliance_rz");
+    EXPECT_NEAR(result.delta[i] / scale, truth[i] / scale, vertical ? 1e-5 : 1e-7)
+        << parameter.name;
   }
+  std::printf("largest error %.1e of the prior's sd\n", largest);
 }
 
 }  // namespace

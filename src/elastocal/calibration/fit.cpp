@@ -12,11 +12,13 @@ namespace elastocal {
 namespace {
 
 constexpr double kSmallestMarkerSd = 1e-9;  // m: of noise-free data
-constexpr double kLeastTieShare = 0.1;     // of the marker noise [m, rad]: no constraint is better
-constexpr double kCauchyScale = 3.0;      // of a residual in standard deviations of the noise
-constexpr double kAbsurdSd = 0.1;         // rad or m
-constexpr double kRoughTolerance = 1e-8;  // of the cost, while noise and prior are being found
-constexpr double kHyperTolerance = 1e-3;  // of noise and prior scale, relative
+constexpr double kLeastTieShare = 0.1;      // of the marker noise [m, rad]: no constraint is better
+constexpr double kCauchyScale = 3.0;        // of a residual in standard deviations of the noise
+constexpr double kAbsurdSd = 0.1;           // rad or m
+constexpr double kRoughTolerance = 1e-8;    // of the cost, while noise and prior are being found
+constexpr double kHyperTolerance = 1e-3;    // of noise and prior scale, relative ...
+constexpr double kTrialTolerance = 1e-2;    // ... and of trials, whose constraints take longer
+constexpr int kTrialIterations = 10;        // of a solve whose weights will change anyway
 constexpr int kMaxPolishing = 6;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 
@@ -66,6 +68,10 @@ void SolveOnce(const FitProblem& problem, const Selection& selection, const std:
   solver.function_tolerance = tolerance;
   solver.cauchy_scale = robust ? kCauchyScale : 0.0;
   solver.max_iterations = problem.options.max_iterations;
+  const bool rough = tolerance > LeastSquaresOptions().function_tolerance;
+  if (rough && !fit.placement.empty()) {
+    solver.max_iterations = std::min(solver.max_iterations, kTrialIterations);
+  }
   const LeastSquaresResult solved = Solve(residuals.body, residuals.body.Start(), solver);
   fit.delta = residuals.body.ToErrors(solved.x);
   fit.placement = residuals.body.ToPlacement(solved.x);
@@ -130,7 +136,7 @@ Noise EstimateNoise(const FitProblem& problem, const Selection& selection, const
       noise.marker_sd[g] =
           std::max(kSmallestMarkerSd, noise.marker_sd[g] * markers[g].Factor(robust));
     }
-    if (positions[g].empty()) continue;
+    if (positions[g].empty() || problem.options.support_form == SupportForm::kFootRooted) continue;
     const double least = kLeastTieShare * noise.marker_sd[g];
     noise.waist_position_sd[g] =
         std::max(least, noise.waist_position_sd[g] * positions[g].Factor(robust));
@@ -172,6 +178,13 @@ PriorScale EstimatePriorScale(const FitProblem& problem, const Fit& fit) {
 /// Largest relative change from one entry to the other.
 double Change(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
   return (after.array() / before.array()).log().abs().maxCoeff();
+}
+
+/// At which change noise and prior have come to rest. The robust fit to trials, which costs most,
+/// only has to find what lies far off.
+double Tolerance(const Fit& fit, bool robust) {
+  if (fit.placement.empty()) return kHyperTolerance;
+  return robust ? 10.0 * kTrialTolerance : kTrialTolerance;
 }
 
 double Change(double before, double after) { return std::abs(std::log(after / before)); }
@@ -228,7 +241,7 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                                     Change(fit.prior_scale.lengths, scale.lengths)});
     fit.noise = noise;
     fit.prior_scale = scale;
-    if (change < kHyperTolerance) return fit;
+    if (change < Tolerance(fit, robust)) return fit;
   }
   fit.settled = fit.settled && updates < kMaxUpdates;
   return fit;

@@ -146,8 +146,8 @@ void BodyResiduals::MakeMarkerBlocks() {
         if (IsMarkerBlock(last)) block.parameter_blocks.push_back(last);
       } else {
         for (const BlockColumns& columns : marker_columns_[m]) {
-          block.parameter_blocks.push_back(
-              columns.block == kWaistBlock ? first_waist_block_ + i : columns.block);
+          block.parameter_blocks.push_back(columns.block == kWaistBlock ? first_waist_block_ + i
+                                                                        : columns.block);
         }
       }
       blocks_of_posture_[i].push_back(static_cast<int>(residual_blocks.size()));

@@ -19,8 +19,12 @@ Excitation ExcitationOf(const Session& session, const CalibrationResult& result)
   const Eigen::MatrixXd factor =
       RegressorFactor(result.model, ApplyErrors(result.model, result.delta), session.recording.q,
                       SeenMask(session.recording));
-  return AssessExcitation(factor, session.base.kept, session.recording.posture_count(),
-                          result.marker_sd);
+  // Of the geometry: whether a compliance was excited, its loads say (see unsupported parameters).
+  std::vector<int> geometric;
+  for (int i : session.base.kept) {
+    if (!IsElastic(session.model.parameters[i].kind)) geometric.push_back(i);
+  }
+  return AssessExcitation(factor, geometric, session.recording.posture_count(), result.marker_sd);
 }
 
 /// On trials for validation where there are any, else on those of the estimate.

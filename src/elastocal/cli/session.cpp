@@ -84,6 +84,7 @@ std::vector<std::optional<Transform>> TrueWaists(const std::vector<std::filesyst
 
 void OpenFolders(const std::vector<std::filesystem::path>& folders, Session& session) {
   RecordingFolder read = ReadRecordingFolders(folders, session.project);
+  if (read.calibration.posture_count() == 0) std::swap(read.calibration, read.validation);
   session.trials = std::move(read.trials);
   session.warnings = std::move(read.findings);
   std::vector<int> seen;

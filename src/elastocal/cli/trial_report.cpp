@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/calibration/leg_stiffness.hpp"
 #include "elastocal/cli/error_table_report.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
@@ -62,7 +63,15 @@ std::string DescribeElasticity(const CalibrationRun& run) {
                fmt::format("{} to {}", StiffnessOf(parameter, result.delta[i] + half),
                            StiffnessOf(parameter, result.delta[i] - half))});
   }
-  return "\nElasticity\n" + table.Render() +
+  TextTable legs({"leg as felt at the waist", "Kx N/mm", "Ky", "Kz", "Krx N.m/rad", "Kry", "Krz"});
+  for (const LegStiffness& leg : AssessLegs(result, run.recording)) {
+    std::vector<std::string> row = {leg.leg};
+    for (int axis = 0; axis < 6; ++axis) {
+      row.push_back(fmt::format("{:.3g}", (axis < 3 ? 1e-3 : 1.0) * leg.stiffness[axis]));
+    }
+    legs.Add(row);
+  }
+  return "\nElasticity\n" + table.Render() + legs.Render() +
          (unsupported.empty() ? ""
                               : "Not determined by these data, held at rigid:\n" + unsupported);
 }

@@ -38,12 +38,12 @@ struct RecordingColumns {
   std::map<std::string, double> not_recorded;
 };
 
-/// Which parts of the robot are estimated as elastic (eq. 5 to 7).
+/// Which parts of the robot are estimated as elastic (eq. 5 to 7). Where patterns are not given, a
+/// table of postures has none, and a recording of trials has torsion of all joints and bending of
+/// the legs' joints, which carry the robot.
 struct ElasticityChoice {
-  /// Joints that give way about their axis; name patterns. Not given: in a recording of trials all
-  /// that no foot stands on (the paper's head, arms and trunk), in a table of postures none.
-  std::optional<std::vector<std::string>> torsion = {};
-  std::vector<std::string> bending = {};  ///< joints that give way across their axis; patterns
+  std::optional<std::vector<std::string>> torsion = {};  ///< joints that give way about their axis
+  std::optional<std::vector<std::string>> bending = {};  ///< ... and across it
   bool base = true;          ///< legs that stand alone in a trial: lumped compliance, eq. 6
   bool torque_bias = false;  ///< of the torque sensors of these legs
 };

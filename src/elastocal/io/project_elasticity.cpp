@@ -56,14 +56,15 @@ ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& tr
     elasticity.legs.push_back({chain.name, chain.tip_link});
     standing.erase(chain.tip_link);  // a second chain to the same foot is the same leg
   }
-  const bool by_default = !project.elasticity.torsion && !trials.empty();
-  elasticity.torsion = MatchingJoints(
-      project.tree, by_default ? std::vector<std::string>{"*"}
-                               : project.elasticity.torsion.value_or(std::vector<std::string>()));
-  if (by_default) {
-    std::erase_if(elasticity.torsion, [&](int joint) { return on_floor.contains(joint); });
+  const bool trials_given = !trials.empty();
+  const ElasticityChoice& choice = project.elasticity;
+  if (choice.torsion || trials_given) {
+    elasticity.torsion =
+        MatchingJoints(project.tree, choice.torsion.value_or(std::vector<std::string>{"*"}));
   }
-  for (int joint : MatchingJoints(project.tree, project.elasticity.bending)) {
+  std::vector<int> bending(on_floor.begin(), on_floor.end());
+  if (choice.bending) bending = MatchingJoints(project.tree, *choice.bending);
+  for (int joint : bending) {
     if (project.tree.joints[joint].type == JointType::kRevolute)
       elasticity.bending.push_back(joint);
   }

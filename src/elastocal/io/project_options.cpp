@@ -2,8 +2,8 @@
 #include <limits>
 
 #include "elastocal/io/project_sections.hpp"
-#include "elastocal/math/input_error.hpp"
 #include "elastocal/io/text.hpp"
+#include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
 namespace {

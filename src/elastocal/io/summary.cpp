@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "elastocal/calibration/leg_stiffness.hpp"
 #include "elastocal/io/text.hpp"
 
 namespace elastocal {
@@ -129,6 +130,13 @@ void AddTrials(const CalibrationRun& run, Json& json) {
     json["noise"].push_back({{"marker_sd_mm", 1e3 * result.noise.marker_sd[g]},
                              {"waist_position_sd_mm", 1e3 * result.noise.waist_position_sd[g]},
                              {"waist_rotation_sd_mrad", 1e3 * result.noise.waist_rotation_sd[g]}});
+  }
+  for (const LegStiffness& leg : AssessLegs(result, run.recording)) {
+    Json stiffness = Json::array();
+    for (int axis = 0; axis < 6; ++axis) {
+      stiffness.push_back(Finite((axis < 3 ? 1e-3 : 1.0) * leg.stiffness[axis]));
+    }
+    json["legs"].push_back({{"name", leg.leg}, {"stiffness", stiffness}});
   }
   json["loose_footings"] = Json::array();
   for (const LooseFooting& footing : result.loose_footings) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <set>
 
 #include <ceres/ceres.h>
 #include <glog/logging.h>
@@ -67,10 +68,6 @@ std::vector<double*> AddParameterBlocks(const LeastSquaresProblem& problem, Eige
   double* at = x.data();
   for (int size : problem.parameter_blocks) {
     ceres_problem.AddParameterBlock(at, size);
-    const auto begin = static_cast<int>(at - x.data());
-    for (int i : problem.nonnegative) {
-      if (begin <= i && i < begin + size) ceres_problem.SetParameterLowerBound(at, i - begin, 0.0);
-    }
     blocks.push_back(at);
     at += size;
   }
@@ -123,6 +120,112 @@ Termination Translate(ceres::TerminationType type) {
   }
 }
 
+constexpr int kMaxActiveSets = 10;
+constexpr double kSlightGradient = 1e-9;  // of the cost by an unknown: no reason to leave a bound
+
+/// Which unknowns stand at their bound of zero. Ceres' own bounds project every step and creep
+/// where several of them are active; here those at the bound are held, and the problem is free.
+class ActiveSet {
+ public:
+  ActiveSet(LeastSquaresProblem& problem, const LeastSquaresOptions& options,
+            const Eigen::VectorXd& x)
+      : problem_(problem), cauchy_scale_(options.cauchy_scale) {
+    if (problem.nonnegative.empty()) return;
+    const Eigen::VectorXd gradient = Gradient(x);
+    for (int i : problem.nonnegative) {
+      if (x[i] == 0.0 && gradient[i] >= 0.0) held_.insert(i);
+    }
+  }
+
+  /// Makes the held unknowns constant, and no others.
+  void Hold(const std::vector<double*>& blocks, ceres::Problem& ceres_problem) const {
+    if (problem_.nonnegative.empty()) return;
+    int begin = 0;
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      const int size = problem_.parameter_blocks[k];
+      std::vector<int> constant;
+      for (auto i = held_.lower_bound(begin); i != held_.end() && *i < begin + size; ++i) {
+        constant.push_back(*i - begin);
+      }
+      ceres_problem.SetParameterBlockVariable(blocks[k]);
+      if (static_cast<int>(constant.size()) == size) {
+        ceres_problem.SetParameterBlockConstant(blocks[k]);
+      } else {
+        ceres_problem.SetManifold(
+            blocks[k], constant.empty() ? nullptr : new ceres::SubsetManifold(size, constant));
+      }
+      begin += size;
+    }
+  }
+
+  /// Holds what has become negative and, if nothing has, lets go what wants to leave its bound.
+  /// Whether the problem has to be solved again.
+  bool Update(Eigen::VectorXd& x) {
+    bool changed = false;
+    for (int i : problem_.nonnegative) {
+      if (x[i] >= 0.0) continue;
+      x[i] = 0.0;
+      held_.insert(i);
+      changed = true;
+    }
+    if (changed || held_.empty()) return changed;
+    const Eigen::VectorXd gradient = Gradient(x);
+    for (int i : std::set<int>(held_)) {
+      if (gradient[i] >= -kSlightGradient || !released_.insert(i).second) continue;
+      held_.erase(i);
+      changed = true;
+    }
+    return changed;
+  }
+
+ private:
+  /// Of the cost, loss included.
+  Eigen::VectorXd Gradient(const Eigen::VectorXd& x) const {
+    problem_.Evaluate(x, true);
+    std::vector<int> first(1, 0);
+    for (int size : problem_.parameter_blocks) first.push_back(first.back() + size);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x.size());
+    Eigen::VectorXd residual, part;
+    for (std::size_t i = 0; i < problem_.residual_blocks.size(); ++i) {
+      const auto& shape = problem_.residual_blocks[i];
+      if (!shape.active) continue;
+      residual.resize(shape.size);
+      problem_.Residual(static_cast<int>(i),
+                        Eigen::Map<Eigen::VectorXd>(residual.data(), shape.size));
+      if (shape.robust && cauchy_scale_ > 0.0) {
+        residual /= 1.0 + residual.squaredNorm() / (cauchy_scale_ * cauchy_scale_);
+      }
+      for (std::size_t k = 0; k < shape.parameter_blocks.size(); ++k) {
+        const int block = shape.parameter_blocks[k];
+        const int size = problem_.parameter_blocks[block];
+        part.resize(static_cast<Eigen::Index>(shape.size) * size);
+        Eigen::Map<LeastSquaresProblem::RowMajorMatrix> J(part.data(), shape.size, size);
+        problem_.Jacobian(static_cast<int>(i), static_cast<int>(k), J);
+        gradient.segment(first[block], size) += J.transpose() * residual;
+      }
+    }
+    return gradient;
+  }
+
+  LeastSquaresProblem& problem_;
+  double cauchy_scale_;
+  std::set<int> held_;
+  std::set<int> released_;  // once: so that it ends
+};
+
+/// Adds what one run of the solver says.
+void Take(const ceres::Solver::Summary& summary, bool first, LeastSquaresResult& result) {
+  const auto cost = [](double value) {  // Ceres says -1 where it never evaluated
+    return value < 0.0 ? std::numeric_limits<double>::quiet_NaN() : value;
+  };
+  if (first) result.initial_cost = cost(summary.initial_cost);
+  result.final_cost = cost(summary.final_cost);
+  // The first entry is the starting point; there is none where that could not be evaluated.
+  result.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  result.termination = Translate(summary.termination_type);
+  result.message = summary.message;
+}
+
 }  // namespace
 
 const char* TerminationName(Termination termination) {
@@ -161,17 +264,15 @@ LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0
   }
 
   const QuietLog quiet;
-  ceres::Solver::Summary summary;
-  ceres::Solve(SolverOptions(problem, blocks, options), &ceres_problem, &summary);
-  const auto cost = [](double value) {  // Ceres says -1 where it never evaluated
-    return value < 0.0 ? std::numeric_limits<double>::quiet_NaN() : value;
-  };
-  result.initial_cost = cost(summary.initial_cost);
-  result.final_cost = cost(summary.final_cost);
-  // The first entry is the starting point; there is none where that could not be evaluated.
-  result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-  result.termination = Translate(summary.termination_type);
-  result.message = summary.message;
+  const ceres::Solver::Options solver = SolverOptions(problem, blocks, options);
+  ActiveSet bounds(problem, options, result.x);
+  for (int round = 0; round < kMaxActiveSets; ++round) {
+    bounds.Hold(blocks, ceres_problem);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &ceres_problem, &summary);
+    Take(summary, round == 0, result);
+    if (result.termination == Termination::kFailure || !bounds.Update(result.x)) break;
+  }
   return result;
 }
 

@@ -88,7 +88,7 @@ SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) 
 }
 
 WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
-                                       const TrueMotion& motion) {
+                                 const TrueMotion& motion) {
   const PlannedTrial& trial = experiment.trials[index];
   WaistGive largest;
   if (trial.support.empty()) return largest;

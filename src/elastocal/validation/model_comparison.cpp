@@ -79,8 +79,8 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
     Selection selection{comparison.best().used(training, Eigen::all), {}};
     for (int i : training) selection.tied.push_back(comparison.best().tied[i]);
     for (ModelKind kind : comparison.kinds) {
-      const CalibrationResult result = CalibrateFold(model, training_data, base, kind, options,
-                                                     selection, fold + 1, folds);
+      const CalibrationResult result =
+          CalibrateFold(model, training_data, base, kind, options, selection, fold + 1, folds);
       validation.unconverged += result.termination == Termination::kConverged ? 0 : 1;
       distances[static_cast<int>(kind)](held_out, Eigen::all) =
           Predict(result.model, result.delta, held_out_data, options, &result.placement).distances;

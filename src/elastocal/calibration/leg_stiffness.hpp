@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/calibrate.hpp"
+
+namespace elastocal {
+
+/// How stiff a leg is all together: what a wrench on the waist would find (LumpedCompliance).
+struct LegStiffness {
+  std::string leg;
+  Eigen::VectorXd q;  ///< mean of the postures in which it stood alone
+  /// Along x, y, z of the foot [N/m] and about them [N.m/rad]: a force (moment) over the
+  /// displacement (rotation) along the same axis; infinite for a rigid leg.
+  Vector6d stiffness = Vector6d::Zero();
+};
+
+/// One entry a leg of the model that stood alone.
+std::vector<LegStiffness> AssessLegs(const CalibrationResult& result, const Recording& recording);
+
+}  // namespace elastocal
