@@ -21,6 +21,26 @@ Transform FootPose(const MatchedExperiment& experiment, std::size_t index, int f
   return experiment.plan.T_camera_world[index] * T_world_foot;
 }
 
+std::vector<int> TorqueSensors(const TrueRobot& robot) {
+  std::vector<int> joints;
+  for (std::size_t k = 0; k < robot.torque_sensor.size(); ++k) {
+    if (robot.torque_sensor[k]) joints.push_back(static_cast<int>(k));
+  }
+  return joints;
+}
+
+/// Names and room for the frames.
+TrueMotion EmptyMotion(const ErrorModel& model, const Motion& motion) {
+  TrueMotion result;
+  for (const Marker& marker : model.markers) result.marker_names.push_back(marker.name);
+  for (int k : model.tree.coordinate_joint) result.joint_names.push_back(model.tree.joints[k].name);
+  const auto frames = static_cast<Eigen::Index>(std::lround(motion.duration_s() * result.rate_hz));
+  result.markers.resize(frames, 3 * model.marker_count());
+  result.encoders.resize(frames, model.tree.coordinate_count());
+  result.torques.resize(frames, model.tree.coordinate_count());
+  return result;
+}
+
 /// One value of a parameter; `leg_joint`: of a joint that belongs to a leg.
 double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions& options,
                  Random& random) {
@@ -75,11 +95,8 @@ MatchedExperiment MatchExperiment(VirtualExperiment plan, const ErrorModel& mode
   TrueRobot& robot = experiment.plan.robot;
   experiment.truth =
       DrawMatchedTruth(model, identifiable, robot.legs, experiment.plan.options.truth);
-  std::vector<int> sensors;
-  for (std::size_t k = 0; k < robot.torque_sensor.size(); ++k) {
-    if (robot.torque_sensor[k]) sensors.push_back(static_cast<int>(k));
-  }
-  robot = NominalRobot(experiment.plan.described_tree, model.markers, robot.legs, sensors);
+  robot =
+      NominalRobot(experiment.plan.described_tree, model.markers, robot.legs, TorqueSensors(robot));
   const Geometry geometry = ApplyErrors(model, experiment.truth);
   for (LegCompliance& leg : experiment.plan.legs) {
     const int own = SupportingLeg(model, {leg.foot_link});
@@ -94,48 +111,31 @@ TrueMotion PlayMatchedMotion(const MatchedExperiment& experiment, std::size_t in
   const ErrorModel& model = experiment.model;
   const PlannedTrial& trial = experiment.plan.trials[index];
   const Geometry geometry = ApplyErrors(model, experiment.truth);
-  std::vector<int> sensors;
-  TrueMotion result;
-  for (const Marker& marker : model.markers) result.marker_names.push_back(marker.name);
-  for (int k : model.tree.coordinate_joint) {
-    result.joint_names.push_back(model.tree.joints[k].name);
-    if (experiment.plan.robot.torque_sensor[k]) sensors.push_back(k);
-  }
-  const auto frames =
-      static_cast<Eigen::Index>(std::lround(trial.motion.duration_s() * result.rate_hz));
-  result.markers.resize(frames, 3 * static_cast<Eigen::Index>(model.markers.size()));
-  result.encoders.resize(frames, model.tree.coordinate_count());
-  result.torques.resize(frames, model.tree.coordinate_count());
-
+  const std::vector<int> sensors = TorqueSensors(experiment.plan.robot);
   const int leg = SupportingLeg(model, trial.support);
-  Transform T_camera_foot = experiment.plan.T_camera_world[index];
-  if (!trial.support.empty()) T_camera_foot = FootPose(experiment, index, trial.support[0]);
+  const int first_foot = trial.support.empty() ? 0 : trial.support[0];
+  const Transform T_camera_foot = FootPose(experiment, index, first_foot);
+  TrueMotion motion = EmptyMotion(model, trial.motion);
   Eigen::VectorXd last;
   StandingPose pose;
-  for (Eigen::Index i = 0; i < frames; ++i) {
-    const Eigen::VectorXd q = PostureAt(trial.motion, static_cast<double>(i) / result.rate_hz);
-    const std::vector<Transform> T_waist_link = LinkTransforms(model.tree, q);
-    const Transform T_waist_foot =
-        trial.support.empty() ? Transform(Transform::Identity()) : T_waist_link[trial.support[0]];
-    if (last.size() == 0 || q != last) {
+  for (int i = 0; i < motion.frame_count(); ++i) {
+    const Eigen::VectorXd q = PostureAt(trial.motion, i / motion.rate_hz);
+    if (i == 0 || q != last) {
+      const std::vector<Transform> T_waist_link = LinkTransforms(model.tree, q);
+      const Transform T_camera_waist = T_camera_foot * T_waist_link[first_foot].inverse();
       pose = leg >= 0 ? StandOnLeg(model, geometry, q, leg, T_camera_foot, kGravity, sensors)
-                      : HoldWaist(model, geometry, q, T_camera_foot * T_waist_foot.inverse(),
-                                  kGravity, sensors);
+                      : HoldWaist(model, geometry, q, T_camera_waist, kGravity, sensors);
       last = q;
-    }
-    if (i == 0) {
-      for (int link : trial.support) {
-        result.T_camera_foot.push_back(T_camera_foot * T_waist_foot.inverse() * T_waist_link[link]);
+      for (std::size_t s = 0; i == 0 && s < trial.support.size(); ++s) {
+        motion.T_camera_foot.push_back(T_camera_waist * T_waist_link[trial.support[s]]);
       }
     }
-    result.markers.row(i) = pose.markers.reshaped().transpose();
-    result.encoders.row(i) = q.transpose();
-    for (Eigen::Index c = 0; c < result.torques.cols(); ++c) {
-      result.torques(i, c) = pose.torques[model.tree.coordinate_joint[c]];
-    }
-    result.T_camera_waist.push_back(pose.T_ref_waist);
+    motion.markers.row(i) = pose.markers.reshaped().transpose();
+    motion.encoders.row(i) = q.transpose();
+    motion.torques.row(i) = pose.torques(model.tree.coordinate_joint).transpose();
+    motion.T_camera_waist.push_back(pose.T_ref_waist);
   }
-  return result;
+  return motion;
 }
 
 SimulatedTrial RunMatchedTrial(const MatchedExperiment& experiment, std::size_t index) {
