@@ -129,8 +129,8 @@ class Predictor {
     for (int i : footing.postures) {
       T_foot_waist.push_back(WaistOnFoot(footing.leg, i));
       AddMarkers(
-          recording_, i, T_foot_waist.back() * MarkersInWaist(i), [](int) { return true; },
-          registration);
+          recording_, i, MarkersInFoot(footing.leg, i, T_foot_waist.back()),
+          [](int) { return true; }, registration);
     }
     if (const Transform* T = FindKnown(known, footing)) {
       placement_.T_ref_footing[f] = *T;

@@ -92,7 +92,7 @@ TEST(MatchedExperiment, SpringsOfTheTrunkGiveWayAsInMuJoCo) {
   };
   for (int m = 3; m < 6; ++m) {
     const Eigen::Vector3d found = motion.markers.row(last).segment<3>(3 * m).transpose();
-    EXPECT_GT((hang(0.0 * truth).markers.col(m) - found).norm(), 1e-3) << "nothing gives way";
+    EXPECT_GT((hang(0.0 * truth).markers.col(m) - found).norm(), 5e-4) << "nothing gives way";
     // The motion ends 1.5 s before; what still swings is less than this.
     EXPECT_LT((hang(truth).markers.col(m) - found).norm(), 1e-5);
   }
@@ -106,7 +106,8 @@ TEST(MatchedExperiment, DrawsWhatIsIdentifiableAndNothingElse) {
   for (int i = 0; i < model.parameter_count(); ++i) {
     const Parameter& parameter = model.parameters[i];
     EXPECT_EQ(truth[i] == 0.0, parameter.kind == ParameterKind::kBase) << parameter.name;
-    if (IsCompliance(parameter.kind)) EXPECT_GT(truth[i], 0.0) << parameter.name;
+    if (!IsCompliance(parameter.kind)) continue;
+    EXPECT_GT(truth[i], 0.0) << parameter.name;
   }
   EXPECT_EQ(DrawMatchedTruth(model, All(model), legs, {}), truth);
   EXPECT_NE(DrawMatchedTruth(model, All(model), legs, {.seed = 2}), truth);
