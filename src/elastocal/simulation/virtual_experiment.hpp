@@ -73,6 +73,6 @@ struct WaistGive {
   double translation = 0.0, rotation = 0.0;
 };
 WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
-                                       const TrueMotion& motion);
+                                 const TrueMotion& motion);
 
 }  // namespace elastocal
