@@ -79,7 +79,7 @@ void ExpectOneKnock(const std::vector<Knock>& knocks, const std::string& cluster
   EXPECT_EQ(knocks[0].last_before, last_before);
   // Half a millimetre: robot errors that are not linear, and those that the step shares with
   // others.
-  EXPECT_NEAR(knocks[0].distance, kPush.norm(), 0.5e-3);
+  EXPECT_NEAR(knocks[0].distance, kPush.norm(), 0.15e-3);
   EXPECT_GT(knocks[0].significance, 1.0);
 }
 
