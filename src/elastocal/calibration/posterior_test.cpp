@@ -19,6 +19,7 @@ class PosteriorTest : public ::testing::Test {
     recording_.q.resize(12, model_.tree.coordinate_count());
     for (int i = 0; i < 12; ++i) recording_.q.row(i) = RandomPosture(model_.tree, random);
     recording_.markers.setZero(12, 27);
+    for (const Marker& marker : model_.markers) recording_.marker_names.push_back(marker.name);
     mask_.setConstant(12, 9, true);
     mask_(3, 4) = false;
     delta_ = random.NormalVector(model_.parameter_count(), 1e-3);

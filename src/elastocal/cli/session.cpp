@@ -8,8 +8,10 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "elastocal/calibration/knocks.hpp"
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/recording_folder.hpp"
+#include "elastocal/io/summary.hpp"
 #include "elastocal/io/truth_file.hpp"
 #include "elastocal/math/input_error.hpp"
 
@@ -99,6 +101,39 @@ void OpenFolders(const std::vector<std::filesystem::path>& folders, Session& ses
   session.validation_truth = TrueWaists(folders, session.project, session.validation);
 }
 
+/// The project's clusters as far as their markers were seen.
+std::vector<LabelCluster> SeenClusters(const Project& project, const Recording& recording) {
+  const std::vector<std::string>& names = recording.marker_names;
+  std::vector<LabelCluster> clusters;
+  for (const MarkerCluster& cluster : project.clusters) {
+    LabelCluster seen{cluster.name, {}};
+    for (int m : cluster.markers) {
+      const auto found = std::find(names.begin(), names.end(), project.markers[m].name);
+      if (found != names.end()) seen.markers.push_back(static_cast<int>(found - names.begin()));
+    }
+    if (!seen.markers.empty()) clusters.push_back(std::move(seen));
+  }
+  return clusters;
+}
+
+/// Takes knocked clusters as two, and says so.
+void SplitKnocked(Session& session) {
+  const std::vector<Knock> knocks =
+      FindKnocks(session.model, session.recording, session.base,
+                 SeenClusters(session.project, session.recording), session.project.calibration);
+  if (knocks.empty()) return;
+  for (const Knock& knock : knocks) {
+    session.warnings.push_back(fmt::format(
+        "cluster {}: the data before and after disagree by {:.1f} mm (up to {}; from {} on): was "
+        "it knocked? Its markers are taken as two sets",
+        knock.cluster, 1e3 * knock.distance, DescribePosture(session.recording, knock.last_before),
+        DescribePosture(session.recording, knock.posture)));
+  }
+  SplitMarkers(knocks, session.model, session.recording);
+  if (session.validation.posture_count() > 0) AddUnseenMarkers(session.model, session.validation);
+  session.base = FindBaseParameters(session.model, session.project.identifiability);
+}
+
 }  // namespace
 
 Session OpenSession(const std::filesystem::path& project,
@@ -121,6 +156,7 @@ Session OpenSession(const std::filesystem::path& project,
                                 session.recording.marker_names);
   const IdentifiabilityOptions& options = session.project.identifiability;
   session.base = FindBaseParameters(session.model, options);
+  if (!session.recording.trials.empty()) SplitKnocked(session);
   WarnOfLostRank(session.model, options, session.base, session.warnings);
   return session;
 }

@@ -110,8 +110,12 @@ void HideFeetOfTwo(const MarkedRobot& robot, Recording& recording) {
   for (int i = 0; i < recording.posture_count(); ++i) {
     const std::vector<int>& support = recording.trials[recording.trial[i]].support;
     if (support.size() < 2) continue;
-    for (std::size_t m = 0; m < robot.markers.size(); ++m) {
-      const auto on_foot = [&](int link) { return body(link) == body(robot.markers[m].link); };
+    for (std::size_t m = 0; m < recording.marker_names.size(); ++m) {
+      const auto named = [&](const Marker& marker) {
+        return marker.name == recording.marker_names[m];
+      };
+      const auto marker = std::find_if(robot.markers.begin(), robot.markers.end(), named);
+      const auto on_foot = [&](int link) { return body(link) == body(marker->link); };
       if (std::none_of(support.begin(), support.end(), on_foot)) continue;
       recording.markers.block<1, 3>(i, 3 * static_cast<Eigen::Index>(m))
           .setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -65,12 +65,16 @@ std::optional<Eigen::VectorXd> PlaceFoot(const RobotTree& tree, const Leg& leg,
   constexpr double kStep = 1e-6;
   constexpr double kDamping = 1e-6;
   constexpr double kLargestMove = 0.3;
+  constexpr double kNoMove = 1e-7;
   const std::vector<int> moved = CoordinatesOf(tree, leg.joints);
   const auto count = static_cast<Eigen::Index>(moved.size());
-  for (int iteration = 0; iteration <= kIterations; ++iteration) {
+  bool stuck = false;
+  for (int iteration = 0;; ++iteration) {
     const Transform found = LinkTransforms(tree, q)[Size(leg.foot_link)];
     const Twist error = PoseError(T_waist_foot, found);
-    if (error.norm() < 1e-9 || (iteration == kIterations && error.norm() < tolerance)) return q;
+    stuck = stuck || iteration == kIterations;
+    if (error.norm() < 1e-9 || (stuck && error.norm() < tolerance)) return q;
+    if (stuck) return std::nullopt;
     Eigen::Matrix<double, 6, Eigen::Dynamic> J(6, count);
     for (Eigen::Index i = 0; i < count; ++i) {
       Eigen::VectorXd moved_q = q;
@@ -81,13 +85,14 @@ std::optional<Eigen::VectorXd> PlaceFoot(const RobotTree& tree, const Leg& leg,
     normal.diagonal().array() += kDamping;
     Eigen::VectorXd step = normal.ldlt().solve(J.transpose() * error);
     step *= std::min(1.0, kLargestMove / std::max(1e-12, step.cwiseAbs().maxCoeff()));
+    const Eigen::VectorXd before = q;
     for (Eigen::Index i = 0; i < count; ++i) {
       const int coordinate = moved[static_cast<std::size_t>(i)];
       const auto [lower, upper] = Range(tree, coordinate, 0.0);
       q[coordinate] = std::clamp(q[coordinate] + step[i], lower, upper);
     }
+    stuck = (q - before).cwiseAbs().maxCoeff() < kNoMove;
   }
-  return std::nullopt;
 }
 
 Eigen::Vector3d CentreOfMass(const RobotTree& tree, const Eigen::VectorXd& q) {
@@ -109,6 +114,7 @@ PostureSampler::PostureSampler(const RobotTree& tree, const std::vector<Leg>& le
       random_(seed),
       T_root_link_zero_(LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()))),
       height_(StandingHeight(tree, legs)),
+      scale_(height_ > 0.0 ? height_ / kDescribedHeight : 1.0),
       stand_(HomePosture(tree, options)) {
   for (const Leg& leg : legs_) {
     if (const auto bent = Bend(leg, stand_, 0.5 * (options_.least_drop + options_.largest_drop))) {
@@ -145,11 +151,10 @@ bool PostureSampler::InWorkspace(const EndWorkspace& workspace, int tip,
                                  const Eigen::VectorXd& q) const {
   const Transform& T_zero = T_root_link_zero_[Size(tip)];
   const Transform T = LinkTransforms(tree_, q)[Size(tip)];
-  const double scale = height_ > 0.0 ? height_ / kDescribedHeight : 1.0;
   Eigen::Vector3d p = T.translation();
   if (T_zero.translation().y() < 0.0) p.y() = -p.y();
-  return (p.array() >= scale * workspace.lower.array()).all() &&
-         (p.array() <= scale * workspace.upper.array()).all() &&
+  return (p.array() >= scale_ * workspace.lower.array()).all() &&
+         (p.array() <= scale_ * workspace.upper.array()).all() &&
          RotationAngle(T_zero.linear().transpose() * T.linear()) <= workspace.largest_turn;
 }
 
@@ -160,7 +165,8 @@ bool PostureSampler::ArmApart(const NamedChain& chain, const Eigen::VectorXd& q)
   const std::vector<int> joints = JointsToBody(tree_, tree_.links[Size(chain.tip_link)].body);
   for (std::size_t i = joints.size() / 2 + 1; i < joints.size(); ++i) {
     const int link = tree_.joints[Size(joints[i])].child_link;
-    if (T_root_link[Size(link)].translation().head<2>().norm() < kTrunkRadius) return false;
+    if (T_root_link[Size(link)].translation().head<2>().norm() < scale_ * kTrunkRadius)
+      return false;
   }
   return true;
 }
@@ -185,13 +191,14 @@ bool PostureSampler::SwingFeasible(const Eigen::VectorXd& q, const Leg& swing,
   const Eigen::Vector3d p_sole_swing =
       support.R_floor_foot * (T_root_link[Size(support.foot_link)].inverse() *
                               T_root_link[Size(swing.foot_link)].translation());
-  if (p_sole_swing.z() < options_.ground_clearance) return false;
+  if (p_sole_swing.z() < scale_ * options_.ground_clearance) return false;
   // From the knee on; hips are where they are.
   for (std::size_t i = swing.joints.size() / 2; i < swing.joints.size(); ++i) {
     for (std::size_t j = support.joints.size() / 2; j < support.joints.size(); ++j) {
       const auto& a = T_root_link[Size(tree_.joints[Size(swing.joints[i])].child_link)];
       const auto& b = T_root_link[Size(tree_.joints[Size(support.joints[j])].child_link)];
-      if ((a.translation() - b.translation()).norm() < options_.least_distance) return false;
+      if ((a.translation() - b.translation()).norm() < scale_ * options_.least_distance)
+        return false;
     }
   }
   return true;
@@ -215,8 +222,8 @@ std::optional<Eigen::VectorXd> PostureSampler::DrawSupport(Eigen::VectorXd q, co
   const double roll = lean();
   const double pitch = lean();
   const double yaw = random_.Uniform(-options_.largest_turn, options_.largest_turn);
-  const Eigen::Vector2d aim(random_.Uniform(-options_.sway.x(), options_.sway.x()),
-                            random_.Uniform(-options_.sway.y(), options_.sway.y()));
+  const Eigen::Vector2d aim(scale_ * random_.Uniform(-options_.sway.x(), options_.sway.x()),
+                            scale_ * random_.Uniform(-options_.sway.y(), options_.sway.y()));
   // Waist over the sole, in axes of the floor.
   const Eigen::Matrix3d R_floor_waist = (RotZ(yaw) * RotY(pitch) * RotX(roll)).linear();
   Eigen::Vector3d p_floor_waist = -T_root_link_zero_[Size(support.foot_link)].translation() -

@@ -13,11 +13,12 @@ namespace elastocal {
 /// A box and a cone in which the end of a chain is kept (paper section 3.1 and Fig. 2), in the root
 /// link's frame: x ahead, y outwards (to the side on which the chain is), z up.
 struct EndWorkspace {
-  Eigen::Vector3d lower, upper;  ///< m, for a robot that stands 1.083 m high (its waist)
+  Eigen::Vector3d lower, upper;  ///< m
   double largest_turn;           ///< from the attitude in the zero posture, rad
 };
 
-/// What random postures keep to.
+/// What random postures keep to. Lengths are those of a robot whose root link stands 1.083 m high
+/// (TALOS); they are scaled to others by that height.
 struct PostureOptions {
   EndWorkspace foot{{-0.35, -0.05, -1.08}, {0.35, 0.35, -0.65}, 1.0472};
   EndWorkspace hand{{0.15, -0.10, -0.10}, {0.65, 0.55, 0.60}, M_PI};
@@ -89,7 +90,7 @@ class PostureSampler {
   PostureOptions options_;
   Random random_;
   std::vector<Transform> T_root_link_zero_;
-  double height_;
+  double height_, scale_;
   Eigen::VectorXd stand_;
 };
 

@@ -61,6 +61,9 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
       DrawTrueRobot(NominalRobot(described.tree, described.markers, legs, described.torque_sensors),
                     experiment.options.truth);
   experiment.trials = PlanTrials(described.tree, described.chains, experiment.options.motion);
+  if (legs.empty() && options.physics.standing == Standing::kFree) {
+    throw InputError("robot '" + described.tree.name + "' has no legs to stand free on");
+  }
   CheckFaults(options.faults, experiment.robot, experiment.clusters, experiment.trials);
   experiment.T_camera_world = DrawPlaces(options.seed, experiment.trials.size());
   const PostureSampler sampler(described.tree, legs, options.motion.postures,

@@ -13,6 +13,7 @@ class VerdictTest : public ::testing::Test {
  protected:
   /// A comparison that nothing can be said against.
   void SetUp() override {
+    comparison_.kinds = {ModelKind::kUncalibrated, ModelKind::kOffsetsOnly, ModelKind::kGeometric};
     CalibrationResult& result = comparison_.results[2];
     result.model = TalosLegModel();
     result.delta.setZero(result.model.parameter_count());

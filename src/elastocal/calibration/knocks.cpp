@@ -1,0 +1,140 @@
+#include "elastocal/calibration/knocks.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "elastocal/calibration/displacement_step.hpp"
+#include "elastocal/calibration/fit.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kMaxKnocks = 4;
+constexpr int kFewUpdates = 2;           // of the noise
+constexpr double kLeastDistance = 1e-3;  // m
+constexpr double kLeastScatters = 3.0;
+
+std::vector<int> Estimated(const ErrorModel& model, const BaseParameters& base) {
+  std::vector<int> free;
+  for (int i : base.kept) {
+    if (model.parameters[i].kind != ParameterKind::kBase) free.push_back(i);
+  }
+  return free;
+}
+
+bool IsKnock(const DisplacementStep& step) {
+  return step.cluster >= 0 && step.significance > 1.0 &&
+         step.displacement.norm() >= std::max(kLeastDistance, kLeastScatters * step.scatter);
+}
+
+bool SeenOnBothSides(const Recording& recording, int marker, int posture) {
+  bool sides[2] = {false, false};
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (Seen(recording, i, marker)) sides[i < posture ? 0 : 1] = true;
+  }
+  return sides[0] && sides[1];
+}
+
+std::string NameBefore(const std::string& name, const std::vector<std::string>& taken) {
+  for (int n = 1;; ++n) {
+    std::string candidate = name + (n == 1 ? "(before)" : "(before " + std::to_string(n) + ")");
+    if (std::find(taken.begin(), taken.end(), candidate) == taken.end()) return candidate;
+  }
+}
+
+/// Of each new marker: that which it was split from.
+std::vector<int> SplitOne(const Knock& knock, ErrorModel& model, Recording& recording) {
+  std::vector<int> origins;
+  ErrorModel extended = model;
+  for (int m : knock.markers) {
+    if (!SeenOnBothSides(recording, m, knock.posture)) continue;
+    origins.push_back(m);
+    extended.markers.push_back(model.markers[m]);
+    Marker& before = extended.markers.back();
+    before.name = NameBefore(before.name, recording.marker_names);
+    recording.marker_names.push_back(before.name);
+    Eigen::MatrixXd column = recording.markers.middleCols<3>(3 * m);
+    const Eigen::Index after = recording.posture_count() - knock.posture;
+    column.bottomRows(after).setConstant(std::numeric_limits<double>::quiet_NaN());
+    recording.markers.middleCols<3>(3 * m)
+        .topRows(knock.posture)
+        .setConstant(std::numeric_limits<double>::quiet_NaN());
+    recording.markers.conservativeResize(Eigen::NoChange, recording.markers.cols() + 3);
+    recording.markers.rightCols<3>() = column;
+  }
+  model = SelectMarkers(extended, recording.marker_names);
+  return origins;
+}
+
+/// The fit with the markers split: each new one where its other half was before the knock.
+void SplitFit(const ErrorModel& model, const std::vector<int>& origins, std::vector<int>& free,
+              Fit& fit) {
+  const auto first = fit.delta.size();
+  const auto old_markers = model.marker_count() - static_cast<int>(origins.size());
+  fit.delta.conservativeResize(model.parameter_count());
+  for (std::size_t n = 0; n < origins.size(); ++n) {
+    const auto at = first + 3 * static_cast<Eigen::Index>(n);
+    fit.delta.segment<3>(at) = fit.delta.segment<3>(first - 3 * (old_markers - origins[n]));
+    for (int axis = 0; axis < 3; ++axis) free.push_back(static_cast<int>(at) + axis);
+  }
+}
+
+/// The cluster is two from now on, those of `origins` and their other halves.
+void SplitCluster(const DisplacementStep& step, const std::vector<int>& origins, int first_new,
+                  std::vector<LabelCluster>& clusters) {
+  LabelCluster before = clusters[step.cluster];
+  before.name += "(before)";
+  before.markers.clear();
+  for (std::size_t n = 0; n < origins.size(); ++n) {
+    before.markers.push_back(first_new + static_cast<int>(n));
+  }
+  clusters.push_back(std::move(before));
+}
+
+}  // namespace
+
+std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recording,
+                              const BaseParameters& base, const std::vector<LabelCluster>& clusters,
+                              const CalibrationOptions& options) {
+  if (recording.trials.empty()) return {};
+  ErrorModel split_model = model;
+  Recording split = recording;
+  std::vector<LabelCluster> sets = clusters;
+  CalibrationOptions quick = options;
+  quick.support_form = SupportForm::kNuisance;
+  const FitProblem problem{split_model, split, quick, NoiseGroups(model, recording)};
+  std::vector<int> free = Estimated(model, base);
+  Fit fit = StartFit(problem, SelectAll(split), Eigen::VectorXd::Zero(model.parameter_count()));
+  std::vector<Knock> knocks;
+  for (;;) {
+    const Selection selection = SelectAll(split);
+    fit = FitParameters(problem, selection, free, fit, false, kFewUpdates);
+    const DisplacementStep step =
+        FindLargestStep(problem, selection, free, fit, sets, options.outlier_probability);
+    if (!IsKnock(step)) break;
+    knocks.push_back({sets[step.cluster].name, sets[step.cluster].markers, step.posture,
+                      step.last_before, step.displacement.norm(), step.significance});
+    if (static_cast<int>(knocks.size()) == kMaxKnocks) break;
+    const int first_new = split_model.marker_count();
+    const std::vector<int> origins = SplitOne(knocks.back(), split_model, split);
+    SplitFit(split_model, origins, free, fit);
+    SplitCluster(step, origins, first_new, sets);
+  }
+  return knocks;
+}
+
+void SplitMarkers(const std::vector<Knock>& knocks, ErrorModel& model, Recording& recording) {
+  for (const Knock& knock : knocks) SplitOne(knock, model, recording);
+}
+
+void AddUnseenMarkers(const ErrorModel& model, Recording& recording) {
+  const Eigen::Index before = recording.markers.cols();
+  for (int m = recording.marker_count(); m < model.marker_count(); ++m) {
+    recording.marker_names.push_back(model.markers[m].name);
+  }
+  recording.markers.conservativeResize(Eigen::NoChange, 3 * recording.marker_count());
+  recording.markers.rightCols(recording.markers.cols() - before)
+      .setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace elastocal

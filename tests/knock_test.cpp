@@ -1,0 +1,167 @@
+// A cluster of markers knocked during an experiment of the whole body: found, named, and without
+// consequence for the result.
+
+#include <gtest/gtest.h>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/knocks.hpp"
+#include "tests/standing_robot.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kPostures = 16;  // a trial
+const Eigen::Vector3d kPush(3e-3, 0.0, -4e-3);
+
+struct Experiment {
+  const StandingRobot& robot;
+  Eigen::VectorXd truth;
+  StandingOptions options;
+  std::vector<LabelCluster> clusters;
+
+  explicit Experiment(std::uint64_t seed) : robot(Robot()), truth(robot.DrawTruth(seed)) {
+    options.marker_sd = 0.05e-3;
+    options.torque_sensors = robot.project.torque_sensors;
+    options.seed = seed;
+    for (const MarkerCluster& cluster : robot.project.clusters) {
+      clusters.push_back({cluster.name, cluster.markers});
+    }
+  }
+
+  static const StandingRobot& Robot() {
+    static const StandingRobot robot(kPostures);
+    return robot;
+  }
+
+  const LabelCluster& Cluster(const std::string& name) const {
+    for (const LabelCluster& cluster : clusters) {
+      if (cluster.name == name) return cluster;
+    }
+    throw std::runtime_error("no cluster " + name);
+  }
+
+  Recording Clean() const { return robot.Record(truth, options); }
+
+  /// From `posture` on the cluster is somewhere else on its link: its markers are taken from a
+  /// robot that carries them there, with the same noise.
+  void Push(const std::string& name, int posture, Recording& recording) const {
+    Eigen::VectorXd pushed = truth;
+    for (int m : Cluster(name).markers) {
+      for (int i = 0; i < robot.model.parameter_count(); ++i) {
+        const Parameter& parameter = robot.model.parameters[i];
+        if (parameter.marker == m) {
+          pushed.segment<3>(i) += kPush;
+          break;
+        }
+      }
+    }
+    const Recording other = robot.Record(pushed, options);
+    const int after = recording.posture_count() - posture;
+    for (int m : Cluster(name).markers) {
+      recording.markers.middleCols<3>(3 * m).bottomRows(after) =
+          other.markers.middleCols<3>(3 * m).bottomRows(after);
+    }
+  }
+
+  std::vector<Knock> Find(const Recording& recording) const {
+    return FindKnocks(robot.model, recording, robot.base, clusters, {});
+  }
+};
+
+void ExpectOneKnock(const std::vector<Knock>& knocks, const std::string& cluster, int last_before,
+                    int posture) {
+  ASSERT_EQ(knocks.size(), 1u) << (knocks.empty()
+                                       ? ""
+                                       : knocks[0].cluster + " " +
+                                             (knocks.size() > 1 ? knocks[1].cluster : ""));
+  EXPECT_EQ(knocks[0].cluster, cluster);
+  EXPECT_EQ(knocks[0].posture, posture);
+  EXPECT_EQ(knocks[0].last_before, last_before);
+  // Half a millimetre: robot errors that are not linear, and those that the step shares with
+  // others.
+  EXPECT_NEAR(knocks[0].distance, kPush.norm(), 0.15e-3);
+  EXPECT_GT(knocks[0].significance, 1.0);
+}
+
+// The left arm is seen in its own trial only, the second of five.
+TEST(Knock, OfAHandInTheMiddleOfItsTrialIsFound) {
+  const Experiment experiment(11);
+  Recording recording = experiment.Clean();
+  const int middle = kPostures + kPostures / 2;
+  experiment.Push("LHAND", middle, recording);
+  ExpectOneKnock(experiment.Find(recording), "LHAND", middle - 1, middle);
+}
+
+// The trunk is seen in the first three trials.
+TEST(Knock, OfTheTrunkBetweenTrialsIsFound) {
+  const Experiment experiment(12);
+  Recording recording = experiment.Clean();
+  experiment.Push("TRUNK", 2 * kPostures, recording);
+  ExpectOneKnock(experiment.Find(recording), "TRUNK", 2 * kPostures - 1, 2 * kPostures);
+}
+
+// All other markers seem to move with it, against the waist.
+TEST(Knock, OfTheWaistIsNotTakenForOneOfTheOthers) {
+  const Experiment experiment(13);
+  Recording recording = experiment.Clean();
+  const int middle = 3 * kPostures + kPostures / 2;
+  experiment.Push("WAIST", middle, recording);
+  ExpectOneKnock(experiment.Find(recording), "WAIST", middle - 1, middle);
+}
+
+TEST(Knock, OfTwoClustersAreBothFound) {
+  const Experiment experiment(14);
+  Recording recording = experiment.Clean();
+  experiment.Push("LTHIGH", 3 * kPostures + 5, recording);
+  experiment.Push("RHAND", 2 * kPostures + 6, recording);
+  std::vector<Knock> knocks = experiment.Find(recording);
+  ASSERT_EQ(knocks.size(), 2u);
+  if (knocks[0].cluster != "RHAND") std::swap(knocks[0], knocks[1]);
+  EXPECT_EQ(knocks[0].cluster, "RHAND");
+  EXPECT_EQ(knocks[0].posture, 2 * kPostures + 6);
+  EXPECT_EQ(knocks[1].cluster, "LTHIGH");
+  EXPECT_EQ(knocks[1].posture, 3 * kPostures + 5);
+}
+
+TEST(Knock, IsNotSeenWhereThereWasNone) {
+  for (std::uint64_t seed = 20; seed < 26; ++seed) {
+    const Experiment experiment(seed);
+    const std::vector<Knock> knocks = experiment.Find(experiment.Clean());
+    EXPECT_TRUE(knocks.empty()) << seed << " " << knocks[0].cluster << " " << knocks[0].distance;
+  }
+}
+
+// With the cluster taken as two the estimates are those of the clean recording; the noise is the
+// same, so that they differ by less than their uncertainty.
+TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {
+  const Experiment experiment(15);
+  const StandingRobot& robot = experiment.robot;
+  const Recording clean = experiment.Clean();
+  const CalibrationResult expected =
+      Calibrate(robot.model, clean, robot.base, ModelKind::kFull, {});
+  Recording recording = clean;
+  experiment.Push("LHAND", kPostures + kPostures / 2, recording);
+  ErrorModel model = robot.model;
+  SplitMarkers(experiment.Find(recording), model, recording);
+  ASSERT_EQ(model.marker_count(), robot.model.marker_count() + 3);
+  const BaseParameters base = FindBaseParameters(model, robot.project.identifiability);
+  const CalibrationResult result = Calibrate(model, recording, base, ModelKind::kFull, {});
+  EXPECT_EQ(result.termination, Termination::kConverged) << result.message;
+  EXPECT_LT(result.outliers.size(), 3u);
+  int compared = 0;
+  for (int i : robot.base.kept) {  // earlier parameters keep their places
+    const Parameter& parameter = robot.model.parameters[i];
+    ASSERT_EQ(model.parameters[i].name, parameter.name);
+    if (IsExternal(parameter.kind) || result.status[i] != ParameterStatus::kEstimated ||
+        expected.status[i] != ParameterStatus::kEstimated) {
+      continue;
+    }
+    ++compared;
+    EXPECT_LT(std::abs(result.delta[i] - expected.delta[i]), 3.0 * expected.sd[i])
+        << parameter.name;
+  }
+  EXPECT_GT(compared, 100);
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,73 @@
+// The command `simulate`: a recording folder as a laboratory would fill it.
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/io/experiment.hpp"
+#include "elastocal/io/output_files.hpp"
+#include "tests/run_program.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class Simulate : public testing::Test {
+ protected:
+  std::string Folder(const std::string& name) const { return (scratch_.path() / name).string(); }
+  ProgramResult Run(const std::string& folder, const std::string& more) const {
+    return RunProgram("simulate " + SourceFile("tests/robots/arm6_project.yaml").string() + " -o " +
+                      Folder(folder) + " --arm-postures 2 --random-postures 1 " + more);
+  }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(Simulate, WritesAFolderThatDependsOnTheSeedAlone) {
+  const ProgramResult one = Run("one", "--threads 1 --json " + Folder("one.json"));
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_NE(one.out.find("upper_random"), std::string::npos) << one.out;
+  EXPECT_EQ(Run("three", "--threads 3 --quiet").exit_code, 0);
+  EXPECT_EQ(Run("other", "--seed 2 --quiet").exit_code, 0);
+  const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  const Experiment experiment = ReadExperiment(Folder("one"), project);
+  ASSERT_EQ(experiment.trials.size(), 4u);
+  for (const TrialFiles& trial : experiment.trials) {
+    for (const auto& file : {trial.markers, trial.joints, trial.truth}) {
+      const auto name = file.filename();
+      EXPECT_EQ(ReadFile(file), ReadFile(scratch_.path() / "three" / name)) << name;
+      EXPECT_NE(ReadFile(file), ReadFile(scratch_.path() / "other" / name)) << name;
+    }
+  }
+  EXPECT_EQ(ReadFile(scratch_.path() / "one/truth.yaml"),
+            ReadFile(scratch_.path() / "three/truth.yaml"));
+  const auto json = nlohmann::json::parse(ReadFile(Folder("one.json")));
+  EXPECT_EQ(json.at("trials").size(), 4u);
+}
+
+TEST_F(Simulate, PlaysOneTrialWithTheOptionsGiven) {
+  const std::string settings = scratch_.Write("settings.yaml", "lag_s: 3\nmarker_noise_mm: 1\n");
+  const ProgramResult result = Run("one", "--trials upper_random --nominal --settings " + settings +
+                                              " --lag-s 4 --json " + Folder("one.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto json = nlohmann::json::parse(ReadFile(Folder("one.json")));
+  ASSERT_EQ(json.at("trials").size(), 1u);
+  EXPECT_EQ(json["trials"][0]["lag_s"], 4.0) << "the command line goes before the file";
+}
+
+TEST_F(Simulate, RefusesWhatIsNotThere) {
+  const auto refused = [&](const std::string& more, const std::string& part) {
+    const ProgramResult result = Run("none", more);
+    EXPECT_EQ(result.exit_code, 3) << more;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(Folder("none"))) << more;
+  };
+  refused("--trials upper_sin", "did you mean 'upper_sine'");
+  refused("--marker-noise-mm much", "--marker-noise-mm");
+  refused("--lost-marker NOSE", "NOSE");
+  refused("--free", "free");
+  refused("--time-step-s 0.003", "hundredth");
+}
+
+}  // namespace
+}  // namespace elastocal
