@@ -59,8 +59,8 @@ const Transform* FindKnown(const Placement* known, const Footing& footing) {
 class Predictor {
  public:
   Predictor(const ErrorModel& model, const Eigen::VectorXd& delta, const Recording& recording,
-            const CalibrationOptions& options, const Placement* known)
-      : model_(model), recording_(recording), geometry_(ApplyErrors(model, delta)) {
+            const CalibrationOptions& options, const Placement* known, FootingBy by)
+      : model_(model), recording_(recording), geometry_(ApplyErrors(model, delta)), by_(by) {
     placement_ = RegisterPlacement(model, recording, options.slip);
     PlaceWaist(Transform::Identity(), Vector6d::Zero(), geometry_);
     const auto all = [](int) { return true; };
@@ -94,15 +94,17 @@ class Predictor {
   Eigen::Matrix3Xd MarkersInWaist(int posture) const {
     return MarkerPositions(model_, geometry_, Q(posture), loads_[posture].joints);
   }
+  bool OnFoot(int leg, int marker) const {
+    return model_.tree.links[model_.markers[marker].link].body ==
+           model_.tree.links[model_.legs[leg].link].body;
+  }
   /// By the footing; those on the foot itself without what is between it and the waist.
   Eigen::Matrix3Xd MarkersInFoot(int leg, int posture, const Transform& T_foot_waist) const {
     Eigen::Matrix3Xd positions = T_foot_waist * MarkersInWaist(posture);
     if (leg < 0) return positions;
     const int foot = model_.legs[leg].link;
     for (int m = 0; m < model_.marker_count(); ++m) {
-      const bool on_foot =
-          model_.tree.links[model_.markers[m].link].body == model_.tree.links[foot].body;
-      if (on_foot) positions.col(m) = PlaceMarker(model_, geometry_, m, foot).position;
+      if (OnFoot(leg, m)) positions.col(m) = PlaceMarker(model_, geometry_, m, foot).position;
     }
     return positions;
   }
@@ -159,6 +161,7 @@ class Predictor {
   const ErrorModel& model_;
   const Recording& recording_;
   Geometry geometry_;
+  FootingBy by_;
   Placement placement_;
   std::vector<PostureLoads> loads_;
 };
@@ -167,9 +170,9 @@ class Predictor {
 
 Prediction Predict(const ErrorModel& model, const Eigen::VectorXd& delta,
                    const Recording& recording, const CalibrationOptions& options,
-                   const Placement* footings) {
+                   const Placement* footings, FootingBy by) {
   if (recording.trials.empty()) return {ResidualNorms(model, recording, delta, options), {}};
-  return Predictor(model, delta, recording, options, footings).Result();
+  return Predictor(model, delta, recording, options, footings, by).Result();
 }
 
 }  // namespace elastocal

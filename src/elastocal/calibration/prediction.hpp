@@ -17,6 +17,13 @@ struct Prediction {
   Placement placement;
 };
 
+/// By which markers a footing is placed.
+enum class FootingBy {
+  kAllMarkers,   ///< of the trial: what explains the trial best
+  kFootMarkers,  ///< those on the foot alone: where the waist is with respect to its foot then
+                 ///< shows
+};
+
 /// Predicts the markers of a recording by a model with errors `delta`, as a user of the robot
 /// would: nothing is fitted to a single posture that the robot does not know itself.
 ///
@@ -27,6 +34,6 @@ struct Prediction {
 /// the waist is where T0 says.
 Prediction Predict(const ErrorModel& model, const Eigen::VectorXd& delta,
                    const Recording& recording, const CalibrationOptions& options,
-                   const Placement* footings = nullptr);
+                   const Placement* footings = nullptr, FootingBy by = FootingBy::kAllMarkers);
 
 }  // namespace elastocal

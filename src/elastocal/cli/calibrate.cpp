@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 #include <memory>
 
@@ -30,11 +31,16 @@ Excitation ExcitationOf(const Session& session, const CalibrationResult& result)
 /// On trials for validation where there are any, else on those of the estimate.
 void AssessWaist(const Session& session, CalibrationRun& run) {
   run.waist_error.fill(std::numeric_limits<double>::quiet_NaN());
+  const Recording& recording = run.held_out ? session.validation : session.recording;
+  const auto& truth = run.held_out ? session.validation_truth : session.recording_truth;
+  const auto known = [](const std::optional<Transform>& waist) { return waist.has_value(); };
+  if (std::none_of(truth.begin(), truth.end(), known)) return;
   for (ModelKind kind : run.comparison.kinds) {
-    const auto k = static_cast<int>(kind);
-    run.waist_error[k] =
-        run.held_out ? WaistError(run.held_out->predictions[k].placement, session.validation_truth)
-                     : WaistError(run.comparison.predictions[k].placement, session.recording_truth);
+    const CalibrationResult& result = run.comparison.results[static_cast<int>(kind)];
+    const Prediction prediction =
+        Predict(result.model, result.delta, recording, session.project.calibration, nullptr,
+                FootingBy::kFootMarkers);
+    run.waist_error[static_cast<int>(kind)] = WaistError(prediction.placement, truth);
   }
 }
 

@@ -25,8 +25,8 @@ struct TruthOptions {
   double leg_offset_sd = 0.5 * M_PI / 180.0;  ///< rad
   double length_sd = 1.2e-3;                  ///< m, each of three directions
   double angle_sd = 0.3 * M_PI / 180.0;       ///< rad, each of three axes
-  double upper_geometry_scale = 1.0;  ///< factor on all of the above, of head, arms and trunk
-  double leg_geometry_scale = 1.0;    ///< the same, of the legs
+  double upper_geometry_scale = 0.7;  ///< factor on all of the above, of head, arms and trunk
+  double leg_geometry_scale = 1.6;    ///< the same, of the legs
   double marker_sd = 3e-3;            ///< of a marker's coordinate on its link, m
 
   // Elasticity. Joint springs about the joints' axes: stiffness log-uniform between two values,
@@ -34,7 +34,7 @@ struct TruthOptions {
   double upper_stiffness_least = 0.3e5, upper_stiffness_most = 5e5;
   double leg_stiffness_least = 2e5, leg_stiffness_most = 6e5;
   double upper_elasticity_scale = 1.0;  ///< factor on the compliances; 0: rigid
-  double leg_elasticity_scale = 1.0;    ///< of joints and links
+  double leg_elasticity_scale = 2.0;    ///< of joints and links
   /// Compliance of a leg's links, each half way between its joints, about and along its own axes
   /// [m/N x 3, rad/(N.m) x 3]: of the root link between its origin and the hip, of the first half
   /// of the leg's links, and of the rest. Each entry is multiplied by a factor drawn uniformly

@@ -87,21 +87,25 @@ HeldOut JudgeOnTrials(const ModelComparison& comparison, const Recording& record
 }
 
 double WaistError(const Placement& predicted, const std::vector<std::optional<Transform>>& truth) {
-  std::vector<std::size_t> postures;
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  std::vector<std::size_t> free, standing;
   for (std::size_t i = 0; i < truth.size() && i < predicted.footing.size(); ++i) {
+    if (!truth[i] || !predicted.T_ref_waist[i].matrix().allFinite()) continue;
     const int footing = predicted.footing[i];
-    if (!truth[i] || footing < 0 || predicted.footings[footing].leg < 0) continue;
-    postures.push_back(i);
+    if (footing < 0) free.push_back(i);
+    if (footing >= 0 && predicted.footings[footing].leg >= 0) standing.push_back(i);
+  }
+  if (standing.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::size_t>& reference = free.empty() ? standing : free;
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  for (std::size_t i : reference) {
     shift += predicted.T_ref_waist[i].inverse() * truth[i]->translation();
   }
-  if (postures.size() < 2) return std::numeric_limits<double>::quiet_NaN();
-  shift /= static_cast<double>(postures.size());
+  shift /= static_cast<double>(reference.size());
   double squares = 0.0;
-  for (std::size_t i : postures) {
+  for (std::size_t i : standing) {
     squares += (predicted.T_ref_waist[i] * shift - truth[i]->translation()).squaredNorm();
   }
-  return std::sqrt(squares / static_cast<double>(postures.size()));
+  return std::sqrt(squares / static_cast<double>(standing.size()));
 }
 
 }  // namespace elastocal

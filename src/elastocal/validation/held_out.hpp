@@ -24,10 +24,11 @@ struct HeldOut {
 HeldOut JudgeOnTrials(const ModelComparison& comparison, const Recording& recording,
                       const CalibrationOptions& options);
 
-/// How far the waist is from where a model puts it, in postures on one foot: root mean square over
-/// them of the distance between true and predicted origin, m, after the best constant displacement
-/// of one frame in the other (where in the waist its frame is, is a convention). NaN for fewer than
-/// two such postures.
+/// How far the waist is from where a model puts it on its standing foot, in postures on one foot:
+/// root mean square over them of the distance between true and predicted origin of the root link,
+/// m. `predicted` with FootingBy::kFootMarkers. Where in the waist the model's frame is, is a
+/// convention: its displacement from the true one is taken from postures on two feet, where the
+/// waist's own markers place it, or, without any, from the same postures. NaN for fewer than two.
 double WaistError(const Placement& predicted, const std::vector<std::optional<Transform>>& truth);
 
 }  // namespace elastocal
