@@ -189,6 +189,28 @@ double Tolerance(const Fit& fit, bool robust) {
 
 double Change(double before, double after) { return std::abs(std::log(after / before)); }
 
+/// The residuals as last evaluated; gives the number of those that take part.
+double TakeResiduals(const BodyResiduals& body, Fit& fit) {
+  fit.meanings = body.meanings();
+  fit.residuals.clear();
+  double rows = 0.0;
+  for (std::size_t block = 0; block < fit.meanings.size(); ++block) {
+    const auto& shape = body.residual_blocks[block];
+    Eigen::VectorXd& residual = fit.residuals.emplace_back(shape.size);
+    body.Residual(static_cast<int>(block),
+                  Eigen::Map<Eigen::VectorXd>(residual.data(), residual.size()));
+    if (shape.active) rows += shape.size;
+  }
+  return rows;
+}
+
+void UpdateResiduals(const FitProblem& problem, const Selection& selection,
+                     const std::vector<int>& free, Fit& fit) {
+  Residuals residuals(problem, selection, free, fit);
+  residuals.body.Evaluate(residuals.body.Start(), false);
+  TakeResiduals(residuals.body, fit);
+}
+
 }  // namespace
 
 Selection SelectAll(const Recording& recording) {
@@ -230,7 +252,14 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
   Fit fit = start;
   for (int update = 0; update < updates; ++update) {
     SolveOnce(problem, selection, free, robust, kRoughTolerance, fit);
-    UpdatePosterior(problem, selection, free, fit);
+    // Of the robust fit to trials only the residuals are new from step to step: what of them the
+    // fit explains hardly changes, and takes longest.
+    const bool same = robust && !fit.placement.empty() && update > 1;
+    if (same) {
+      UpdateResiduals(problem, selection, free, fit);
+    } else {
+      UpdatePosterior(problem, selection, free, fit);
+    }
     const Noise noise = EstimateNoise(problem, selection, fit, robust);
     const PriorScale scale =
         problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
@@ -241,7 +270,10 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                                     Change(fit.prior_scale.lengths, scale.lengths)});
     fit.noise = noise;
     fit.prior_scale = scale;
-    if (change < Tolerance(fit, robust)) return fit;
+    if (change < Tolerance(fit, robust)) {
+      if (same) UpdatePosterior(problem, selection, free, fit);
+      return fit;
+    }
   }
   fit.settled = fit.settled && updates < kMaxUpdates;
   return fit;
@@ -266,16 +298,7 @@ void UpdatePosterior(const FitProblem& problem, const Selection& selection,
   Residuals residuals(problem, selection, parameters, fit);
   fit.posterior = ComputePosterior(problem.model, residuals.body, parameters,
                                    residuals.body.Start(), residuals.prior);
-  fit.meanings = residuals.body.meanings();
-  fit.residuals.clear();
-  double rows = 0.0;
-  for (std::size_t block = 0; block < fit.meanings.size(); ++block) {
-    const auto& shape = residuals.body.residual_blocks[block];
-    Eigen::VectorXd& residual = fit.residuals.emplace_back(shape.size);
-    residuals.body.Residual(static_cast<int>(block),
-                            Eigen::Map<Eigen::VectorXd>(residual.data(), residual.size()));
-    if (shape.active) rows += shape.size;
-  }
+  const double rows = TakeResiduals(residuals.body, fit);
   fit.degrees_of_freedom = problem.options.marker_sd > 0.0
                                ? std::numeric_limits<double>::infinity()
                                : std::max(1.0, rows - fit.posterior.effective_parameters);

@@ -11,7 +11,14 @@ Eigen::Vector3d MarkerPosition(const Recording& recording, int posture, int mark
 }
 
 Recording SelectPostures(const Recording& recording, const std::vector<int>& postures) {
-  Recording selected = recording;
+  Recording
+      selected;  // not a copy of the whole: postures are taken one by one from long recordings
+  selected.source = recording.source;
+  selected.marker_names = recording.marker_names;
+  selected.joints_not_recorded = recording.joints_not_recorded;
+  selected.wrench_links = recording.wrench_links;
+  selected.trials = recording.trials;
+  selected.gravity = recording.gravity;
   selected.q = recording.q(postures, Eigen::all);
   selected.markers = recording.markers(postures, Eigen::all);
   if (recording.torques.rows() > 0) selected.torques = recording.torques(postures, Eigen::all);
