@@ -1,6 +1,7 @@
 // The whole body at once, standing on its feet: recovery of truths from the estimator's own model.
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -110,6 +111,95 @@ TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
         << parameter.name;
   }
   std::printf("largest error %.1e of the prior's sd\n", largest);
+}
+
+/// The robot and what it records with usual noise, 16 postures a trial.
+class StandingTest : public ::testing::Test {
+ protected:
+  Recording Record() const {
+    return robot_.Record(
+        truth_,
+        {.marker_sd = 5e-5, .torque_sd = 0.1, .torque_sensors = robot_.project.torque_sensors});
+  }
+  CalibrationResult Estimate(const Recording& recording) const {
+    return Calibrate(robot_.model, recording, robot_.base, ModelKind::kFull, {});
+  }
+  /// The largest difference of a joint's parameter or a compliance, in its standard deviations.
+  double LargestDifference(const CalibrationResult& a, const CalibrationResult& b) const {
+    double largest = 0.0;
+    for (int i : robot_.base.kept) {
+      if (IsExternal(robot_.model.parameters[i].kind)) continue;
+      if (a.status[i] != ParameterStatus::kEstimated) continue;
+      largest = std::max(largest, std::abs(a.delta[i] - b.delta[i]) / a.sd[i]);
+    }
+    return largest;
+  }
+
+  StandingRobot robot_{16};
+  Eigen::VectorXd truth_ = robot_.DrawTruth(4);
+};
+
+TEST_F(StandingTest, AFootThatSlippedIsNamedAndStandsElsewhereFromThereOn) {
+  const Recording clean = Record();
+  Recording slipped = clean;
+  const int trial = 3;  // the left leg swings, the robot stands on the right one
+  ASSERT_EQ(clean.trials[trial].name, "leg_left");
+  int posture = 0;
+  while (clean.trial[posture] != trial) ++posture;
+  posture += 9;
+  for (int i = posture; clean.trial[i] == trial; ++i) {
+    for (int m = 0; m < clean.marker_count(); ++m) slipped.markers(i, 3 * m) += 3e-3;
+  }
+  const CalibrationResult result = Estimate(slipped);
+  ASSERT_EQ(result.slips.size(), 1u);
+  EXPECT_EQ(result.slips[0].trial, trial);
+  EXPECT_EQ(result.slips[0].posture, posture);
+  EXPECT_NEAR(result.slips[0].distance, 3e-3, 2e-4);
+  EXPECT_EQ(robot_.model.legs[result.slips[0].leg].name, "leg_right");
+  const CalibrationResult without = Estimate(clean);
+  EXPECT_TRUE(without.slips.empty());
+  EXPECT_LT(LargestDifference(result, without), 3.0);
+}
+
+TEST_F(StandingTest, ATorqueSensorLeftOutIsReplacedByStatics) {
+  const Recording clean = Record();
+  Recording without_knee = clean;
+  const int knee = FindJoint(robot_.project.tree, "leg_right_4_joint");
+  without_knee.torques.col(knee).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const CalibrationResult result = Estimate(without_knee);
+  EXPECT_EQ(result.loads.without_torques, std::vector<int>{knee});
+  EXPECT_LT(LargestDifference(result, Estimate(clean)), 3.0);
+}
+
+// A straight knee makes the leg's Jacobian singular: its torques say nothing about the load.
+TEST_F(StandingTest, StraightKneesAreReportedAndTheirLoadsTakenFromStatics) {
+  for (const char* side : {"left", "right"}) {
+    const std::string leg = std::string("leg_") + side;
+    const auto coordinate = [&](const char* joint) {
+      return robot_.project.tree.joints[FindJoint(robot_.project.tree, leg + joint)].coordinate;
+    };
+    for (PlayedTrial& played : robot_.trials) {
+      if (played.trial.name == leg) continue;
+      played.q.col(coordinate("_3_joint")).setConstant(-0.01);
+      played.q.col(coordinate("_4_joint")).setConstant(0.02);
+      played.q.col(coordinate("_5_joint")).setConstant(-0.01);
+    }
+  }
+  const CalibrationResult result = Estimate(Record());
+  EXPECT_EQ(result.termination, Termination::kConverged);
+  EXPECT_EQ(result.loads.badly_conditioned.size(), 32u);  // all of both leg trials
+  for (int i : robot_.base.kept) {
+    const Parameter& parameter = robot_.model.parameters[i];
+    if (parameter.kind != ParameterKind::kBaseForce &&
+        parameter.kind != ParameterKind::kBaseMoment) {
+      continue;
+    }
+    if (result.status[i] == ParameterStatus::kUnsupported) {
+      EXPECT_EQ(result.delta[i], 0.0) << parameter.name;
+    } else {
+      EXPECT_LT(std::abs(result.delta[i] - truth_[i]), 4.0 * result.sd[i]) << parameter.name;
+    }
+  }
 }
 
 }  // namespace

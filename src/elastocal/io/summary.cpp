@@ -104,9 +104,9 @@ void AddTrials(const CalibrationRun& run, Json& json) {
                               {"samples", trial.samples},
                               {"clock", ClockJson(trial)},
                               {"findings", Findings(trial)}});
-    if (calibration && trial.refused.empty() && !json.contains("clock")) {
-      json["clock"] = ClockJson(trial);  // of the first; each trial has its own above
-    }
+    const bool better = !json.contains("clock") ||
+                        (json["clock"]["drift_ppm"].is_null() && trial.clock.drift_estimated);
+    if (calibration && trial.refused.empty() && better) json["clock"] = ClockJson(trial);
   }
   json["samples"] = samples;
   if (run.held_out) {
