@@ -125,7 +125,9 @@ void AddValidate(CLI::App& app, Action& action) {
   command->add_option("project", options->project, "Project file (YAML)")->required();
   command->add_option("--calibration", options->calibration, "calibration.yaml of a calibration")
       ->required();
-  command->add_option("--recording", options->recording, "Table of static postures (CSV)")
+  command
+      ->add_option("--recording", options->recording,
+                   "Table of static postures (CSV), or a folder with experiment.yaml")
       ->required();
   AddCommonOptions(*command, options->common);
   command->footer(
