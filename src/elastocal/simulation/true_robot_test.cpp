@@ -18,6 +18,14 @@ double Rms(const std::vector<double>& values) {
          std::sqrt(static_cast<double>(values.size()));
 }
 
+/// Defaults without the factors on all errors of one kind.
+TruthOptions Unscaled() {
+  TruthOptions options;
+  options.upper_geometry_scale = options.leg_geometry_scale = 1.0;
+  options.upper_elasticity_scale = options.leg_elasticity_scale = 1.0;
+  return options;
+}
+
 TEST(FindLegs, AreTheChainsDownToTheFloor) {
   const Biped biped = MakeBiped();
   const std::vector<Leg> legs = FindLegs(biped.tree, biped.chains);
@@ -38,7 +46,7 @@ TEST(FindLegs, AnArmOnATableHasNone) {
 TEST(DrawTrueRobot, ErrorsHaveTheirSizes) {
   const TrueRobot nominal = Nominal();
   std::vector<double> leg_offsets, upper_offsets, shifts, turns, markers, masses;
-  TruthOptions options;
+  TruthOptions options = Unscaled();
   for (options.seed = 1; options.seed <= 100; ++options.seed) {
     const TrueRobot robot = DrawTrueRobot(nominal, options);
     for (std::size_t k = 0; k < robot.tree.joints.size(); ++k) {
@@ -73,7 +81,7 @@ TEST(DrawTrueRobot, ErrorsHaveTheirSizes) {
 
 TEST(DrawTrueRobot, ScalesAndSwitchesOffWhatTheyName) {
   const TrueRobot nominal = Nominal();
-  TruthOptions options;
+  TruthOptions options = Unscaled();
   const TrueRobot before = DrawTrueRobot(nominal, options);
   options.leg_geometry_scale = 2.0;
   options.upper_elasticity_scale = 0.0;
@@ -90,7 +98,7 @@ TEST(DrawTrueRobot, ScalesAndSwitchesOffWhatTheyName) {
 }
 
 TEST(DrawTrueRobot, LinksOfLegsGiveWayAndNoOthers) {
-  const TruthOptions options;
+  const TruthOptions options = Unscaled();
   const TrueRobot robot = DrawTrueRobot(Nominal(), options);
   EXPECT_TRUE(robot.link_compliance[0].isZero());
   EXPECT_TRUE(robot.link_compliance[1].isZero());
