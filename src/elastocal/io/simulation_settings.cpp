@@ -85,7 +85,8 @@ void AddSensors(SensorOptions& sensors, Settings& list) {
        {l, "least_lag_s", &sensors.least_lag_s, 1, -1e3, 1e3,
         "How far the robot's clock is behind the cameras': from"},
        {l, "largest_lag_s", &sensors.largest_lag_s, 1, -1e3, 1e3, "to"},
-       {l, "drift_ppm", &sensors.drift_sd_ppm, 1, 0, 1e5, "Drift of its clock"},
+       {l, "drift_ppm", &sensors.drift_size_ppm, 1, 0, 1e5,
+        "Drift of its clock, about, fast or slow"},
        {l, "encoder_bits", &sensors.encoder_bits, 1, 0, 40, "A turn; 0: not quantised"},
        {l, "torque_noise_nm", &sensors.torque_noise_sd, 1, 0, 1000, "Noise of torque sensors"}});
 }

@@ -128,7 +128,8 @@ SensorTruth DrawClock(const SensorOptions& options, const Faults& faults,
   Random drift(StreamSeed(options.seed, "drift"));
   truth.lag_s = lag.Uniform(options.least_lag_s, options.largest_lag_s);
   if (faults.lag_s) truth.lag_s = *faults.lag_s;
-  truth.drift_ppm = drift.Normal(options.drift_sd_ppm);
+  const double sign = drift.Index(2) == 0 ? -1.0 : 1.0;
+  truth.drift_ppm = sign * drift.Uniform(0.5, 1.5) * options.drift_size_ppm;
   return truth;
 }
 

@@ -29,9 +29,10 @@ struct SensorOptions {
   // Joint log: its clock, robot time = (1 + 1e-6 drift) camera time - lag.
   double log_rate_hz = 100.0;
   double least_lag_s = 2.0, largest_lag_s = 4.0;  ///< drawn uniformly for each trial
-  double drift_sd_ppm = 30.0;                     ///< one draw for the experiment
-  int encoder_bits = 19;                          ///< a turn; 0: not quantised
-  double torque_noise_sd = 0.2;                   ///< N.m or N
+  /// Size of the drift: half to one and a half of it, fast or slow; one draw for the experiment.
+  double drift_size_ppm = 30.0;
+  int encoder_bits = 19;         ///< a turn; 0: not quantised
+  double torque_noise_sd = 0.2;  ///< N.m or N
 };
 
 /// Faults that are put in on purpose; none by default.

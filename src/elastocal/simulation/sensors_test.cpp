@@ -128,7 +128,7 @@ TEST_F(Sensors, GapsAndSwapsComeAsOftenAsTold) {
 
 TEST_F(Sensors, TheLogRunsOnItsOwnClock) {
   options_.least_lag_s = options_.largest_lag_s = 2.5;
-  options_.drift_sd_ppm = 1000.0;
+  options_.drift_size_ppm = 1000.0;
   const RawTrial raw = Measured();
   EXPECT_EQ(raw.truth.lag_s, 2.5);
   EXPECT_NE(raw.truth.drift_ppm, 0.0);

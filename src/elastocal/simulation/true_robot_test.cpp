@@ -18,7 +18,7 @@ double Rms(const std::vector<double>& values) {
          std::sqrt(static_cast<double>(values.size()));
 }
 
-/// The sizes as the options have them, without the factors that fit the paper's errors.
+/// Defaults without the factors on all errors of one kind.
 TruthOptions Unscaled() {
   TruthOptions options;
   options.upper_geometry_scale = options.leg_geometry_scale = 1.0;

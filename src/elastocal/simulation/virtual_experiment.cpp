@@ -36,7 +36,7 @@ void SwitchOffImperfections(VirtualExperimentOptions& options) {
   SensorOptions& sensors = options.sensors;
   sensors.marker_noise_sd = sensors.gaps_per_minute = 0.0;
   sensors.outlier_share = sensors.swaps_per_minute = 0.0;
-  sensors.least_lag_s = sensors.largest_lag_s = sensors.drift_sd_ppm = 0.0;
+  sensors.least_lag_s = sensors.largest_lag_s = sensors.drift_size_ppm = 0.0;
   sensors.encoder_bits = 0;
   sensors.torque_noise_sd = 0.0;
   options.faults = {};
