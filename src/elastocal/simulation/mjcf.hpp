@@ -48,8 +48,7 @@ struct PhysicsOptions {
 /// inertia of its own (an "inerter", MuJoCo's armature: it resists relative acceleration, has no
 /// weight, and does not move the equilibrium) of k t_i^2 and a damping of k t_d. With t_i = 10 ms
 /// and t_d = 20 ms every spring alone is critically damped, steps up to t_i are stable whatever the
-/// stiffness, and deflections follow the load within some tens of milliseconds. The slowest
-/// oscillation (the robot on its leg, 3 to 6 Hz) dies away within a second.
+/// stiffness, and deflections follow the load within some tens of milliseconds.
 struct MjcfModel {
   std::string xml;
   std::vector<Transform> T_world_foot;              ///< where the soles of `support` stand
