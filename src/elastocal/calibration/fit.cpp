@@ -18,7 +18,7 @@ constexpr double kAbsurdSd = 0.1;           // rad or m
 constexpr double kRoughTolerance = 1e-8;    // of the cost, while noise and prior are being found
 constexpr double kHyperTolerance = 1e-3;    // of noise and prior scale, relative ...
 constexpr double kTrialTolerance = 1e-2;    // ... and of trials, whose constraints take longer
-constexpr int kTrialIterations = 3;        // of a solve whose weights will change anyway
+constexpr int kTrialIterations = 3;         // of a solve whose weights will change anyway
 constexpr int kMaxPolishing = 6;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 
