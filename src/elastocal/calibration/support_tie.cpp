@@ -20,13 +20,22 @@ TieResidual EvaluateTie(const SupportTie& tie) {
   result.residual.tail<3>() = rotation;
 
   const Eigen::Matrix3d J = InverseLeftJacobian(rotation);
-  result.by_waist << -R_foot_ref * Skew(p_waist), R_foot_ref, J * R_foot_ref,
-      Eigen::Matrix3d::Zero();
-  result.by_leg << -R_predicted_ref * Skew(p_waist), R_predicted_ref, J * R_foot_ref,
-      Eigen::Matrix3d::Zero();
-  result.by_foot << -Eigen::Matrix3d::Identity(), Skew(seen), Eigen::Matrix3d::Zero(), -J;
-  result.by_deflection << -Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(),
-      Eigen::Matrix3d::Zero(), -J * R_turned * LeftJacobian(-lean);
+  const auto set = [](Matrix6d& by, const Eigen::Matrix3d& position_first,
+                      const Eigen::Matrix3d& position_second, const Eigen::Matrix3d& rotation_first,
+                      const Eigen::Matrix3d& rotation_second) {
+    by.topLeftCorner<3, 3>() = position_first;
+    by.topRightCorner<3, 3>() = position_second;
+    by.bottomLeftCorner<3, 3>() = rotation_first;
+    by.bottomRightCorner<3, 3>() = rotation_second;
+  };
+  const Eigen::Matrix3d zero = Eigen::Matrix3d::Zero();
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d lever = Skew(p_waist);
+  const Eigen::Matrix3d turned = J * R_foot_ref;
+  set(result.by_waist, -R_foot_ref * lever, R_foot_ref, turned, zero);
+  set(result.by_leg, -R_predicted_ref * lever, R_predicted_ref, turned, zero);
+  set(result.by_foot, -one, Skew(seen), zero, -J);
+  set(result.by_deflection, -one, zero, zero, -J * R_turned * LeftJacobian(-lean));
   return result;
 }
 
