@@ -161,12 +161,26 @@ VirtualExperiment Prepare(const SimulateOptions& options, const Project& project
       robot, settings, PlanGivenMotion(robot.tree, robot.chains, motion, settings.motion, given));
 }
 
+/// No file that is written may replace one that was read.
+void CheckSimulated(const SimulateOptions& options, const Project& project,
+                    const VirtualExperiment& experiment, const std::vector<std::size_t>& chosen) {
+  const std::filesystem::path folder = options.output;
+  std::vector<std::filesystem::path> outputs = {options.common.json_file,
+                                                folder / "experiment.yaml", folder / "truth.yaml"};
+  for (std::size_t i : chosen) {
+    for (const char* end : {".tsv", ".csv", "_waist.csv"}) {
+      outputs.push_back(folder / (experiment.trials[i].name + end));
+    }
+  }
+  CheckOutputs(outputs,
+               {options.project, project.urdf, options.settings, options.postures, options.motion});
+}
+
 int Simulate(const SimulateOptions& options) {
   const Project project = ReadProject(options.project);
-  CheckOutputs({options.common.json_file},
-               {options.project, project.urdf, options.settings, options.postures, options.motion});
   Played play{Prepare(options, project)};
   const std::vector<std::size_t> chosen = Chosen(play.experiment, options.trials);
+  CheckSimulated(options, project, play.experiment, chosen);
   if (options.matched) {
     play.matched = Match(play.experiment, project, chosen);
     play.experiment = play.matched->plan;
