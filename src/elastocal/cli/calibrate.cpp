@@ -58,6 +58,7 @@ CalibrationRun Calculate(const Session& session, const CalibrateOptions& options
                       TerminalProgress("cross-validation", options.common.quiet));
   }
   run.trials = session.trials;
+  run.knocks = session.knocks;
   if (session.validation.posture_count() > 0) {
     run.held_out = JudgeOnTrials(run.comparison, session.validation, settings);
   }
