@@ -1,0 +1,110 @@
+import * as THREE from 'three';
+import {STLLoader} from 'three/examples/jsm/loaders/STLLoader.js';
+import URDFLoader from 'urdf-loader';
+
+const BONE = 0x8a8f98;
+
+/** The meshes that came along, by the file name that the URDF has; others are left out. */
+function meshLoader(meshes) {
+  return (path, manager, done) => {
+    const base64 = meshes[path] ?? meshes[path.replace(/^\.?\//, '')];
+    if (base64 === undefined) return done(null, new Error(`${path} is not in the report`));
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    return done(new THREE.Mesh(new STLLoader().parse(bytes.buffer), new THREE.MeshLambertMaterial()));
+  };
+}
+
+/** A rod to each joint of a link, so that a robot without shapes can be seen as well. */
+function addBones(link) {
+  for (const joint of link.children.filter((child) => child.isURDFJoint)) {
+    const length = joint.position.length();
+    if (length < 1e-3) continue;
+    const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.012, 0.012, length, 10),
+                               new THREE.MeshLambertMaterial({color: BONE}));
+    rod.position.copy(joint.position).multiplyScalar(0.5);
+    rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), joint.position.clone().normalize());
+    link.add(rod);
+  }
+}
+
+const meshesOf = (object) => {
+  const meshes = [];
+  const visit = (node) => {
+    if (node.isMesh) meshes.push(node);
+    for (const child of node.children) if (!child.isURDFJoint) visit(child);
+  };
+  visit(object);
+  return meshes;
+};
+
+/**
+ * The robot as the URDF describes it: boxes, cylinders, spheres, and meshes that are given
+ * (`meshes`: STL as base64, by file name). z is up in its root link, in metres and radians.
+ */
+export class Robot {
+  constructor(urdf, meshes = {}) {
+    const loader = new URDFLoader();
+    loader.parseCollision = false;
+    loader.loadMeshCb = meshLoader(meshes);
+    this.object = loader.parse(urdf);
+    this.links = this.object.links;
+    const drawn = Object.values(this.links).filter((link) => meshesOf(link).length > 0).length;
+    for (const link of Object.values(this.links)) {
+      if (meshesOf(link).length === 0 && drawn * 2 < Object.keys(this.links).length) addBones(link);
+      for (const mesh of meshesOf(link)) {
+        const color = mesh.material.color?.clone() ?? new THREE.Color(BONE);
+        mesh.material = new THREE.MeshLambertMaterial({color});
+      }
+    }
+  }
+
+  /** Sets joints by name; names that the robot has not are passed over. */
+  setPosture(names, values) {
+    names.forEach((name, i) => {
+      const joint = this.object.joints[name];
+      if (joint && Number.isFinite(values[i])) joint.setJointValue(values[i]);
+    });
+  }
+
+  /** Puts the root link at a pose: position and quaternion x, y, z, w. */
+  setRoot(position, quaternion) {
+    this.object.position.set(...position);
+    this.object.quaternion.set(...quaternion);
+    this.object.updateMatrixWorld(true);
+  }
+
+  /** Puts the robot so that a link lies level on the ground at the origin of the plan. */
+  standOn(linkName) {
+    this.setRoot([0, 0, 0], [0, 0, 0, 1]);
+    const link = this.links[linkName];
+    if (!link) return;
+    const inverse = link.matrixWorld.clone().invert();
+    const position = new THREE.Vector3();
+    const quaternion = new THREE.Quaternion();
+    inverse.decompose(position, quaternion, new THREE.Vector3());
+    this.setRoot(position.toArray(), quaternion.toArray());
+  }
+
+  /** Colours the links on which the robot stands. */
+  tint(linkNames, colour) {
+    for (const mesh of this.tinted ?? []) mesh.material.emissive.setHex(0);
+    this.tinted = linkNames.flatMap((name) => {
+      let link = this.links[name];
+      // A sole often has no shape of its own; then that of the link that it is fixed to.
+      while (link && meshesOf(link).length === 0) link = link.parent?.parent?.isURDFLink ? link.parent.parent : null;
+      return link ? meshesOf(link) : [];
+    });
+    for (const mesh of this.tinted) mesh.material.emissive.set(colour);
+  }
+
+  bounds() {
+    const box = new THREE.Box3();
+    for (const link of Object.values(this.links)) {
+      for (const mesh of meshesOf(link)) {
+        mesh.geometry.computeBoundingBox();
+        box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrixWorld));
+      }
+    }
+    return box.isEmpty() ? box.setFromObject(this.object) : box;
+  }
+}
