@@ -11,5 +11,6 @@ export default defineConfig({
     alias: {'three/examples/jsm/loaders/ColladaLoader.js': here('src/viewer/no_collada.js')},
     dedupe: ['three'],
   },
+  esbuild: {charset: 'ascii'},  // the page becomes string literals of C++
   build: {target: 'es2021', chunkSizeWarningLimit: 2000, reportCompressedSize: false},
 });

@@ -42,5 +42,6 @@ void AddValidate(CLI::App& app, Action& action);
 void AddCompare(CLI::App& app, Action& action);
 void AddDemo(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);
+void AddReport(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli
