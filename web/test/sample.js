@@ -20,7 +20,7 @@ function scene(name, kind, count, step) {
   const measured = qs.flatMap((q, i) => markerPositions(q).map((x, k) => i === 1 && k < 3 ? NaN : x));
   const off = (mm) => float32(measured.map((x) => x + 1e-3 * mm * noise()));
   return {
-    name, kind, total: 10 * count, support: ['sole'], time_s: times, q: float32(qs.flat()),
+    name, kind, total: 10 * count, support: ['sole'], markers: markers.map((_, i) => i), time_s: times, q: float32(qs.flat()),
     waist: float32(qs.flatMap(() => [...WAIST, 0, 0, 0, 1])), measured: float32(measured),
     predicted: {uncalibrated: off(ERRORS_MM[0]), full: off(ERRORS_MM[3])},
   };

@@ -15,3 +15,13 @@ export function floats(base64) {
 
 /** Signed bytes from base64. */
 export const signedBytes = (base64) => new Int8Array(bytes(base64 ?? '').buffer);
+
+/** The square matrix of coefficients, from the bytes of its lower triangle, row by row. */
+export function unpackTriangle(values, size) {
+  const matrix = Array.from({length: size}, () => new Float32Array(size));
+  let k = 0;
+  for (let i = 0; i < size; ++i) {
+    for (let j = 0; j <= i; ++j, ++k) matrix[i][j] = matrix[j][i] = values[k] / 100;
+  }
+  return matrix;
+}

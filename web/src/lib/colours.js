@@ -19,10 +19,11 @@ export const SERIES = [
   OKABE_ITO.sky,
 ];
 
-// Cividis (Nuñez, Anderton and Renslow 2018), nine of its colours: from low to high.
-const CIVIDIS = [
-  [0, 34, 78], [29, 52, 109], [66, 78, 108], [95, 103, 111], [124, 123, 120], [155, 146, 115],
-  [188, 171, 103], [222, 197, 82], [254, 232, 56],
+// Plasma (van der Walt and Smith), from above its darkest colours: even steps of lightness, which
+// every eye sees.
+const PLASMA = [
+  [42, 5, 147], [92, 1, 166], [135, 7, 166], [175, 39, 146], [205, 74, 118], [228, 107, 92],
+  [246, 144, 68], [253, 186, 44], [244, 234, 39],
 ];
 
 function between(stops, t) {
@@ -32,7 +33,7 @@ function between(stops, t) {
 }
 
 /** [r, g, b] in 0..255 for 0 (small) to 1 (large). */
-export const sequential = (t) => between(CIVIDIS, t);
+export const sequential = (t) => between(PLASMA, t);
 
 // Blue, near white or near black, vermillion.
 const DIVERGING = {light: [247, 247, 245], dark: [28, 31, 36]};

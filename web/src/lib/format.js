@@ -10,7 +10,8 @@ export function significant(value, digits = 3) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
   if (value === 0) return '0';
   const size = Math.abs(value);
-  if (size >= 1e5 || size < 1e-4) return value.toExponential(digits - 1).replace('-', '−');
+  if (size >= 1e9 || size < 1e-4) return value.toExponential(digits - 1).replace('-', '−');
+  if (size >= 1e4) return count(Number(value.toPrecision(digits)));
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return fixed(value, decimals);
 }
@@ -54,3 +55,12 @@ const KIND_NAMES = {
   repeatability: 'repeatability motion',
 };
 export const kindName = (kind) => KIND_NAMES[kind] ?? kind;
+
+/** Numbers of a nested object as 'a b c' and value, for a table of margins whatever its layout. */
+export function flatten(object, path = []) {
+  return Object.entries(object ?? {}).flatMap(([key, value]) => {
+    const here = [...path, key.replaceAll('_', ' ')];
+    if (typeof value === 'number' || typeof value === 'string' || typeof value === 'boolean') return [[here.join(', '), value]];
+    return value && typeof value === 'object' ? flatten(value, here) : [];
+  });
+}

@@ -1,3 +1,5 @@
+import {userUnit} from './units.js';
+
 /** 'arm_left_1_joint' and 'theta' of 'arm_left_1_joint.theta'; the kind is behind the last dot. */
 export function splitName(name) {
   const dot = name.lastIndexOf('.');
@@ -64,4 +66,14 @@ export function countByStatus(parameters, legs) {
     counts[parameter.status] = (counts[parameter.status] ?? 0) + 1;
   }
   return counts;
+}
+
+/** Joint offsets that any of the calibrations estimated: [{joint, unit, of: [{value, sd} | null]}]. */
+export function offsetsOverTime(calibrations) {
+  const names = new Set(calibrations.flatMap((c) => c.parameters.filter((p) => /\.theta$/.test(p.name) && !/^waist\./.test(p.name) && p.status === 'estimated').map((p) => p.name)));
+  return [...names].map((name) => {
+    const of = calibrations.map((c) => c.parameters.find((p) => p.name === name && p.status === 'estimated') ?? null);
+    const {unit, factor} = userUnit(of.find(Boolean).unit);
+    return {joint: splitName(name).owner, unit, of: of.map((p) => p && {value: p.value * factor, sd: p.sd * factor})};
+  });
 }

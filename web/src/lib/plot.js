@@ -109,5 +109,5 @@ export function plot(options) {
     if (!u || Math.abs(u.width - holder.clientWidth) >= 1) draw();
   }).observe(holder);
   onTheme(draw);
-  return h('div', {class: 'plot-block'}, series.length > 1 && legend(series), holder, values);
+  return h('div', {class: 'plot-block'}, series.length > 1 && legend(series.map((s) => ({...s, shape: s.dots === 'only' ? 'dot' : 'line'}))), holder, values);
 }

@@ -38,7 +38,7 @@ export function undetermined(summary) {
  */
 export function verdict(summary) {
   const errors = judgedErrors(summary);
-  const from = errors ? `from ${fixed(errors.before)} to ${fixed(errors.after)} mm ${errors.on}` : '';
+  const from = errors ? `from ${fixed(errors.before)} to ${fixed(errors.after)}\u00a0mm ${errors.on}` : '';
   if (!deployable(summary)) {
     const why = summary.objections?.[0] ?? summary.message ?? summary.status;
     return {state: 'reject', word: 'Do not deploy', sentence: from ? `Errors went ${from}, but the result is not to be trusted.` : 'The result is not to be trusted.', rest: why};

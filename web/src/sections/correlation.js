@@ -1,20 +1,10 @@
-import {signedBytes} from '../lib/binary.js';
+import {signedBytes, unpackTriangle} from '../lib/binary.js';
 import {css, diverging} from '../lib/colours.js';
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure} from '../lib/figure.js';
 import {fixed} from '../lib/format.js';
 import {isDark, onTheme} from '../lib/theme.js';
-
-/** The square matrix of coefficients, from the bytes of its lower triangle, row by row. */
-export function unpackTriangle(values, size) {
-  const matrix = Array.from({length: size}, () => new Float32Array(size));
-  let k = 0;
-  for (let i = 0; i < size; ++i) {
-    for (let j = 0; j <= i; ++j, ++k) matrix[i][j] = matrix[j][i] = values[k] / 100;
-  }
-  return matrix;
-}
 
 function drawMap(canvas, matrix, shown) {
   const n = shown.length;

@@ -1,32 +1,11 @@
 import {SERIES} from '../lib/colours.js';
 import {toCsv} from '../lib/csv.js';
+import {chainRows, medianCurves} from '../lib/curves.js';
 import {h} from '../lib/dom.js';
 import {choice, figure, section} from '../lib/figure.js';
 import {count, fixed, significant} from '../lib/format.js';
 import {plot} from '../lib/plot.js';
 import {table} from '../lib/table.js';
-
-const median = (values) => {
-  const sorted = [...values].sort((a, b) => a - b);
-  const middle = sorted.length >> 1;
-  return sorted.length % 2 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
-};
-
-/** Of one chain: numbers of postures, and by algorithm the median of O1 over the seeds there. */
-export function medianCurves(columns, chain) {
-  const cells = new Map();
-  columns.algorithm.forEach((algorithm, i) => {
-    if (String(columns.chain[i]) !== chain) return;
-    if (!cells.has(algorithm)) cells.set(algorithm, new Map());
-    const postures = Number(columns.postures[i]);
-    const values = cells.get(algorithm);
-    values.set(postures, [...(values.get(postures) ?? []), Number(columns.o1[i])]);
-  });
-  const postures = [...new Set([...cells.values()].flatMap((v) => [...v.keys()]))].sort((a, b) => a - b);
-  const curves = [...cells].map(([algorithm, values]) => ({
-    algorithm: String(algorithm), o1: postures.map((n) => values.has(n) ? median(values.get(n)) : null)}));
-  return {postures, curves};
-}
 
 function curvesPlot(columns, chain, bound) {
   const {postures, curves} = medianCurves(columns, chain);
@@ -39,10 +18,6 @@ function curvesPlot(columns, chain, bound) {
   return plot({label: `O1 against the number of postures, ${chain}`, x: {label: 'number of postures', short: 'postures'},
                y: {label: 'O1 (median over seeds)'}, series, data, height: 280});
 }
-
-/** Chains of the programme's summary: an array, or an object by name. */
-const chainRows = (summary) => Array.isArray(summary?.chains) ? summary.chains
-  : Object.entries(summary?.chains ?? {}).map(([name, row]) => ({chain: name, ...row}));
 
 /** Efficiency is given as a share or in per cent. */
 const percent = (x) => typeof x === 'number' ? fixed(x <= 1.5 ? 100 * x : x, 1) : '–';

@@ -33,13 +33,21 @@ function outlierFigure(summary) {
     data: {name: 'outliers.csv', text: () => toCsv(['where', 'marker', 'residual_mm', 'normalised'], outliers.map((o) => [where(o, summary), o.marker, o.residual_mm, o.normalised]))}});
 }
 
+/** One line a finding; the name of the trial stands before it already. */
+function trialFindings(trial) {
+  const found = trial.findings ?? [];
+  if (found.length === 0) return trial.used ? '' : 'not used';
+  const prefix = `trial ${trial.name}: `;
+  return found.map((text) => h('div', {}, text.startsWith(prefix) ? text.slice(prefix.length) : text));
+}
+
 function trialsFigure(summary) {
   const trials = summary.trials ?? [];
   if (trials.length === 0) return null;
   const clock = (t) => t.clock?.lag_s === null || t.clock?.lag_s === undefined ? '–' : fixed(t.clock.lag_s, 3);
   return figure({title: 'Trials', body: table({caption: 'Trials and what was used of them',
     columns: [{text: 'Trial'}, {text: 'Postures', number: true}, {text: 'Samples', number: true}, {text: 'Clock lag', unit: 's', number: true}, {text: 'Findings'}],
-    rows: trials.map((t) => ({class: t.used ? '' : 'held', cells: [t.name, String(t.postures), String(t.samples), clock(t), (t.findings ?? []).join(' ') || (t.used ? 'none' : 'not used')]}))}),
+    rows: trials.map((t) => ({class: t.used ? '' : 'held', cells: [t.name, String(t.postures), String(t.samples), clock(t), trialFindings(t)]}))}),
     data: {name: 'trials.csv', text: () => toCsv(['trial', 'used', 'postures', 'samples', 'lag_s', 'findings'], trials.map((t) => [t.name, String(t.used), t.postures, t.samples, t.clock?.lag_s, (t.findings ?? []).join(' ')]))}});
 }
 
@@ -48,7 +56,8 @@ export function findingsSection(report) {
   const {summary} = report;
   if (!summary) return null;
   const remarks = new Set(summary.remarks ?? []);
-  const warnings = (summary.warnings ?? []).filter((w) => !remarks.has(w));
+  const ofTrials = new Set((summary.trials ?? []).flatMap((t) => t.findings ?? []));
+  const warnings = (summary.warnings ?? []).filter((w) => !remarks.has(w) && !ofTrials.has(w));
   const quiet = !summary.objections?.length && !remarks.size && !warnings.length && !summary.outliers?.length;
   return section('findings', 'Findings', 'Warnings and outliers', quiet ? 'Nothing was found that needs a look.' : 'What was found on the way; the gravest first.',
     words('Why it should not be deployed', 'bad', summary.objections), words('Look at these before deploying', 'check', [...remarks]),

@@ -4,19 +4,8 @@ import {h} from '../lib/dom.js';
 import {figure, section} from '../lib/figure.js';
 import {fixed, list, significant} from '../lib/format.js';
 import {legend} from '../lib/legend.js';
-import {splitName} from '../lib/parameters.js';
+import {offsetsOverTime} from '../lib/parameters.js';
 import {table} from '../lib/table.js';
-import {userUnit} from '../lib/units.js';
-
-/** Joint offsets that any of the calibrations estimated: [{joint, unit, of: [{value, sd} | null]}]. */
-export function offsetsOverTime(calibrations) {
-  const names = new Set(calibrations.flatMap((c) => c.parameters.filter((p) => /\.theta$/.test(p.name) && !/^waist\./.test(p.name) && p.status === 'estimated').map((p) => p.name)));
-  return [...names].map((name) => {
-    const of = calibrations.map((c) => c.parameters.find((p) => p.name === name && p.status === 'estimated') ?? null);
-    const {unit, factor} = userUnit(of.find(Boolean).unit);
-    return {joint: splitName(name).owner, unit, of: of.map((p) => p && {value: p.value * factor, sd: p.sd * factor})};
-  });
-}
 
 /** A row a joint: each calibration's offset with its 95 % interval, on one scale around zero. */
 function dotsAndWhiskers(rows, labels) {

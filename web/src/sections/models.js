@@ -1,33 +1,11 @@
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure, section} from '../lib/figure.js';
-import {fixed, kindName, modelName} from '../lib/format.js';
+import {fixed, modelName} from '../lib/format.js';
 import {table} from '../lib/table.js';
+import {inSampleRows, table2Rows} from '../lib/table2.js';
 
-const CASES = {SW: 'sine', RP: 'random', RM: 'repeatability'};
 const PAPER = {full: 'FCM', geometric: 'GCM', uncalibrated: 'NCM'};
-const readable = (chain) => chain.replaceAll('+', ' + ').replaceAll('_', ' ');
-
-/** Rows of Table 2: by chain and motion, then the chains as a whole and the mean. */
-export function table2Rows(errors, models) {
-  const values = (row, figure) => models.map((model) => row[figure]?.[model]);
-  const row = (chain, motion, item) => ({chain, motion, rmse: values(item, 'rmse_3d_mm'), max: values(item, 'max_mm')});
-  const rows = (errors.rows ?? []).map((item) =>
-    row(readable(item.chain), kindName(CASES[item.case] ?? item.case), item));
-  if ((errors.rows ?? []).length > (errors.chains ?? []).length) {
-    rows.push(...errors.chains.map((item) => ({...row(readable(item.chain), 'all motions', item), total: true})));
-  }
-  rows.push({chain: 'Mean', motion: '', rmse: models.map((m) => errors.mean_rmse_3d_mm?.[m]), max: models.map(() => undefined), total: true});
-  return rows;
-}
-
-/** Recordings without trials for validation: in sample, and held-out folds. */
-function inSampleRows(summary, models) {
-  const row = (chain, motion, item) => ({chain, motion, rmse: models.map((m) => item.rmse_3d_mm?.[m]), max: models.map((m) => item.max_mm?.[m])});
-  const rows = [row('All chains', 'calibration postures, in sample', summary)];
-  if (summary.kfold) rows.push(row('All chains', `held out, ${summary.kfold.folds} folds`, summary.kfold));
-  return rows;
-}
 
 function build(title, rows, models) {
   const columns = [{text: 'Chain'}, {text: 'Motion'}, ...models.map((m) => ({text: modelName(m), unit: 'mm', number: true}))];
@@ -56,7 +34,7 @@ export function modelsSection(report) {
   const heldOut = (errors?.rows ?? []).length > 0;
   const parts = [];
   if (heldOut) parts.push(build('On motions that took no part in the estimate', table2Rows(errors, models), models));
-  if (!heldOut || summary.kfold) parts.push(build('On the calibration postures', inSampleRows(summary, models), models));
+  parts.push(build('On the calibration postures', inSampleRows(summary, models), models));
   if (validation) parts.push(validationTable(validation));
   return section('models', 'Models', 'Models against motions',
     heldOut ? 'How far each model’s prediction is from the markers, on trials that took no part in the estimate.'

@@ -2,20 +2,11 @@ import {SERIES} from '../lib/colours.js';
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure, section} from '../lib/figure.js';
-import {fixed, plural, significant} from '../lib/format.js';
+import {fixed, flatten, plural, significant} from '../lib/format.js';
 import {plot} from '../lib/plot.js';
 import {table} from '../lib/table.js';
 
 const TORQUE = 'torque_';
-
-/** Numbers of a nested object as 'a b c' and value, for a table of margins whatever its layout. */
-export function flatten(object, path = []) {
-  return Object.entries(object ?? {}).flatMap(([key, value]) => {
-    const here = [...path, key.replaceAll('_', ' ')];
-    if (typeof value === 'number' || typeof value === 'string' || typeof value === 'boolean') return [[here.join(', '), value]];
-    return value && typeof value === 'object' ? flatten(value, here) : [];
-  });
-}
 
 function marginsFigure(motion) {
   const rows = flatten(motion.margins);

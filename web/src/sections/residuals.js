@@ -28,7 +28,7 @@ function distributionFigure(data, models) {
   if (sets.length === 0) return null;
   let chosen = sets.length - 1;
   const holder = h('div', {class: 'hold-plot'}, histogram(sets[chosen], models));
-  const chooser = sets.length > 1 && choice('Data', sets.map((d, i) => ({value: String(i), text: d.name})), String(chosen),
+  const chooser = sets.length > 1 && choice('Data', sets.map((d, i) => ({value: String(i), text: d.name.replaceAll('+', ' + ').replaceAll('_', ' ')})), String(chosen),
     (i) => { chosen = Number(i); holder.replaceChildren(histogram(sets[chosen], models)); });
   return figure({
     title: 'Distribution of residuals, before and after', body: [chooser, holder],

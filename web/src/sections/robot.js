@@ -39,13 +39,14 @@ class Panel {
   options() {
     const {viewer} = this;
     const {data} = viewer;
-    const models = (data.models ?? []).filter((m) => m === 'uncalibrated' || m === data.models.at(-1));
+    const models = viewer.shown;
+    const residuals = {before: models.slice(0, 1), after: models.slice(-1), both: models};
     const show = (meshes, visible) => { for (const mesh of meshes) mesh.visible = visible; viewer.stage.invalidate(); };
     show([...viewer.spheres, ...viewer.workspaces], false);
     return [
       viewer.clips.length > 1 && this.clipChooser(),
-      models.length > 1 && choice('Model', models.map((m) => ({value: m, text: m === 'uncalibrated' ? 'Before' : 'After'})), viewer.model,
-        (m) => { viewer.model = m; this.go(viewer.index); }),
+      models.length > 1 && choice('Residuals', [{value: 'before', text: 'Before'}, {value: 'after', text: 'After'}, {value: 'both', text: 'Both'}], 'both',
+        (which) => { viewer.shown = residuals[which]; this.go(viewer.index); }),
       models.length > 0 && this.magnification.row,
       (data.clusters ?? []).length > 0 && toggle('Colour by cluster', true, (on) => { viewer.byCluster = on; this.go(viewer.index); }),
       viewer.spheres.length > 0 && toggle('Collision spheres', false, (on) => show(viewer.spheres, on)),
@@ -64,6 +65,8 @@ class Panel {
   }
 
   choose(index) {
+    const select = this.element.querySelector('#clip');
+    if (select) select.value = String(index);
     this.viewer.setClip(index);
     this.posture.slider.max = this.viewer.clip.count - 1;
     this.go(0);
@@ -116,7 +119,7 @@ export function robotSection(report) {
   const frame = h('div', {class: 'viewer'}, canvas);
   const clusters = (report.data.clusters ?? []).length > 0;
   const result = section('robot', 'Robot', 'The robot, and where the residuals sit',
-    'Balls are measured markers; rods lead to where the model predicts them, magnified. The foot on the floor is green. Drag to turn, click and scroll to come nearer.', frame);
+    'Balls are measured markers; rods lead to where they should be by the nominal robot (orange) and by the calibrated one (blue), magnified. A foot that stands is green.', frame);
   // Once the page stands and has its width.
   queueMicrotask(() => {
     try {
@@ -124,7 +127,7 @@ export function robotSection(report) {
       const panel = new Panel(viewer);
       frame.after(clusters ? colourBar(viewer.scaleEnd) : '', panel.element);
       viewer.setSize(frame.clientWidth, frame.clientHeight);
-      if (viewer.clips.length > 0) panel.choose(0); else viewer.show(0);
+      if (viewer.clips.length > 0) panel.choose(viewer.firstClip()); else viewer.show(0);
       panel.play.disabled = viewer.clips.length === 0;
       viewer.stage.draw();
       new ResizeObserver(() => viewer.setSize(frame.clientWidth, frame.clientHeight)).observe(frame);

@@ -28,14 +28,33 @@ export function valueCell(parameter) {
            h('span', {class: 'value'}, fixed(value, digits)), h('span', {class: 'sd'}, sd));
 }
 
-function jointTable(joints, shown) {
-  const kinds = kindsOf(joints);
+function geometryTable(joints, shown) {
+  const kinds = kindsOf(joints).filter(({kind}) => !kind.startsWith('compliance'));
   const unitOf = (kind) => userUnit([...joints.values()].find((j) => j.has(kind)).get(kind).unit).unit;
   const columns = [{text: 'Joint'}, ...kinds.map(({kind, symbol, what}) => ({
     text: h('abbr', {title: what}, symbol), unit: unitOf(kind), number: true}))];
   const rows = [...joints].filter(([joint]) => shown(joint)).map(([joint, parameters]) =>
     [h('span', {title: joint}, pretty(joint)), ...kinds.map(({kind}) => valueCell(parameters.get(kind)))]);
-  return table({caption: 'Errors of the joints: value and standard deviation', columns, rows, className: 'table1'});
+  return table({caption: 'Geometric errors of the joints: value and standard deviation', columns, rows, className: 'table1'});
+}
+
+/** The stiffness that a compliance means, where it is told from a rigid joint. */
+function stiffnessCell(parameter) {
+  const k = parameter?.significant ? stiffness(parameter) : null;
+  if (!k) return '';
+  const ends = [1, -1].map((sign) => stiffness({...parameter, value: parameter.value + sign * 1.96 * parameter.sd}));
+  const text = ends.map((end) => end ? significant(end.value) : '∞').join(' to ');
+  return h('span', {title: `95 %: ${text} ${k.unit}`}, significant(k.value));
+}
+
+function elasticTable(joints, shown) {
+  const kinds = kindsOf(joints).filter(({kind}) => kind.startsWith('compliance'));
+  const columns = [{text: 'Joint'}, ...kinds.flatMap(({symbol, what}) => [
+    {text: h('abbr', {title: what}, symbol), unit: 'µrad/(N·m)', number: true},
+    {text: h('abbr', {title: `stiffness: inverse of the ${what}`}, symbol.replace('c', 'K')), unit: 'N·m/rad', number: true}])];
+  const rows = [...joints].filter(([joint]) => shown(joint)).map(([joint, parameters]) =>
+    [h('span', {title: joint}, pretty(joint)), ...kinds.flatMap(({kind}) => [valueCell(parameters.get(kind)), stiffnessCell(parameters.get(kind))])]);
+  return table({caption: 'Compliance and stiffness of the joints', columns, rows, className: 'table1'});
 }
 
 /** Chains of which Table 1 can show one at a time; without them, the joints’ first words. */
@@ -98,18 +117,23 @@ export function table1Section(report) {
   const joints = byJoint(summary.parameters, legNames);
   if (joints.size === 0) return null;
   const chains = chainsOf(report, [...joints.keys()]);
-  const holder = h('div', {}, jointTable(joints, () => true));
+  const elastic = summary.parameters.some((p) => /\.compliance_[xyz]$/.test(p.name) && family(p, legNames) === 'joint');
+  const holders = [geometryTable, elastic && elasticTable].filter(Boolean).map((make) => ({make, at: h('div', {}, make(joints, () => true))}));
   const choose = (name) => {
     const chain = chains.find((c) => c.name === name);
-    holder.replaceChildren(jointTable(joints, (joint) => !chain || chain.joints.has(joint)));
+    for (const {make, at} of holders) at.replaceChildren(make(joints, (joint) => !chain || chain.joints.has(joint)));
   };
   const filter = chains.length > 1 && choice('Chain', [{value: '', text: 'All chains'},
     ...chains.map((c) => ({value: c.name, text: c.name.replaceAll('_', ' ')}))], '', choose);
   return section('parameters', 'Errors', 'Errors of the robot',
     'What differs from the nominal robot: estimate and standard deviation. Bold: the 95 % interval excludes nominal. Grey: held at nominal.',
     filter, figure({
-      title: 'Joints',
-      note: 'A dot: cannot be told from other parameters of the chain and is counted there. 0: the data say hardly more than the prior. Point at a value for more digits and the stiffness.',
-      body: holder, data: {name: 'parameters.csv', text: () => csv(summary.parameters)},
+      title: 'Geometry',
+      note: 'A dot: cannot be told from other parameters of the chain and is counted there. 0: the data say hardly more than the prior. Point at a value for more digits.',
+      body: holders[0].at, data: {name: 'parameters.csv', text: () => csv(summary.parameters)},
+    }), elastic && figure({
+      title: 'Elasticity',
+      note: 'How far a joint gives way about its axis (z) and across it (x, y); the stiffness where the 95 % interval excludes a rigid joint.',
+      body: holders[1].at, data: {name: 'elasticity.csv', text: () => csv(summary.parameters.filter((p) => /\.compliance_/.test(p.name)))},
     }), legs.length > 0 && legsTable(summary.parameters, legs), externals(summary.parameters, legNames));
 }

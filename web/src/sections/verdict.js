@@ -1,5 +1,5 @@
 import {h} from '../lib/dom.js';
-import {count, fixed, plural} from '../lib/format.js';
+import {count, fixed, plural, significant} from '../lib/format.js';
 import {countByStatus} from '../lib/parameters.js';
 import {judgedErrors, verdict} from '../lib/verdict.js';
 
@@ -18,7 +18,7 @@ function facts(summary) {
                     h('strong', {}, fixed(errors.after))], 'mm', `RMSE ${errors.on.includes('held') || errors.on.includes('no part') ? 'on held-out data' : 'in sample'}`),
     fact(count(counts.estimated ?? 0), held ? `of ${count((counts.estimated ?? 0) + held)}` : '', 'joint and leg errors estimated'),
     fact(count(summary.postures), '', `postures, ${plural(summary.markers, 'marker')}`),
-    fact(fixed(summary.marker_sd_mm), 'mm', 'noise of a marker coordinate'),
+    fact(significant(summary.marker_sd_mm, 2), 'mm', 'noise of a marker coordinate'),
     fact(count(outliers), '', outliers === 1 ? 'outlier left out' : 'outliers left out'));
 }
 

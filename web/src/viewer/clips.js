@@ -6,9 +6,17 @@ const POSTURES_PER_SECOND = 1.5;
 /** Feet of a cell of motion.csv: 'left_sole_link+right_sole_link', or separated by spaces. */
 const feet = (cell) => String(cell ?? '').split(/[+;|\s]+/).filter(Boolean);
 
+/** Positions of all markers from those of the scene's own; NaN for the others. */
+function spread(values, scene, count) {
+  const all = new Float32Array(3 * count).fill(NaN);
+  scene.markers.forEach((marker, k) => all.set(values.subarray(3 * k, 3 * k + 3), 3 * marker));
+  return all;
+}
+
 function recordedClip(scene, data) {
   const n = data.robot.coordinates.length;
-  const width = 3 * data.markers.length;
+  const width = 3 * scene.markers.length;
+  const frame = (values, i) => spread(values.subarray(width * i, width * (i + 1)), scene, data.markers.length);
   const [q, waist, measured] = [scene.q, scene.waist, scene.measured].map(floats);
   const predicted = Object.fromEntries(Object.entries(scene.predicted).map(([m, text]) => [m, floats(text)]));
   const moving = scene.kind === 'sine';
@@ -17,6 +25,7 @@ function recordedClip(scene, data) {
     group: kindName(scene.kind),
     count: Math.floor(q.length / n),
     total: scene.total,
+    markers: scene.markers.length,
     moving,
     time: scene.time_s ?? [],
     joints: data.robot.coordinates,
@@ -24,8 +33,8 @@ function recordedClip(scene, data) {
       q: q.subarray(n * i, n * (i + 1)),
       root: {position: Array.from(waist.subarray(7 * i, 7 * i + 3)), quaternion: Array.from(waist.subarray(7 * i + 3, 7 * i + 7))},
       support: scene.support ?? [],
-      measured: measured.subarray(width * i, width * (i + 1)),
-      predicted: (model) => predicted[model]?.subarray(width * i, width * (i + 1)),
+      measured: frame(measured, i),
+      predicted: (model) => predicted[model] && frame(predicted[model], i),
     }),
   };
 }
@@ -40,6 +49,7 @@ function plannedClip(motion, robot) {
     group: 'planned motion',
     count: time.length,
     total: motion.rows ?? time.length,
+    markers: 0,
     moving: true,
     time,
     joints,

@@ -87,14 +87,17 @@ export class Robot {
 
   /** Colours the links on which the robot stands. */
   tint(linkNames, colour) {
-    for (const mesh of this.tinted ?? []) mesh.material.emissive.setHex(0);
+    for (const mesh of this.tinted ?? []) mesh.material.color.copy(mesh.userData.own);
     this.tinted = linkNames.flatMap((name) => {
       let link = this.links[name];
       // A sole often has no shape of its own; then that of the link that it is fixed to.
       while (link && meshesOf(link).length === 0) link = link.parent?.parent?.isURDFLink ? link.parent.parent : null;
       return link ? meshesOf(link) : [];
     });
-    for (const mesh of this.tinted) mesh.material.emissive.set(colour);
+    for (const mesh of this.tinted) {
+      mesh.userData.own ??= mesh.material.color.clone();
+      mesh.material.color.set(colour);
+    }
   }
 
   bounds() {

@@ -26,8 +26,8 @@ export class Stage {
   }
 
   addLights() {
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8d8f96, 2.1));
-    const sun = new THREE.DirectionalLight(0xffffff, 1.7);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xa4a6ac, 2.7));
+    const sun = new THREE.DirectionalLight(0xffffff, 1.5);
     sun.position.set(2, -3, 5);
     this.scene.add(sun);
   }
@@ -35,9 +35,10 @@ export class Stage {
   /** Looks at a box from the front and a little to the side, and puts the floor under it. */
   frame(box, yaw) {
     const centre = box.getCenter(new THREE.Vector3());
-    const radius = box.getSize(new THREE.Vector3()).length() / 2;
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = 0.93 * radius / Math.sin(THREE.MathUtils.degToRad(this.camera.fov / 2)) / narrow;
+    const size = box.getSize(new THREE.Vector3());
+    const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
+    const across = Math.hypot(size.x, size.y);
+    const distance = 1.06 * Math.max(size.z, across / this.camera.aspect) / (2 * slope) + across / 2;
     const angle = yaw - 0.62;
     this.controls.target.copy(centre);
     this.camera.position.set(Math.cos(angle), Math.sin(angle), 0.24).normalize().multiplyScalar(distance).add(centre);

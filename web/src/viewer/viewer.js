@@ -25,7 +25,8 @@ export class Viewer {
     this.zmp = makeZmp(OKABE_ITO.vermillion);
     this.stage.scene.add(this.zmp);
     this.clips = makeClips(report, this.robot);
-    this.model = (this.data.models ?? []).at(-1);
+    const models = this.data.models ?? [];
+    this.shown = models.length > 1 ? [models[0], models.at(-1)] : models;  // whose residuals
     this.magnification = 20;
     this.byCluster = true;
     this.framed = null;
@@ -41,6 +42,12 @@ export class Viewer {
     this.show(0);
   }
 
+  /** The clip to begin with: postures on which most markers are seen. */
+  firstClip() {
+    const seen = (clip) => clip.moving ? 0 : clip.markers;
+    return this.clips.reduce((best, clip, i) => seen(clip) > seen(this.clips[best]) ? i : best, 0);
+  }
+
   /** RMSE, mm, that has the brightest colour: of the worst cluster, uncalibrated. */
   get scaleEnd() {
     const worst = Math.max(0, ...(this.data.clusters ?? []).flatMap((c) => Object.values(c.rmse_3d_mm ?? {})));
@@ -48,13 +55,13 @@ export class Viewer {
   }
 
   paint() {
-    const clusters = new Map((this.data.clusters ?? []).map((c) => [c.name, c.rmse_3d_mm?.[this.model]]));
+    const clusters = new Map((this.data.clusters ?? []).map((c) => [c.name, c.rmse_3d_mm?.[this.shown[0]]]));
     const end = this.scaleEnd;
     const colours = (this.data.markers ?? []).map((marker) => {
       const rmse = clusters.get(marker.cluster);
       return this.byCluster && typeof rmse === 'number' ? css(sequential(rmse / end)).replaceAll(' ', ',') : OKABE_ITO.orange;
     });
-    this.markers.paint(colours, MODEL_COLOURS[this.model] ?? OKABE_ITO.blue);
+    this.markers.paint(colours);
   }
 
   /** Places the robot and everything on it for frame i of the clip. */
@@ -78,11 +85,16 @@ export class Viewer {
       this.robot.standOn(frame.support[0]);
     }
     this.robot.object.updateMatrixWorld(true);
-    this.robot.tint(frame.support, '#00573f');
-    const predicted = frame.predicted?.(this.model);
+    this.robot.tint(frame.support, OKABE_ITO.green);
     this.markers.object.visible = Boolean(frame.measured);
     if (frame.measured) {
-      this.markers.set(frame.measured, predicted ?? new Float32Array(frame.measured.length).fill(NaN), this.magnification);
+      this.markers.setMeasured(frame.measured);
+      for (const model of this.shown) {
+        const predicted = frame.predicted(model) ?? new Float32Array(frame.measured.length).fill(NaN);
+        const rods = this.markers.rodsOf(model, MODEL_COLOURS[model] ?? OKABE_ITO.blue);
+        this.markers.setPredicted(rods, frame.measured, predicted, this.magnification);
+      }
+      this.markers.only(this.shown);
       this.paint();
     }
     this.zmp.visible = Boolean(frame.zmp);

@@ -19,10 +19,19 @@ const FLAGS = [
 export async function openBrowser() {
   const profile = mkdtempSync(join(tmpdir(), 'elastocal-chromium-'));
   const context = await chromium.launchPersistentContext(profile, {executablePath: chromiumPath(), args: FLAGS, acceptDownloads: true});
-  context.on('close', () => rmSync(profile, {recursive: true, force: true}));
   const browser = context.browser();
   return {
     newPage: async (options) => browser ? (await browser.newContext(options)).newPage() : context.newPage(),
-    close: () => context.close(),
+    close: async () => {
+      await context.close();
+      // Its last processes may still be writing.
+      for (let i = 0; i < 20 && existsSync(profile); ++i) {
+        try {
+          rmSync(profile, {recursive: true, force: true});
+        } catch {
+          await new Promise((done) => setTimeout(done, 100));
+        }
+      }
+    },
   };
 }
