@@ -35,7 +35,7 @@ set(web ${PROJECT_SOURCE_DIR}/web)
 set(ELASTOCAL_WEB_BUILD ${PROJECT_BINARY_DIR}/web)  # node_modules is there, not among the sources
 
 if(ELASTOCAL_HAS_PAGE)
-  file(GLOB_RECURSE page_files CONFIGURE_DEPENDS ${web}/src/*)
+  file(GLOB_RECURSE page_files CONFIGURE_DEPENDS ${web}/src/* ${web}/test/*)
   add_custom_command(OUTPUT ${ELASTOCAL_WEB_BUILD}/installed
     COMMAND ${CMAKE_COMMAND} -DSTEP=install -DNPM=${ELASTOCAL_NPM} -DWEB=${web}
       -DBUILD=${ELASTOCAL_WEB_BUILD} -P ${page_script}

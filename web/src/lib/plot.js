@@ -85,7 +85,9 @@ function onKey(event, u, reset) {
  */
 export function plot(options) {
   const {height = 260, series, data} = options;
-  const settings = {hint: 'Point at the plot, or focus it and use the arrow keys, to read values; drag to zoom, double-click to go back.', ...options};
+  // Said once; the line keeps its place under every plot.
+  const settings = {...options, hint: plot.explained ? '\u00a0' : 'Point at a plot, or focus it and use the arrow keys, to read values; drag to zoom, double-click to go back.'};
+  plot.explained = true;
   const values = h('p', {class: 'readout'}, settings.hint);
   const holder = h('div', {class: 'plot', style: {height: `${height}px`}, tabindex: '0', role: 'img',
                            'aria-label': options.label ?? `Plot of ${options.y.label} against ${options.x.label}`});

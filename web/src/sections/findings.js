@@ -11,26 +11,26 @@ function words(title, kind, items) {
   return h('div', {class: `words state-${kind}`}, h('h3', {}, title), h('ul', {}, ...items.map((text) => h('li', {}, text))));
 }
 
-/** 'trial leg_left, posture 3' where the summary counts postures through all trials. */
-function where(outlier, summary) {
-  if (outlier.where) return outlier.where;
+/** 'leg_left, posture 3' where the summary counts the postures of all trials; or the line of a table. */
+function where(outlier, report) {
+  if (outlier.line) return `posture ${outlier.posture + 1} (line ${outlier.line})`;
   let first = 0;
-  for (const trial of summary.trials ?? []) {
-    if (!trial.used || !outlier.line && trial.kind && trial.kind !== 'calibration') continue;
-    if (outlier.posture < first + trial.postures) return `${trial.name}, posture ${outlier.posture - first + 1}`;
-    first += trial.postures;
+  for (const scene of report.data?.scenes ?? []) {
+    if (outlier.posture < first + scene.total) return `${scene.name}, posture ${outlier.posture - first + 1}`;
+    first += scene.total;
   }
-  return `posture ${outlier.posture + 1}${outlier.line ? ` (line ${outlier.line})` : ''}`;
+  return `posture ${outlier.posture + 1}`;
 }
 
-function outlierFigure(summary) {
+function outlierFigure(report) {
+  const {summary} = report;
   const outliers = [...(summary.outliers ?? [])].sort((a, b) => b.residual_mm - a.residual_mm);
   if (outliers.length === 0) return null;
   return figure({title: `${plural(outliers.length, 'outlier')} left out`,
     note: outliers.length > SHOWN ? `The ${SHOWN} largest; all are in the CSV.` : 'Beyond what noise and the uncertainty of the model explain.',
     body: table({caption: 'Outliers', columns: [{text: 'Where'}, {text: 'Marker'}, {text: 'Residual', unit: 'mm', number: true}, {text: 'in sd', number: true}],
-      rows: outliers.slice(0, SHOWN).map((o) => [where(o, summary), o.marker, fixed(o.residual_mm), fixed(o.normalised, 1)])}),
-    data: {name: 'outliers.csv', text: () => toCsv(['where', 'marker', 'residual_mm', 'normalised'], outliers.map((o) => [where(o, summary), o.marker, o.residual_mm, o.normalised]))}});
+      rows: outliers.slice(0, SHOWN).map((o) => [where(o, report), o.marker, fixed(o.residual_mm), fixed(o.normalised, 1)])}),
+    data: {name: 'outliers.csv', text: () => toCsv(['where', 'marker', 'residual_mm', 'normalised'], outliers.map((o) => [where(o, report), o.marker, o.residual_mm, o.normalised]))}});
 }
 
 /** One line a finding; the name of the trial stands before it already. */
@@ -61,5 +61,5 @@ export function findingsSection(report) {
   const quiet = !summary.objections?.length && !remarks.size && !warnings.length && !summary.outliers?.length;
   return section('findings', 'Findings', 'Warnings and outliers', quiet ? 'Nothing was found that needs a look.' : 'What was found on the way; the gravest first.',
     words('Why it should not be deployed', 'bad', summary.objections), words('Look at these before deploying', 'check', [...remarks]),
-    words('Warnings', '', warnings), outlierFigure(summary), trialsFigure(summary));
+    words('Warnings', '', warnings), outlierFigure(report), trialsFigure(summary));
 }
