@@ -107,6 +107,23 @@ TEST_F(Report, CalibrateWritesWhatThePageShows) {
   EXPECT_EQ(3 * sightings, summary["equations"].get<int>());
 }
 
+TEST_F(Report, TakesMeshesAlong) {
+  // A package with the URDF in one folder and a mesh in another, as robots are published.
+  std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  urdf.insert(
+      urdf.rfind("</robot>"),
+      "<!-- filename=\"package://my_robot/meshes/a.stl\" filename=\"package://other/b.stl\" -->");
+  std::filesystem::create_directories(scratch_.path() / "my_robot" / "meshes");
+  std::filesystem::create_directories(scratch_.path() / "my_robot" / "urdf");
+  scratch_.Write("my_robot/meshes/a.stl", "abc");
+  scratch_.Write("my_robot/urdf/arm6.urdf", urdf);
+  project_ = scratch_.Write("my_robot/urdf/arm6_project.yaml",
+                            ReadFile(SourceFile("tests/robots/arm6_project.yaml")));
+  ASSERT_EQ(Calibrate().exit_code, 0);
+  EXPECT_EQ(Read("report_data.json")["robot"]["meshes"],
+            (Json{{"package://my_robot/meshes/a.stl", "YWJj"}}));
+}
+
 TEST_F(Report, SaysHowToGetTheSameAgain) {
   ASSERT_EQ(Calibrate(" --seed 3").exit_code, 0);
   const Json run = Read("runs.json")["calibrate"];

@@ -1,5 +1,5 @@
 // A report made by hand: every section has data, and some names are HTML.
-import {EVIL, joints, markerPositions, markers, urdf, WAIST} from './sample_robot.js';
+import {EVIL, joints, markerPositions, markers, stl, urdf, WAIST} from './sample_robot.js';
 
 const float32 = (values) => Buffer.from(new Float32Array(values).buffer).toString('base64');
 const MODELS = ['uncalibrated', 'offsets_only', 'geometric', 'full'];
@@ -66,7 +66,7 @@ function sampleData() {
   const row = (chain, motion, factor) => ({chain, case: motion, trials: 1, rmse_3d_mm: byModel(factor), max_mm: byModel(3 * factor)});
   return {
     format: 'elastocal-report-data-1', models: MODELS,
-    robot: {name: 'sample', urdf: urdf(), coordinates: joints, meshes: {}},
+    robot: {name: 'sample', urdf: urdf(), coordinates: joints, meshes: {'meshes/forearm.stl': stl()}},
     chains: [{name: 'leg', joints: ['leg_1_joint', 'leg_2_joint']}, {name: EVIL, joints: ['arm_1_joint', 'arm_2_joint', EVIL]}],
     markers, clusters: ['WAIST', 'HAND', 'KNEE', EVIL].map((name, i) => ({name, link: 'base_link', rmse_3d_mm: byModel(0.4 + 0.3 * i)})),
     clusters_on: 'on motions that took no part in the estimate',

@@ -13,7 +13,7 @@ const JOINTS = [
 const SHAPES = {
   base_link: '<box size="0.2 0.3 0.8"/>', thigh: '<cylinder radius="0.06" length="0.3"/>',
   shank: '<cylinder radius="0.05" length="0.3"/>', upper_arm: '<box size="0.08 0.08 0.25"/>',
-  forearm: '<box size="0.06 0.06 0.25"/>', head: '<sphere radius="0.1"/>',
+  forearm: '<mesh filename="meshes/forearm.stl" scale="2 2 2"/>', head: '<sphere radius="0.1"/>',
 };
 const MARKERS = [
   ['WAIST_1', 'base_link', [-0.1, 0.1, 0], 'WAIST'], ['WAIST_2', 'base_link', [-0.1, -0.1, 0.1], 'WAIST'],
@@ -21,6 +21,17 @@ const MARKERS = [
   ['KNEE_1', 'shank', [0.05, 0.02, -0.1], 'KNEE'], ['KNEE_2', 'shank', [0.05, -0.02, -0.2], 'KNEE'],
   [EVIL, 'head', [0.1, 0, 0.1], EVIL],
 ];
+/** A tetrahedron 0.15 m high as binary STL. */
+export function stl() {
+  const corners = [[0.04, 0, 0.07], [-0.02, 0.035, 0.07], [-0.02, -0.035, 0.07], [0, 0, -0.08]];
+  const faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+  const bytes = Buffer.alloc(84 + 50 * faces.length);
+  bytes.writeUInt32LE(faces.length, 80);
+  faces.forEach((face, f) => face.forEach((corner, c) => corners[corner].forEach((x, k) =>
+    bytes.writeFloatLE(x, 84 + 50 * f + 12 * (c + 1) + 4 * k))));
+  return bytes.toString('base64');
+}
+
 const AXES = {x: [1, 2], y: [2, 0], z: [0, 1]};
 
 const xml = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');

@@ -59,23 +59,34 @@ std::vector<ClusterView> ClusterViews(const Project& project) {
   return views;
 }
 
-/// STL files that the URDF names and that are found beside it, by the names that it has for them;
-/// up to some megabytes, so that a report stays small.
+/// Where a mesh of a URDF is: beside it or, of `package://NAME/rest`, below the folder NAME that
+/// the URDF is in.
+fs::path MeshPath(const std::string& name, const fs::path& urdf) {
+  const std::string scheme = "package://";
+  if (!name.starts_with(scheme)) return urdf.parent_path() / name;
+  const fs::path rest = name.substr(scheme.size());
+  for (fs::path folder = fs::absolute(urdf).parent_path(); folder.has_relative_path();
+       folder = folder.parent_path()) {
+    if (folder.filename() == *rest.begin()) return folder.parent_path() / rest;
+  }
+  return {};
+}
+
+/// STL files that the URDF names and that are there, by the names that it has for them; up to some
+/// megabytes, so that a report stays small.
 std::map<std::string, std::string> FindMeshes(const std::string& urdf, const fs::path& file) {
-  constexpr std::size_t kMostBytes = 3000000;
+  constexpr std::size_t kMostBytes = 2000000;
+  const std::string before = "filename=\"";
   std::map<std::string, std::string> meshes;
   std::size_t bytes = 0;
-  for (std::size_t at = urdf.find("filename=\""); at != std::string::npos;
-       at = urdf.find("filename=\"", at + 1)) {
-    const std::size_t begin = at + 10;
+  for (std::size_t at = urdf.find(before); at != std::string::npos;
+       at = urdf.find(before, at + 1)) {
+    const std::size_t begin = at + before.size();
     const std::string name = urdf.substr(begin, urdf.find('"', begin) - begin);
-    const fs::path mesh = file.parent_path() / name;
+    const bool stl = name.ends_with(".stl") || name.ends_with(".STL");
+    const fs::path mesh = stl && !meshes.contains(name) ? MeshPath(name, file) : fs::path();
     std::error_code error;
-    if (!(name.ends_with(".stl") || name.ends_with(".STL")) ||
-        name.find("://") != std::string::npos || meshes.contains(name) ||
-        !fs::is_regular_file(mesh, error)) {
-      continue;
-    }
+    if (mesh.empty() || !fs::is_regular_file(mesh, error)) continue;
     const std::size_t size = fs::file_size(mesh, error);
     if (error || bytes + size > kMostBytes) continue;
     bytes += size;

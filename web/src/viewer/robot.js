@@ -6,11 +6,11 @@ const BONE = 0x8a8f98;
 
 /** The meshes that came along, by the file name that the URDF has; others are left out. */
 function meshLoader(meshes) {
-  return (path, manager, done) => {
+  return (path, manager, material, done) => {
     const base64 = meshes[path] ?? meshes[path.replace(/^\.?\//, '')];
-    if (base64 === undefined) return done(null, new Error(`${path} is not in the report`));
+    if (base64 === undefined) return done(new THREE.Group());
     const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-    return done(new THREE.Mesh(new STLLoader().parse(bytes.buffer), new THREE.MeshLambertMaterial()));
+    return done(new THREE.Mesh(new STLLoader().parse(bytes.buffer), material));
   };
 }
 
@@ -45,6 +45,7 @@ export class Robot {
   constructor(urdf, meshes = {}) {
     const loader = new URDFLoader();
     loader.parseCollision = false;
+    loader.packages = (name) => `package://${name}`;  // as the URDF has it
     loader.loadMeshCb = meshLoader(meshes);
     this.object = loader.parse(urdf);
     this.links = this.object.links;

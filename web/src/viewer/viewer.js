@@ -7,6 +7,8 @@ import {MarkerCloud} from './markers.js';
 import {Robot} from './robot.js';
 import {Stage} from './stage.js';
 
+const LOOKED_AT = 8;  // frames
+
 /**
  * The robot with what was measured on it. Throws where the browser has no WebGL or the URDF cannot
  * be drawn. State is set by the methods; `show(i)` draws.
@@ -66,15 +68,24 @@ export class Viewer {
 
   /** Places the robot and everything on it for frame i of the clip. */
   show(i) {
+    if (this.framed !== this.clip || !this.clip) this.frameClip();
     const frame = this.clip?.at(i);
     this.index = i;
     if (frame) this.place(frame);
-    if (this.framed !== this.clip) {
-      this.framed = this.clip ?? null;
-      const forward = new THREE.Vector3(1, 0, 0).applyQuaternion(this.robot.object.quaternion);
-      this.stage.frame(this.robot.bounds(), Math.atan2(forward.y, forward.x));
-    }
     this.stage.invalidate();
+  }
+
+  /** Looks so that the whole clip, by a few of its frames, has room. */
+  frameClip() {
+    this.framed = this.clip;
+    const frames = Math.min(LOOKED_AT, this.clip?.count ?? 0);
+    const box = new THREE.Box3();
+    for (let k = 0; k < frames; ++k) {
+      this.place(this.clip.at(Math.floor(k * this.clip.count / frames)));
+      box.union(this.robot.bounds());
+    }
+    const forward = new THREE.Vector3(1, 0, 0).applyQuaternion(this.robot.object.quaternion);
+    this.stage.frame(box.isEmpty() ? this.robot.bounds() : box, Math.atan2(forward.y, forward.x));
   }
 
   place(frame) {

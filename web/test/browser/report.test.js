@@ -189,6 +189,23 @@ test('a planned motion plays, with spheres and workspaces', async () => {
   await page.close();
 });
 
+test('meshes are drawn where they came along, and a robot without any is drawn by its bones', async () => {
+  const pictures = [];
+  for (const change of [(robot) => robot, (robot) => ({...robot, meshes: {}}), (robot) => ({...robot, urdf: robot.urdf.replace(/<visual>[^]*?<\/visual>/g, '')})]) {
+    const report = sampleReport();
+    report.data.robot = change(report.data.robot);
+    const file = join(folder, `robot${pictures.length}.html`);
+    writeFileSync(file, fill(readFileSync(template, 'utf8'), report));
+    const {page, problems} = await openPage(browser, file);
+    await waitForViewer(page);
+    pictures.push(await picture(page));
+    assert.deepEqual(problems, []);
+    await page.close();
+  }
+  assert.equal(new Set(pictures.map((p) => p.hash)).size, 3);
+  for (const {opaque, pixels} of pictures) assert.ok(opaque > 0.005 * pixels, `${opaque}`);
+});
+
 test('a report with nothing but a summary says what is missing', async () => {
   const {summary, missing} = sampleReport();
   const file = join(folder, 'poor.html');
