@@ -89,7 +89,7 @@ function sampleMotion() {
     columns[joint] = time.map((t) => 0.5 * Math.sin(t + k));
     columns[`torque_${joint}`] = time.map((t) => 20 * Math.cos(t + k));
   });
-  return {name: 'motion', rows: 3000, columns, margins: {zmp_mm: 21.4, collision: {distance_mm: 14.2, spheres: `a and ${EVIL}`}}};
+  return {name: 'motion', rows: 3000, columns, margins: {sets: [{name: 'leg', left_out: [{posture: 2, reason: EVIL}]}], margins: {zmp_m: 0.0214, torque_share: 0.31, spheres: `a and ${EVIL}`}}};
 }
 
 function sampleDesign() {

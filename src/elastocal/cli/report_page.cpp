@@ -95,6 +95,13 @@ std::map<std::string, std::string> FindMeshes(const std::string& urdf, const fs:
   return meshes;
 }
 
+RobotView ViewOf(const Project& project) {
+  RobotView view{project.tree, ReadFile(project.urdf), {}, {}, {}, {}};
+  view.meshes = FindMeshes(view.urdf, project.urdf);
+  for (const Chain& chain : project.chains) view.chains.push_back(ViewOf(chain, project.tree));
+  return view;
+}
+
 LabelledCalibration ReadCalibrationOf(const fs::path& given) {
   const bool folder = fs::is_directory(given);
   const fs::path file = folder ? given / "calibration.yaml" : given;
@@ -140,24 +147,19 @@ std::string RunsJson(const fs::path& folder, const std::string& command,
                              options.seed, std::move(inputs)});
 }
 
+std::string RobotDataJson(const Project& project) { return MakeRobotDataJson(ViewOf(project)); }
+
 std::string CalibrationDataJson(const Session& session, const CalibrationRun& run) {
-  const Project& project = session.project;
-  const std::string urdf = ReadFile(project.urdf);
   const HeldOut* held_out = run.held_out ? &*run.held_out : nullptr;
-  CalibrationView view{.urdf = urdf,
-                       .meshes = FindMeshes(urdf, project.urdf),
-                       .chains = {},
-                       .clusters = ClusterViews(project),
-                       .spheres = {},
-                       .workspaces = {},
-                       .recording = session.recording,
-                       .comparison = run.comparison,
-                       .validation = session.validation,
-                       .held_out = held_out,
-                       .trials = run.trials,
-                       .error_table = {}};
-  for (const Chain& chain : project.chains) view.chains.push_back(ViewOf(chain, project.tree));
-  if (held_out != nullptr) view.error_table = MakeErrorTableJson(held_out->table).dump();
+  const CalibrationView view{
+      .robot = ViewOf(session.project),
+      .clusters = ClusterViews(session.project),
+      .recording = session.recording,
+      .comparison = run.comparison,
+      .validation = session.validation,
+      .held_out = held_out,
+      .trials = run.trials,
+      .error_table = held_out != nullptr ? MakeErrorTableJson(held_out->table).dump() : ""};
   return MakeReportDataJson(view);
 }
 

@@ -24,6 +24,9 @@ std::future<std::vector<InputRecord>> StartRecordingInputs(
 std::string RunsJson(const std::filesystem::path& folder, const std::string& command,
                      const CommonOptions& options, std::vector<InputRecord> inputs);
 
+/// robot_data.json: what a folder without a calibration needs for the 3-D view.
+std::string RobotDataJson(const Project& project);
+
 /// report_data.json of a calibration.
 std::string CalibrationDataJson(const Session& session, const CalibrationRun& run);
 

@@ -19,8 +19,8 @@ constexpr std::size_t kMostSignals = 8;
 
 Json Point(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
-Json RobotJson(const CalibrationView& view) {
-  const RobotTree& tree = view.comparison.best().model.tree;
+Json RobotJson(const RobotView& view) {
+  const RobotTree& tree = view.tree;
   Json json = {{"name", tree.name}, {"urdf", view.urdf}, {"coordinates", Json::array()}};
   for (const int joint : tree.coordinate_joint) {
     json["coordinates"].push_back(tree.joints[joint].name);
@@ -85,8 +85,15 @@ Json SignalsJson(const std::vector<TrialSummary>& trials) {
   return json;
 }
 
-Json ShapesJson(const CalibrationView& view) {
-  Json json = {{"spheres", Json::array()}, {"workspaces", Json::array()}};
+/// Robot, chains, spheres and workspaces.
+void AddRobot(const RobotView& view, Json& json) {
+  json["robot"] = RobotJson(view);
+  json["chains"] = Json::array();
+  for (const ChainView& chain : view.chains) {
+    json["chains"].push_back({{"name", chain.name}, {"joints", chain.joints}});
+  }
+  json["spheres"] = Json::array();
+  json["workspaces"] = Json::array();
   for (const SphereView& sphere : view.spheres) {
     json["spheres"].push_back(
         {{"link", sphere.link}, {"centre_m", Point(sphere.centre)}, {"radius_m", sphere.radius}});
@@ -97,24 +104,24 @@ Json ShapesJson(const CalibrationView& view) {
                                   {"min_m", Point(workspace.min)},
                                   {"max_m", Point(workspace.max)}});
   }
-  return json;
 }
 
 }  // namespace
 
+std::string MakeRobotDataJson(const RobotView& view) {
+  Json json = {{"format", "elastocal-report-data-1"}};
+  AddRobot(view, json);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 std::string MakeReportDataJson(const CalibrationView& view) {
   Json json = {{"format", "elastocal-report-data-1"}, {"models", Json::array()}};
   for (const ModelKind kind : view.comparison.kinds) json["models"].push_back(ModelKindName(kind));
-  json["robot"] = RobotJson(view);
-  json["chains"] = Json::array();
-  for (const ChainView& chain : view.chains) {
-    json["chains"].push_back({{"name", chain.name}, {"joints", chain.joints}});
-  }
+  AddRobot(view.robot, json);
   json["markers"] = MarkersJson(view);
   json["clusters"] = MakeClusters(view);
   json["clusters_on"] = view.held_out != nullptr ? "on motions that took no part in the estimate"
                                                  : "on the calibration postures";
-  json.update(ShapesJson(view));
   json["scenes"] = MakeScenes(view);
   if (!view.error_table.empty()) json["error_table"] = Json::parse(view.error_table);
   json["distributions"] = MakeDistributions(view);

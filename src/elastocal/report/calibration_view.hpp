@@ -38,15 +38,24 @@ struct WorkspaceView {
   Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();
 };
 
-/// All of a calibration that a page can show beyond summary.json. Keeps references to results that
-/// the caller holds.
-struct CalibrationView {
+/// What the 3-D view draws without any measurement.
+struct RobotView {
+  const RobotTree& tree;
   std::string urdf;                           ///< text of the robot description
   std::map<std::string, std::string> meshes;  ///< STL files, by the name that the URDF has for them
   std::vector<ChainView> chains;
-  std::vector<ClusterView> clusters;
   std::vector<SphereView> spheres;
   std::vector<WorkspaceView> workspaces;
+};
+
+/// robot_data.json: for folders without a calibration, so that a planned motion can be played.
+std::string MakeRobotDataJson(const RobotView& view);
+
+/// All of a calibration that a page can show beyond summary.json. Keeps references to results that
+/// the caller holds.
+struct CalibrationView {
+  RobotView robot;
+  std::vector<ClusterView> clusters;
 
   const Recording& recording;  ///< that was calibrated from
   const ModelComparison& comparison;

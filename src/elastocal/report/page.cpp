@@ -129,9 +129,9 @@ Json MissingJson(const Json& report, const std::string& folder) {
 }  // namespace
 
 std::vector<std::string> ReportFiles(const std::vector<std::string>& names) {
-  static const std::vector<std::string> known = {"summary.json",    "report_data.json",
-                                                 "validation.json", "comparison.json",
-                                                 "runs.json",       "motion.csv"};
+  static const std::vector<std::string> known = {
+      "summary.json",    "report_data.json", "validation.json", "comparison.json",
+      "robot_data.json", "runs.json",        "motion.csv"};
   const auto has = [](const std::vector<std::string>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
@@ -155,6 +155,10 @@ std::string MakeReportJson(const ReportSources& sources) {
         std::pair{"runs", "runs.json"}}) {
     const auto file = sources.files.find(name);
     if (file != sources.files.end()) report[key] = Parse(file->first, file->second);
+  }
+  const auto robot = sources.files.find("robot_data.json");
+  if (!report.contains("data") && robot != sources.files.end()) {
+    report["data"] = Parse(robot->first, robot->second);
   }
   report["calibrations"] = Json::array();
   for (const LabelledCalibration& calibration : sources.calibrations) {

@@ -57,6 +57,13 @@ TEST(Page, ShowsWhatTheFolderHasAndSaysWhatIsMissing) {
   EXPECT_EQ(MissingFrom(full), (std::vector<std::string>{"Calibrations over time"}));
 }
 
+TEST(Page, TheRobotAloneServesWhereNothingWasCalibrated) {
+  EXPECT_EQ(Report({{"robot_data.json", R"({"robot": "r"})"}})["data"]["robot"], "r");
+  EXPECT_EQ(Report({{"robot_data.json", R"({"robot": "r"})"},
+                    {"report_data.json", R"({"robot": "s"})"}})["data"]["robot"],
+            "s");
+}
+
 TEST(Page, NamesAFileThatIsBroken) {
   ExpectInputError([] { Report({{"summary.json", "{\"a\": "}}); }, {"summary.json"});
 }

@@ -23,7 +23,7 @@ export function medianCurves(columns, chain) {
 /** Chains of what design summarises: an array, or an object by name, under `chains` or at the top. */
 export function chainRows(summary) {
   const chains = summary?.chains ?? summary ?? {};
-  if (Array.isArray(chains)) return chains;
-  return Object.entries(chains).filter(([, row]) => typeof row === 'object' && row !== null)
-    .map(([chain, row]) => ({chain, ...row}));
+  const rows = Array.isArray(chains) ? chains
+    : Object.entries(chains).filter(([, row]) => typeof row === 'object' && row !== null).map(([chain, row]) => ({chain, ...row}));
+  return rows.map((row) => ({...row, o1: row.o1 ?? row.index}));
 }

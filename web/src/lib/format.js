@@ -11,7 +11,7 @@ export function significant(value, digits = 3) {
   if (value === 0) return '0';
   const size = Math.abs(value);
   if (size >= 1e9 || size < 1e-4) return value.toExponential(digits - 1).replace('-', '−');
-  if (size >= 1e4) return count(Number(value.toPrecision(digits)));
+  if (size >= 1e3) return count(Number(value.toPrecision(digits)));
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return fixed(value, decimals);
 }
@@ -56,11 +56,16 @@ const KIND_NAMES = {
 };
 export const kindName = (kind) => KIND_NAMES[kind] ?? kind;
 
-/** Numbers of a nested object as 'a b c' and value, for a table of margins whatever its layout. */
+/** Suffix of a key, what its numbers are multiplied by, and the unit to show. */
+const SUFFIXES = [['_mm', 1, 'mm'], ['_m', 1e3, 'mm'], ['_share', 100, '%'], ['_deg', 1, '°'], ['_s', 1, 's']];
+
+/** Numbers and texts of a nested object for a table: [name, value, unit]; lists are passed over. */
 export function flatten(object, path = []) {
   return Object.entries(object ?? {}).flatMap(([key, value]) => {
-    const here = [...path, key.replaceAll('_', ' ')];
-    if (typeof value === 'number' || typeof value === 'string' || typeof value === 'boolean') return [[here.join(', '), value]];
-    return value && typeof value === 'object' ? flatten(value, here) : [];
+    const [suffix, factor, unit] = SUFFIXES.find(([end]) => key.endsWith(end)) ?? ['', 1, ''];
+    const here = [...path, key.slice(0, key.length - suffix.length).replaceAll('_', ' ')];
+    if (typeof value === 'number') return [[here.join(', '), factor * value, unit]];
+    if (typeof value === 'string' || typeof value === 'boolean') return [[here.join(', '), String(value), '']];
+    return value && typeof value === 'object' && !Array.isArray(value) ? flatten(value, here) : [];
   });
 }

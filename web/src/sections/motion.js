@@ -9,11 +9,18 @@ import {table} from '../lib/table.js';
 const TORQUE = 'torque_';
 
 function marginsFigure(motion) {
-  const rows = flatten(motion.margins);
+  const rows = flatten(motion.margins?.margins ?? motion.margins);
   if (rows.length === 0) return null;
-  return figure({title: 'Margins', data: {name: 'margins.csv', text: () => toCsv(['margin', 'value'], rows)},
-    body: table({caption: 'Margins of the motion', columns: [{text: 'Margin'}, {text: 'Value', number: true}],
-      rows: rows.map(([name, value]) => [name, typeof value === 'number' ? significant(value) : String(value)])})});
+  return figure({title: 'Margins', data: {name: 'margins.csv', text: () => toCsv(['margin', 'value', 'unit'], rows)},
+    body: table({caption: 'Margins of the motion', columns: [{text: 'Margin'}, {text: 'Least of the motion', number: true}],
+      rows: rows.map(([name, value, unit]) => [name, [typeof value === 'number' ? significant(value) : value, h('span', {class: 'unit'}, ` ${unit}`)]])})});
+}
+
+/** Postures that could not be kept or reached, with the reason. */
+function leftOut(motion) {
+  const items = (motion.margins?.sets ?? []).flatMap((set) => (set.left_out ?? []).map((left) =>
+    `${set.name}, posture ${left.posture + 1}: ${left.reason}`));
+  return items.length > 0 && h('div', {class: 'words'}, h('h3', {}, 'Left out'), h('ul', {}, ...items.map((text) => h('li', {}, text))));
 }
 
 function zmpFigure(motion) {
@@ -50,7 +57,7 @@ function jointFigure(motion, joints) {
 export function motionSection(report) {
   const parts = (report.motions ?? []).filter((m) => m.columns?.time?.length).flatMap((motion) => {
     const joints = Object.keys(motion.columns).filter((n) => !['time', 'support', 'zmp_x', 'zmp_y'].includes(n) && !n.startsWith(TORQUE) && typeof motion.columns[n][0] === 'number');
-    return [report.motions.length > 1 && h('h3', {}, motion.name), marginsFigure(motion), zmpFigure(motion), jointFigure(motion, joints)];
+    return [report.motions.length > 1 && h('h3', {}, motion.name), marginsFigure(motion), leftOut(motion), zmpFigure(motion), jointFigure(motion, joints)];
   });
   if (parts.length === 0) return null;
   const {columns, rows} = report.motions[0];

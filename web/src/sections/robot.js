@@ -118,8 +118,9 @@ export function robotSection(report) {
   const canvas = h('canvas', {tabindex: '0', role: 'img', 'aria-label': 'The robot in 3-D. Arrow keys turn the view, plus and minus bring it nearer, 0 takes it back.'});
   const frame = h('div', {class: 'viewer'}, canvas);
   const clusters = (report.data.clusters ?? []).length > 0;
-  const result = section('robot', 'Robot', 'The robot, and where the residuals sit',
-    'Balls are measured markers; rods lead to where they should be by the nominal robot (orange) and by the calibrated one (blue), magnified. A foot that stands is green.', frame);
+  const measured = (report.data.markers ?? []).length > 0;
+  const result = section('robot', 'Robot', measured ? 'The robot, and where the residuals sit' : 'The robot',
+    !measured ? 'As planned; a foot that stands is green, the zero-moment point orange.' : 'Balls are measured markers; rods lead to where they should be by the nominal robot (orange) and by the calibrated one (blue), magnified. A foot that stands is green.', frame);
   // Once the page stands and has its width.
   queueMicrotask(() => {
     try {

@@ -3,8 +3,17 @@ import {kindName} from '../lib/format.js';
 
 const POSTURES_PER_SECOND = 1.5;
 
-/** Feet of a cell of motion.csv: 'left_sole_link+right_sole_link', or separated by spaces. */
-const feet = (cell) => String(cell ?? '').split(/[+;|\s]+/).filter(Boolean);
+/** Feet of a cell of motion.csv: links joined by '+', 'both' of the feet known, or 'none'. */
+export function feet(cell, all) {
+  if (cell === undefined || cell === null || cell === 'both') return all;
+  return cell === 'none' ? [] : String(cell).split('+').filter(Boolean);
+}
+
+/** Every foot that is named in the column of supports, or in the recorded trials. */
+function knownFeet(cells, scenes) {
+  const named = [...new Set(cells ?? [])].flatMap((cell) => feet(cell, []));
+  return [...new Set([...named, ...scenes.flatMap((scene) => scene.support ?? [])])];
+}
 
 /** Positions of all markers from those of the scene's own; NaN for the others. */
 function spread(values, scene, count) {
@@ -39,11 +48,11 @@ function recordedClip(scene, data) {
   };
 }
 
-function plannedClip(motion, robot) {
+function plannedClip(motion, robot, scenes) {
   const {columns} = motion;
   const joints = Object.keys(columns).filter((name) => robot.object.joints[name]);
   const time = columns.time ?? columns.t ?? [];
-  const support = columns.support?.map(feet);
+  const all = knownFeet(columns.support, scenes);
   return {
     name: motion.name,
     group: 'planned motion',
@@ -56,7 +65,7 @@ function plannedClip(motion, robot) {
     at: (i) => ({
       q: joints.map((name) => columns[name][i]),
       root: null,
-      support: support?.[i] ?? [],
+      support: feet(columns.support?.[i], all),
       zmp: columns.zmp_x ? [columns.zmp_x[i], columns.zmp_y[i]] : undefined,
     }),
   };
@@ -65,7 +74,7 @@ function plannedClip(motion, robot) {
 /** All that the viewer can show, one after the other: recorded trials, then planned motions. */
 export function makeClips(report, robot) {
   const recorded = (report.data?.scenes ?? []).map((scene) => recordedClip(scene, report.data));
-  const planned = (report.motions ?? []).map((motion) => plannedClip(motion, robot));
+  const planned = (report.motions ?? []).map((motion) => plannedClip(motion, robot, report.data?.scenes ?? []));
   return [...recorded, ...planned].filter((clip) => clip.count > 0);
 }
 

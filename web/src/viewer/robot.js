@@ -74,16 +74,37 @@ export class Robot {
     this.object.updateMatrixWorld(true);
   }
 
-  /** Puts the robot so that a link lies level on the ground at the origin of the plan. */
+  /**
+   * Puts the robot so that a foot is where it is in the zero posture, the root link above the origin
+   * and the foot on the ground: where planned motions have their feet. Without a foot the root
+   * link stays at the origin.
+   */
   standOn(linkName) {
     this.setRoot([0, 0, 0], [0, 0, 0, 1]);
     const link = this.links[linkName];
     if (!link) return;
-    const inverse = link.matrixWorld.clone().invert();
+    const root = this.zeroPose(linkName).multiply(link.matrixWorld.clone().invert());
     const position = new THREE.Vector3();
     const quaternion = new THREE.Quaternion();
-    inverse.decompose(position, quaternion, new THREE.Vector3());
+    root.decompose(position, quaternion, new THREE.Vector3());
     this.setRoot(position.toArray(), quaternion.toArray());
+  }
+
+  /** Pose of a foot on the ground, all joints at zero. */
+  zeroPose(linkName) {
+    this.zero ??= new Map();
+    if (!this.zero.has(linkName)) {
+      const joints = Object.values(this.object.joints).filter((joint) => joint.jointType !== 'fixed');
+      const positions = joints.map((joint) => [...joint.jointValue]);
+      for (const joint of joints) joint.setJointValue(...joint.jointValue.map(() => 0));
+      this.object.updateMatrixWorld(true);
+      const pose = this.links[linkName].matrixWorld.clone();
+      pose.elements[14] = 0;
+      this.zero.set(linkName, pose);
+      joints.forEach((joint, k) => joint.setJointValue(...positions[k]));
+      this.object.updateMatrixWorld(true);
+    }
+    return this.zero.get(linkName).clone();
   }
 
   /** Colours the links on which the robot stands. */

@@ -38,7 +38,7 @@ export class Stage {
     const size = box.getSize(new THREE.Vector3());
     const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
     const across = Math.hypot(size.x, size.y);
-    const distance = 1.06 * Math.max(size.z, across / this.camera.aspect) / (2 * slope) + 0.35 * across;
+    const distance = 1.06 * Math.max(size.z, 0.8 * across / this.camera.aspect) / (2 * slope) + 0.35 * across;
     const angle = yaw - 0.62;
     this.controls.target.copy(centre);
     this.camera.position.set(Math.cos(angle), Math.sin(angle), 0.24).normalize().multiplyScalar(distance).add(centre);

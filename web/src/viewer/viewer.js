@@ -109,12 +109,7 @@ export class Viewer {
       this.paint();
     }
     this.zmp.visible = Boolean(frame.zmp);
-    if (frame.zmp) this.zmp.position.set(frame.zmp[0], frame.zmp[1], this.zmpHeight(frame));
-  }
-
-  zmpHeight(frame) {
-    const link = this.robot.links[frame.support[0]];
-    return link ? link.getWorldPosition(new THREE.Vector3()).z : 0;
+    if (frame.zmp) this.zmp.position.set(frame.zmp[0], frame.zmp[1], 0.003);
   }
 
   /** RMSE of the markers of frame i by a model, mm; NaN without any. */

@@ -189,6 +189,21 @@ test('a planned motion plays, with spheres and workspaces', async () => {
   await page.close();
 });
 
+test('a folder with a plan alone plays it', async () => {
+  const {data: {robot, spheres}, motions} = sampleReport();
+  const file = join(folder, 'plan.html');
+  writeFileSync(file, fill(readFileSync(template, 'utf8'), {format: 'elastocal-report-1', folder: 'out', data: {robot, spheres}, motions, calibrations: [], missing: []}));
+  const {page, problems} = await openPage(browser, file);
+  await waitForViewer(page);
+  const first = await picture(page);
+  assert.ok(first.opaque > 0.005 * first.pixels);
+  await page.focus('#posture');
+  await page.keyboard.press('End');
+  assert.notEqual((await picture(page)).hash, first.hash);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
 test('meshes are drawn where they came along, and a robot without any is drawn by its bones', async () => {
   const pictures = [];
   for (const change of [(robot) => robot, (robot) => ({...robot, meshes: {}}), (robot) => ({...robot, urdf: robot.urdf.replace(/<visual>[^]*?<\/visual>/g, '')})]) {

@@ -8,7 +8,7 @@ import {chainRows, medianCurves} from '../../src/lib/curves.js';
 import {byJoint, countByStatus, family, kindsOf, offsetsOverTime, splitName} from '../../src/lib/parameters.js';
 import {table2Rows} from '../../src/lib/table2.js';
 import {stiffness, userUnit} from '../../src/lib/units.js';
-import {advance} from '../../src/viewer/clips.js';
+import {advance, feet} from '../../src/viewer/clips.js';
 
 test('floats are little-endian and keep NaN', () => {
   assert.deepEqual([...floats('AACAPwAAAMA=')], [1, -2]);
@@ -66,7 +66,7 @@ test('curves are medians over seeds, with gaps where an algorithm has none', () 
   assert.deepEqual(postures, [4, 8]);
   assert.deepEqual(curves, [{algorithm: 'A', o1: [2, null]}, {algorithm: 'B', o1: [null, 9]}]);
   assert.deepEqual(chainRows({leg: {o1: 1}, seed: 3}), [{chain: 'leg', o1: 1}]);
-  assert.deepEqual(chainRows({chains: [{chain: 'leg'}]}), [{chain: 'leg'}]);
+  assert.deepEqual(chainRows({chains: [{chain: 'leg', index: 2}]}), [{chain: 'leg', index: 2, o1: 2}]);
 });
 
 test('offsets of several calibrations stand side by side in degrees', () => {
@@ -82,6 +82,13 @@ test('playing goes with the recording’s time, passes gaps quickly and begins a
   assert.equal(advance(motion, 0, 0.1), 1);
   assert.equal(advance(motion, 1, 0.5), 2);
   assert.ok(advance({moving: false, count: 3, time: []}, 2.9, 1) < 2.9);
+});
+
+test('the feet of a planned motion', () => {
+  assert.deepEqual(feet('a+b', []), ['a', 'b']);
+  assert.deepEqual(feet('both', ['l', 'r']), ['l', 'r']);
+  assert.deepEqual(feet(undefined, ['l']), ['l']);
+  assert.deepEqual(feet('none', ['l']), []);
 });
 
 test('colours run evenly from one end to the other', () => {

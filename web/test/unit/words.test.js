@@ -35,7 +35,8 @@ test('lists of names', () => {
 });
 
 test('margins of any layout become rows', () => {
-  assert.deepEqual(flatten({zmp_mm: 20, collision: {pair: 'a b', mm: 3}}), [['zmp mm', 20], ['collision, pair', 'a b'], ['collision, mm', 3]]);
+  assert.deepEqual(flatten({zmp_m: 0.5, collision: {pair: 'a b', torque_share: 0.25}, sets: [1]}),
+                   [['zmp', 500, 'mm'], ['collision, pair', 'a b', ''], ['collision, torque', 25, '%']]);
   assert.deepEqual(flatten(undefined), []);
 });
 
