@@ -13,7 +13,7 @@ namespace {
 
 TEST_F(Program, HelpHasAnExampleForEveryCommand) {
   EXPECT_EQ(RunProgram("--help").exit_code, 0);
-  for (const char* command : {"inspect", "calibrate", "validate", "compare", "demo"}) {
+  for (const char* command : {"inspect", "calibrate", "validate", "compare", "demo", "report"}) {
     const ProgramResult help = RunProgram(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Example: elastocal " + std::string(command)), std::string::npos);

@@ -8,6 +8,7 @@
 
 #include "elastocal/cli/calibration_report.hpp"
 #include "elastocal/cli/calibration_run.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/identifiability/regressor.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/output_files.hpp"
@@ -104,11 +105,13 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
                                                       options.recordings.end());
   const Session session = OpenSession(options.project, recordings, options.common.seed);
-  const std::filesystem::path summary_file = std::filesystem::path(options.output) / "summary.json";
+  const std::filesystem::path folder = options.output;
+  const std::filesystem::path summary_file = folder / "summary.json";
   const std::vector<std::filesystem::path> deployable_paths =
       DeployablePaths(options, session.project);
   std::vector<std::filesystem::path> outputs = deployable_paths;
-  outputs.insert(outputs.end(), {summary_file, options.common.json_file});
+  outputs.insert(outputs.end(), {summary_file, folder / "report_data.json", folder / "runs.json",
+                                 folder / "report.html", options.common.json_file});
   std::vector<std::filesystem::path> inputs = {options.project, session.project.urdf};
   for (const std::filesystem::path& recording : recordings) {
     inputs.push_back(recording);
@@ -116,12 +119,16 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   }
   CheckOutputs(outputs, inputs);
 
+  auto inputs_read = StartRecordingInputs(session.project, recordings);
   CalibrationRun run = Calculate(session, options);
   const bool deployable = run.verdict.objections.empty();
   Files files;
   if (deployable) files = DeployableFiles(options, session, run);
   const std::string summary = MakeSummaryJson(run);
   files.push_back({summary_file, summary});
+  files.push_back({folder / "report_data.json", CalibrationDataJson(session, run)});
+  files.push_back(
+      {folder / "runs.json", RunsJson(folder, "calibrate", options.common, inputs_read.get())});
   if (!options.common.json_file.empty()) files.push_back({options.common.json_file, summary});
   WriteFiles(files);
   if (!deployable) {
@@ -134,6 +141,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   for (const std::string& objection : run.verdict.objections) spdlog::error("{}", objection);
   if (!deployable) spdlog::error("no calibrated URDF is written");
   Print(quiet, fmt::format("\nWritten to {}\n", options.output));
+  WriteFolderReport(folder, quiet);
   if (run_out != nullptr) *run_out = std::move(run);
   return deployable ? kFine : kNotConverged;
 }
@@ -162,8 +170,10 @@ void AddCalibrate(CLI::App& app, Action& action) {
       ->capture_default_str();
   AddCommonOptions(*command, options->common);
   command->footer(
-      "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro, covariance.csv and\n"
-      "summary.json; the last alone, with exit code 4, where the result is not to be trusted.\n"
+      "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro and covariance.csv, and, "
+      "also\n"
+      "where the result is not to be trusted (exit code 4), summary.json, report_data.json,\n"
+      "runs.json and report.html.\n"
       "Example: elastocal calibrate project.yaml --recording postures.csv --kfold 10 -o out");
   command->callback(
       [&action, options] { action = [options] { return RunCalibration(*options); }; });

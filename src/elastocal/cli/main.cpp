@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal::cli {
@@ -37,6 +38,7 @@ std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Run(int argc, char** argv) {
+  SetCommandLine(argc, argv);
   CLI::App app("Elasto-geometric calibration of humanoid robots from marker positions.");
   app.name("elastocal");
   app.set_version_flag("--version", ELASTOCAL_VERSION);
@@ -53,6 +55,7 @@ int Run(int argc, char** argv) {
   AddSimulate(app, action);
   AddDesign(app, action);
   AddAssess(app, action);
+  AddReport(app, action);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {
     spdlog::error("{} (elastocal --help lists the commands)", unknown);
     return kUsage;
