@@ -55,6 +55,29 @@ TEST_F(Simulate, PlaysOneTrialWithTheOptionsGiven) {
   EXPECT_EQ(json["trials"][0]["lag_s"], 4.0) << "the command line goes before the file";
 }
 
+TEST_F(Simulate, PlaysAUsersPosturesAndTrajectory) {
+  const std::string postures =
+      scratch_.Write("postures.csv", "turret_joint,elbow_joint\n0,0.1\n0.3,0.2\n-0.3,0.5\n");
+  ASSERT_EQ(Run("p", "--quiet --postures " + postures).exit_code, 0);
+  const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  const Experiment played = ReadExperiment(Folder("p"), project);
+  ASSERT_EQ(played.trials.size(), 1u);
+  EXPECT_EQ(played.trials[0].name, "postures");
+  EXPECT_EQ(played.trials[0].kind, TrialKind::kCalibration);
+  EXPECT_EQ(played.trials[0].chains, std::vector<int>{0});  // `wrist` begins beyond the root
+
+  const std::string motion =
+      scratch_.Write("motion.csv", "time,turret_joint,support\n0,0,none\n2,0.3,none\n5,0,none\n");
+  const ProgramResult result =
+      Run("m", "--kind random --chains wrist --json " + Folder("m.json") + " --motion " + motion);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Experiment followed = ReadExperiment(Folder("m"), project);
+  EXPECT_EQ(followed.trials[0].kind, TrialKind::kRandom);
+  EXPECT_EQ(followed.trials[0].chains, std::vector<int>{1});
+  const auto json = nlohmann::json::parse(ReadFile(Folder("m.json")));
+  EXPECT_EQ(json["trials"][0]["frames"], 1150);  // 5 s at rest, 5 s, 1.5 s at rest
+}
+
 TEST_F(Simulate, RefusesWhatIsNotThere) {
   const auto refused = [&](const std::string& more, const std::string& part) {
     const ProgramResult result = Run("none", more);
@@ -67,6 +90,10 @@ TEST_F(Simulate, RefusesWhatIsNotThere) {
   refused("--lost-marker NOSE", "NOSE");
   refused("--free", "free");
   refused("--time-step-s 0.003", "hundredth");
+  refused("--postures " + Folder("no.csv"), "no.csv");
+  const std::string postures = scratch_.Write("postures.csv", "elbow_joint\n0\n0.1\n");
+  refused("--postures " + postures + " --chains arn", "did you mean 'arm'");
+  refused("--motion " + postures, "no column 'time'");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "elastocal/calibration/prediction.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -124,15 +125,32 @@ class Predictor {
     return DeflectWaist(rigid.T_foot_waist, geometry_.leg_compliance[leg], wrench).T_foot_waist;
   }
 
+  /// Markers that place a footing, see FootingBy.
+  std::vector<char> PlacingMarkers(const Footing& footing) const {
+    std::vector<char> all(model_.marker_count(), 1);
+    if (by_ == FootingBy::kAllMarkers || footing.leg < 0) return all;
+    std::vector<char> on_foot(model_.marker_count(), 0);
+    int count = 0;
+    for (int m = 0; m < model_.marker_count(); ++m) {
+      const bool seen = std::any_of(footing.postures.begin(), footing.postures.end(),
+                                    [&](int i) { return Seen(recording_, i, m); });
+      if (!seen || !OnFoot(footing.leg, m)) continue;
+      on_foot[m] = 1;
+      ++count;
+    }
+    return count < 3 ? all : on_foot;
+  }
+
   void PlaceFooting(std::size_t f, const Placement* known) {
     const Footing& footing = placement_.footings[f];
+    const std::vector<char> placing = PlacingMarkers(footing);
     std::vector<Transform> T_foot_waist;
     Registration registration;
     for (int i : footing.postures) {
       T_foot_waist.push_back(WaistOnFoot(footing.leg, i));
       AddMarkers(
           recording_, i, MarkersInFoot(footing.leg, i, T_foot_waist.back()),
-          [](int) { return true; }, registration);
+          [&](int m) { return placing[m] != 0; }, registration);
     }
     if (const Transform* T = FindKnown(known, footing)) {
       placement_.T_ref_footing[f] = *T;

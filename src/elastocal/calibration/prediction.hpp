@@ -19,9 +19,10 @@ struct Prediction {
 
 /// By which markers a footing is placed.
 enum class FootingBy {
-  kAllMarkers,   ///< of the trial: what explains the trial best
-  kFootMarkers,  ///< those on the foot alone: where the waist is with respect to its foot then
-                 ///< shows
+  kAllMarkers,  ///< of the trial: what explains the trial best
+  /// Those on the foot alone: where the waist is with respect to its foot then shows. Where fewer
+  /// than three of them were seen, all.
+  kFootMarkers,
 };
 
 /// Predicts the markers of a recording by a model with errors `delta`, as a user of the robot

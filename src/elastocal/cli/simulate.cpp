@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <exception>
 #include <map>
 #include <memory>
@@ -10,26 +9,27 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/session.hpp"
-#include "elastocal/cli/text_table.hpp"
+#include "elastocal/cli/simulation_report.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/io/motion_file.hpp"
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/simulation_settings.hpp"
 #include "elastocal/io/truth_file.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/simulation/given_motion.hpp"
 
 namespace elastocal::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct SimulateOptions {
   CommonOptions common;
   std::string project, output, trials = "all";
   std::string settings;
+  std::string postures, motion, kind;  ///< of a motion that the user gives
+  std::vector<std::string> chains;
   int threads = 2;
   bool nominal = false, free = false, matched = false;
   std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
@@ -39,14 +39,6 @@ std::string FlagName(std::string key) {
   std::replace(key.begin(), key.end(), '_', '-');
   return "--" + key;
 }
-
-/// What is kept of a trial once its files are written.
-struct PlayedTrial {
-  TrialFiles files;
-  SensorTruth sensors;
-  int frames = 0;
-  WaistGive waist;
-};
 
 std::vector<std::size_t> Chosen(const VirtualExperiment& experiment, const std::string& which) {
   std::vector<std::size_t> chosen;
@@ -100,9 +92,9 @@ MatchedExperiment Match(const VirtualExperiment& experiment, const Project& proj
 }
 
 /// Plays and writes all trials, several at a time; the result does not depend on how many.
-std::vector<PlayedTrial> PlayAll(const Played& play, const std::vector<std::size_t>& chosen,
-                                 const SimulateOptions& options) {
-  std::vector<PlayedTrial> played(chosen.size());
+std::vector<WrittenTrial> PlayAll(const Played& play, const std::vector<std::size_t>& chosen,
+                                  const SimulateOptions& options) {
+  std::vector<WrittenTrial> played(chosen.size());
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;
   std::mutex guard;
@@ -133,52 +125,6 @@ std::vector<PlayedTrial> PlayAll(const Played& play, const std::vector<std::size
   return played;
 }
 
-std::string TrialTable(const std::vector<PlayedTrial>& played, const VirtualExperiment& experiment,
-                       const std::vector<std::size_t>& chosen) {
-  TextTable table({"trial", "kind", "postures", "frames", "lag s", "waist gives way mm", "deg"});
-  for (std::size_t i = 0; i < played.size(); ++i) {
-    const PlannedTrial& plan = experiment.trials[chosen[i]];
-    table.Add({plan.name, TrialKindName(plan.kind), std::to_string(plan.postures),
-               std::to_string(played[i].frames), fmt::format("{:.3f}", played[i].sensors.lag_s),
-               fmt::format("{:.2f}", 1e3 * played[i].waist.translation),
-               fmt::format("{:.3f}", played[i].waist.rotation * 180.0 / M_PI)});
-  }
-  return table.Render();
-}
-
-std::string StiffnessTable(const VirtualExperiment& experiment) {
-  TextTable table(
-      {"leg", "Kx N/mm", "Ky N/mm", "Kz N/mm", "Krx N.m/rad", "Kry N.m/rad", "Krz N.m/rad"});
-  for (const LegCompliance& leg : experiment.legs) {
-    std::vector<std::string> row = {leg.chain};
-    for (int i = 0; i < 6; ++i) {
-      row.push_back(fmt::format("{:.3g}", leg.base.stiffness[i] * (i < 3 ? 1e-3 : 1.0)));
-    }
-    table.Add(row);
-  }
-  return table.Render();
-}
-
-Json MakeJson(const std::vector<PlayedTrial>& played, const VirtualExperiment& experiment,
-              const std::vector<std::size_t>& chosen) {
-  Json json;
-  json["trials"] = Json::array();
-  for (std::size_t i = 0; i < played.size(); ++i) {
-    json["trials"].push_back({{"name", experiment.trials[chosen[i]].name},
-                              {"postures", experiment.trials[chosen[i]].postures},
-                              {"frames", played[i].frames},
-                              {"lag_s", played[i].sensors.lag_s},
-                              {"drift_ppm", played[i].sensors.drift_ppm},
-                              {"waist_mm", 1e3 * played[i].waist.translation},
-                              {"faults", played[i].sensors.faults}});
-  }
-  for (const LegCompliance& leg : experiment.legs) {
-    json["stiffness"][leg.chain] =
-        std::vector<double>(leg.base.stiffness.begin(), leg.base.stiffness.end());
-  }
-  return json;
-}
-
 /// Defaults, or a perfect robot; then the settings file; then the command line.
 VirtualExperimentOptions Settings(const SimulateOptions& options) {
   VirtualExperimentOptions settings;
@@ -193,23 +139,44 @@ VirtualExperimentOptions Settings(const SimulateOptions& options) {
   return settings;
 }
 
-int Simulate(const SimulateOptions& options) {
-  const Project project = ReadProject(options.project);
-  CheckOutputs({options.common.json_file}, {options.project, project.urdf, options.settings});
+/// The experiment with the trials that it plans or with those that the user gives.
+VirtualExperiment Prepare(const SimulateOptions& options, const Project& project) {
   VirtualExperimentOptions settings = Settings(options);
   settings.seed = options.common.seed.value_or(1);
-  Played play{PrepareExperiment(DescribeRobot(project), settings)};
+  const DescribedRobot robot = DescribeRobot(project);
+  if (options.postures.empty() && options.motion.empty()) {
+    return PrepareExperiment(robot, settings);
+  }
+  const std::string& file = options.motion.empty() ? options.postures : options.motion;
+  const JointMotion motion =
+      options.motion.empty() ? ReadPostureList(file, project) : ReadMotion(file, project);
+  GivenMotionOptions given;
+  given.name = std::filesystem::path(file).stem().string();
+  given.kind = TrialKindNamed(options.kind);
+  for (const std::string& name : options.chains) {
+    given.chains.push_back(FindChain(project, name));
+  }
+  settings.motion.seed = settings.seed;
+  return PrepareExperiment(
+      robot, settings, PlanGivenMotion(robot.tree, robot.chains, motion, settings.motion, given));
+}
+
+int Simulate(const SimulateOptions& options) {
+  const Project project = ReadProject(options.project);
+  CheckOutputs({options.common.json_file},
+               {options.project, project.urdf, options.settings, options.postures, options.motion});
+  Played play{Prepare(options, project)};
   const std::vector<std::size_t> chosen = Chosen(play.experiment, options.trials);
   if (options.matched) {
     play.matched = Match(play.experiment, project, chosen);
     play.experiment = play.matched->plan;
   }
   const VirtualExperiment& experiment = play.experiment;
-  const std::vector<PlayedTrial> played = PlayAll(play, chosen, options);
+  const std::vector<WrittenTrial> played = PlayAll(play, chosen, options);
 
   Experiment written;
   std::vector<SensorTruth> sensors;
-  for (const PlayedTrial& trial : played) {
+  for (const WrittenTrial& trial : played) {
     written.trials.push_back(trial.files);
     sensors.push_back(trial.sensors);
   }
@@ -220,11 +187,10 @@ int Simulate(const SimulateOptions& options) {
   }
   WriteExperiment(options.output, written, project);
   Print(options.common.Silent(),
-        TrialTable(played, experiment, chosen) + "\nStiffness of the legs as felt at the waist\n" +
-            StiffnessTable(experiment) +
+        DescribeSimulation(played, experiment, chosen) +
             fmt::format("\nWritten: {} with experiment.yaml and truth.yaml\n", options.output));
   if (!options.common.json_file.empty()) {
-    WriteFile(options.common.json_file, MakeJson(played, experiment, chosen).dump(2) + "\n");
+    WriteFile(options.common.json_file, MakeSimulationJson(played, experiment, chosen));
   }
   return kFine;
 }
@@ -241,6 +207,20 @@ void AddSimulate(CLI::App& app, Action& action) {
       ->add_option("--trials", options->trials,
                    "Which are played: all, calibration, validation, or the name of one")
       ->capture_default_str();
+  auto* postures = command->add_option(
+      "--postures", options->postures,
+      "Plays these postures instead, move_s + rest_s apart (CSV; docs/formats.md, Motion)");
+  command
+      ->add_option("--motion", options->motion,
+                   "Plays this joint trajectory instead (CSV with time)")
+      ->excludes(postures);
+  command->add_option("--chains", options->chains,
+                      "Chains that they exercise; default: those that move");
+  command
+      ->add_option("--kind", options->kind,
+                   "What they are for: calibration, sine, random or repeatability; default: "
+                   "calibration where the robot rests, else sine")
+      ->check(CLI::IsMember({"calibration", "sine", "random", "repeatability"}));
   command->add_option("--threads", options->threads, "Trials played at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -27,14 +27,11 @@ bool Contains(const std::vector<Value>& values, const Value& value) {
 
 int ChainNamedBy(const YamlValue& value, const Project& project) {
   const std::string name = value.Text();
-  std::vector<std::string> known;
-  for (const Chain& chain : project.chains) known.push_back(chain.name);
-  const auto found = std::find(known.begin(), known.end(), name);
-  if (found == known.end()) {
-    value.Fail("there is no chain " + Quote(name) + " in " + project.file.string() +
-               DidYouMean(name.substr(0, 60), known));
+  try {
+    return FindChain(project, name);
+  } catch (const InputError& error) {
+    value.Fail(error.what());
   }
-  return static_cast<int>(found - known.begin());
 }
 
 /// `chain: name` or `chains: [name, ...]`.
@@ -79,11 +76,9 @@ std::vector<int> ReadSupport(const YamlValue& list, const Project& project) {
 
 TrialKind ReadKind(const YamlValue& value) {
   const std::string text = value.Text();
+  if (const auto kind = TrialKindNamed(text)) return *kind;
   std::vector<std::string> names;
-  for (TrialKind kind : kKinds) {
-    names.push_back(TrialKindName(kind));
-    if (names.back() == text) return kind;
-  }
+  for (TrialKind kind : kKinds) names.push_back(TrialKindName(kind));
   value.Fail("found " + Quote(text) + "; expected calibration, sine, random or repeatability" +
              DidYouMean(text.substr(0, 60), names));
 }
@@ -161,6 +156,24 @@ std::string TrialKindName(TrialKind kind) {
       break;
   }
   return "repeatability";
+}
+
+std::optional<TrialKind> TrialKindNamed(const std::string& name) {
+  for (TrialKind kind : kKinds) {
+    if (TrialKindName(kind) == name) return kind;
+  }
+  return std::nullopt;
+}
+
+int FindChain(const Project& project, const std::string& name) {
+  std::vector<std::string> known;
+  for (const Chain& chain : project.chains) known.push_back(chain.name);
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end()) {
+    throw InputError("there is no chain " + Quote(name) + " in " + project.file.string() +
+                     DidYouMean(name.substr(0, 60), known));
+  }
+  return static_cast<int>(found - known.begin());
 }
 
 Experiment ReadExperiment(const fs::path& folder, const Project& project) {

@@ -153,13 +153,12 @@ std::vector<double> RowNumbers(const Recording& recording, int posture) {
 
 std::string LimitWarning(const Recording& recording, const Joint& joint, int coordinate) {
   const bool revolute = joint.type == JointType::kRevolute;
-  const double margin = revolute ? kLimitMarginRad : kLimitMarginM;
   int count = 0, worst = 0;
   double worst_excess = 0.0;
   for (int i = 0; i < recording.posture_count(); ++i) {
     const double q = recording.q(i, coordinate);
     const double excess = std::max(joint.limits.lower - q, q - joint.limits.upper);
-    count += excess > margin;
+    count += BeyondLimits(joint, q);
     if (excess <= worst_excess) continue;
     worst_excess = excess;
     worst = i;
@@ -187,6 +186,11 @@ void CheckRadians(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& p
   throw InputError(place(worst) + "joint " + Quote(joint.name) + " is at " +
                    FormatNumber(positions[worst]) +
                    ": this looks like degrees; radians were expected");
+}
+
+bool BeyondLimits(const Joint& joint, double position) {
+  const double margin = joint.type == JointType::kRevolute ? kLimitMarginRad : kLimitMarginM;
+  return std::max(joint.limits.lower - position, position - joint.limits.upper) > margin;
 }
 
 void CheckPlausible(const Recording& recording, const RobotTree& tree) {

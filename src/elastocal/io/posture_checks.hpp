@@ -20,8 +20,11 @@ void CheckPlausible(const Recording& recording, const RobotTree& tree);
 void CheckRadians(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
                   const std::function<std::string(Eigen::Index)>& place);
 
-/// One sentence for each recorded joint that is beyond its limits by more than a degree or 5 mm,
-/// naming the worst line and how many there are.
+/// Whether a position is beyond the joint's limits by more than a degree or 5 mm.
+bool BeyondLimits(const Joint& joint, double position);
+
+/// One sentence for each recorded joint that is beyond its limits in this sense, naming the
+/// worst line and how many there are.
 std::vector<std::string> LimitWarnings(const Recording& recording, const RobotTree& tree);
 
 /// A sentence naming the lines that repeat positions of joints and markers of lines above them;

@@ -19,12 +19,6 @@ struct Role {
 
 using Roles = std::map<std::string, Role>;
 
-std::array<std::string, 3> MarkerColumns(const Project& project, const std::string& marker) {
-  const auto renamed = project.recording.markers.find(marker);
-  return renamed == project.recording.markers.end() ? DefaultMarkerColumns(marker)
-                                                    : renamed->second;
-}
-
 const std::string& CoordinateName(const RobotTree& tree, int coordinate) {
   return tree.joints[tree.coordinate_joint[coordinate]].name;
 }
@@ -120,6 +114,12 @@ void CheckJoints(const std::string& place, const Project& project, const Posture
 std::string JointColumn(const Project& project, const std::string& joint) {
   const auto renamed = project.recording.joints.find(joint);
   return renamed == project.recording.joints.end() ? joint : renamed->second;
+}
+
+std::array<std::string, 3> MarkerColumns(const Project& project, const std::string& marker) {
+  const auto renamed = project.recording.markers.find(marker);
+  return renamed == project.recording.markers.end() ? DefaultMarkerColumns(marker)
+                                                    : renamed->second;
 }
 
 std::array<std::string, 3> DefaultMarkerColumns(const std::string& marker) {

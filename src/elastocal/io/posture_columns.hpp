@@ -26,6 +26,9 @@ PostureColumns FindPostureColumns(const std::vector<std::string>& header, const 
 /// The column of a joint: as the project has it, or the joint's name.
 std::string JointColumn(const Project& project, const std::string& joint);
 
+/// The columns of a marker: as the project has them, or the default ones.
+std::array<std::string, 3> MarkerColumns(const Project& project, const std::string& marker);
+
 /// Default columns of a marker: NAME_x, NAME_y, NAME_z.
 std::array<std::string, 3> DefaultMarkerColumns(const std::string& marker);
 

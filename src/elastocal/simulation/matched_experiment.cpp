@@ -149,21 +149,14 @@ SimulatedTrial RunMatchedTrial(const MatchedExperiment& experiment, std::size_t 
 
 WaistGive LargestMatchedDeflection(const MatchedExperiment& experiment, std::size_t index,
                                    const TrueMotion& motion) {
-  WaistGive largest;
-  const int leg = SupportingLeg(experiment.model, experiment.plan.trials[index].support);
-  if (leg < 0) return largest;
+  const PlannedTrial& trial = experiment.plan.trials[index];
+  const int leg = SupportingLeg(experiment.model, trial.support);
+  if (leg < 0) return {};
   const Geometry geometry = ApplyErrors(experiment.model, experiment.truth);
-  for (int i = 0; i < motion.frame_count(); ++i) {
-    const Transform rigid =
-        motion.T_camera_foot[0] *
-        PlaceLeg(experiment.model, geometry, motion.encoders.row(i).transpose(), leg).T_foot_waist;
-    const Transform& found = motion.T_camera_waist[static_cast<std::size_t>(i)];
-    largest.translation =
-        std::max(largest.translation, (found.translation() - rigid.translation()).norm());
-    largest.rotation =
-        std::max(largest.rotation, RotationAngle(rigid.linear().transpose() * found.linear()));
-  }
-  return largest;
+  return LargestWaistGive(motion, RestFrames(trial.motion, motion),
+                          [&](const Eigen::VectorXd& encoders) {
+                            return PlaceLeg(experiment.model, geometry, encoders, leg).T_foot_waist;
+                          });
 }
 
 }  // namespace elastocal

@@ -37,7 +37,8 @@ TrueMotion PlayMatchedMotion(const MatchedExperiment& experiment, std::size_t in
 /// Plays and measures a trial, like RunTrial.
 SimulatedTrial RunMatchedTrial(const MatchedExperiment& experiment, std::size_t index);
 
-/// Like LargestWaistDeflection, over the whole motion: against the model without compliances.
+/// Like LargestWaistDeflection, against the model without compliances; zero without a leg of the
+/// model.
 WaistGive LargestMatchedDeflection(const MatchedExperiment& experiment, std::size_t index,
                                    const TrueMotion& motion);
 

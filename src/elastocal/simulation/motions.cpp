@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "elastocal/simulation/motion_writer.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
 namespace elastocal {
@@ -17,7 +18,29 @@ double SmoothStep(double s) {
   return s * s * s * (10.0 + s * (6.0 * s - 15.0));
 }
 
+/// Slope of the samples at one of them; one-sided at the ends.
+Eigen::VectorXd SlopeAt(const MotionSegment& segment, Eigen::Index i) {
+  const Eigen::Index before = std::max<Eigen::Index>(0, i - 1);
+  const Eigen::Index after = std::min<Eigen::Index>(segment.sample_s.size() - 1, i + 1);
+  return (segment.samples.row(after) - segment.samples.row(before)).transpose() /
+         (segment.sample_s[after] - segment.sample_s[before]);
+}
+
+Eigen::VectorXd AlongSamples(const MotionSegment& segment, double time_s) {
+  const Eigen::VectorXd& times = segment.sample_s;
+  time_s = std::clamp(time_s, times[0], times[times.size() - 1]);
+  const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, time_s);
+  const auto i = static_cast<Eigen::Index>(next - times.begin()) - 1;
+  const double step = times[i + 1] - times[i];
+  const double s = (time_s - times[i]) / step;
+  const double r = 1.0 - s;
+  return r * r * (1.0 + 2.0 * s) * segment.samples.row(i).transpose() +
+         s * s * (1.0 + 2.0 * r) * segment.samples.row(i + 1).transpose() +
+         step * s * r * (r * SlopeAt(segment, i) - s * SlopeAt(segment, i + 1));
+}
+
 Eigen::VectorXd Evaluate(const MotionSegment& segment, double time_s) {
+  if (segment.sample_s.size() > 0) return AlongSamples(segment, time_s);
   if (segment.coordinate < 0) {
     return segment.from + SmoothStep(time_s / segment.duration_s) * (segment.to - segment.from);
   }
@@ -45,47 +68,6 @@ std::vector<Eigen::VectorXd> Sorted(const Eigen::VectorXd& start,
   }
   return postures;
 }
-
-/// Writes motions segment after segment.
-class MotionWriter {
- public:
-  MotionWriter(const Eigen::VectorXd& start, const MotionOptions& options)
-      : here_(start), options_(options) {
-    Rest(options.lead_in_s);
-  }
-
-  Motion motion;
-
-  void Rest(double duration_s) { motion.segments.push_back(Quintic(duration_s, here_)); }
-
-  void MoveTo(const Eigen::VectorXd& posture) {
-    motion.segments.push_back(Quintic(options_.move_s, posture));
-    here_ = posture;
-  }
-
-  void Visit(const std::vector<Eigen::VectorXd>& postures) {
-    for (const Eigen::VectorXd& posture : postures) {
-      MoveTo(posture);
-      Rest(options_.rest_s);
-    }
-  }
-
-  void Sine(int coordinate, double centre, double amplitude) {
-    const double duration = (options_.sine_periods + 2.0) / options_.sine_hz;
-    motion.segments.push_back(
-        {duration, here_, here_, coordinate, centre, amplitude, options_.sine_hz});
-  }
-
-  const Eigen::VectorXd& here() const { return here_; }
-
- private:
-  MotionSegment Quintic(double duration_s, const Eigen::VectorXd& to) const {
-    return {.duration_s = duration_s, .from = here_, .to = to};
-  }
-
-  Eigen::VectorXd here_;
-  const MotionOptions& options_;
-};
 
 class Planner {
  public:

@@ -11,13 +11,19 @@
 
 namespace elastocal {
 
-/// A piece of a motion: from one posture to another, at rest at both ends, or one joint to and fro
-/// around a posture.
+/// A piece of a motion: from one posture to another, at rest at both ends; one joint to and fro
+/// around a posture; or along given samples.
 struct MotionSegment {
   double duration_s = 0.0;
   Eigen::VectorXd from, to;  ///< by coordinate; of a sine both the posture around which it moves
   int coordinate = -1;       ///< of a sine: what moves; -1: a quintic polynomial between postures
   double centre = 0.0, amplitude = 0.0, frequency_hz = 0.0;  ///< of a sine, rad or m
+  /// Of samples: when, from the segment's beginning, and where, samples x coordinates; a cubic runs
+  /// through them (Catmull-Rom's). Empty for all others.
+  Eigen::VectorXd sample_s = {};
+  Eigen::MatrixXd samples = {};
+
+  bool IsRest() const { return coordinate < 0 && sample_s.size() == 0 && from == to; }
 };
 
 /// A joint trajectory: what the robot is commanded.

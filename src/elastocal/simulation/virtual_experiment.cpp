@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/random.hpp"
@@ -44,6 +45,15 @@ void SwitchOffImperfections(VirtualExperimentOptions& options) {
 
 VirtualExperiment PrepareExperiment(const DescribedRobot& described,
                                     const VirtualExperimentOptions& options) {
+  MotionOptions motion = options.motion;
+  motion.seed = options.seed;
+  return PrepareExperiment(described, options,
+                           PlanTrials(described.tree, described.chains, motion));
+}
+
+VirtualExperiment PrepareExperiment(const DescribedRobot& described,
+                                    const VirtualExperimentOptions& options,
+                                    std::vector<PlannedTrial> trials) {
   const double steps = 0.01 / options.physics.time_step_s;
   if (std::abs(steps - std::round(steps)) > 1e-6) {
     throw InputError("the time step " + std::to_string(options.physics.time_step_s) +
@@ -60,7 +70,7 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
   experiment.robot =
       DrawTrueRobot(NominalRobot(described.tree, described.markers, legs, described.torque_sensors),
                     experiment.options.truth);
-  experiment.trials = PlanTrials(described.tree, described.chains, experiment.options.motion);
+  experiment.trials = std::move(trials);
   if (legs.empty() && options.physics.standing == Standing::kFree) {
     throw InputError("robot '" + described.tree.name + "' has no legs to stand free on");
   }
@@ -93,26 +103,14 @@ SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) 
 WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
                                  const TrueMotion& motion) {
   const PlannedTrial& trial = experiment.trials[index];
-  WaistGive largest;
-  if (trial.support.empty()) return largest;
-  double time_s = 0.0;
-  for (const MotionSegment& segment : trial.motion.segments) {
-    time_s += segment.duration_s;
-    const bool rest = segment.coordinate < 0 && segment.from == segment.to;
-    const auto frame = static_cast<Eigen::Index>(std::lround(time_s * motion.rate_hz)) - 1;
-    if (!rest || frame < 0 || frame >= motion.encoders.rows()) continue;
-    const Eigen::VectorXd q = motion.encoders.row(frame).transpose();
-    const Transform T_waist_foot = TrueLinkTransforms(
-        experiment.robot,
-        TrueJointPositions(experiment.robot, q))[static_cast<std::size_t>(trial.support[0])];
-    const Transform rigid = motion.T_camera_foot[0] * T_waist_foot.inverse();
-    const Transform& found = motion.T_camera_waist[static_cast<std::size_t>(frame)];
-    largest.translation =
-        std::max(largest.translation, (found.translation() - rigid.translation()).norm());
-    largest.rotation =
-        std::max(largest.rotation, RotationAngle(rigid.linear().transpose() * found.linear()));
-  }
-  return largest;
+  if (trial.support.empty()) return {};
+  const auto foot = static_cast<std::size_t>(trial.support[0]);
+  return LargestWaistGive(
+      motion, RestFrames(trial.motion, motion), [&](const Eigen::VectorXd& encoders) -> Transform {
+        return TrueLinkTransforms(experiment.robot,
+                                  TrueJointPositions(experiment.robot, encoders))[foot]
+            .inverse();
+      });
 }
 
 }  // namespace elastocal

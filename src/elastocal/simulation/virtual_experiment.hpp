@@ -6,6 +6,7 @@
 
 #include "elastocal/simulation/base_compliance.hpp"
 #include "elastocal/simulation/sensors.hpp"
+#include "elastocal/simulation/waist_give.hpp"
 
 namespace elastocal {
 
@@ -58,20 +59,21 @@ struct SimulatedTrial {
   RawTrial raw;
 };
 
-/// Draws the robot and plans the trials. Throws InputError for faults that name what is not there,
-/// and where a leg has no feasible posture.
+/// Draws the robot that shall play `trials`. Throws InputError for faults that name what is not
+/// there.
+VirtualExperiment PrepareExperiment(const DescribedRobot& described,
+                                    const VirtualExperimentOptions& options,
+                                    std::vector<PlannedTrial> trials);
+
+/// The same for the trials of PlanTrials. Throws InputError also where a leg has no feasible
+/// posture.
 VirtualExperiment PrepareExperiment(const DescribedRobot& described,
                                     const VirtualExperimentOptions& options);
 
 /// Plays and measures a trial. Trials do not depend on each other: any order, or several at a time.
 SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index);
 
-/// How far the waist is from where rigid kinematics has it, at rest at the end of each posture of a
-/// trial: of the true geometry, from the encoders and the foot's true pose. Largest displacement
-/// [m] and rotation [rad].
-struct WaistGive {
-  double translation = 0.0, rotation = 0.0;
-};
+/// Of the true robot at rest, at the end of each posture of a trial; zero where the root is held.
 WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
                                  const TrueMotion& motion);
 

@@ -1,0 +1,189 @@
+#include "elastocal/simulation/given_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/simulation/motion_writer.hpp"
+#include "elastocal/simulation/stream_seed.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kStill = 1e-9;      // rad or m between samples
+constexpr double kLeastRest = 0.3;   // s: shorter ones are turning points
+constexpr double kFeetApart = 2e-3;  // m: what the floor and the soles take up ...
+constexpr double kFeetTurn = 0.01;   // ... and rad
+
+std::string PlaceOf(const JointMotion& motion, int sample) {
+  return motion.line.empty() ? motion.source + ": "
+                             : motion.source + ":" + std::to_string(motion.line[sample]) + ": ";
+}
+
+/// Samples [first, last] on the same feet.
+struct Stretch {
+  int first = 0, last = 0;
+  std::vector<int> support;
+};
+
+class GivenMotionPlanner {
+ public:
+  GivenMotionPlanner(const RobotTree& tree, const std::vector<NamedChain>& chains,
+                     const JointMotion& motion, const MotionOptions& options,
+                     const GivenMotionOptions& given)
+      : tree_(tree),
+        chains_(chains),
+        motion_(motion),
+        options_(options),
+        given_(given),
+        legs_(FindLegs(tree, chains)),
+        q_(motion.q) {
+    const PostureSampler sampler(tree, legs_, options.postures, StreamSeed(options.seed, "stand"));
+    for (Eigen::Index c = 0; c < q_.cols(); ++c) {
+      if (q_.col(c).array().isNaN().any()) q_.col(c).setConstant(sampler.stand()[c]);
+    }
+  }
+
+  std::vector<PlannedTrial> Plan() const {
+    const std::vector<Stretch> stretches = Stretches();
+    std::vector<PlannedTrial> trials;
+    for (const Stretch& stretch : stretches) {
+      CheckFeet(stretch);
+      PlannedTrial trial;
+      trial.name = given_.name;
+      if (stretches.size() > 1) trial.name += "_" + std::to_string(trials.size() + 1);
+      trial.support = stretch.support;
+      trial.chains = given_.chains.empty() ? MovingChains(stretch) : given_.chains;
+      if (motion_.time_s.size() == 0) {
+        VisitPostures(stretch, trial);
+      } else {
+        FollowSamples(stretch, trial);
+      }
+      trial.kind =
+          given_.kind.value_or(trial.postures > 0 ? TrialKind::kCalibration : TrialKind::kSine);
+      trials.push_back(std::move(trial));
+    }
+    return trials;
+  }
+
+ private:
+  std::vector<Stretch> Stretches() const {
+    std::vector<int> feet;
+    for (const Leg& leg : legs_) feet.push_back(leg.foot_link);
+    std::vector<Stretch> stretches;
+    for (int i = 0; i < motion_.sample_count(); ++i) {
+      const std::vector<int>& support = motion_.support.empty() ? feet : motion_.support[i];
+      if (!stretches.empty() && stretches.back().support == support) {
+        stretches.back().last = i;
+      } else {
+        stretches.push_back({i, i, support});
+      }
+    }
+    return stretches;
+  }
+
+  void CheckFeet(const Stretch& stretch) const {
+    if (stretch.support.size() < 2) return;
+    std::vector<Transform> first;
+    for (int i = stretch.first; i <= stretch.last; ++i) {
+      const std::vector<Transform> T_root_link = LinkTransforms(tree_, q_.row(i).transpose());
+      for (std::size_t s = 1; s < stretch.support.size(); ++s) {
+        const Transform T =
+            T_root_link[stretch.support[0]].inverse() * T_root_link[stretch.support[s]];
+        if (i == stretch.first) first.push_back(T);
+        const Transform moved = first[s - 1].inverse() * T;
+        if (moved.translation().norm() < kFeetApart && RotationAngle(moved.linear()) < kFeetTurn) {
+          continue;
+        }
+        throw InputError(PlaceOf(motion_, i) + "the foot '" + tree_.links[stretch.support[s]].name +
+                         "' is " + std::to_string(std::lround(1e3 * moved.translation().norm())) +
+                         " mm from where it stood, against '" +
+                         tree_.links[stretch.support[0]].name +
+                         "': both cannot be on the floor; the column 'support' says which one is");
+      }
+    }
+  }
+
+  bool Moves(int coordinate, const Stretch& stretch) const {
+    const auto q = q_.col(coordinate).segment(stretch.first, stretch.last - stretch.first + 1);
+    return q.maxCoeff() - q.minCoeff() > kStill;
+  }
+
+  std::vector<int> MovingChains(const Stretch& stretch) const {
+    std::vector<int> moving;
+    for (std::size_t c = 0; c < chains_.size(); ++c) {
+      const NamedChain& chain = chains_[c];
+      const auto& support = stretch.support;
+      if (chain.from_link != 0 ||
+          std::find(support.begin(), support.end(), chain.tip_link) != support.end()) {
+        continue;
+      }
+      const std::vector<int> joints = JointsToBody(tree_, tree_.links[chain.tip_link].body);
+      if (std::any_of(joints.begin(), joints.end(),
+                      [&](int k) { return Moves(tree_.joints[k].coordinate, stretch); })) {
+        moving.push_back(static_cast<int>(c));
+      }
+    }
+    if (moving.empty()) {
+      throw InputError(PlaceOf(motion_, stretch.first) +
+                       "no chain of the project moves from here on while the support is the same");
+    }
+    return moving;
+  }
+
+  Eigen::VectorXd Row(int i) const { return q_.row(i).transpose(); }
+
+  void VisitPostures(const Stretch& stretch, PlannedTrial& trial) const {
+    MotionWriter writer(Row(stretch.first), options_);
+    writer.Rest(options_.rest_s);
+    for (int i = stretch.first + 1; i <= stretch.last; ++i) writer.Visit({Row(i)});
+    trial.motion = writer.motion;
+    trial.postures = stretch.last - stretch.first + 1;
+  }
+
+  /// Runs of the same posture are rests, what is between them is a segment of samples.
+  void FollowSamples(const Stretch& stretch, PlannedTrial& trial) const {
+    if (stretch.first == stretch.last) {
+      throw InputError(PlaceOf(motion_, stretch.first) +
+                       "one sample alone with this support; two or more were expected");
+    }
+    MotionWriter writer(Row(stretch.first), options_);
+    for (int i = stretch.first; i < stretch.last;) {
+      int end = i + 1;
+      const bool still = Still(i);
+      while (end < stretch.last && Still(end) == still) ++end;
+      const double duration = motion_.time_s[end] - motion_.time_s[i];
+      if (still) {
+        writer.Rest(duration);
+        if (duration >= kLeastRest) ++trial.postures;
+      } else {
+        writer.Follow(motion_.time_s.segment(i, end - i + 1), q_.middleRows(i, end - i + 1));
+      }
+      i = end;
+    }
+    writer.Rest(options_.rest_s);
+    trial.motion = writer.motion;
+  }
+
+  /// Whether nothing moves from this sample to the next.
+  bool Still(int i) const { return (q_.row(i + 1) - q_.row(i)).cwiseAbs().maxCoeff() < kStill; }
+
+  const RobotTree& tree_;
+  const std::vector<NamedChain>& chains_;
+  const JointMotion& motion_;
+  const MotionOptions& options_;
+  const GivenMotionOptions& given_;
+  std::vector<Leg> legs_;
+  Eigen::MatrixXd q_;
+};
+
+}  // namespace
+
+std::vector<PlannedTrial> PlanGivenMotion(const RobotTree& tree,
+                                          const std::vector<NamedChain>& chains,
+                                          const JointMotion& motion, const MotionOptions& options,
+                                          const GivenMotionOptions& given) {
+  return GivenMotionPlanner(tree, chains, motion, options, given).Plan();
+}
+
+}  // namespace elastocal
