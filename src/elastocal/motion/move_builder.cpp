@@ -24,7 +24,6 @@ Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index
 }
 
 constexpr double kEnds = 0.5;  // s, held at either end while the root link sets out and arrives
-constexpr double kFirstLift = 0.15;  // of a lift: the share that comes before the weight follows
 
 }  // namespace
 
@@ -196,6 +195,28 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Move(const StandingPose& from, const
   return std::nullopt;
 }
 
+Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, double share) const {
+  const SineOptions& sine = options_.sine;
+  const JointLimits& limits =
+      robot_.tree.joints[Size(robot_.tree.coordinate_joint[Size(coordinate)])].limits;
+  const double omega = 2.0 * M_PI * sine.frequency_hz;
+  const double amplitude = std::min(0.5 * share * (limits.upper - limits.lower),
+                                    0.8 * robot_.limits.velocity_share * limits.velocity / omega);
+  // Towards the posture as the sine shrinks, since that is feasible.
+  const double middle = 0.5 * (limits.lower + limits.upper);
+  const double centre = q[coordinate] + share / sine.share * (middle - q[coordinate]);
+  const double ramp = 1.0 / sine.frequency_hz;
+  const double duration = (sine.periods + 2.0) * ramp;
+  Eigen::MatrixXd way = q.transpose().replicate(SamplesOf(duration) + 1, 1);
+  for (Eigen::Index i = 0; i < way.rows(); ++i) {
+    const double time = static_cast<double>(i) / options_.rate_hz;
+    const double in = SmoothStep(std::min(1.0, time / ramp));
+    const double out = SmoothStep(std::min(1.0, (duration - time) / ramp));
+    way(i, coordinate) += in * out * (centre - q[coordinate] + amplitude * std::sin(omega * time));
+  }
+  return way;
+}
+
 std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const StandingPose& from, const StandingPose& to,
                                                   int onto, Refusal& why) const {
   Stretch stretch;
@@ -225,11 +246,12 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const StandingPose& from, const
     return Progress(stretch.q.rows(), ends + SamplesOf(first * options_.lift_s),
                     ends + SamplesOf((1.0 - last) * options_.lift_s));
   };
-  const Eigen::VectorXd lifted = kFirstLift * part(0.0, 0.4) + (1.0 - kFirstLift) * part(0.6, 1.0);
+  const Eigen::VectorXd lifted = options_.first_lift_m * part(0.0, 0.4) +
+                                 (options_.lift_m - options_.first_lift_m) * part(0.6, 1.0);
   const Eigen::VectorXd shifted = part(0.25, 0.75);
   stretch.led = foot;
-  for (const double share : lifted) {
-    stretch.T_world_led.push_back(Eigen::Translation3d(0.0, 0.0, share * options_.lift_m) *
+  for (const double height : lifted) {
+    stretch.T_world_led.push_back(Eigen::Translation3d(0.0, 0.0, height) *
                                   robot_.T_world_sole[Size(foot)]);
   }
   const Eigen::RowVector2d begin = HandOver(standing.front()).transpose();

@@ -49,6 +49,10 @@ class MoveBuilder {
                                         const std::vector<int>& standing,
                                         const Eigen::MatrixXd& way, Refusal& why) const;
 
+  /// A sine of one coordinate around the middle of its range, from `q` and back to it; at most the
+  /// given share of the range, and of the velocity limit's share.
+  Eigen::MatrixXd SineWay(const Eigen::VectorXd& q, int coordinate, double share) const;
+
   /// Weight from all feet over one of them.
   std::optional<Eigen::MatrixXd> Shift(const StandingPose& from, const StandingPose& to, int onto,
                                        Refusal& why) const;

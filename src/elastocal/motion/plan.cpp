@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <thread>
 
 #include "elastocal/motion/move_builder.hpp"
@@ -63,6 +64,7 @@ class SetPlanner {
       hub_ = here_;
       Hold();
       Tour();
+      for (const int coordinate : set_.sines) Sine(coordinate);
       result_.end = rows_.count;
       StepBack();
     } else {
@@ -114,12 +116,13 @@ class SetPlanner {
   }
 
   void LeaveOut(int posture, const Refusal& why, bool at_rest) {
-    result_.left_out.push_back({posture, why.constraint, why.value, why.index, at_rest});
+    result_.left_out.push_back({posture, -1, why.constraint, why.value, why.index, at_rest});
   }
 
   void Tour() {
-    for (const int i : OrderPostures(hub_.q, Targets())) {
+    for (const int i : Order()) {
       Refusal why;
+      if (set_.in_order) GoTo(hub_, why);
       const auto target = build_.AtRest(set_.postures[Size(i)], set_.standing, here_, why);
       if (!target) {
         LeaveOut(i, why, true);
@@ -135,6 +138,28 @@ class SetPlanner {
       result_.visits.back().end = rows_.count + ends;
     }
     GoBack();
+  }
+
+  std::vector<int> Order() const {
+    if (!set_.in_order) return OrderPostures(hub_.q, Targets());
+    std::vector<int> order(set_.postures.size());
+    std::iota(order.begin(), order.end(), 0);
+    return order;
+  }
+
+  /// The largest sine of a coordinate that keeps to the limits.
+  void Sine(int coordinate) {
+    constexpr double kSmaller = 0.8;
+    Refusal why;
+    for (double share = options_.sine.share; share >= options_.sine.least_share;
+         share *= kSmaller) {
+      const auto sine =
+          build_.Follow(hub_, hub_, set_.standing, build_.SineWay(hub_.q, coordinate, share), why);
+      if (!sine) continue;
+      rows_.Add(*sine, set_.standing);
+      return;
+    }
+    result_.left_out.push_back({-1, coordinate, why.constraint, why.value, why.index, false});
   }
 
   /// The postures with the joints of standing legs as in the hub: they do not decide the order.

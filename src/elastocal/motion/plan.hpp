@@ -17,11 +17,24 @@ struct PostureSet {
   std::vector<int> standing;  ///< feet, indices of soles: all of them, or one
   /// By coordinate, of the whole robot; joints of standing legs are found by balancing.
   std::vector<Eigen::VectorXd> postures;
+  bool in_order = false;  ///< visited as given, by the posture of rest each time (repeatability)
+  /// Coordinates that swing to and fro one after the other, all else at rest (section 6.1.4).
+  std::vector<int> sines = {};
+};
+
+/// Sinusoidal motions: of a joint around the middle of its range, at most `share` of it, with a
+/// period to swing in and one to come back. Smaller where speed, space or balance want it.
+struct SineOptions {
+  double frequency_hz = 0.5;
+  double periods = 2.0;
+  double share = 0.8;
+  double least_share = 0.05;  ///< a joint that can do no more than this is left out
 };
 
 struct PlanOptions {
   JointPathOptions path;
   BalanceOptions balance;
+  SineOptions sine;
   bool balanced =
       true;  ///< false: the root link stays where it is at rest, to see what comes of it
   double rate_hz = 100.0;
@@ -31,9 +44,10 @@ struct PlanOptions {
   /// When a foot leaves or meets the floor, the zero-moment point is this much off the middle of
   /// the other, towards the one that moves, m: where legs are not quite as long as they are thought
   /// to be, the one that comes first pushes the robot away.
-  double inset = 0.025;
+  double inset = 0.04;
   double lift_m = 0.10;  ///< how high it is lifted before the joints of its leg move by themselves
-  int slower = 2;        ///< times that a move is tried half as slow again before it is given up
+  double first_lift_m = 0.010;  ///< of it, before the rest of the weight is shifted
+  int slower = 2;  ///< times that a move is tried half as slow again before it is given up
 };
 
 /// A posture at rest in a planned motion.
@@ -42,9 +56,10 @@ struct Visit {
   int begin = 0, end = 0;  ///< samples of the hold, end excluded
 };
 
-/// A posture that is not part of the motion, and why.
+/// A posture (or sinusoidal motion) that is not part of the motion, and why.
 struct LeftOut {
-  int posture = 0;
+  int posture = 0;  ///< of the set; -1: a sine
+  int sine = -1;    ///< coordinate of the sine
   Constraint constraint = Constraint::kReach;
   double value = 0.0;   ///< of what the constraint is about, see MotionMargins; NaN: out of reach
   int index = -1;       ///< of the joint, foot or pair

@@ -34,6 +34,17 @@ bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_so
   return false;
 }
 
+/// Height of the root link above the soles in a posture with bent knees, or of one with straight
+/// ones less the drop.
+double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
+                  const StandOptions& options) {
+  double bend = 0.0;
+  for (const int c : robot.legs[0].coordinates()) bend = std::max(bend, std::abs(posture[c]));
+  if (bend > robot.limits.least_knee) return -robot.legs[0].SolePose(posture).translation().z();
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(posture.size());
+  return -(1.0 - options.drop) * robot.legs[0].SolePose(zero).translation().z();
+}
+
 }  // namespace
 
 StandingRobot::StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept)
@@ -67,8 +78,7 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
   const auto T_root_link =
       LinkTransforms(robot.tree, Eigen::VectorXd::Zero(robot.tree.coordinate_count()));
   StandingPose pose{posture, Transform::Identity()};
-  const double height = -T_root_link[Size(robot.soles[0].link)].translation().z();
-  pose.T_world_root.translation().z() = (1.0 - options.drop) * height;
+  pose.T_world_root.translation().z() = RootHeight(robot, posture, options);
   robot.T_world_sole.clear();
   for (std::size_t i = 0; i < robot.soles.size(); ++i) {
     const std::string& name = robot.tree.links[Size(robot.soles[i].link)].name;

@@ -45,13 +45,15 @@ struct StandingRobot {
 };
 
 struct StandOptions {
-  /// How much lower the waist is than over straight legs, as a share of its height.
+  /// How much lower the waist is than over straight legs, as a share of its height, where the given
+  /// posture has them straight.
   double drop = 0.07;
 };
 
-/// Stands the robot up: the given posture (by coordinate), its legs bent until the root link is
-/// lower by the drop, and the root link above the feet so that the centre of mass is over the
-/// middle of the support. Throws InputError where the legs cannot.
+/// Stands the robot up in a posture (by coordinate): on the feet, which are flat, where they are
+/// under the root link in the zero posture; the root link upright, as high above them as the
+/// posture has it, or lower by the drop where its knees are less bent than the limits ask; and the
+/// centre of mass over the middle of the support. Throws InputError where the legs cannot.
 void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOptions& options);
 
 /// The zero posture, moved inside the joints' limits by the position margin.
