@@ -12,6 +12,7 @@
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_samples.hpp"
 #include "elastocal/robot/error_model.hpp"
+#include "elastocal/robot/standing.hpp"
 
 namespace elastocal {
 
@@ -64,6 +65,7 @@ struct Project {
   IdentifiabilityOptions identifiability;
   CalibrationOptions calibration;
   ElasticityChoice elasticity;
+  std::vector<Sole> soles;  ///< that the robot can stand on; none: it is not planned for
 };
 
 /// Reads a project file and the URDF that it names (docs/formats.md).

@@ -13,6 +13,7 @@ void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options);
 void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& options);
 void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options);
 void ReadElasticity(const YamlValue& section, Project& project);
+void ReadStanding(const YamlValue& section, Project& project);
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options);
 
 /// The link or movable joint that a value names.

@@ -44,7 +44,7 @@ struct PlanOptions {
   /// When a foot leaves or meets the floor, the zero-moment point is this much off the middle of
   /// the other, towards the one that moves, m: where legs are not quite as long as they are thought
   /// to be, the one that comes first pushes the robot away.
-  double inset = 0.04;
+  double inset = 0.035;
   double lift_m = 0.10;  ///< how high it is lifted before the joints of its leg move by themselves
   double first_lift_m = 0.010;  ///< of it, before the rest of the weight is shifted
   int slower = 2;  ///< times that a move is tried half as slow again before it is given up
