@@ -4,6 +4,7 @@ set(ELASTOCAL_DEPENDENCIES
   "Eigen3 3.4"
   "Boost"
   "Ceres 2.1"
+  "Ipopt"
   "mujoco 2.2.2"
   "urdfdom"
   "console_bridge"

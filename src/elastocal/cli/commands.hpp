@@ -42,5 +42,7 @@ void AddValidate(CLI::App& app, Action& action);
 void AddCompare(CLI::App& app, Action& action);
 void AddDemo(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);
+void AddDesign(CLI::App& app, Action& action);
+void AddAssess(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

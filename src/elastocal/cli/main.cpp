@@ -51,6 +51,8 @@ int Run(int argc, char** argv) {
   AddCompare(app, action);
   AddDemo(app, action);
   AddSimulate(app, action);
+  AddDesign(app, action);
+  AddAssess(app, action);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {
     spdlog::error("{} (elastocal --help lists the commands)", unknown);
     return kUsage;

@@ -116,6 +116,9 @@ void ReadSettings(const YamlValue& root, Project& project) {
   if (const auto section = root.Find("calibration")) {
     ReadCalibrationOptions(*section, project.calibration);
   }
+  SetMotionDefaults(project);
+  if (const auto section = root.Find("collision")) ReadCollision(*section, project);
+  if (const auto section = root.Find("design")) ReadDesign(*section, project);
 }
 
 }  // namespace
@@ -152,7 +155,7 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
   const YamlValue root = YamlValue::Parse(text, file.string());
   root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "force_torque_sensors",
                    "recording", "placement", "measurement", "identifiability", "calibration",
-                   "elasticity", "standing"});
+                   "elasticity", "collision", "design", "standing"});
   Project project;
   project.file = file;
   ReadRobot(root.Get("robot"), project);

@@ -13,6 +13,7 @@
 #include "elastocal/measurement/trial_samples.hpp"
 #include "elastocal/robot/error_model.hpp"
 #include "elastocal/robot/standing.hpp"
+#include "elastocal/robot/motion_setup.hpp"
 
 namespace elastocal {
 
@@ -66,6 +67,7 @@ struct Project {
   CalibrationOptions calibration;
   ElasticityChoice elasticity;
   std::vector<Sole> soles;  ///< that the robot can stand on; none: it is not planned for
+  MotionSetup motion;  ///< what the calibration postures and motions keep to
 };
 
 /// Reads a project file and the URDF that it names (docs/formats.md).

@@ -14,6 +14,10 @@ void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& option
 void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options);
 void ReadElasticity(const YamlValue& section, Project& project);
 void ReadStanding(const YamlValue& section, Project& project);
+/// Spheres; then what `design` and `plan` need: limits, the posture at rest, chains.
+void SetMotionDefaults(Project& project);
+void ReadCollision(const YamlValue& section, Project& project);
+void ReadDesign(const YamlValue& section, Project& project);
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options);
 
 /// The link or movable joint that a value names.

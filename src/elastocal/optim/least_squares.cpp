@@ -228,17 +228,6 @@ void Take(const ceres::Solver::Summary& summary, bool first, LeastSquaresResult&
 
 }  // namespace
 
-const char* TerminationName(Termination termination) {
-  switch (termination) {
-    case Termination::kConverged:
-      return "converged";
-    case Termination::kNoConvergence:
-      return "not converged";
-    default:
-      return "failed";
-  }
-}
-
 LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0,
                          const LeastSquaresOptions& options) {
   LeastSquaresResult result;

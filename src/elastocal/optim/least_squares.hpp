@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "elastocal/optim/termination.hpp"
+
 namespace elastocal {
 
 /// A nonlinear least-squares problem in blocks: minimise over x
@@ -52,14 +54,6 @@ struct LeastSquaresOptions {
   /// ... or when the step is relatively smaller than this.
   double parameter_tolerance = 1e-12;
 };
-
-enum class Termination {
-  kConverged,      ///< a tolerance was met
-  kNoConvergence,  ///< the iterations were used up
-  kFailure,        ///< the problem could not be evaluated or solved
-};
-
-const char* TerminationName(Termination termination);
 
 struct LeastSquaresResult {
   Eigen::VectorXd x;                            ///< best point found, whatever the termination

@@ -40,6 +40,12 @@ class GeneralizedJacobian {
     return {values_.data() + layout.offset, 3, static_cast<Eigen::Index>(layout.columns.size())};
   }
 
+  /// The motion [a; m] that a parameter other than a marker's gives to all beyond it: its column
+  /// for a marker at p is a x p + m. See LegScrews.
+  Eigen::Matrix<double, 6, 1> Screw(int parameter) const {
+    return screws_.row(parameter).matrix().transpose();
+  }
+
   /// The whole matrix, 3 N_M x parameters, zeros included.
   Eigen::MatrixXd Dense() const;
 

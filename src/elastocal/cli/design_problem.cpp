@@ -1,0 +1,79 @@
+#include "elastocal/cli/design_problem.hpp"
+
+#include <algorithm>
+
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+const Chain& FindChain(const Project& project, const std::string& name) {
+  return *std::find_if(project.chains.begin(), project.chains.end(),
+                       [&](const Chain& chain) { return chain.name == name; });
+}
+
+Elasticity JointElasticity(const RobotTree& tree, const ChainSetup& setup) {
+  Elasticity elasticity;
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const auto& own = setup.coordinates;
+    if (std::find(own.begin(), own.end(), tree.joints[k].coordinate) == own.end()) continue;
+    elasticity.torsion.push_back(static_cast<int>(k));
+    if (tree.joints[k].type == JointType::kRevolute) {
+      elasticity.bending.push_back(static_cast<int>(k));
+    }
+  }
+  return elasticity;
+}
+
+}  // namespace
+
+DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic) {
+  const std::vector<std::string> markers = ChainMarkers(project, FindChain(project, setup.name));
+  if (markers.empty()) {
+    throw InputError(project.file.string() + ": chain '" + setup.name + "' carries no markers");
+  }
+  const ErrorModel all =
+      MakeErrorModel(project.tree, project.markers, project.placement,
+                     elastic ? JointElasticity(project.tree, setup) : Elasticity());
+  DesignedChain chain;
+  chain.setup = setup;
+  chain.model = std::make_unique<ErrorModel>(SelectMarkers(all, markers));
+  chain.base = FindChainParameters(*chain.model, project.motion, setup, project.identifiability);
+  return chain;
+}
+
+std::vector<ChainSetup> ChosenSetups(const Project& project,
+                                     const std::vector<std::string>& names) {
+  if (project.motion.chains.empty()) {
+    throw InputError(project.file.string() +
+                     ": there is no section 'design' with 'chains', which say what the calibration "
+                     "postures keep to");
+  }
+  if (names.empty()) return project.motion.chains;
+  std::vector<ChainSetup> chosen;
+  std::vector<std::string> known;
+  for (const ChainSetup& setup : project.motion.chains) known.push_back(setup.name);
+  for (const std::string& name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) {
+      throw InputError("--chain: the project's design has no chain '" + name + "'" +
+                       DidYouMean(name, known));
+    }
+    chosen.push_back(project.motion.chains[found - known.begin()]);
+  }
+  return chosen;
+}
+
+ChainSetup OtherSide(const Project& project, const ChainSetup& setup) {
+  const Chain& other = FindChain(project, setup.mirror);
+  std::string reason;
+  const auto mirrored = MirrorSetup(project.tree, project.motion, setup, other.name,
+                                    other.from_link, other.tip_link, &reason);
+  if (!mirrored) {
+    throw InputError(project.file.string() + ": chain '" + setup.name + "' has no mirror image '" +
+                     setup.mirror + "': " + reason);
+  }
+  return *mirrored;
+}
+
+}  // namespace elastocal::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/posture/chain_problem.hpp"
+
+namespace elastocal::cli {
+
+/// A chain for which postures are sought: its model with the chain's markers, and what of it can be
+/// identified. Problems refer to the model, so it stays where it is.
+struct DesignedChain {
+  ChainSetup setup;
+  std::unique_ptr<ErrorModel> model;
+  BaseParameters base;
+};
+
+/// `elastic`: the joints' compliances (torsion and bending) are to be identified as well.
+/// Throws InputError where the chain carries no markers.
+DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic);
+
+/// The project's chain set-ups of these names, or all; a name may be that of a mirrored chain only
+/// together with the chain that it mirrors. Throws InputError for unknown names, and where the
+/// project has no section `design`.
+std::vector<ChainSetup> ChosenSetups(const Project& project, const std::vector<std::string>& names);
+
+/// Set-up of the chain on the other side. Throws InputError where there is no mirror image.
+ChainSetup OtherSide(const Project& project, const ChainSetup& setup);
+
+}  // namespace elastocal::cli

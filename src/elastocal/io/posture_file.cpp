@@ -1,0 +1,110 @@
+#include "elastocal/io/posture_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/project_sections.hpp"
+#include "elastocal/io/text.hpp"
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kBeyond = 1e-6;  // of a limit, rad or m: rounding of the file
+
+/// A name as YAML text, in quotes.
+std::string Quoted(const std::string& name) {
+  std::string text = "\"";
+  for (char c : name) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + "\"";
+}
+
+Eigen::VectorXd ReadPosture(const YamlValue& value, const Project& project) {
+  const RobotTree& tree = project.tree;
+  Eigen::VectorXd q = project.motion.rest;
+  for (const auto& [name, position] : value.Entries()) {
+    int joint = 0;
+    try {
+      joint = FindJoint(tree, name);
+    } catch (const InputError& error) {
+      position.Fail(error.what());
+    }
+    const JointLimits& limits = tree.joints[joint].limits;
+    if (tree.joints[joint].mimic) position.Fail("the joint follows another one");
+    const double wanted = position.Number();
+    position.Expect(wanted >= limits.lower - kBeyond && wanted <= limits.upper + kBeyond,
+                    "a position within the joint's limits, " + FormatNumber(limits.lower) + " to " +
+                        FormatNumber(limits.upper));
+    q[tree.joints[joint].coordinate] = wanted;
+  }
+  return q;
+}
+
+std::vector<int> ReadFeet(const YamlValue& value, const RobotTree& tree) {
+  std::vector<int> links;
+  for (const YamlValue& item : value.Items()) links.push_back(LinkNamedBy(item, tree));
+  return links;
+}
+
+}  // namespace
+
+std::string FormatPostureFile(const RobotTree& tree, const std::vector<ChainPostures>& chains) {
+  std::string text = fmt::format("robot: {}\nchains:\n", Quoted(tree.name));
+  for (const ChainPostures& chain : chains) {
+    text += fmt::format("  - name: {}\n    support: [", Quoted(chain.chain));
+    for (std::size_t i = 0; i < chain.support.size(); ++i) {
+      text += (i > 0 ? ", " : "") + Quoted(tree.links[chain.support[i]].name);
+    }
+    text += "]\n    postures:\n";
+    for (const Eigen::VectorXd& q : chain.q) {
+      text += "      - {";
+      for (int i = 0; i < tree.coordinate_count(); ++i) {
+        text += fmt::format("{}{}: {:.9g}", i > 0 ? ", " : "",
+                            Quoted(tree.joints[tree.coordinate_joint[i]].name), q[i]);
+      }
+      text += "}\n";
+    }
+  }
+  return text;
+}
+
+std::vector<ChainPostures> ReadPostureFile(const std::filesystem::path& file,
+                                           const Project& project) {
+  return ParsePostureFile(ReadFile(file), file.string(), project);
+}
+
+std::vector<ChainPostures> ParsePostureFile(const std::string& text, const std::string& source,
+                                            const Project& project) {
+  const YamlValue root = YamlValue::Parse(text, source);
+  root.ExpectKeys({"robot", "chains"});
+  std::vector<ChainPostures> chains;
+  for (const YamlValue& value : root.Get("chains").Items()) {
+    value.ExpectKeys({"name", "support", "postures"});
+    ChainPostures chain;
+    const YamlValue name = value.Get("name");
+    chain.chain = name.Text();
+    std::vector<std::string> known;
+    for (const Chain& other : project.chains) known.push_back(other.name);
+    if (std::find(known.begin(), known.end(), chain.chain) == known.end()) {
+      name.Fail("there is no chain " + Quote(chain.chain) + DidYouMean(chain.chain, known));
+    }
+    if (const auto support = value.Find("support")) {
+      chain.support = ReadFeet(*support, project.tree);
+    }
+    for (const YamlValue& posture : value.Get("postures").Items()) {
+      chain.q.push_back(ReadPosture(posture, project));
+    }
+    if (chain.q.empty()) value.Fail("the chain has no posture");
+    chains.push_back(std::move(chain));
+  }
+  if (chains.empty()) root.Fail("there are no chains in it");
+  return chains;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/project.hpp"
+
+namespace elastocal {
+
+/// Calibration postures of one chain, with the feet that stand meanwhile.
+struct ChainPostures {
+  std::string chain;
+  std::vector<int> support;        ///< links
+  std::vector<Eigen::VectorXd> q;  ///< by coordinate of the tree, rad or m
+};
+
+/// The text of a posture file (docs/formats.md): one entry a chain, one line a posture, all joints
+/// that move (mimic joints aside), rad or m.
+std::string FormatPostureFile(const RobotTree& tree, const std::vector<ChainPostures>& chains);
+
+/// Reads one. Joints that a posture leaves out are at rest (project.motion.rest). Throws InputError
+/// naming file, line and key: unknown chain, joint or link, a joint beyond its limits by more than
+/// 1e-6, nothing in it.
+std::vector<ChainPostures> ReadPostureFile(const std::filesystem::path& file,
+                                           const Project& project);
+std::vector<ChainPostures> ParsePostureFile(const std::string& text, const std::string& source,
+                                            const Project& project);
+
+}  // namespace elastocal

@@ -1,0 +1,159 @@
+#include "elastocal/optim/nonlinear_program.hpp"
+
+#include <cmath>
+
+#include <IpIpoptApplication.hpp>
+#include <IpSolveStatistics.hpp>
+#include <IpTNLP.hpp>
+
+namespace elastocal {
+namespace {
+
+using Ipopt::Index;
+using Ipopt::Number;
+
+/// Ipopt's view of a programme.
+class IpoptProgram : public Ipopt::TNLP {
+ public:
+  IpoptProgram(NonlinearProgram& program, const Eigen::VectorXd& x0) : program_(program), x_(x0) {}
+
+  const Eigen::VectorXd& x() const { return x_; }
+  double objective() const { return objective_; }
+  Termination termination() const { return termination_; }
+
+  bool get_nlp_info(Index& n, Index& m, Index& jacobian_entries, Index& hessian_entries,
+                    IndexStyleEnum& style) override {
+    n = static_cast<Index>(program_.lower.size());
+    m = static_cast<Index>(program_.constraint_lower.size());
+    jacobian_entries = 0;
+    for (const auto& block : program_.jacobian_blocks)
+      jacobian_entries += block.rows * block.columns;
+    hessian_entries = 0;
+    style = C_STYLE;
+    return true;
+  }
+
+  bool get_bounds_info(Index n, Number* lower, Number* upper, Index m, Number* constraint_lower,
+                       Number* constraint_upper) override {
+    Map(lower, n) = program_.lower;
+    Map(upper, n) = program_.upper;
+    Map(constraint_lower, m) = program_.constraint_lower;
+    Map(constraint_upper, m) = program_.constraint_upper;
+    return true;
+  }
+
+  bool get_starting_point(Index n, bool, Number* x, bool, Number*, Number*, Index, bool,
+                          Number*) override {
+    Map(x, n) = x_;
+    return true;
+  }
+
+  bool eval_f(Index n, const Number* x, bool fresh, Number& value) override {
+    if (!Update(n, x, fresh)) return false;
+    value = program_.Objective();
+    return std::isfinite(value);
+  }
+
+  bool eval_grad_f(Index n, const Number* x, bool fresh, Number* gradient) override {
+    if (!Update(n, x, fresh)) return false;
+    Map(gradient, n) = program_.Gradient();
+    return true;
+  }
+
+  bool eval_g(Index n, const Number* x, bool fresh, Index m, Number* values) override {
+    if (!Update(n, x, fresh)) return false;
+    Map(values, m) = program_.Constraints();
+    return true;
+  }
+
+  bool eval_jac_g(Index n, const Number* x, bool fresh, Index, Index, Index* rows, Index* columns,
+                  Number* values) override {
+    if (values == nullptr) {
+      WriteStructure(rows, columns);
+      return true;
+    }
+    if (!Update(n, x, fresh)) return false;
+    for (const Eigen::MatrixXd& block : program_.Jacobian()) {
+      Map(values, static_cast<Index>(block.size())) = block.reshaped();
+      values += block.size();
+    }
+    return true;
+  }
+
+  void finalize_solution(Ipopt::SolverReturn status, Index n, const Number* x, const Number*,
+                         const Number*, Index, const Number*, const Number*, Number objective,
+                         const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    x_ = Eigen::Map<const Eigen::VectorXd>(x, n);
+    objective_ = objective;
+    termination_ = status == Ipopt::SUCCESS || status == Ipopt::STOP_AT_ACCEPTABLE_POINT
+                       ? Termination::kConverged
+                   : status == Ipopt::MAXITER_EXCEEDED ? Termination::kNoConvergence
+                                                       : Termination::kFailure;
+  }
+
+ private:
+  static Eigen::Map<Eigen::VectorXd> Map(Number* values, Index size) { return {values, size}; }
+
+  bool Update(Index n, const Number* x, bool fresh) {
+    if (fresh || !evaluated_) {
+      defined_ = program_.Evaluate(Eigen::Map<const Eigen::VectorXd>(x, n));
+      evaluated_ = true;
+    }
+    return defined_;
+  }
+
+  void WriteStructure(Index* rows, Index* columns) const {
+    for (const auto& block : program_.jacobian_blocks) {
+      for (int j = 0; j < block.columns; ++j) {
+        for (int i = 0; i < block.rows; ++i) {
+          *rows++ = block.row + i;
+          *columns++ = block.column + j;
+        }
+      }
+    }
+  }
+
+  NonlinearProgram& program_;
+  Eigen::VectorXd x_;
+  double objective_ = NAN;
+  Termination termination_ = Termination::kFailure;
+  bool evaluated_ = false, defined_ = false;
+};
+
+void Configure(Ipopt::IpoptApplication& ipopt, const NonlinearProgramOptions& options) {
+  Ipopt::OptionsList& list = *ipopt.Options();
+  list.SetIntegerValue("print_level", 0);
+  list.SetStringValue("sb", "yes");  // no banner
+  list.SetStringValue("hessian_approximation", "limited-memory");
+  list.SetIntegerValue("max_iter", options.max_iterations);
+  list.SetNumericValue("tol", options.tolerance);
+  list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
+  list.SetNumericValue("bound_relax_factor", 0.0);  // bounds are kept, not nearly kept
+  list.SetStringValue("mu_strategy", "adaptive");
+}
+
+}  // namespace
+
+NonlinearProgramResult Solve(NonlinearProgram& program, const Eigen::VectorXd& x0,
+                             const NonlinearProgramOptions& options) {
+  Ipopt::SmartPtr<Ipopt::IpoptApplication> ipopt = new Ipopt::IpoptApplication(false);
+  Configure(*ipopt, options);
+  NonlinearProgramResult result;
+  result.x = x0;
+  result.objective = NAN;
+  if (ipopt->Initialize() != Ipopt::Solve_Succeeded) {
+    result.message = "Ipopt does not start";
+    return result;
+  }
+  Ipopt::SmartPtr<IpoptProgram> view = new IpoptProgram(program, x0);
+  const Ipopt::ApplicationReturnStatus status =
+      ipopt->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(view)));
+  result.x = view->x();
+  result.objective = view->objective();
+  result.termination = view->termination();
+  result.message = "Ipopt's status " + std::to_string(status);
+  if (IsValid(ipopt->Statistics())) result.iterations = ipopt->Statistics()->IterationCount();
+  return result;
+}
+
+}  // namespace elastocal

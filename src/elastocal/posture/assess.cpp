@@ -1,0 +1,83 @@
+#include "elastocal/posture/assess.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "elastocal/posture/partial_optim.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSingular = 1e-12;  // of eigenvalues, relative
+
+/// Standard deviations by eigenvalues: infinite for what the set says nothing of.
+Eigen::VectorXd StandardDeviations(const Eigen::MatrixXd& information, double marker_sd) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  const double floor = kSingular * eigen.eigenvalues().maxCoeff();
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(information.rows());
+  for (Eigen::Index k = 0; k < variance.size(); ++k) {
+    const Eigen::ArrayXd share = eigen.eigenvectors().col(k).array().square();
+    if (eigen.eigenvalues()[k] > floor) {
+      variance.array() += share / eigen.eigenvalues()[k];
+    } else {
+      for (Eigen::Index i = 0; i < variance.size(); ++i) {
+        if (share[i] > 1e-12) variance[i] = kInfinity;
+      }
+    }
+  }
+  return marker_sd * variance.cwiseSqrt();
+}
+
+void FindBestAddition(PostureProblem& problem, const PostureSet& set, const AssessOptions& options,
+                      Assessment& assessment) {
+  FeasibleSampler sampler(problem.feasible, options.seed);
+  for (int start = 0; start < options.starts; ++start) {
+    const auto drawn = sampler.Draw();
+    if (!drawn) return;
+    PostureSet larger = set;
+    larger.Add(problem, *drawn);
+    PartialOptim(problem, {set.size()}, larger);
+    const double o1 = larger.Index(Criterion::kO1);
+    if (o1 > assessment.o1_with_addition) {
+      assessment.o1_with_addition = o1;
+      assessment.best_addition = larger.posture(set.size());
+    }
+  }
+}
+
+}  // namespace
+
+Assessment AssessPostures(PostureProblem& problem, const PostureSet& set,
+                          const AssessOptions& options) {
+  Assessment assessment;
+  for (const Eigen::VectorXd& x : set.postures()) {
+    assessment.violations.push_back(WorstViolation(problem.feasible, x));
+  }
+  assessment.parameter_sd = StandardDeviations(set.information(), options.marker_sd);
+  if (set.Index(Criterion::kO1) > 0.0) {
+    const Eigen::VectorXd sigma =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(set.information(), Eigen::EigenvaluesOnly)
+            .eigenvalues()
+            .cwiseMax(0.0)
+            .cwiseSqrt();
+    assessment.indices = ComputeObservability(sigma, set.size());
+    const double root = std::sqrt(set.size());
+    const Eigen::VectorXd without = IndicesWithoutEach(set, Criterion::kO1);
+    assessment.loss = (1.0 - without.array() * std::sqrt(std::max(1, set.size() - 1)) /
+                                 (assessment.indices.o1 * root))
+                          .matrix();
+    Eigen::Index least = 0;
+    assessment.loss.minCoeff(&least);
+    assessment.adds_least = static_cast<int>(least);
+    assessment.certificate = CertifyBound(problem, set, options.certificate);
+    assessment.efficiency = assessment.indices.o1 / assessment.certificate.bound;
+  }
+  FindBestAddition(problem, set, options, assessment);
+  return assessment;
+}
+
+}  // namespace elastocal

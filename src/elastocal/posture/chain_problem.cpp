@@ -1,0 +1,209 @@
+#include "elastocal/posture/chain_problem.hpp"
+
+#include <algorithm>
+
+#include "elastocal/identifiability/regressor.hpp"
+#include "elastocal/math/priority_qr.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/posture/clearance.hpp"
+#include "elastocal/posture/torque_limit.hpp"
+#include "elastocal/posture/workspace.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Coordinates of all joints from the root to a link.
+std::vector<int> PathCoordinates(const RobotTree& tree, int link) {
+  return ChainCoordinates(tree, 0, link);
+}
+
+/// Spheres on links that the chain moves.
+std::vector<CollisionSphere> MovedSpheres(const RobotTree& tree, const MotionSetup& motion,
+                                          const ChainSetup& chain) {
+  std::vector<CollisionSphere> moved;
+  for (const CollisionSphere& sphere : motion.spheres) {
+    for (int joint : JointsToBody(tree, tree.links[sphere.link].body)) {
+      const auto& own = chain.coordinates;
+      if (std::find(own.begin(), own.end(), tree.joints[joint].coordinate) != own.end()) {
+        moved.push_back(sphere);
+        break;
+      }
+    }
+  }
+  return moved;
+}
+
+/// Whether the line from a to b meets the sphere.
+bool Hides(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& centre,
+           double radius) {
+  const Eigen::Vector3d line = b - a;
+  const double along = std::clamp(line.dot(centre - a) / line.squaredNorm(), 0.0, 1.0);
+  return (a + along * line - centre).norm() < radius;
+}
+
+MarkerVisibility MakeVisibility(const ErrorModel& model, const MotionSetup& motion) {
+  if (motion.cameras.empty() || motion.spheres.empty()) return {};
+  return [&model, &motion](const MovingChain& chain) {
+    const Eigen::Matrix3Xd centres = SphereCentres(motion.spheres, chain.link_poses());
+    std::vector<char> visible;
+    for (const Marker& marker : model.markers) {
+      const Eigen::Vector3d p = chain.link_poses()[marker.link] * marker.p_link_marker;
+      const auto seen_by = [&](const Eigen::Vector3d& camera) {
+        for (std::size_t s = 0; s < motion.spheres.size(); ++s) {
+          const CollisionSphere& sphere = motion.spheres[s];
+          // A marker stands on its link's cover, which the sphere only approximates.
+          if (model.tree.links[sphere.link].body == model.tree.links[marker.link].body) continue;
+          if (Hides(p, camera, centres.col(static_cast<Eigen::Index>(s)), sphere.radius)) {
+            return false;
+          }
+        }
+        return true;
+      };
+      visible.push_back(std::any_of(motion.cameras.begin(), motion.cameras.end(), seen_by) ? 1 : 0);
+    }
+    return visible;
+  };
+}
+
+/// Leaves only those compliances that gravity excites in these postures (rows of q) so that they
+/// can be told from the other parameters.
+void KeepExcited(const ErrorModel& model, const MotionSetup& motion, const ChainSetup& chain,
+                 const Eigen::MatrixXd& q, BaseParameters& base) {
+  constexpr Eigen::Index kPostures = 100;
+  constexpr double kTolerance = 1e-3;  // of a column: less is hardly to be told from the others
+  std::vector<int> order;              // geometry has priority
+  for (int elastic : {0, 1}) {
+    for (std::size_t i = 0; i < base.kept.size(); ++i) {
+      if (IsElastic(model.parameters[base.kept[i]].kind) == (elastic != 0)) {
+        order.push_back(static_cast<int>(i));
+      }
+    }
+  }
+  const auto geometric = static_cast<std::size_t>(base.geometric_count);
+  if (order.size() == geometric) return;
+  MovingChain moving(model.tree, chain.coordinates, motion.rest);
+  PostureRegressor regressor(model, base.kept, moving);
+  const Eigen::Index postures = std::min(kPostures, q.rows());
+  Eigen::MatrixXd stacked(postures * regressor.rows(), regressor.columns());
+  for (Eigen::Index i = 0; i < postures; ++i) {
+    const Eigen::VectorXd x = q.row(i).transpose()(chain.coordinates);
+    stacked.middleRows(i * regressor.rows(), regressor.rows()) = regressor.Evaluate(moving, x);
+  }
+  const PriorityQrResult excited = PriorityQr(stacked(Eigen::all, order), kTolerance);
+  std::vector<int> kept;
+  for (int i : excited.kept) kept.push_back(base.kept[order[i]]);
+  std::sort(kept.begin(), kept.end());
+  base.kept = std::move(kept);
+}
+
+/// The sphere that is the mirror image of another at zero posture, or -1.
+int FindMirrorSphere(const std::vector<CollisionSphere>& spheres, const Eigen::Matrix3Xd& centres,
+                     int sphere) {
+  constexpr double kNear = 5e-3;  // m
+  const Eigen::Vector3d wanted =
+      Eigen::Vector3d(1.0, -1.0, 1.0).cwiseProduct(Eigen::Vector3d(centres.col(sphere)));
+  for (std::size_t s = 0; s < spheres.size(); ++s) {
+    if ((centres.col(static_cast<Eigen::Index>(s)) - wanted).norm() < kNear &&
+        std::abs(spheres[s].radius - spheres[sphere].radius) < kNear) {
+      return static_cast<int>(s);
+    }
+  }
+  return -1;
+}
+
+}  // namespace
+
+FeasibleSet MakeFeasibleSet(const RobotTree& tree, const MotionSetup& motion,
+                            const ChainSetup& chain) {
+  FeasibleSet set{MovingChain(tree, chain.coordinates, motion.rest),
+                  motion.lower(chain.coordinates),
+                  motion.upper(chain.coordinates),
+                  {},
+                  chain.tip_link};
+  set.workspace.R_root_end = LinkTransforms(tree, motion.rest)[chain.tip_link].linear();
+  set.workspace.largest_turn = chain.largest_turn;
+  if (chain.box) {
+    set.has_workspace = true;
+    set.workspace.lower = chain.box->lower;
+    set.workspace.upper = chain.box->upper;
+    set.constraints.push_back(std::make_unique<EndBox>(chain.tip_link, set.workspace));
+  }
+  if (chain.largest_turn < M_PI) {
+    set.constraints.push_back(std::make_unique<OrientationCone>(chain.tip_link, set.workspace));
+  }
+  set.constraints.push_back(std::make_unique<TorqueLimit>(
+      tree, PathCoordinates(tree, chain.tip_link), motion.effort_share));
+  if (!chain.contacts.empty()) {
+    set.constraints.push_back(
+        std::make_unique<SphereClearance>(motion.spheres, chain.contacts, motion.sphere_margin));
+  }
+  if (chain.floor_z) {
+    set.constraints.push_back(
+        std::make_unique<FloorClearance>(MovedSpheres(tree, motion, chain), *chain.floor_z));
+  }
+  return set;
+}
+
+BaseParameters FindChainParameters(const ErrorModel& model, const MotionSetup& motion,
+                                   const ChainSetup& chain, IdentifiabilityOptions options) {
+  for (const Parameter& parameter : model.parameters) {
+    if (parameter.joint < 0) continue;
+    const int coordinate = model.tree.joints[parameter.joint].coordinate;
+    const auto& own = chain.coordinates;
+    if (std::find(own.begin(), own.end(), coordinate) == own.end()) {
+      options.hold.push_back(parameter.name);
+    }
+  }
+  Random random(options.seed);
+  Eigen::MatrixXd q(options.postures, model.tree.coordinate_count());
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    q.row(i) = motion.rest.transpose();
+    for (int c : chain.coordinates) q(i, c) = random.Uniform(motion.lower[c], motion.upper[c]);
+  }
+  const Geometry geometry = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
+  BaseParameters base = FindBaseParameters(model, RegressorFactor(model, geometry, q, {}), options);
+  KeepExcited(model, motion, chain, q, base);
+  return base;
+}
+
+PostureProblem MakeChainProblem(const ErrorModel& model, const std::vector<int>& base,
+                                const MotionSetup& motion, const ChainSetup& chain,
+                                Criterion criterion) {
+  FeasibleSet feasible = MakeFeasibleSet(model.tree, motion, chain);
+  PostureRegressor regressor(model, base, feasible.chain);
+  return {std::move(feasible), std::move(regressor), criterion, MakeVisibility(model, motion)};
+}
+
+std::optional<ChainSetup> MirrorSetup(const RobotTree& tree, const MotionSetup& motion,
+                                      const ChainSetup& chain, const std::string& other_name,
+                                      int other_from, int other_tip, std::string* reason) {
+  const Eigen::Matrix3Xd centres = SphereCentres(
+      motion.spheres, LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count())));
+  ChainSetup other = chain;
+  other.name = other_name;
+  other.mirror = chain.name;
+  other.from_link = other_from;
+  other.tip_link = other_tip;
+  other.coordinates = ChainCoordinates(tree, other_from, other_tip);
+  if (chain.box) {
+    other.box->lower.y() = -chain.box->upper.y();
+    other.box->upper.y() = -chain.box->lower.y();
+  }
+  for (SpherePair& pair : other.contacts) {
+    for (int* sphere : {&pair.first, &pair.second}) {
+      const int image = FindMirrorSphere(motion.spheres, centres, *sphere);
+      if (image < 0) {
+        *reason = "sphere " + motion.spheres[*sphere].name + " has no mirror image";
+        return std::nullopt;
+      }
+      *sphere = image;
+    }
+  }
+  // A foot that carries is exchanged for the one on the other side.
+  for (int& foot : other.support) {
+    if (foot == other_tip) foot = chain.tip_link;
+  }
+  return other;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "elastocal/posture/certificate.hpp"
+#include "elastocal/posture/chain_problem.hpp"
+#include "elastocal/posture/mirror.hpp"
+#include "elastocal/posture/nocp.hpp"
+
+namespace elastocal {
+
+struct DesignOptions {
+  NocpOptions nocp = {};
+  Criterion criterion = Criterion::kO1;
+  bool certify = true;
+  CertificateOptions certificate = {};
+  std::uint64_t seed = 1;
+};
+
+/// Calibration postures of one chain.
+struct ChainDesign {
+  ChainSetup setup;
+  std::vector<Eigen::VectorXd> postures;  ///< of the whole robot, by coordinate of q
+  DesignResult::Status status = DesignResult::Status::kMaxPostures;
+  std::string blame = {};  ///< the limit that leaves no feasible posture
+  int parameter_count = 0;
+  double index = 0.0;                ///< of the set
+  std::vector<int> sizes = {};       ///< of the set after each addition ...
+  std::vector<double> indices = {};  ///< ... and its index
+  Certificate certificate = {};
+  std::string mirrored_from = {};       ///< the chain that it is the mirror image of
+  std::vector<std::string> notes = {};  ///< what a user should know
+
+  double Efficiency() const { return certificate.bound > 0.0 ? index / certificate.bound : 0.0; }
+};
+
+/// The smallest set of postures for a chain: NOCP until the plateau, with a certificate of how far
+/// it is from the best there is.
+ChainDesign DesignChain(const ErrorModel& model, const std::vector<int>& base,
+                        const MotionSetup& motion, const ChainSetup& chain,
+                        const DesignOptions& options);
+
+/// The same postures mirrored for the chain on the other side, whose model and set-up these are.
+/// They are checked anew: one that is not feasible there (limits and loads need not be symmetric)
+/// is replaced by a random one and optimised; notes say so. The index is that of the other side.
+ChainDesign MirrorDesign(const ChainDesign& design, const MirrorMap& mirror,
+                         const ErrorModel& model, const std::vector<int>& base,
+                         const MotionSetup& motion, const ChainSetup& other,
+                         const DesignOptions& options);
+
+/// O1 against the number of postures (paper Fig. 6).
+struct CurvePoint {
+  std::string algorithm;  ///< nocp, cocp, ioops, exchange, random
+  std::string chain;
+  int postures = 0;
+  double index = 0.0;
+};
+/// What the other algorithms reach with sets of these sizes, each from random postures.
+std::vector<CurvePoint> CompareAlgorithms(const ErrorModel& model, const std::vector<int>& base,
+                                          const MotionSetup& motion, const ChainSetup& chain,
+                                          const std::vector<int>& sizes,
+                                          const DesignOptions& options);
+
+}  // namespace elastocal

@@ -1,0 +1,87 @@
+#include "elastocal/posture/feasible_set.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/posture/leg_problem_testing.hpp"
+#include "elastocal/posture/random_posture.hpp"
+
+namespace elastocal {
+namespace {
+
+TEST(FeasibleSet, DerivativesOfAllConstraintsEqualDifferences) {
+  LegProblem leg;
+  FeasibleSet& set = leg.problem.feasible;
+  Random random(3);
+  constexpr double kStep = 1e-6;
+  for (int posture = 0; posture < 20; ++posture) {
+    Eigen::VectorXd x(4);
+    for (int i = 0; i < 4; ++i) x[i] = random.Uniform(set.lower[i], set.upper[i]);
+    Eigen::VectorXd value, ahead, behind;
+    Eigen::MatrixXd jacobian, unused;
+    EvaluateConstraints(set, x, value, jacobian);
+    for (int i = 0; i < 4; ++i) {
+      EvaluateConstraints(set, x + kStep * Eigen::VectorXd::Unit(4, i), ahead, unused);
+      EvaluateConstraints(set, x - kStep * Eigen::VectorXd::Unit(4, i), behind, unused);
+      // Values and their curvature are of order one: truncation 1e-12, rounding 1e-10.
+      EXPECT_LT((jacobian.col(i) - (ahead - behind) / (2 * kStep)).cwiseAbs().maxCoeff(), 1e-8);
+    }
+  }
+}
+
+TEST(FeasibleSet, NamesTheLimitThatIsBrokenMost) {
+  LegProblem leg;
+  FeasibleSet& set = leg.problem.feasible;
+  Eigen::VectorXd x = leg.motion.rest;
+  EXPECT_EQ(WorstViolation(set, x).amount, 0.0);
+  x[0] = 1.5;  // the cone's cosine is 0.43 short
+  EXPECT_EQ(WorstViolation(set, x).what, "limit of hip_yaw");
+  EXPECT_NEAR(WorstViolation(set, x).amount, 0.5, 1e-12);
+  x = Eigen::Vector4d(0.0, 0.0, 0.0, 0.0);  // straight: foot at -0.9, of radius 0.07
+  EXPECT_EQ(WorstViolation(set, x).what, "height of FOOT above the floor");
+  EXPECT_NEAR(WorstViolation(set, x).amount, 0.07, 1e-12);
+}
+
+TEST(FeasibleSet, OrientationIsTheCosineOfTheTurn) {
+  LegProblem leg;
+  FeasibleSet& set = leg.problem.feasible;
+  Eigen::VectorXd values;
+  Eigen::MatrixXd jacobian;
+  EvaluateConstraints(set, Eigen::Vector4d(0.2, 0.0, -0.5, 1.0), values, jacobian);
+  // About z before the pitch at rest: a turn by the yaw alone. Rows: box (3), then the cone.
+  EXPECT_NEAR(values[3], std::cos(0.2), 1e-12);
+}
+
+TEST(FeasibleSampler, DrawsFeasiblePosturesAndCountsThem) {
+  LegProblem leg;
+  FeasibleSampler sampler(leg.problem.feasible, 1);
+  for (int i = 0; i < 200; ++i) {
+    const auto x = sampler.Draw();
+    ASSERT_TRUE(x);
+    EXPECT_EQ(WorstViolation(leg.problem.feasible, *x).amount, 0.0);
+  }
+  EXPECT_EQ(sampler.count().found, 200);
+  EXPECT_GT(sampler.count().Yield(), 0.3);  // else most of the workspace could not be reached
+  // Repair adds postures that placing the end alone did not give.
+  EXPECT_LT(sampler.count().feasible_at_once, sampler.count().found);
+}
+
+TEST(FeasibleSampler, SameSeedSamePostures) {
+  LegProblem a, b;
+  FeasibleSampler first(a.problem.feasible, 7), second(b.problem.feasible, 7);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(*first.Draw(), *second.Draw());
+}
+
+TEST(FeasibleSampler, BlamesTheLimitThatLeavesNothing) {
+  const RobotTree tree = MakeLegRobot();
+  const MotionSetup motion = LegMotion(tree);
+  ChainSetup setup = LegSetup(tree);
+  setup.floor_z = -0.2;  // above the highest foot
+  FeasibleSet set = MakeFeasibleSet(tree, motion, setup);
+  FeasibleSampler sampler(set, 1);
+  EXPECT_FALSE(sampler.Draw(100));
+  EXPECT_NE(sampler.Blame().find("above the floor"), std::string::npos) << sampler.Blame();
+}
+
+}  // namespace
+}  // namespace elastocal

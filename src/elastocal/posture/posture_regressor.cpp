@@ -1,0 +1,169 @@
+#include "elastocal/posture/posture_regressor.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "elastocal/robot/statics.hpp"
+
+namespace elastocal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kBaseColumn = -1, kMarkerColumn = -2;  // in place of a joint
+
+bool IsJointCompliance(ParameterKind kind) {
+  return kind == ParameterKind::kTorsion || kind == ParameterKind::kBending;
+}
+
+/// The parameter that displaces a marker as the joint's motion does.
+int MotionParameter(const ErrorModel& model, int joint) {
+  const ParameterKind kind = model.tree.joints[joint].type == JointType::kRevolute
+                                 ? ParameterKind::kTheta
+                                 : ParameterKind::kR;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (model.parameters[i].joint == joint && model.parameters[i].kind == kind) return i;
+  }
+  throw std::logic_error("a joint that moves a marker has no parameter of its motion");
+}
+
+}  // namespace
+
+PostureRegressor::PostureRegressor(const ErrorModel& model, std::vector<int> base,
+                                   const MovingChain& chain)
+    : model_(model),
+      base_(std::move(base)),
+      geometry_(ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()))),
+      jacobian_(model) {
+  for (int parameter : base_) {
+    const ParameterKind kind = model_.parameters[parameter].kind;
+    if (IsJointCompliance(kind)) {
+      elastic_ = true;
+    } else if (IsElastic(kind)) {
+      throw std::invalid_argument("PostureRegressor: " + model_.parameters[parameter].name +
+                                  " depends on more than this posture");
+    }
+  }
+  if (elastic_) {
+    unit_loads_.setOnes(3, static_cast<Eigen::Index>(model_.tree.joints.size()));
+    loads_ = unit_loads_;
+  }
+  psi_.setZero(rows(), columns());
+  LayOut(chain);
+}
+
+void PostureRegressor::LayOut(const MovingChain& chain) {
+  for (int m = 0; m < model_.marker_count(); ++m) {
+    std::vector<PathJoint>& path = paths_.emplace_back();
+    for (int k : JointsToBody(model_.tree, model_.tree.links[model_.markers[m].link].body)) {
+      const Joint& joint = model_.tree.joints[k];
+      const auto& moving = chain.coordinates();
+      const auto found = std::find(moving.begin(), moving.end(), joint.coordinate);
+      const int variable = found == moving.end() ? -1 : static_cast<int>(found - moving.begin());
+      path.push_back({k, MotionParameter(model_, k), variable, joint.multiplier});
+    }
+    std::vector<MarkerColumn>& columns = columns_.emplace_back();
+    const std::vector<int>& source = jacobian_.Columns(m);
+    for (std::size_t c = 0; c < source.size(); ++c) {
+      const auto found = std::lower_bound(base_.begin(), base_.end(), source[c]);
+      if (found == base_.end() || *found != source[c]) continue;
+      const Parameter& parameter = model_.parameters[source[c]];
+      const int joint = parameter.marker >= 0  ? kMarkerColumn
+                        : parameter.joint >= 0 ? parameter.joint
+                                               : kBaseColumn;
+      columns.push_back(
+          {static_cast<int>(found - base_.begin()), static_cast<int>(c), source[c], joint});
+    }
+  }
+}
+
+double PostureRegressor::Load(int parameter) const {
+  const Parameter& p = model_.parameters[parameter];
+  return IsJointCompliance(p.kind) ? loads_(p.axis, p.joint) : 1.0;
+}
+
+const Eigen::MatrixXd& PostureRegressor::Evaluate(MovingChain& chain, const Eigen::VectorXd& x) {
+  x_ = x;
+  const Eigen::VectorXd q = chain.FullPosture(x);
+  jacobian_.Evaluate(geometry_, q, unit_loads_);
+  if (elastic_) loads_ = GravityLoads(model_, geometry_, q, kGravity, 0);
+  for (int m = 0; m < model_.marker_count(); ++m) {
+    const auto block = jacobian_.Block(m);
+    for (const MarkerColumn& c : columns_[m]) {
+      psi_.block<3, 1>(3 * m, c.column) = Load(c.parameter) * block.col(c.source);
+    }
+  }
+  return psi_;
+}
+
+Eigen::VectorXd PostureRegressor::Gradient(MovingChain& chain, const Eigen::MatrixXd& weight) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(chain.size());
+  for (int m = 0; m < model_.marker_count(); ++m) AddMarkerGradient(m, weight, gradient);
+  if (elastic_) AddLoadGradient(chain, weight, gradient);
+  return gradient;
+}
+
+void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weight,
+                                         Eigen::VectorXd& gradient) const {
+  // A column v = a x p + m turns as a whole with the joints before its own, dv = z x v; the joints
+  // from its own one on move the marker alone, dv = a x dp. Weighted by w these are z . (v x w) and
+  // dp . (w x a), so that sums over columns, kept along the path, serve for all joints.
+  const Vector3d p = jacobian_.Position(marker);
+  Vector3d turned = Vector3d::Zero();  // sum of v x w over the columns beyond the joint
+  Vector3d moved = Vector3d::Zero();   // sum of w x a over the columns before it
+  const auto v_cross_w = [&](const MarkerColumn& c) -> Vector3d {
+    const Vector3d v = psi_.block<3, 1>(3 * marker, c.column);
+    return v.cross(Vector3d(weight.block<3, 1>(3 * marker, c.column)));
+  };
+  const auto w_cross_a = [&](const MarkerColumn& c) -> Vector3d {
+    const Vector3d a = Load(c.parameter) * jacobian_.Screw(c.parameter).head<3>();
+    return Vector3d(weight.block<3, 1>(3 * marker, c.column)).cross(a);
+  };
+  const std::vector<MarkerColumn>& columns = columns_[marker];
+  for (const MarkerColumn& c : columns) {
+    if (c.joint == kBaseColumn) {
+      moved += w_cross_a(c);
+    } else {
+      turned += v_cross_w(c);
+    }
+  }
+  auto next = std::find_if(columns.begin(), columns.end(),
+                           [](const MarkerColumn& c) { return c.joint != kBaseColumn; });
+  for (const PathJoint& joint : paths_[marker]) {
+    for (; next != columns.end() && next->joint == joint.joint; ++next) {
+      turned -= v_cross_w(*next);
+      moved += w_cross_a(*next);
+    }
+    if (joint.variable < 0) continue;
+    const Eigen::Matrix<double, 6, 1> motion = jacobian_.Screw(joint.motion);
+    const Vector3d z = motion.head<3>();
+    gradient[joint.variable] +=
+        joint.multiplier * (z.dot(turned) + (z.cross(p) + motion.tail<3>()).dot(moved));
+  }
+}
+
+void PostureRegressor::AddLoadGradient(MovingChain& chain, const Eigen::MatrixXd& weight,
+                                       Eigen::VectorXd& gradient) const {
+  // Loads are smooth and of the order of 100 N.m: central differences are good to 1e-9 of them.
+  constexpr double kStep = 1e-5;
+  Eigen::MatrixXd by_load = Eigen::MatrixXd::Zero(3, loads_.cols());
+  for (int m = 0; m < model_.marker_count(); ++m) {
+    const auto block = jacobian_.Block(m);
+    for (const MarkerColumn& c : columns_[m]) {
+      const Parameter& p = model_.parameters[c.parameter];
+      if (!IsJointCompliance(p.kind)) continue;
+      by_load(p.axis, p.joint) += block.col(c.source).dot(weight.block<3, 1>(3 * m, c.column));
+    }
+  }
+  for (int i = 0; i < chain.size(); ++i) {
+    Eigen::VectorXd ahead = x_, behind = x_;
+    ahead[i] += kStep;
+    behind[i] -= kStep;
+    const JointLoads change =
+        GravityLoads(model_, geometry_, chain.FullPosture(ahead), kGravity, 0) -
+        GravityLoads(model_, geometry_, chain.FullPosture(behind), kGravity, 0);
+    gradient[i] += by_load.cwiseProduct(change).sum() / (2.0 * kStep);
+  }
+}
+
+}  // namespace elastocal

@@ -1,0 +1,120 @@
+#include "elastocal/robot/moving_chain.hpp"
+
+#include <algorithm>
+
+namespace elastocal {
+
+using Eigen::Vector3d;
+
+std::vector<int> ChainCoordinates(const RobotTree& tree, int from_link, int tip_link) {
+  std::vector<int> joints = JointsToBody(tree, tree.links[tip_link].body);
+  const auto from = std::find(joints.begin(), joints.end(), tree.links[from_link].body - 1);
+  if (from != joints.end()) joints.erase(joints.begin(), from + 1);
+  std::vector<int> coordinates;
+  for (int joint : joints) {
+    const int coordinate = tree.joints[joint].coordinate;
+    if (std::find(coordinates.begin(), coordinates.end(), coordinate) == coordinates.end()) {
+      coordinates.push_back(coordinate);
+    }
+  }
+  return coordinates;
+}
+
+MovingChain::MovingChain(const RobotTree& tree, std::vector<int> coordinates, Eigen::VectorXd rest)
+    : tree_(tree), coordinates_(std::move(coordinates)), q_(std::move(rest)), driven_(1) {
+  carries_.assign(tree_.joints.size(), std::vector<char>(tree_.joints.size(), 0));
+  for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
+    const Joint& joint = tree_.joints[k];
+    for (int inner : JointsToBody(tree_, static_cast<int>(k) + 1)) carries_[inner][k] = 1;
+    driven_.push_back(driven_[joint.parent_body]);
+    const auto found = std::find(coordinates_.begin(), coordinates_.end(), joint.coordinate);
+    if (found == coordinates_.end()) continue;
+    driven_.back().push_back(
+        {static_cast<int>(k), static_cast<int>(found - coordinates_.begin()), joint.multiplier});
+    all_driven_.push_back(driven_.back().back());
+  }
+  Move(q_(coordinates_));
+}
+
+Eigen::VectorXd MovingChain::FullPosture(const Eigen::VectorXd& x) const {
+  Eigen::VectorXd q = q_;
+  q(coordinates_) = x;
+  return q;
+}
+
+void MovingChain::Move(const Eigen::VectorXd& x) {
+  q_(coordinates_) = x;
+  T_root_link_ = LinkTransforms(tree_, q_);
+  carried_ = CarriedLoads(tree_, T_root_link_, 0);
+}
+
+Vector3d MovingChain::Axis(int joint) const {
+  return T_root_link_[tree_.joints[joint].child_link].linear() * tree_.joints[joint].axis;
+}
+
+Vector3d MovingChain::Origin(int joint) const {
+  return T_root_link_[tree_.joints[joint].child_link].translation();
+}
+
+Eigen::Matrix3Xd MovingChain::PointJacobian(int link, const Vector3d& p_root_point) const {
+  Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, size());
+  for (const Driven& d : driven_[tree_.links[link].body]) {
+    const Vector3d axis = Axis(d.joint);
+    J.col(d.variable) += d.multiplier * (tree_.joints[d.joint].type == JointType::kRevolute
+                                             ? axis.cross(p_root_point - Origin(d.joint))
+                                             : axis);
+  }
+  return J;
+}
+
+Eigen::Matrix3Xd MovingChain::RotationJacobian(int link) const {
+  Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, size());
+  for (const Driven& d : driven_[tree_.links[link].body]) {
+    if (tree_.joints[d.joint].type == JointType::kRevolute) {
+      J.col(d.variable) += d.multiplier * Axis(d.joint);
+    }
+  }
+  return J;
+}
+
+/// How the first moment of all masses moves with a joint, kg.m/rad or kg.
+Vector3d MovingChain::MomentGradient(int joint) const {
+  const CarriedLoad& load = carried_[joint];
+  if (tree_.joints[joint].type == JointType::kPrismatic) return load.mass * Axis(joint);
+  return Axis(joint).cross(load.moment - load.mass * Origin(joint));
+}
+
+/// Second derivative of the potential energy by two joints, of which `inner` carries `outer`: it
+/// turns what the other one moves.
+double MovingChain::PotentialCurvature(int inner, int outer) const {
+  if (tree_.joints[inner].type == JointType::kPrismatic) return 0.0;
+  return -Axis(inner).cross(MomentGradient(outer)).dot(kGravity);
+}
+
+double MovingChain::GravityTorque(int coordinate) const {
+  double torque = 0.0;
+  for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
+    if (tree_.joints[k].coordinate != coordinate) continue;
+    torque -= tree_.joints[k].multiplier * MomentGradient(static_cast<int>(k)).dot(kGravity);
+  }
+  return torque;
+}
+
+Eigen::RowVectorXd MovingChain::GravityTorqueGradient(int coordinate) const {
+  Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(size());
+  for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
+    if (tree_.joints[k].coordinate != coordinate) continue;
+    const int joint = static_cast<int>(k);
+    for (const Driven& d : all_driven_) {
+      const double factor = tree_.joints[k].multiplier * d.multiplier;
+      if (carries_[d.joint][joint]) {
+        gradient[d.variable] += factor * PotentialCurvature(d.joint, joint);
+      } else if (carries_[joint][d.joint]) {
+        gradient[d.variable] += factor * PotentialCurvature(joint, d.joint);
+      }
+    }
+  }
+  return gradient;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,115 @@
+// Commands `design` and `assess` as their users run them.
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/posture_file.hpp"
+#include "tests/run_program.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class DesignProgram : public testing::Test {
+ protected:
+  std::string File(const std::string& name) const { return (scratch_.path() / name).string(); }
+  std::string Talos() const { return SourceFile("models/talos/project.yaml").string(); }
+
+  /// The TALOS project with a text replaced.
+  std::string Changed(const std::string& from, const std::string& to) {
+    std::string text = ReadFile(Talos());
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    const std::string urdf = "{urdf: talos.urdf}";
+    text.replace(text.find(urdf), urdf.size(),
+                 "{urdf: " + SourceFile("models/talos/talos.urdf").string() + "}");
+    return scratch_.Write("project.yaml", text);
+  }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(DesignProgram, DesignsAndAssessesAndTellsTheTruthAboutBoth) {
+  const std::string options = " --chain head_trunk --postures 8 --seed 3 -q";
+  const ProgramResult made =
+      RunProgram("design " + Talos() + " -o " + File("postures.yaml") + options);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Project project = ReadProject(Talos());
+  const auto postures = ReadPostureFile(File("postures.yaml"), project);
+  ASSERT_EQ(postures.size(), 1u);
+  EXPECT_EQ(postures[0].chain, "head_trunk");
+  EXPECT_EQ(postures[0].q.size(), 8u);
+  EXPECT_EQ(postures[0].support.size(), 2u);
+  EXPECT_NE(ReadFile(File("postures_curves.svg")).find("</svg>"), std::string::npos);
+  EXPECT_TRUE(
+      ReadFile(File("postures_curves.csv")).starts_with("algorithm,chain,seed,postures,o1\n"));
+
+  const ProgramResult assessed =
+      RunProgram("assess " + Talos() + " --postures " + File("postures.yaml") + " --json " +
+                 File("assessed.json") + " -q");
+  ASSERT_EQ(assessed.exit_code, 0) << assessed.err;
+  const auto summary = nlohmann::json::parse(ReadFile(File("postures_summary.json")));
+  const auto found = nlohmann::json::parse(ReadFile(File("assessed.json")));
+  const double index = summary["chains"][0]["index"];
+  // The file holds nine digits.
+  EXPECT_NEAR(found["chains"][0]["o1"].get<double>(), index, 1e-6 * index);
+  EXPECT_TRUE(found["chains"][0]["infeasible"].empty());
+  EXPECT_GT(found["chains"][0]["efficiency"].get<double>(), 0.9);
+
+  const std::string first = ReadFile(File("postures.yaml"));
+  RunProgram("design " + Talos() + " -o " + File("again.yaml") + options);
+  EXPECT_EQ(ReadFile(File("again.yaml")), first);  // same seed, same postures
+}
+
+TEST_F(DesignProgram, EndsWithFourAndNamesTheLimitWhereNothingIsFeasible) {
+  const std::string project = Changed("floor_mm: -1000", "floor_mm: -300");
+  const ProgramResult result =
+      RunProgram("design " + project + " --chain leg_left -o " + File("postures.yaml"));
+  EXPECT_EQ(result.exit_code, 4) << result.err;
+  EXPECT_NE(result.err.find("above the floor"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(File("postures.yaml")));
+}
+
+TEST_F(DesignProgram, NamesWhatIsWrongInTheProject) {
+  const auto expect = [&](const std::string& from, const std::string& to, const std::string& part) {
+    const ProgramResult result =
+        RunProgram("design " + Changed(from, to) + " -o " + File("postures.yaml"));
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << part << " not in: " << result.err;
+  };
+  expect("[LKNEE, RKNEE]", "[LKNEE, RNEE]", "there is no sphere 'RNEE'");
+  expect("chain: leg_left", "chain: leg_lift", "there is no chain 'leg_lift'");
+  expect("cone_deg: 60", "cone_deg: 600", "180");
+  expect("lower: [-350", "lower: [3500", "lower corner below the upper one");
+  expect("leg_left_4_joint: 49.2", "leg_left_4_joint: -49.2", "within the joint's limits");
+  expect("radius_mm: 135", "radius_mm: -1", "above 0");
+}
+
+TEST_F(DesignProgram, NamesWhatIsWrongInAPostureFile) {
+  const auto expect = [&](const std::string& text, const std::string& part) {
+    const ProgramResult result =
+        RunProgram("assess " + Talos() + " --postures " + scratch_.Write("bad.yaml", text));
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << part << " not in: " << result.err;
+  };
+  expect("chains: []", "no chains");
+  expect("chains: [{name: leg_lift, postures: [{}]}]", "leg_left");
+  expect("chains: [{name: leg_left, postures: [{leg_left_4_joint: -1}]}]", "limits");
+  expect("chains: [{name: leg_left, postures: [{leg_left_9_joint: 0}]}]", "leg_left_9_joint");
+  expect("chains: [{name: leg_left}]", "postures");
+}
+
+TEST_F(DesignProgram, AProjectWithoutDesignSaysSo) {
+  const ProgramResult result =
+      RunProgram("design " + SourceFile("tests/robots/arm6_project.yaml").string() + " -o " +
+                 File("postures.yaml"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("design"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace elastocal
