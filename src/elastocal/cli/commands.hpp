@@ -44,5 +44,6 @@ void AddDemo(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);
 void AddDesign(CLI::App& app, Action& action);
 void AddAssess(CLI::App& app, Action& action);
+void AddPlan(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

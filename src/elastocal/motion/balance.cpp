@@ -32,9 +32,9 @@ std::vector<Transform> RootWay(const Stretch& stretch) {
 /// Places the legs at every sample, each from the one before.
 bool PlaceLegs(const StandingRobot& robot, const Stretch& stretch,
                const std::vector<Transform>& T_world_root, Eigen::MatrixXd& q) {
-  StandingPose pose = stretch.begin;
+  PlacedPosture pose = stretch.begin;
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
-    const StandingPose before = pose;
+    const PlacedPosture before = pose;
     pose = {stretch.q.row(i).transpose(), T_world_root[Size(i)]};
     const auto place = [&](int foot, const Transform& T_world_sole) {
       for (const int c : robot.legs[Size(foot)].coordinates()) pose.q[c] = before.q[c];
@@ -53,7 +53,7 @@ bool PlaceLegs(const StandingRobot& robot, const Stretch& stretch,
 Eigen::Vector2d FollowingShare(const StandingRobot& robot, const Stretch& stretch) {
   constexpr double kStep = 1e-3;
   const auto com = [&](const Eigen::Vector2d& move) -> Eigen::Vector2d {
-    StandingPose pose = stretch.begin;
+    PlacedPosture pose = stretch.begin;
     pose.T_world_root.translation().head<2>() += move;
     for (const int foot : stretch.standing) {
       PlaceSole(robot, foot, robot.T_world_sole[Size(foot)], pose);
@@ -67,7 +67,7 @@ Eigen::Vector2d FollowingShare(const StandingRobot& robot, const Stretch& stretc
 /// Joint speeds of the standing legs (norm) by the root link's speed, squared, 1/m^2.
 double SpeedGain(const StandingRobot& robot, const Stretch& stretch) {
   constexpr double kStep = 1e-3;
-  StandingPose pose = stretch.begin;
+  PlacedPosture pose = stretch.begin;
   pose.T_world_root.translation() += Eigen::Vector3d(kStep, kStep, 0.0) / std::sqrt(2.0);
   for (const int foot : stretch.standing) {
     PlaceSole(robot, foot, robot.T_world_sole[Size(foot)], pose);

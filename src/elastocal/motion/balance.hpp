@@ -18,7 +18,7 @@ struct Stretch {
   int led = -1;               ///< a foot in the air that is led through the world; -1: none
   std::vector<Transform> T_world_led;  ///< by sample, where `led` is given
   Eigen::MatrixX2d zmp;                ///< where the zero-moment point should be, m
-  StandingPose begin, end;             ///< balanced at rest, see BalanceAtRest
+  PlacedPosture begin, end;            ///< balanced at rest, see BalanceAtRest
 
   int sample_count() const { return static_cast<int>(q.rows()); }
 };

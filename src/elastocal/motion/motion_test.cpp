@@ -160,14 +160,14 @@ TEST_F(BalancedWalker, KeepsTheZeroMomentPointInFastMotions) {
 }
 
 TEST_F(BalancedWalker, VisitsPosturesOnOneFoot) {
-  PostureSet set{.name = "left", .standing = {1}, .postures = {}};
+  PostureTour set{.name = "left", .standing = {1}, .postures = {}};
   for (const double hip : {-0.7, -0.4, -1.0}) {
     Eigen::VectorXd q = Posture(0.3 * hip, 0.1, 0.2);
     q[robot_.legs[0].coordinates()[2]] = hip;
     q[robot_.legs[0].coordinates()[3]] = 1.2;
     set.postures.push_back(q);
   }
-  const PlannedSet planned = PlanSet(robot_, set, {});
+  const PlannedTour planned = PlanTour(robot_, set, {});
   ASSERT_TRUE(planned.left_out.empty());
   ASSERT_EQ(planned.visits.size(), 3u);
   const MotionMargins margins = CheckMotion(robot_, planned.motion);
@@ -188,10 +188,10 @@ TEST_F(BalancedWalker, VisitsPosturesOnOneFoot) {
 }
 
 TEST_F(BalancedWalker, WithoutBalanceTheZeroMomentPointLeavesTheFoot) {
-  PostureSet set{.name = "left", .standing = {1}, .postures = {robot_.rest}};
+  PostureTour set{.name = "left", .standing = {1}, .postures = {robot_.rest}};
   PlanOptions options;
   options.balanced = false;
-  const MotionMargins margins = CheckMotion(robot_, PlanSet(robot_, set, options).motion);
+  const MotionMargins margins = CheckMotion(robot_, PlanTour(robot_, set, options).motion);
   EXPECT_LT(margins.zmp.value, -0.01);
 }
 
@@ -209,11 +209,11 @@ TEST_F(BalancedWalker, GoesAroundWhatIsInTheWay) {
 }
 
 TEST_F(BalancedWalker, LeavesOutWhatItCannotDoAndSaysWhy) {
-  PostureSet set{.name = "left", .standing = {1}, .postures = {}};
+  PostureTour set{.name = "left", .standing = {1}, .postures = {}};
   Eigen::VectorXd far = robot_.rest;
   far[0] = 1.3;  // beyond the trunk's limit
   set.postures = {Posture(0.5, 0, 0), far};
-  const PlannedSet planned = PlanSet(robot_, set, {});
+  const PlannedTour planned = PlanTour(robot_, set, {});
   ASSERT_EQ(planned.left_out.size(), 1u);
   EXPECT_EQ(planned.left_out[0].posture, 1);
   EXPECT_EQ(planned.left_out[0].constraint, Constraint::kPosition);
@@ -222,16 +222,16 @@ TEST_F(BalancedWalker, LeavesOutWhatItCannotDoAndSaysWhy) {
   EXPECT_EQ(planned.visits.size(), 1u);
 
   robot_.limits.torque_share = 0.05;  // nothing can be done
-  const PlannedSet none = PlanSet(robot_, set, {});
+  const PlannedTour none = PlanTour(robot_, set, {});
   EXPECT_EQ(none.left_out.size(), 2u);
   EXPECT_EQ(none.left_out[0].constraint, Constraint::kTorque);
   EXPECT_EQ(none.motion.q.rows(), 0);
 }
 
 TEST_F(BalancedWalker, SwingsJointsToAndFro) {
-  PostureSet set{.name = "trunk", .standing = {0, 1}, .postures = {}};
+  PostureTour set{.name = "trunk", .standing = {0, 1}, .postures = {}};
   set.sines = {0, 1, 2};
-  const PlannedSet planned = PlanSet(robot_, set, {});
+  const PlannedTour planned = PlanTour(robot_, set, {});
   EXPECT_TRUE(planned.left_out.empty());
   EXPECT_FALSE(Broken(CheckMotion(robot_, planned.motion), robot_.limits));
   for (const int c : set.sines) {
@@ -241,12 +241,12 @@ TEST_F(BalancedWalker, SwingsJointsToAndFro) {
 }
 
 TEST_F(BalancedWalker, ThreadsDoNotMatter) {
-  std::vector<PostureSet> sets;
+  std::vector<PostureTour> sets;
   for (const int foot : {0, 1}) {
     sets.push_back({.name = "set", .standing = {foot}, .postures = {Posture(0.2, 0.1, 0.4)}});
   }
-  const auto one = PlanSets(robot_, sets, {}, 1);
-  const auto two = PlanSets(robot_, sets, {}, 2);
+  const auto one = PlanTours(robot_, sets, {}, 1);
+  const auto two = PlanTours(robot_, sets, {}, 2);
   const SampledMotion first = JoinMotions(robot_, one, 1.0, 100.0);
   const SampledMotion second = JoinMotions(robot_, two, 1.0, 100.0);
   EXPECT_EQ(first.q, second.q);

@@ -68,7 +68,7 @@ Eigen::Vector2d MoveBuilder::HandOver(int onto) const {
   return centre + options_.inset * inwards.normalized();
 }
 
-bool MoveBuilder::Balanced(const std::vector<int>& standing, StandingPose& pose) const {
+bool MoveBuilder::Balanced(const std::vector<int>& standing, PlacedPosture& pose) const {
   if (options_.balanced) {
     return BalanceAtRest(robot_, standing, SupportCentre(robot_, standing), pose);
   }
@@ -79,19 +79,19 @@ bool MoveBuilder::Balanced(const std::vector<int>& standing, StandingPose& pose)
 }
 
 std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
-                                               StandingPose& pose) const {
+                                               PlacedPosture& pose) const {
   if (!Balanced(standing, pose)) return OutOfReach();
   if (!options_.balanced) return std::nullopt;
   return Refuse(CheckMotion(robot_, {options_.rate_hz, pose.q.transpose(), {standing}}),
                 robot_.limits);
 }
 
-std::optional<StandingPose> MoveBuilder::AtRest(const Eigen::VectorXd& q,
-                                                const std::vector<int>& standing,
-                                                const StandingPose& near, Refusal& why) const {
+std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
+                                                 const std::vector<int>& standing,
+                                                 const PlacedPosture& near, Refusal& why) const {
   constexpr int kHeights = 5;
   constexpr double kAboveFloor = 0.03, kLower = 0.03;  // m
-  StandingPose pose{q, near.T_world_root};
+  PlacedPosture pose{q, near.T_world_root};
   double& height = pose.T_world_root.translation().z();
   height = robot_.T_world_root.translation().z();
   for (int i = 0; i < kHeights; ++i) {
@@ -113,14 +113,14 @@ std::optional<StandingPose> MoveBuilder::AtRest(const Eigen::VectorXd& q,
   return std::nullopt;
 }
 
-std::optional<StandingPose> MoveBuilder::AtRestWithFoot(const std::vector<int>& standing, int foot,
-                                                        const Transform& T_world_sole,
-                                                        const StandingPose& near,
-                                                        Refusal& why) const {
+std::optional<PlacedPosture> MoveBuilder::AtRestWithFoot(const std::vector<int>& standing, int foot,
+                                                         const Transform& T_world_sole,
+                                                         const PlacedPosture& near,
+                                                         Refusal& why) const {
   // The foot stays where it is while the root link moves, which moves the centre of mass again.
   constexpr int kRounds = 40;
   constexpr double kReached = 1e-12;
-  StandingPose pose = near;
+  PlacedPosture pose = near;
   for (int i = 0; i < kRounds; ++i) {
     const Eigen::Vector3d before = pose.T_world_root.translation();
     if (!PlaceSole(robot_, foot, T_world_sole, pose) || !Balanced(standing, pose)) break;
@@ -158,7 +158,8 @@ std::optional<Eigen::MatrixXd> MoveBuilder::BalanceAndCheck(const Stretch& stret
   return std::move(motion.q);
 }
 
-std::optional<Eigen::MatrixXd> MoveBuilder::Follow(const StandingPose& from, const StandingPose& to,
+std::optional<Eigen::MatrixXd> MoveBuilder::Follow(const PlacedPosture& from,
+                                                   const PlacedPosture& to,
                                                    const std::vector<int>& standing,
                                                    const Eigen::MatrixXd& way, Refusal& why) const {
   Stretch stretch;
@@ -171,7 +172,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Follow(const StandingPose& from, con
   return BalanceAndCheck(stretch, why);
 }
 
-std::optional<Eigen::MatrixXd> MoveBuilder::Move(const StandingPose& from, const StandingPose& to,
+std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, const PlacedPosture& to,
                                                  const std::vector<int>& standing,
                                                  Refusal& why) const {
   constexpr double kSlower = 1.5;
@@ -217,8 +218,9 @@ Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, d
   return way;
 }
 
-std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const StandingPose& from, const StandingPose& to,
-                                                  int onto, Refusal& why) const {
+std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const PlacedPosture& from,
+                                                  const PlacedPosture& to, int onto,
+                                                  Refusal& why) const {
   Stretch stretch;
   stretch.rate_hz = options_.rate_hz;
   stretch.standing = robot_.AllFeet();
@@ -232,7 +234,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const StandingPose& from, cons
   return BalanceAndCheck(stretch, why);
 }
 
-std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const StandingPose& from, const StandingPose& to,
+std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, const PlacedPosture& to,
                                                  const std::vector<int>& standing, int foot,
                                                  Refusal& why) const {
   Stretch stretch;

@@ -32,20 +32,20 @@ class MoveBuilder {
   /// `near`; the root link is as high as in the posture of rest, or higher where a swinging foot
   /// would touch the floor, or lower where a leg does not reach. Nothing where it cannot be kept,
   /// and then why.
-  std::optional<StandingPose> AtRest(const Eigen::VectorXd& q, const std::vector<int>& standing,
-                                     const StandingPose& near, Refusal& why) const;
+  std::optional<PlacedPosture> AtRest(const Eigen::VectorXd& q, const std::vector<int>& standing,
+                                      const PlacedPosture& near, Refusal& why) const;
 
   /// With a foot held at a pose in the world by its leg.
-  std::optional<StandingPose> AtRestWithFoot(const std::vector<int>& standing, int foot,
-                                             const Transform& T_world_sole,
-                                             const StandingPose& near, Refusal& why) const;
+  std::optional<PlacedPosture> AtRestWithFoot(const std::vector<int>& standing, int foot,
+                                              const Transform& T_world_sole,
+                                              const PlacedPosture& near, Refusal& why) const;
 
   /// From pose to pose by a way of the joints.
-  std::optional<Eigen::MatrixXd> Move(const StandingPose& from, const StandingPose& to,
+  std::optional<Eigen::MatrixXd> Move(const PlacedPosture& from, const PlacedPosture& to,
                                       const std::vector<int>& standing, Refusal& why) const;
 
   /// The given way of the joints (samples x coordinates, from rest to rest), balanced.
-  std::optional<Eigen::MatrixXd> Follow(const StandingPose& from, const StandingPose& to,
+  std::optional<Eigen::MatrixXd> Follow(const PlacedPosture& from, const PlacedPosture& to,
                                         const std::vector<int>& standing,
                                         const Eigen::MatrixXd& way, Refusal& why) const;
 
@@ -54,11 +54,11 @@ class MoveBuilder {
   Eigen::MatrixXd SineWay(const Eigen::VectorXd& q, int coordinate, double share) const;
 
   /// Weight from all feet over one of them.
-  std::optional<Eigen::MatrixXd> Shift(const StandingPose& from, const StandingPose& to, int onto,
+  std::optional<Eigen::MatrixXd> Shift(const PlacedPosture& from, const PlacedPosture& to, int onto,
                                        Refusal& why) const;
 
   /// A foot straight up by options.lift_m while the others stand.
-  std::optional<Eigen::MatrixXd> Lift(const StandingPose& from, const StandingPose& to,
+  std::optional<Eigen::MatrixXd> Lift(const PlacedPosture& from, const PlacedPosture& to,
                                       const std::vector<int>& standing, int foot,
                                       Refusal& why) const;
 
@@ -68,8 +68,8 @@ class MoveBuilder {
   std::optional<Eigen::MatrixXd> BalanceAndCheck(const Stretch& stretch, Refusal& why) const;
   /// Holds the first and the last row for a moment more.
   Eigen::MatrixXd WithEnds(const Eigen::MatrixXd& way) const;
-  std::optional<Refusal> KeepAtRest(const std::vector<int>& standing, StandingPose& pose) const;
-  bool Balanced(const std::vector<int>& standing, StandingPose& pose) const;
+  std::optional<Refusal> KeepAtRest(const std::vector<int>& standing, PlacedPosture& pose) const;
+  bool Balanced(const std::vector<int>& standing, PlacedPosture& pose) const;
 
   const StandingRobot& robot_;
   const PlanOptions& options_;

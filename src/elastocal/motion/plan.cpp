@@ -46,9 +46,9 @@ class Rows {
 };
 
 /// Goes through the postures of a set.
-class SetPlanner {
+class TourPlanner {
  public:
-  SetPlanner(const StandingRobot& robot, const PostureSet& set, const PlanOptions& options)
+  TourPlanner(const StandingRobot& robot, const PostureTour& set, const PlanOptions& options)
       : robot_(robot),
         set_(set),
         options_(options),
@@ -57,7 +57,7 @@ class SetPlanner {
     result_.name = set.name;
   }
 
-  PlannedSet Plan() {
+  PlannedTour Plan() {
     Refusal why;
     if (StepOntoFeet(why)) {
       result_.begin = rows_.count;
@@ -88,7 +88,7 @@ class SetPlanner {
     if (!OneFoot()) return true;
     const int stands = set_.standing.front();
     const int swings = 1 - stands;
-    StandingPose over = here_;
+    PlacedPosture over = here_;
     if (options_.balanced &&
         !BalanceAtRest(robot_, robot_.AllFeet(), build_.HandOver(stands), over)) {
       return false;
@@ -173,7 +173,7 @@ class SetPlanner {
     return targets;
   }
 
-  bool GoTo(const StandingPose& to, Refusal& why) {
+  bool GoTo(const PlacedPosture& to, Refusal& why) {
     if (to.q == here_.q) return true;
     const auto move = build_.Move(here_, to, set_.standing, why);
     if (!move) return false;
@@ -184,7 +184,7 @@ class SetPlanner {
     return true;
   }
 
-  bool GoByHub(const StandingPose& to, Refusal& why) {
+  bool GoByHub(const PlacedPosture& to, Refusal& why) {
     return here_.q != hub_.q && GoTo(hub_, why) && GoTo(to, why);
   }
 
@@ -201,33 +201,34 @@ class SetPlanner {
   }
 
   const StandingRobot& robot_;
-  const PostureSet& set_;
+  const PostureTour& set_;
   const PlanOptions& options_;
   MoveBuilder build_;
-  StandingPose here_, hub_;
+  PlacedPosture here_, hub_;
   Eigen::MatrixXd shifted_, lifted_;
   Rows rows_;
   std::vector<Eigen::MatrixXd> moves_;  // from the hub on
-  std::vector<StandingPose> before_;    // where each began
-  PlannedSet result_;
+  std::vector<PlacedPosture> before_;   // where each began
+  PlannedTour result_;
 };
 
 }  // namespace
 
-PlannedSet PlanSet(const StandingRobot& robot, const PostureSet& set, const PlanOptions& options) {
-  return SetPlanner(robot, set, options).Plan();
+PlannedTour PlanTour(const StandingRobot& robot, const PostureTour& set,
+                     const PlanOptions& options) {
+  return TourPlanner(robot, set, options).Plan();
 }
 
-std::vector<PlannedSet> PlanSets(const StandingRobot& robot, const std::vector<PostureSet>& sets,
-                                 const PlanOptions& options, int threads) {
-  std::vector<PlannedSet> planned(sets.size());
+std::vector<PlannedTour> PlanTours(const StandingRobot& robot, const std::vector<PostureTour>& sets,
+                                   const PlanOptions& options, int threads) {
+  std::vector<PlannedTour> planned(sets.size());
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;
   std::mutex guard;
   const auto work = [&] {
     try {
       for (std::size_t i = next++; i < sets.size(); i = next++) {
-        planned[i] = PlanSet(robot, sets[i], options);
+        planned[i] = PlanTour(robot, sets[i], options);
       }
     } catch (...) {
       const std::lock_guard lock(guard);
@@ -242,12 +243,12 @@ std::vector<PlannedSet> PlanSets(const StandingRobot& robot, const std::vector<P
   return planned;
 }
 
-SampledMotion JoinMotions(const StandingRobot& robot, const std::vector<PlannedSet>& sets,
+SampledMotion JoinMotions(const StandingRobot& robot, const std::vector<PlannedTour>& sets,
                           double lead_in_s, double rate_hz) {
   Rows rows;
   rows.Add(robot.rest.transpose().replicate(std::lround(lead_in_s * rate_hz) + 1, 1),
            robot.AllFeet());
-  for (const PlannedSet& set : sets) rows.Add(set.motion.q, set.motion.standing);
+  for (const PlannedTour& set : sets) rows.Add(set.motion.q, set.motion.standing);
   return rows.Join(rate_hz, robot.rest.size());
 }
 

@@ -12,7 +12,7 @@
 namespace elastocal {
 
 /// Postures that are gone through while the same feet stand.
-struct PostureSet {
+struct PostureTour {
   std::string name;
   std::vector<int> standing;  ///< feet, indices of soles: all of them, or one
   /// By coordinate, of the whole robot; joints of standing legs are found by balancing.
@@ -67,7 +67,7 @@ struct LeftOut {
 };
 
 /// Motion through a set of postures, from the posture of rest on all feet and back to it.
-struct PlannedSet {
+struct PlannedTour {
   std::string name;
   SampledMotion motion;
   int begin = 0, end = 0;  ///< samples between which only the set's feet stand, end excluded
@@ -80,15 +80,16 @@ struct PlannedSet {
 /// led by the posture of rest, where limits are broken. A posture that cannot be kept or reached is
 /// left out. On one foot: first the weight is shifted, then the other foot is lifted straight up,
 /// and at the end the same backwards, so that the foot stands where it stood.
-PlannedSet PlanSet(const StandingRobot& robot, const PostureSet& set, const PlanOptions& options);
+PlannedTour PlanTour(const StandingRobot& robot, const PostureTour& set,
+                     const PlanOptions& options);
 
 /// Plans sets, several at a time, and joins them to one motion. The result does not depend on the
 /// number of threads.
-std::vector<PlannedSet> PlanSets(const StandingRobot& robot, const std::vector<PostureSet>& sets,
-                                 const PlanOptions& options, int threads);
+std::vector<PlannedTour> PlanTours(const StandingRobot& robot, const std::vector<PostureTour>& sets,
+                                   const PlanOptions& options, int threads);
 
 /// All motions one after the other, with a rest before the first.
-SampledMotion JoinMotions(const StandingRobot& robot, const std::vector<PlannedSet>& sets,
+SampledMotion JoinMotions(const StandingRobot& robot, const std::vector<PlannedTour>& sets,
                           double lead_in_s, double rate_hz);
 
 }  // namespace elastocal

@@ -77,7 +77,7 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
   constexpr double kUpright = 0.01;
   const auto T_root_link =
       LinkTransforms(robot.tree, Eigen::VectorXd::Zero(robot.tree.coordinate_count()));
-  StandingPose pose{posture, Transform::Identity()};
+  PlacedPosture pose{posture, Transform::Identity()};
   pose.T_world_root.translation().z() = RootHeight(robot, posture, options);
   robot.T_world_sole.clear();
   for (std::size_t i = 0; i < robot.soles.size(); ++i) {
@@ -112,12 +112,12 @@ Eigen::Vector2d SupportCentre(const StandingRobot& robot, const std::vector<int>
 }
 
 bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_sole,
-               StandingPose& pose) {
+               PlacedPosture& pose) {
   return robot.legs[Size(foot)].Place(pose.T_world_root.inverse() * T_world_sole, pose.q);
 }
 
 bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
-                   const Eigen::Vector2d& com, StandingPose& pose) {
+                   const Eigen::Vector2d& com, PlacedPosture& pose) {
   constexpr int kIterations = 30;
   constexpr double kReached = 1e-10;    // m
   constexpr double kLargestMove = 0.1;  // m

@@ -63,7 +63,7 @@ Eigen::VectorXd NeutralPosture(const RobotTree& tree, double position_margin);
 Eigen::Vector2d SupportCentre(const StandingRobot& robot, const std::vector<int>& feet);
 
 /// A posture at rest with the root link where it is in the world.
-struct StandingPose {
+struct PlacedPosture {
   Eigen::VectorXd q;
   Transform T_world_root = Transform::Identity();
 };
@@ -72,10 +72,10 @@ struct StandingPose {
 /// horizontally until the centre of mass is over `com`. Begins at `pose`. False, with the pose
 /// changed, where a foot is out of reach.
 bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
-                   const Eigen::Vector2d& com, StandingPose& pose);
+                   const Eigen::Vector2d& com, PlacedPosture& pose);
 
 /// Places one leg so that its sole has the given pose in the world.
 bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_sole,
-               StandingPose& pose);
+               PlacedPosture& pose);
 
 }  // namespace elastocal
