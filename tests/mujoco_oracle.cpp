@@ -104,6 +104,53 @@ Eigen::Vector3d MujocoOracle::PointDerivative(const std::string& joint, const st
 
 double MujocoOracle::TotalMass() const { return mj_getTotalmass(model_.get()); }
 
+Eigen::Matrix3d MujocoOracle::LinkInertia(const std::string& link) const {
+  const int body = LinkId(link);
+  const double* axes = model_->body_iquat + 4 * body;
+  const Eigen::Matrix3d R =
+      Eigen::Quaterniond(axes[0], axes[1], axes[2], axes[3]).toRotationMatrix();
+  const Eigen::Map<const Eigen::Vector3d> moments(model_->body_inertia + 3 * body);
+  return R * moments.asDiagonal() * R.transpose();
+}
+
+void MujocoOracle::SetRootMotion(const Eigen::Isometry3d& T_world_root,
+                                 const Eigen::Vector3d& velocity, const Eigen::Vector3d& turn,
+                                 const Eigen::Vector3d& acceleration,
+                                 const Eigen::Vector3d& turn_rate) {
+  // MuJoCo's free joint: linear parts in the world's axes, angular ones in the body's.
+  const Eigen::Quaterniond attitude(T_world_root.linear());
+  const Eigen::Vector3d position = T_world_root.translation();
+  const Eigen::Matrix3d R_root_world = T_world_root.linear().transpose();
+  Eigen::Map<Eigen::VectorXd> qpos(data_->qpos, model_->nq);
+  qpos.head<7>() << position, attitude.w(), attitude.vec();
+  Eigen::Map<Eigen::VectorXd>(data_->qvel, model_->nv).head<6>() << velocity, R_root_world * turn;
+  Eigen::Map<Eigen::VectorXd>(data_->qacc, model_->nv).head<6>() << acceleration,
+      R_root_world * turn_rate;
+}
+
+void MujocoOracle::SetMotion(const std::string& joint, double position, double velocity,
+                             double acceleration) {
+  SetPosition(joint, position);
+  const int dof = model_->jnt_dofadr[JointId(joint)];
+  data_->qvel[dof] = velocity;
+  data_->qacc[dof] = acceleration;
+}
+
+void MujocoOracle::UpdateInverse() { mj_inverse(model_.get(), data_.get()); }
+
+double MujocoOracle::InverseTorque(const std::string& joint) const {
+  return data_->qfrc_inverse[model_->jnt_dofadr[JointId(joint)]];
+}
+
+Eigen::Vector3d MujocoOracle::InverseForce() const {
+  return Eigen::Map<const Eigen::Vector3d>(data_->qfrc_inverse);
+}
+
+Eigen::Vector3d MujocoOracle::InverseMoment() const {
+  const Eigen::Quaterniond attitude(data_->qpos[3], data_->qpos[4], data_->qpos[5], data_->qpos[6]);
+  return attitude.toRotationMatrix() * Eigen::Map<const Eigen::Vector3d>(data_->qfrc_inverse + 3);
+}
+
 int MujocoOracle::LinkId(const std::string& link) const {
   return FindId(model_.get(), mjOBJ_BODY, link);
 }

@@ -41,6 +41,21 @@ class MujocoOracle {
   Eigen::Vector3d PointDerivative(const std::string& joint, const std::string& link,
                                   const Eigen::Vector3d& p_root_point) const;
   double TotalMass() const;
+  /// Of a link, about its centre of mass in the link's axes, as MuJoCo has it: it keeps principal
+  /// moments and axes, which it finds to six digits or so.
+  Eigen::Matrix3d LinkInertia(const std::string& link) const;
+
+  /// A motion in the world: of the root link (velocity and acceleration of its origin, angular ones
+  /// in the world's axes) and of a joint. `UpdateInverse` evaluates mj_inverse.
+  void SetRootMotion(const Eigen::Isometry3d& T_world_root, const Eigen::Vector3d& velocity,
+                     const Eigen::Vector3d& turn, const Eigen::Vector3d& acceleration,
+                     const Eigen::Vector3d& turn_rate);
+  void SetMotion(const std::string& joint, double position, double velocity, double acceleration);
+  void UpdateInverse();
+  double InverseTorque(const std::string& joint) const;
+  /// On the root link, in the world's axes, the moment about the root's origin.
+  Eigen::Vector3d InverseForce() const;
+  Eigen::Vector3d InverseMoment() const;
 
   /// For benchmarks.
   const mjModel* model() const { return model_.get(); }

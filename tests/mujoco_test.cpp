@@ -8,6 +8,8 @@
 
 #include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/inverse_dynamics.hpp"
 #include "elastocal/robot/jacobian.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 #include "elastocal/robot/statics.hpp"
@@ -129,6 +131,50 @@ TEST_P(AgainstMujoco, TorquesOfARobotThatStandsOnOneOfItsLinks) {
     }
     const Eigen::VectorXd torques = StaticTorques(tree_, q, gravity, fixed_link);
     EXPECT_LT((torques - expected).lpNorm<Eigen::Infinity>(), 1e-8) << tree_.links[fixed_link].name;
+  }
+}
+
+TEST_P(AgainstMujoco, InverseDynamicsOfAFloatingRobot) {
+  // Speeds of some rad/s, accelerations of some ten: torques and forces reach some thousand, where
+  // rounding is near 1e-12. Inertias are MuJoCo's, which differ from the file's by 1e-6 of them.
+  RobotTree tree = tree_;
+  for (Link& link : tree.links) {
+    if (link.mass == 0.0) continue;
+    const Eigen::Matrix3d inertia = mujoco_.LinkInertia(link.name);
+    EXPECT_LT((inertia - link.inertia).norm(), 1e-5 * link.inertia.norm()) << link.name;
+    link.inertia = inertia;
+  }
+  const std::vector<BodyInertia> inertias = BodyInertias(tree);
+  const Eigen::Vector3d gravity(1.0, -0.5, -9.7);
+  mujoco_.SetGravity(gravity);
+  for (int i = 0; i < kPostures; ++i) {
+    RobotState state;
+    state.q = RandomPosture(tree_, random_);
+    state.velocity = random_.NormalVector(state.q.size(), 2.0);
+    state.acceleration = random_.NormalVector(state.q.size(), 10.0);
+    state.T_world_root.linear() = RotationFromVector(random_.NormalVector(3, 1.0));
+    state.T_world_root.translation() = random_.NormalVector(3, 1.0);
+    state.root_velocity = random_.NormalVector(3, 1.0);
+    state.root_turn = random_.NormalVector(3, 2.0);
+    state.root_acceleration = random_.NormalVector(3, 5.0);
+    state.root_turn_rate = random_.NormalVector(3, 10.0);
+    mujoco_.SetRootMotion(state.T_world_root, state.root_velocity, state.root_turn,
+                          state.root_acceleration, state.root_turn_rate);
+    for (const Joint& joint : tree_.joints) {
+      mujoco_.SetMotion(joint.name, JointPosition(joint, state.q),
+                        joint.multiplier * state.velocity[joint.coordinate],
+                        joint.multiplier * state.acceleration[joint.coordinate]);
+    }
+    mujoco_.UpdateInverse();
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(tree_.coordinate_count());
+    for (const Joint& joint : tree_.joints) {
+      expected[joint.coordinate] += joint.multiplier * mujoco_.InverseTorque(joint.name);
+    }
+    const InverseDynamicsResult found = InverseDynamics(tree_, inertias, state, gravity);
+    const Eigen::Vector3d origin = state.T_world_root.translation();
+    EXPECT_LT((found.torques - expected).lpNorm<Eigen::Infinity>(), 1e-8);
+    EXPECT_LT((found.force - mujoco_.InverseForce()).norm(), 1e-8);
+    EXPECT_LT((found.moment - origin.cross(found.force) - mujoco_.InverseMoment()).norm(), 1e-8);
   }
 }
 

@@ -45,5 +45,6 @@ void AddSimulate(CLI::App& app, Action& action);
 void AddDesign(CLI::App& app, Action& action);
 void AddAssess(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
+void AddPlan(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

@@ -56,6 +56,7 @@ int Run(int argc, char** argv) {
   AddDesign(app, action);
   AddAssess(app, action);
   AddReport(app, action);
+  AddPlan(app, action);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {
     spdlog::error("{} (elastocal --help lists the commands)", unknown);
     return kUsage;

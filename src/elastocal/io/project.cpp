@@ -112,6 +112,7 @@ void ReadSettings(const YamlValue& root, Project& project) {
     CheckHeld(*section, project);
   }
   if (const auto section = root.Find("elasticity")) ReadElasticity(*section, project);
+  if (const auto section = root.Find("standing")) ReadStanding(*section, project);
   if (const auto section = root.Find("calibration")) {
     ReadCalibrationOptions(*section, project.calibration);
   }
@@ -154,7 +155,7 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
   const YamlValue root = YamlValue::Parse(text, file.string());
   root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "force_torque_sensors",
                    "recording", "placement", "measurement", "identifiability", "calibration",
-                   "elasticity", "collision", "design"});
+                   "elasticity", "collision", "design", "standing"});
   Project project;
   project.file = file;
   ReadRobot(root.Get("robot"), project);

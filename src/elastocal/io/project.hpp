@@ -12,6 +12,7 @@
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_samples.hpp"
 #include "elastocal/robot/error_model.hpp"
+#include "elastocal/robot/standing.hpp"
 #include "elastocal/robot/motion_setup.hpp"
 
 namespace elastocal {
@@ -65,6 +66,7 @@ struct Project {
   IdentifiabilityOptions identifiability;
   CalibrationOptions calibration;
   ElasticityChoice elasticity;
+  std::vector<Sole> soles;  ///< that the robot can stand on; none: it is not planned for
   MotionSetup motion;  ///< what the calibration postures and motions keep to
 };
 

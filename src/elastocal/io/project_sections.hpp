@@ -13,6 +13,7 @@ void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options);
 void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& options);
 void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options);
 void ReadElasticity(const YamlValue& section, Project& project);
+void ReadStanding(const YamlValue& section, Project& project);
 /// Spheres; then what `design` and `plan` need: limits, the posture at rest, chains.
 void SetMotionDefaults(Project& project);
 void ReadCollision(const YamlValue& section, Project& project);

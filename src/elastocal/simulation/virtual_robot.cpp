@@ -204,6 +204,24 @@ Eigen::Matrix3Xd VirtualRobot::MarkerPositions() const {
   return positions;
 }
 
+std::pair<Eigen::Vector3d, Eigen::Vector3d> VirtualRobot::FloorWrench() const {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
+  const mjData& data = *simulation_->data;
+  for (int i = 0; i < data.ncon; ++i) {
+    std::array<double, 6> local{};  // in the contact's axes; the floor is the first geometry
+    mj_contactForce(simulation_->model.get(), &data, i, local.data());
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(
+        data.contact[i].frame);
+    const Eigen::Vector3d pressed =
+        axes.transpose() * Eigen::Map<const Eigen::Vector3d>(local.data());
+    const Eigen::Map<const Eigen::Vector3d> point(data.contact[i].pos);
+    force += pressed;
+    moment += point.cross(pressed);
+    moment += axes.transpose() * Eigen::Map<const Eigen::Vector3d>(local.data() + 3);
+  }
+  return {force, moment};
+}
+
 int VirtualRobot::coordinate_count() const { return simulation_->model->nv; }
 
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -44,7 +45,10 @@ class VirtualRobot {
   Transform SolePose(int index) const;  ///< of a sole in `support`; differs from its link's pose by
                                         ///< what the link between ankle and sole gives way
   Eigen::Matrix3Xd MarkerPositions() const;  ///< in the world, m
-  int coordinate_count() const;              ///< of the simulation
+  /// What the floor exerts on soles that stand free: force, N, and moment about the world's origin,
+  /// N.m, in the world's axes.
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> FloorWrench() const;
+  int coordinate_count() const;  ///< of the simulation
 
  private:
   struct Simulation;

@@ -1,0 +1,86 @@
+#include "elastocal/io/planned_motion_file.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+namespace elastocal {
+namespace {
+
+using Buffer = fmt::memory_buffer;
+
+std::vector<std::string> JointNames(const RobotTree& tree) {
+  std::vector<std::string> names;
+  for (const int k : tree.coordinate_joint) {
+    names.push_back(tree.joints[static_cast<std::size_t>(k)].name);
+  }
+  return names;
+}
+
+/// "left_sole_link+right_sole_link", as SupportNames reads it.
+std::string SupportCell(const RobotTree& tree, const std::vector<int>& links) {
+  std::string cell;
+  for (const int link : links) {
+    cell += (cell.empty() ? "" : "+") + tree.links[static_cast<std::size_t>(link)].name;
+  }
+  return cell.empty() ? "none" : cell;
+}
+
+template <typename Row>
+void AppendList(Buffer& out, const Row& values, const char* format) {
+  fmt::format_to(std::back_inserter(out), "[");
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (i > 0) fmt::format_to(std::back_inserter(out), ", ");
+    fmt::format_to(std::back_inserter(out), fmt::runtime(format), values[i]);
+  }
+  fmt::format_to(std::back_inserter(out), "]");
+}
+
+}  // namespace
+
+std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planned) {
+  const std::vector<std::string> joints = JointNames(tree);
+  Buffer out;
+  const auto put = std::back_inserter(out);
+  fmt::format_to(put, "time,{},support,zmp_x,zmp_y", fmt::join(joints, ","));
+  for (const std::string& joint : joints) fmt::format_to(put, ",torque_{}", joint);
+  fmt::format_to(put, "\n");
+  const JointMotion& motion = planned.motion;
+  for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
+    fmt::format_to(put, "{:.4f}", motion.time_s[i]);
+    for (const double position : motion.q.row(i)) fmt::format_to(put, ",{:.12g}", position);
+    fmt::format_to(put, ",{},{:.6f},{:.6f}",
+                   SupportCell(tree, motion.support[static_cast<std::size_t>(i)]),
+                   planned.zmp(i, 0), planned.zmp(i, 1));
+    for (const double torque : planned.torques.row(i)) fmt::format_to(put, ",{:.4f}", torque);
+    fmt::format_to(put, "\n");
+  }
+  return fmt::to_string(out);
+}
+
+std::string FormatJointTrajectory(const RobotTree& tree, const JointMotion& motion, int every) {
+  Buffer out;
+  const auto put = std::back_inserter(out);
+  fmt::format_to(put, "header:\n  stamp: {{secs: 0, nsecs: 0}}\n  frame_id: ''\njoint_names:\n");
+  for (const std::string& joint : JointNames(tree)) fmt::format_to(put, "  - {}\n", joint);
+  fmt::format_to(put, "points:\n");
+  const Eigen::Index last = motion.q.rows() - 1;
+  for (Eigen::Index i = 0; i <= last; i = i == last ? last + 1 : std::min(i + every, last)) {
+    const Eigen::Index before = std::max<Eigen::Index>(i - 1, 0);
+    const Eigen::Index after = std::min(i + 1, last);
+    const double span = motion.time_s[after] - motion.time_s[before];
+    const Eigen::RowVectorXd speed = (motion.q.row(after) - motion.q.row(before)) / span;
+    fmt::format_to(put, "  - positions: ");
+    AppendList(out, motion.q.row(i), "{:.9g}");
+    fmt::format_to(put, "\n    velocities: ");
+    AppendList(out, speed, "{:.6g}");
+    const auto nanoseconds =
+        static_cast<long long>((motion.time_s[i] - motion.time_s[0]) * 1e9 + 0.5);
+    fmt::format_to(put, "\n    time_from_start: {{secs: {}, nsecs: {}}}\n",
+                   nanoseconds / 1000000000, nanoseconds % 1000000000);
+  }
+  return fmt::to_string(out);
+}
+
+}  // namespace elastocal

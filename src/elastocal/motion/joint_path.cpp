@@ -1,0 +1,162 @@
+#include "elastocal/motion/joint_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "elastocal/math/bspline.hpp"
+
+namespace elastocal {
+namespace {
+
+std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
+
+/// Integral of products of the splines' derivatives, control points x control points.
+Eigen::MatrixXd VelocityMetric(int control_points) {
+  constexpr int kSamples = 201;
+  const Eigen::MatrixXd slope = QuinticSplineBasisRows(control_points, kSamples, 1);
+  return slope.transpose() * slope / (kSamples - 1);
+}
+
+/// Of a way from 0 to 1 with least velocity, the way points.
+Eigen::VectorXd WayFractions(const Eigen::MatrixXd& metric) {
+  const Eigen::Index free = metric.rows() - 6;
+  return -metric.block(3, 3, free, free)
+              .ldlt()
+              .solve(metric.block(3, free + 3, free, 3).rowwise().sum());
+}
+
+/// Moves way points away from where parts of the robot are too near.
+class WayAround {
+ public:
+  WayAround(const StandingRobot& robot, const std::vector<int>& moving,
+            const JointPathOptions& options, const Eigen::MatrixXd& metric)
+      : robot_(robot),
+        moving_(moving),
+        options_(options),
+        basis_(QuinticSplineBasisRows(static_cast<int>(metric.rows()),
+                                      static_cast<int>(std::lround(1.0 / options.check_step)) + 1)),
+        solver_(metric.block(3, 3, metric.rows() - 6, metric.rows() - 6)) {}
+
+  /// Least distance on the way.
+  double Clearance(const Eigen::MatrixXd& control) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i < basis_.rows(); ++i) {
+      const Eigen::VectorXd distances = At(control, i);
+      if (distances.size() > 0) least = std::min(least, distances.minCoeff());
+    }
+    return least;
+  }
+
+  /// One step; false where nothing is too near that way points could help.
+  bool Push(double length, Eigen::MatrixXd& control) const {
+    const Eigen::Index free = control.rows() - 6;
+    Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(free, control.cols());
+    for (Eigen::Index i = 0; i < basis_.rows(); ++i) {
+      const Eigen::VectorXd distances = At(control, i);
+      if (distances.size() == 0 || distances.minCoeff() >= options_.clearance) continue;
+      const Eigen::VectorXd away = Away(control.transpose() * basis_.row(i).transpose(), distances);
+      slope += basis_.row(i).segment(3, free).transpose() * away.transpose();
+    }
+    if (slope.norm() < 1e-12) return false;
+    Eigen::MatrixXd move = solver_.solve(slope);
+    move *= length / move.cwiseAbs().maxCoeff();
+    control.middleRows(3, free) += move;
+    for (const int c : moving_) {
+      const JointLimits& limits =
+          robot_.tree.joints[Size(robot_.tree.coordinate_joint[Size(c)])].limits;
+      const double margin = robot_.limits.position_margin;
+      for (Eigen::Index r = 3; r < free + 3; ++r) {
+        control(r, c) = std::clamp(control(r, c), std::min(limits.lower + margin, control(0, c)),
+                                   std::max(limits.upper - margin, control(0, c)));
+      }
+    }
+    return true;
+  }
+
+ private:
+  Eigen::VectorXd At(const Eigen::MatrixXd& control, Eigen::Index sample) const {
+    return robot_.clearances(control.transpose() * basis_.row(sample).transpose());
+  }
+
+  double Lack(const Eigen::VectorXd& distances) const {
+    return (options_.clearance - distances.array()).max(0.0).square().sum();
+  }
+
+  /// Direction in which the lack of distance becomes less.
+  Eigen::VectorXd Away(Eigen::VectorXd q, const Eigen::VectorXd& distances) const {
+    constexpr double kStep = 1e-4;
+    Eigen::VectorXd away = Eigen::VectorXd::Zero(q.size());
+    const double lack = Lack(distances);
+    for (const int c : moving_) {
+      const double at = q[c];
+      q[c] = at + kStep;
+      away[c] = (lack - Lack(robot_.clearances(q))) / kStep;
+      q[c] = at;
+    }
+    return away;
+  }
+
+  const StandingRobot& robot_;
+  const std::vector<int>& moving_;
+  const JointPathOptions& options_;
+  Eigen::MatrixXd basis_;
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
+};
+
+/// Seconds that a way needs for all joints to stay below their velocity limits.
+double LeastDuration(const StandingRobot& robot, const Eigen::MatrixXd& control) {
+  constexpr int kSamples = 101;
+  const Eigen::MatrixXd slope =
+      QuinticSplineBasisRows(static_cast<int>(control.rows()), kSamples, 1) * control;
+  double duration = 0.0;
+  for (const Joint& joint : robot.tree.joints) {
+    const double fastest =
+        std::abs(joint.multiplier) * slope.col(joint.coordinate).cwiseAbs().maxCoeff();
+    duration = std::max(duration, fastest / (robot.limits.velocity_share * joint.limits.velocity));
+  }
+  return duration;
+}
+
+}  // namespace
+
+JointPath PlanJointPath(const StandingRobot& robot, const Eigen::VectorXd& from,
+                        const Eigen::VectorXd& to, const std::vector<int>& moving,
+                        const JointPathOptions& options) {
+  constexpr double kFirstPush = 0.15;  // rad, of the way point that moves most
+  constexpr double kShrink = 0.96;
+  const Eigen::MatrixXd metric = VelocityMetric(options.way_points + 6);
+  const Eigen::VectorXd fractions = WayFractions(metric);
+  Eigen::MatrixXd way_points(options.way_points, from.size());
+  for (int i = 0; i < options.way_points; ++i) {
+    way_points.row(i) = (from + fractions[i] * (to - from)).transpose();
+  }
+  JointPath path;
+  path.control = RestToRestSpline(from, way_points, to);
+  path.clearance = std::numeric_limits<double>::infinity();
+  if (robot.clearances) {
+    const WayAround around(robot, moving, options, metric);
+    path.clearance = around.Clearance(path.control);
+    Eigen::MatrixXd control = path.control;
+    double length = kFirstPush;
+    for (int i = 0; i < options.iterations && path.clearance < options.clearance; ++i) {
+      if (!around.Push(length, control)) break;
+      length *= kShrink;
+      const double clearance = around.Clearance(control);
+      if (clearance <= path.clearance) continue;
+      path.clearance = clearance;
+      path.control = control;
+    }
+  }
+  path.duration_s = std::max(options.duration_s, LeastDuration(robot, path.control));
+  return path;
+}
+
+Eigen::MatrixXd SamplePath(const JointPath& path, double rate_hz) {
+  const int samples = static_cast<int>(std::ceil(path.duration_s * rate_hz - 1e-9)) + 1;
+  return QuinticSplineBasisRows(static_cast<int>(path.control.rows()), samples) * path.control;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,170 @@
+#include "elastocal/motion/motion_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "elastocal/motion/sampled_motion.hpp"
+
+namespace elastocal {
+namespace {
+
+std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
+
+void Least(Worst& worst, double value, Eigen::Index sample, int index) {
+  if (worst.sample >= 0 && !(value < worst.value)) return;
+  worst = {value, static_cast<int>(sample), index};
+}
+
+void Largest(Worst& worst, double value, Eigen::Index sample, int index) {
+  if (worst.sample >= 0 && !(value > worst.value)) return;
+  worst = {value, static_cast<int>(sample), index};
+}
+
+void CheckJoints(const RobotTree& tree, const RobotState& state, Eigen::Index sample,
+                 MotionMargins& margins) {
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const Joint& joint = tree.joints[k];
+    const double position = JointPosition(joint, state.q);
+    const double speed = joint.multiplier * state.velocity[joint.coordinate];
+    const double acceleration = joint.multiplier * state.acceleration[joint.coordinate];
+    const int index = static_cast<int>(k);
+    Least(margins.position, std::min(position - joint.limits.lower, joint.limits.upper - position),
+          sample, index);
+    Largest(margins.velocity, std::abs(speed) / joint.limits.velocity, sample, index);
+    Largest(margins.acceleration, std::abs(acceleration), sample, index);
+  }
+}
+
+void CheckTorques(const RobotTree& tree, const Eigen::VectorXd& torques, Eigen::Index sample,
+                  MotionMargins& margins) {
+  for (Eigen::Index i = 0; i < torques.size(); ++i) {
+    const int k = tree.coordinate_joint[Size(i)];
+    const double limit = tree.joints[Size(k)].limits.effort;
+    Largest(margins.torque, std::abs(torques[i]) / limit, sample, k);
+  }
+}
+
+void CheckFeet(const StandingRobot& robot, const std::vector<int>& standing,
+               const std::vector<Transform>& T_world_link, Eigen::Index sample,
+               MotionMargins& margins) {
+  for (const int foot : robot.AllFeet()) {
+    const Sole& sole = robot.soles[Size(foot)];
+    const Transform& found = T_world_link[Size(sole.link)];
+    if (std::find(standing.begin(), standing.end(), foot) != standing.end()) {
+      const Transform off = robot.T_world_sole[Size(foot)].inverse() * found;
+      Largest(margins.foot_moved, off.translation().norm(), sample, foot);
+      Largest(margins.foot_turned, RotationAngle(off.linear()), sample, foot);
+      continue;
+    }
+    for (const double x : {sole.lower.x(), sole.upper.x()}) {
+      for (const double y : {sole.lower.y(), sole.upper.y()}) {
+        Least(margins.floor, (found * Eigen::Vector3d(x, y, 0.0)).z(), sample, foot);
+      }
+    }
+  }
+}
+
+void CheckKnees(const StandingRobot& robot, const std::vector<int>& standing,
+                const Eigen::VectorXd& q, Eigen::Index sample, MotionMargins& margins) {
+  for (const int foot : standing) {
+    // The most bent joint of a bent leg is the knee.
+    double bend = 0.0;
+    for (const int c : robot.legs[Size(foot)].coordinates()) bend = std::max(bend, std::abs(q[c]));
+    Least(margins.knee, bend, sample, foot);
+  }
+}
+
+}  // namespace
+
+const char* ConstraintName(Constraint constraint) {
+  constexpr std::array kNames = {"reach of the legs",
+                                 "joint position limit",
+                                 "joint velocity limit",
+                                 "joint torque limit",
+                                 "clearance of the robot's own parts",
+                                 "zero-moment point inside the support",
+                                 "friction of the feet",
+                                 "bent knee of a standing leg",
+                                 "feet that stand still",
+                                 "swinging foot above the floor"};
+  return kNames[static_cast<std::size_t>(constraint)];
+}
+
+MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motion,
+                          MotionForces* forces) {
+  const Eigen::Index samples = motion.q.rows();
+  const double step = 1.0 / motion.rate_hz;
+  MotionMargins margins;
+  margins.clearance.value = margins.floor.value = std::numeric_limits<double>::infinity();
+  std::vector<Transform> T_world_root(Size(samples));
+  std::vector<std::vector<Transform>> T_root_link(Size(samples));
+  for (Eigen::Index i = 0; i < samples; ++i) {
+    const int foot = motion.standing[Size(i)].front();
+    T_root_link[Size(i)] = LinkTransforms(robot.tree, motion.q.row(i).transpose());
+    T_world_root[Size(i)] = robot.T_world_sole[Size(foot)] *
+                            T_root_link[Size(i)][Size(robot.soles[Size(foot)].link)].inverse();
+  }
+  MotionForces found;
+  found.zmp.resize(samples, 2);
+  found.torques.resize(samples, motion.q.cols());
+  for (Eigen::Index i = 0; i < samples; ++i) {
+    const std::vector<int>& standing = motion.standing[Size(i)];
+    const RobotState state = StateAt(motion.q, T_world_root, step, i);
+    const auto floor = InverseDynamics(robot.tree, robot.inertias, state, kGravity);
+    const Eigen::Vector2d zmp = ZeroMomentPoint(floor.force, floor.moment);
+    std::vector<Sole> soles;
+    std::vector<Transform> T_world_sole;
+    for (const int foot : standing) {
+      soles.push_back(robot.soles[Size(foot)]);
+      T_world_sole.push_back(robot.T_world_sole[Size(foot)]);
+    }
+    const auto wrenches = ShareWrench(soles, T_world_sole, floor.force, floor.moment);
+    const auto held = InverseDynamics(robot.tree, robot.inertias, state, kGravity, wrenches);
+    std::vector<Transform>& T_world_link = T_root_link[Size(i)];
+    for (Transform& T : T_world_link) T = T_world_root[Size(i)] * T;
+
+    CheckJoints(robot.tree, state, i, margins);
+    CheckTorques(robot.tree, held.torques, i, margins);
+    CheckFeet(robot, standing, T_world_link, i, margins);
+    CheckKnees(robot, standing, state.q, i, margins);
+    Least(margins.zmp, InsideMargin(SupportPolygon(soles, T_world_sole), zmp), i, -1);
+    Largest(margins.friction, floor.force.head<2>().norm() / floor.force.z(), i, -1);
+    if (robot.clearances) {
+      const Eigen::VectorXd distances = robot.clearances(state.q);
+      Eigen::Index pair = 0;
+      if (distances.size() > 0) {
+        const double least = distances.minCoeff(&pair);
+        Least(margins.clearance, least, i, static_cast<int>(pair));
+      }
+    }
+    found.zmp.row(i) = zmp.transpose();
+    found.torques.row(i) = held.torques.transpose();
+  }
+  if (forces != nullptr) {
+    *forces = std::move(found);
+    forces->T_world_root = std::move(T_world_root);
+  }
+  return margins;
+}
+
+std::optional<Constraint> Broken(const MotionMargins& margins, const MotionLimits& limits) {
+  constexpr double kFootMoves = 1e-6;
+  constexpr double kOnFloor = -1e-6;
+  const auto below = [](const Worst& worst, double limit) { return !(worst.value >= limit); };
+  const auto above = [](const Worst& worst, double limit) { return !(worst.value <= limit); };
+  if (below(margins.position, limits.position_margin)) return Constraint::kPosition;
+  if (above(margins.velocity, limits.velocity_share)) return Constraint::kVelocity;
+  if (above(margins.torque, limits.torque_share)) return Constraint::kTorque;
+  if (below(margins.clearance, limits.clearance)) return Constraint::kClearance;
+  if (below(margins.zmp, limits.zmp_margin)) return Constraint::kZmp;
+  if (above(margins.friction, limits.friction)) return Constraint::kFriction;
+  if (below(margins.knee, limits.least_knee)) return Constraint::kKnee;
+  if (above(margins.foot_moved, kFootMoves)) return Constraint::kFeet;
+  if (above(margins.foot_turned, kFootMoves)) return Constraint::kFeet;
+  if (below(margins.floor, kOnFloor)) return Constraint::kFloor;
+  return std::nullopt;
+}
+
+}  // namespace elastocal

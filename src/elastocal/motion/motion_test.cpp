@@ -1,0 +1,265 @@
+// Balanced motions of a small biped, from the legs' kinematics to a whole set of postures.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/motion/move_builder.hpp"
+#include "elastocal/motion/plan.hpp"
+#include "elastocal/motion/sampled_motion.hpp"
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+void GiveMass(RobotTree& tree, int link, double mass, const Eigen::Vector3d& com) {
+  tree.links[static_cast<std::size_t>(link)].mass = mass;
+  tree.links[static_cast<std::size_t>(link)].com = com;
+  tree.links[static_cast<std::size_t>(link)].inertia = 0.02 * mass * Eigen::Matrix3d::Identity();
+}
+
+/// A leg with the lengths of TALOS; returns the sole.
+int AddLeg(RobotTree& tree, const std::string& name, double side) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
+  int link = AddJoint(tree, name + "_1", 0, Offset(-0.02, side * 0.085, -0.27), {0, 0, 1});
+  link = AddJoint(tree, name + "_2", link, Transform::Identity(), x);
+  link = AddJoint(tree, name + "_3", link, Transform::Identity(), y);
+  GiveMass(tree, link, 5.0, {0.0, 0.0, -0.18});
+  link = AddJoint(tree, name + "_4", link, Offset(0, 0, -0.38), y);
+  GiveMass(tree, link, 3.0, {0.0, 0.0, -0.15});
+  link = AddJoint(tree, name + "_5", link, Offset(0, 0, -0.325), y);
+  link = AddJoint(tree, name + "_6", link, Transform::Identity(), x);
+  GiveMass(tree, link, 1.5, {0.0, 0.0, -0.05});
+  const double lower[] = {-0.5, -0.52, -2.1, 0.0, -1.27, -0.52};
+  const double upper[] = {0.5, 0.52, 0.7, 2.6, 0.68, 0.52};
+  for (std::size_t k = 0; k < 6; ++k) {
+    tree.joints[tree.joints.size() - 6 + k].limits = {lower[k], upper[k], 5.0, 150.0};
+  }
+  return AddFixedLink(tree, name + "_sole", link, Offset(0, 0, -0.107));
+}
+
+struct Walker {
+  RobotTree tree;
+  std::vector<Sole> soles;
+  int hand = 0, belly = 0;
+};
+
+/// 60 kg: waist, a trunk that turns and bends, an arm of one joint ahead, two legs.
+Walker MakeWalker() {
+  Walker walker;
+  walker.tree = MakeRoot();
+  RobotTree& tree = walker.tree;
+  GiveMass(tree, 0, 12.0, {-0.03, 0.0, -0.08});
+  int link = AddJoint(tree, "trunk_yaw", 0, Offset(0, 0, 0.07), {0, 0, 1});
+  link = AddJoint(tree, "trunk_pitch", link, Transform::Identity(), {0, 1, 0});
+  GiveMass(tree, link, 25.0, {0.0, 0.01, 0.25});
+  walker.belly = link;
+  walker.hand = AddJoint(tree, "arm", link, Offset(0.1, -0.2, 0.3), {0, 0, 1});
+  GiveMass(tree, walker.hand, 4.0, {0.3, 0.0, 0.0});
+  for (std::size_t k = 0; k < 3; ++k) tree.joints[k].limits = {-1.2, 1.2, 5.0, 150.0};
+  for (const double side : {1.0, -1.0}) {
+    const int sole = AddLeg(tree, side > 0 ? "left" : "right", side);
+    walker.soles.push_back({sole, {-0.1, -0.06}, {0.1, 0.06}});
+  }
+  return walker;
+}
+
+class BalancedWalker : public testing::Test {
+ protected:
+  BalancedWalker() : walker_(MakeWalker()), robot_(walker_.tree, walker_.soles, {}) {
+    StandUp(robot_, NeutralPosture(robot_.tree, 0.05), {});
+  }
+
+  Eigen::VectorXd Posture(double yaw, double pitch, double arm) const {
+    Eigen::VectorXd q = robot_.rest;
+    q.head<3>() << yaw, pitch, arm;
+    return q;
+  }
+
+  /// The hand must stay out of a ball before the robot.
+  void PutBallInTheWay() {
+    const int hand = walker_.hand;
+    robot_.clearances = [this, hand](const Eigen::VectorXd& q) -> Eigen::VectorXd {
+      const Transform T = LinkTransforms(robot_.tree, q)[static_cast<std::size_t>(hand)];
+      const Eigen::Vector3d ball(0.45, -0.2, 0.33);
+      return Eigen::VectorXd::Constant(1, (T * Eigen::Vector3d(0.4, 0, 0) - ball).norm() - 0.08);
+    };
+  }
+
+  Walker walker_;
+  StandingRobot robot_;
+};
+
+TEST_F(BalancedWalker, PlacesItsFeetWhereItIsTold) {
+  Random random(1);
+  const LegChain& leg = robot_.legs[0];
+  for (int i = 0; i < 50; ++i) {
+    Eigen::VectorXd q = robot_.rest;
+    for (const int c : leg.coordinates()) q[c] += random.Uniform(-0.3, 0.3);
+    const Transform wanted = leg.SolePose(q);
+    Eigen::VectorXd found = robot_.rest;
+    ASSERT_TRUE(leg.Place(wanted, found));
+    // The solver's own tolerance, over the least singular value of a bent leg, some 0.1.
+    EXPECT_LT((found - q).norm(), 1e-9);
+    EXPECT_LT((LinkTransforms(robot_.tree, found)[static_cast<std::size_t>(leg.sole_link())]
+                   .translation() -
+               wanted.translation())
+                  .norm(),
+              1e-10);
+  }
+  Eigen::VectorXd q = robot_.rest;
+  EXPECT_FALSE(leg.Place(Offset(0, 0.085, -1.3), q));  // longer than the leg
+}
+
+TEST_F(BalancedWalker, RestsOverItsFeet) {
+  const MotionMargins margins =
+      CheckMotion(robot_, {100.0, robot_.rest.transpose(), {robot_.AllFeet()}});
+  EXPECT_FALSE(Broken(margins, robot_.limits));
+  EXPECT_NEAR(margins.zmp.value, 0.1, 1e-9);  // the middle of soles 0.2 m long
+  EXPECT_LT(margins.foot_moved.value, 1e-10);
+}
+
+TEST_F(BalancedWalker, KeepsTheZeroMomentPointInFastMotions) {
+  // Two seconds to turn and bend the trunk by 0.8 rad: what statics alone leaves is centimetres.
+  Stretch stretch;
+  stretch.standing = robot_.AllFeet();
+  stretch.begin = {robot_.rest, robot_.T_world_root};
+  stretch.end = {Posture(0.8, 0.8, -0.5), robot_.T_world_root};
+  ASSERT_TRUE(BalanceAtRest(robot_, stretch.standing, SupportCentre(robot_, stretch.standing),
+                            stretch.end));
+  JointPathOptions options;
+  options.duration_s = 2.0;
+  const Eigen::MatrixXd way =
+      SamplePath(PlanJointPath(robot_, robot_.rest, stretch.end.q, {0, 1, 2}, options), 100.0);
+  stretch.q.resize(way.rows() + 100, way.cols());
+  stretch.q << way.row(0).replicate(50, 1), way, way.bottomRows(1).replicate(50, 1);
+  stretch.zmp = SupportCentre(robot_, stretch.standing).transpose().replicate(stretch.q.rows(), 1);
+  const auto largest = [&](int passes) {
+    BalanceOptions balance;
+    balance.passes = passes;
+    balance.velocity_weight = 0.0;
+    const BalancedStretch found = Balance(robot_, stretch, balance);
+    EXPECT_TRUE(found.in_reach);
+    return (found.zmp - stretch.zmp).rowwise().norm().maxCoeff();
+  };
+  EXPECT_GT(largest(0), 0.03);
+  // Each pass leaves a part of the error; at the ends, where the root link stands still, some
+  // millimetres remain.
+  EXPECT_LT(largest(6), 0.004);
+
+  const BalancedStretch found = Balance(robot_, stretch, {});
+  SampledMotion motion{100.0, found.q, {}};
+  motion.standing.assign(static_cast<std::size_t>(found.q.rows()), stretch.standing);
+  MotionForces forces;
+  const MotionMargins margins = CheckMotion(robot_, motion, &forces);
+  EXPECT_LT(margins.foot_moved.value, 1e-9);
+  EXPECT_LT(margins.foot_turned.value, 1e-9);
+  // The check finds the root link and the zero-moment point by another way than the planner.
+  EXPECT_LT((forces.zmp - found.zmp).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST_F(BalancedWalker, VisitsPosturesOnOneFoot) {
+  PostureTour set{.name = "left", .standing = {1}, .postures = {}};
+  for (const double hip : {-0.7, -0.4, -1.0}) {
+    Eigen::VectorXd q = Posture(0.3 * hip, 0.1, 0.2);
+    q[robot_.legs[0].coordinates()[2]] = hip;
+    q[robot_.legs[0].coordinates()[3]] = 1.2;
+    set.postures.push_back(q);
+  }
+  const PlannedTour planned = PlanTour(robot_, set, {});
+  ASSERT_TRUE(planned.left_out.empty());
+  ASSERT_EQ(planned.visits.size(), 3u);
+  const MotionMargins margins = CheckMotion(robot_, planned.motion);
+  EXPECT_FALSE(Broken(margins, robot_.limits));
+  // Begins and ends at rest on both feet.
+  EXPECT_LT((planned.motion.q.row(0).transpose() - robot_.rest).norm(), 1e-9);
+  EXPECT_LT((planned.motion.q.bottomRows(1).transpose() - robot_.rest).norm(), 1e-9);
+  // Accelerations are bounded: no jump where stretches meet.
+  EXPECT_LT(margins.acceleration.value, 5.0);
+  for (const Visit& visit : planned.visits) {
+    const Eigen::VectorXd& wanted = set.postures[static_cast<std::size_t>(visit.posture)];
+    const auto held = planned.motion.q.middleRows(visit.begin, visit.end - visit.begin);
+    EXPECT_GE(visit.end - visit.begin, 100);
+    for (const int c : robot_.legs[0].coordinates()) {
+      EXPECT_LT((held.col(c).array() - wanted[c]).abs().maxCoeff(), 1e-9);
+    }
+  }
+}
+
+TEST_F(BalancedWalker, WithoutBalanceTheZeroMomentPointLeavesTheFoot) {
+  PostureTour set{.name = "left", .standing = {1}, .postures = {robot_.rest}};
+  PlanOptions options;
+  options.balanced = false;
+  const MotionMargins margins = CheckMotion(robot_, PlanTour(robot_, set, options).motion);
+  EXPECT_LT(margins.zmp.value, -0.01);
+}
+
+TEST_F(BalancedWalker, GoesAroundWhatIsInTheWay) {
+  PutBallInTheWay();
+  const Eigen::VectorXd from = Posture(0, 0, -1.0), to = Posture(0, 0, 1.0);
+  const JointPath blind = PlanJointPath(robot_, from, to, {2}, {});
+  EXPECT_LT(blind.clearance, 0.0);  // one joint knows no way around
+  const JointPath path = PlanJointPath(robot_, from, to, {0, 1, 2}, {});
+  EXPECT_GE(path.clearance, JointPathOptions{}.clearance);
+  const Eigen::MatrixXd way = SamplePath(path, 100.0);
+  for (Eigen::Index i = 0; i < way.rows(); ++i) {
+    EXPECT_GT(robot_.clearances(way.row(i).transpose())[0], 0.01);
+  }
+}
+
+TEST_F(BalancedWalker, LeavesOutWhatItCannotDoAndSaysWhy) {
+  PostureTour set{.name = "left", .standing = {1}, .postures = {}};
+  Eigen::VectorXd far = robot_.rest;
+  far[0] = 1.3;  // beyond the trunk's limit
+  set.postures = {Posture(0.5, 0, 0), far};
+  const PlannedTour planned = PlanTour(robot_, set, {});
+  ASSERT_EQ(planned.left_out.size(), 1u);
+  EXPECT_EQ(planned.left_out[0].posture, 1);
+  EXPECT_EQ(planned.left_out[0].constraint, Constraint::kPosition);
+  EXPECT_EQ(planned.left_out[0].index, 0);
+  EXPECT_TRUE(planned.left_out[0].at_rest);
+  EXPECT_EQ(planned.visits.size(), 1u);
+
+  robot_.limits.torque_share = 0.05;  // nothing can be done
+  const PlannedTour none = PlanTour(robot_, set, {});
+  EXPECT_EQ(none.left_out.size(), 2u);
+  EXPECT_EQ(none.left_out[0].constraint, Constraint::kTorque);
+  EXPECT_EQ(none.motion.q.rows(), 0);
+}
+
+TEST_F(BalancedWalker, SwingsJointsToAndFro) {
+  PostureTour set{.name = "trunk", .standing = {0, 1}, .postures = {}};
+  set.sines = {0, 1, 2};
+  const PlannedTour planned = PlanTour(robot_, set, {});
+  EXPECT_TRUE(planned.left_out.empty());
+  EXPECT_FALSE(Broken(CheckMotion(robot_, planned.motion), robot_.limits));
+  for (const int c : set.sines) {
+    const auto column = planned.motion.q.col(c);
+    EXPECT_GT(column.maxCoeff() - column.minCoeff(), 0.5);
+  }
+}
+
+TEST_F(BalancedWalker, ThreadsDoNotMatter) {
+  std::vector<PostureTour> sets;
+  for (const int foot : {0, 1}) {
+    sets.push_back({.name = "set", .standing = {foot}, .postures = {Posture(0.2, 0.1, 0.4)}});
+  }
+  const auto one = PlanTours(robot_, sets, {}, 1);
+  const auto two = PlanTours(robot_, sets, {}, 2);
+  const SampledMotion first = JoinMotions(robot_, one, 1.0, 100.0);
+  const SampledMotion second = JoinMotions(robot_, two, 1.0, 100.0);
+  EXPECT_EQ(first.q, second.q);
+  EXPECT_EQ(first.standing, second.standing);
+  EXPECT_FALSE(Broken(CheckMotion(robot_, first), robot_.limits));
+}
+
+TEST(StandingRobot, RefusesWhatCannotStand) {
+  Walker walker = MakeWalker();
+  EXPECT_THROW(StandingRobot(walker.tree, {}, {}), InputError);
+  Sole on_arm{walker.hand, {-0.1, -0.1}, {0.1, 0.1}};
+  EXPECT_THROW(StandingRobot(walker.tree, {on_arm}, {}), InputError);
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,267 @@
+#include "elastocal/motion/move_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace elastocal {
+namespace {
+
+std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
+
+double SmoothStep(double s) { return s * s * s * (10.0 + s * (6.0 * s - 15.0)); }
+
+Refusal OutOfReach() { return {Constraint::kReach, std::numeric_limits<double>::quiet_NaN(), -1}; }
+
+/// Of rows that rest at both ends and move between: 0 to 1 as they go.
+Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index after) {
+  Eigen::VectorXd progress(samples);
+  const auto moving = static_cast<double>(samples - 1 - before - after);
+  for (Eigen::Index i = 0; i < samples; ++i) {
+    progress[i] = SmoothStep(std::clamp(static_cast<double>(i - before) / moving, 0.0, 1.0));
+  }
+  return progress;
+}
+
+constexpr double kEnds = 0.5;  // s, held at either end while the root link sets out and arrives
+
+}  // namespace
+
+std::optional<Refusal> Refuse(const MotionMargins& margins, const MotionLimits& limits) {
+  const auto broken = Broken(margins, limits);
+  if (!broken) return std::nullopt;
+  const auto because = [&](const Worst& worst) {
+    return Refusal{*broken, worst.value, worst.index};
+  };
+  switch (*broken) {
+    case Constraint::kPosition:
+      return because(margins.position);
+    case Constraint::kVelocity:
+      return because(margins.velocity);
+    case Constraint::kTorque:
+      return because(margins.torque);
+    case Constraint::kClearance:
+      return because(margins.clearance);
+    case Constraint::kZmp:
+      return because(margins.zmp);
+    case Constraint::kFriction:
+      return because(margins.friction);
+    case Constraint::kKnee:
+      return because(margins.knee);
+    case Constraint::kFeet:
+      return because(margins.foot_moved);
+    case Constraint::kFloor:
+      return because(margins.floor);
+    case Constraint::kReach:
+      break;
+  }
+  return OutOfReach();
+}
+
+Eigen::Index MoveBuilder::SamplesOf(double seconds) const {
+  return static_cast<Eigen::Index>(std::lround(seconds * options_.rate_hz));
+}
+
+Eigen::Vector2d MoveBuilder::HandOver(int onto) const {
+  const Eigen::Vector2d centre = SupportCentre(robot_, {onto});
+  const Eigen::Vector2d inwards = SupportCentre(robot_, robot_.AllFeet()) - centre;
+  return centre + options_.inset * inwards.normalized();
+}
+
+bool MoveBuilder::Balanced(const std::vector<int>& standing, PlacedPosture& pose) const {
+  if (options_.balanced) {
+    return BalanceAtRest(robot_, standing, SupportCentre(robot_, standing), pose);
+  }
+  pose.T_world_root = robot_.T_world_root;
+  return std::all_of(standing.begin(), standing.end(), [&](int foot) {
+    return PlaceSole(robot_, foot, robot_.T_world_sole[Size(foot)], pose);
+  });
+}
+
+std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
+                                               PlacedPosture& pose) const {
+  if (!Balanced(standing, pose)) return OutOfReach();
+  if (!options_.balanced) return std::nullopt;
+  return Refuse(CheckMotion(robot_, {options_.rate_hz, pose.q.transpose(), {standing}}),
+                robot_.limits);
+}
+
+std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
+                                                 const std::vector<int>& standing,
+                                                 const PlacedPosture& near, Refusal& why) const {
+  constexpr int kHeights = 5;
+  constexpr double kAboveFloor = 0.03, kLower = 0.03;  // m
+  PlacedPosture pose{q, near.T_world_root};
+  double& height = pose.T_world_root.translation().z();
+  height = robot_.T_world_root.translation().z();
+  for (int i = 0; i < kHeights; ++i) {
+    for (const int foot : standing) {
+      for (const int c : robot_.legs[Size(foot)].coordinates()) pose.q[c] = near.q[c];
+    }
+    const auto refusal = KeepAtRest(standing, pose);
+    if (!refusal) return pose;
+    if (i == 0) why = *refusal;
+    if (refusal->constraint == Constraint::kFloor) {
+      height += kAboveFloor - refusal->value;
+    } else if (refusal->constraint == Constraint::kReach ||
+               refusal->constraint == Constraint::kKnee) {
+      height -= kLower;
+    } else {
+      break;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<PlacedPosture> MoveBuilder::AtRestWithFoot(const std::vector<int>& standing, int foot,
+                                                         const Transform& T_world_sole,
+                                                         const PlacedPosture& near,
+                                                         Refusal& why) const {
+  // The foot stays where it is while the root link moves, which moves the centre of mass again.
+  constexpr int kRounds = 40;
+  constexpr double kReached = 1e-12;
+  PlacedPosture pose = near;
+  for (int i = 0; i < kRounds; ++i) {
+    const Eigen::Vector3d before = pose.T_world_root.translation();
+    if (!PlaceSole(robot_, foot, T_world_sole, pose) || !Balanced(standing, pose)) break;
+    if (i > 0 && (pose.T_world_root.translation() - before).norm() < kReached) {
+      return AtRest(pose.q, standing, pose, why);
+    }
+  }
+  why = OutOfReach();
+  return std::nullopt;
+}
+
+Eigen::MatrixXd MoveBuilder::WithEnds(const Eigen::MatrixXd& way) const {
+  const Eigen::Index ends = SamplesOf(kEnds);
+  Eigen::MatrixXd held(way.rows() + 2 * ends, way.cols());
+  held << way.row(0).replicate(ends, 1), way, way.row(way.rows() - 1).replicate(ends, 1);
+  return held;
+}
+
+std::optional<Eigen::MatrixXd> MoveBuilder::BalanceAndCheck(const Stretch& stretch,
+                                                            Refusal& why) const {
+  BalanceOptions balance = options_.balance;
+  if (!options_.balanced) balance.passes = 0;
+  BalancedStretch balanced = Balance(robot_, stretch, balance);
+  if (!balanced.in_reach) {
+    why = OutOfReach();
+    return std::nullopt;
+  }
+  if (!options_.balanced) return std::move(balanced.q);
+  SampledMotion motion{options_.rate_hz, std::move(balanced.q), {}};
+  motion.standing.assign(Size(motion.q.rows()), stretch.standing);
+  if (const auto refusal = Refuse(CheckMotion(robot_, motion), robot_.limits)) {
+    why = *refusal;
+    return std::nullopt;
+  }
+  return std::move(motion.q);
+}
+
+std::optional<Eigen::MatrixXd> MoveBuilder::Follow(const PlacedPosture& from,
+                                                   const PlacedPosture& to,
+                                                   const std::vector<int>& standing,
+                                                   const Eigen::MatrixXd& way, Refusal& why) const {
+  Stretch stretch;
+  stretch.rate_hz = options_.rate_hz;
+  stretch.q = WithEnds(way);
+  stretch.standing = standing;
+  stretch.zmp = SupportCentre(robot_, standing).transpose().replicate(stretch.q.rows(), 1);
+  stretch.begin = from;
+  stretch.end = to;
+  return BalanceAndCheck(stretch, why);
+}
+
+std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, const PlacedPosture& to,
+                                                 const std::vector<int>& standing,
+                                                 Refusal& why) const {
+  constexpr double kSlower = 1.5;
+  std::vector<int> moving;
+  for (int c = 0; c < from.q.size(); ++c) {
+    const bool stands = std::any_of(standing.begin(), standing.end(), [&](int foot) {
+      const auto& leg = robot_.legs[Size(foot)].coordinates();
+      return std::find(leg.begin(), leg.end(), c) != leg.end();
+    });
+    if (!stands && from.q[c] != to.q[c]) moving.push_back(c);
+  }
+  JointPath path = PlanJointPath(robot_, from.q, to.q, moving, options_.path);
+  for (int i = 0; i <= options_.slower; ++i, path.duration_s *= kSlower) {
+    auto found = Follow(from, to, standing, SamplePath(path, options_.rate_hz), why);
+    if (found) return found;
+    const bool speed_matters =
+        why.constraint == Constraint::kVelocity || why.constraint == Constraint::kTorque ||
+        why.constraint == Constraint::kZmp || why.constraint == Constraint::kFriction;
+    if (!speed_matters) break;
+  }
+  return std::nullopt;
+}
+
+Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, double share) const {
+  const SineOptions& sine = options_.sine;
+  const JointLimits& limits =
+      robot_.tree.joints[Size(robot_.tree.coordinate_joint[Size(coordinate)])].limits;
+  const double omega = 2.0 * M_PI * sine.frequency_hz;
+  const double amplitude = std::min(0.5 * share * (limits.upper - limits.lower),
+                                    0.8 * robot_.limits.velocity_share * limits.velocity / omega);
+  // Towards the posture as the sine shrinks, since that is feasible.
+  const double middle = 0.5 * (limits.lower + limits.upper);
+  const double centre = q[coordinate] + share / sine.share * (middle - q[coordinate]);
+  const double ramp = 1.0 / sine.frequency_hz;
+  const double duration = (sine.periods + 2.0) * ramp;
+  Eigen::MatrixXd way = q.transpose().replicate(SamplesOf(duration) + 1, 1);
+  for (Eigen::Index i = 0; i < way.rows(); ++i) {
+    const double time = static_cast<double>(i) / options_.rate_hz;
+    const double in = SmoothStep(std::min(1.0, time / ramp));
+    const double out = SmoothStep(std::min(1.0, (duration - time) / ramp));
+    way(i, coordinate) += in * out * (centre - q[coordinate] + amplitude * std::sin(omega * time));
+  }
+  return way;
+}
+
+std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const PlacedPosture& from,
+                                                  const PlacedPosture& to, int onto,
+                                                  Refusal& why) const {
+  Stretch stretch;
+  stretch.rate_hz = options_.rate_hz;
+  stretch.standing = robot_.AllFeet();
+  stretch.q = WithEnds(from.q.transpose().replicate(SamplesOf(options_.shift_s) + 1, 1));
+  const Eigen::VectorXd progress = Progress(stretch.q.rows(), SamplesOf(kEnds), SamplesOf(kEnds));
+  const Eigen::RowVector2d begin = SupportCentre(robot_, stretch.standing).transpose();
+  const Eigen::RowVector2d way = HandOver(onto).transpose() - begin;
+  stretch.zmp = begin.replicate(progress.size(), 1) + progress * way;
+  stretch.begin = from;
+  stretch.end = to;
+  return BalanceAndCheck(stretch, why);
+}
+
+std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, const PlacedPosture& to,
+                                                 const std::vector<int>& standing, int foot,
+                                                 Refusal& why) const {
+  Stretch stretch;
+  stretch.rate_hz = options_.rate_hz;
+  stretch.standing = standing;
+  stretch.q = WithEnds(from.q.transpose().replicate(SamplesOf(options_.lift_s) + 1, 1));
+  // The foot a little, then the rest of the weight, then the foot: should the robot tip towards the
+  // foot, that is still near the floor.
+  const Eigen::Index ends = SamplesOf(kEnds);
+  const auto part = [&](double first, double last) {
+    return Progress(stretch.q.rows(), ends + SamplesOf(first * options_.lift_s),
+                    ends + SamplesOf((1.0 - last) * options_.lift_s));
+  };
+  const Eigen::VectorXd lifted = options_.first_lift_m * part(0.0, 0.4) +
+                                 (options_.lift_m - options_.first_lift_m) * part(0.6, 1.0);
+  const Eigen::VectorXd shifted = part(0.25, 0.75);
+  stretch.led = foot;
+  for (const double height : lifted) {
+    stretch.T_world_led.push_back(Eigen::Translation3d(0.0, 0.0, height) *
+                                  robot_.T_world_sole[Size(foot)]);
+  }
+  const Eigen::RowVector2d begin = HandOver(standing.front()).transpose();
+  const Eigen::RowVector2d way = SupportCentre(robot_, standing).transpose() - begin;
+  stretch.zmp = begin.replicate(shifted.size(), 1) + shifted * way;
+  stretch.begin = from;
+  stretch.end = to;
+  return BalanceAndCheck(stretch, why);
+}
+
+}  // namespace elastocal

@@ -1,0 +1,255 @@
+#include "elastocal/motion/plan.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+#include "elastocal/motion/move_builder.hpp"
+#include "elastocal/motion/order.hpp"
+
+namespace elastocal {
+namespace {
+
+std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
+
+/// Rows of stretches, one behind the other.
+class Rows {
+ public:
+  int count = 0;
+
+  void Add(const Eigen::MatrixXd& q, const std::vector<int>& standing) {
+    Add(q, std::vector<std::vector<int>>(Size(q.rows()), standing));
+  }
+
+  void Add(const Eigen::MatrixXd& q, const std::vector<std::vector<int>>& standing) {
+    parts_.push_back(q);
+    standing_.insert(standing_.end(), standing.begin(), standing.end());
+    count += static_cast<int>(q.rows());
+  }
+
+  SampledMotion Join(double rate_hz, Eigen::Index columns) const {
+    SampledMotion motion{rate_hz, Eigen::MatrixXd(count, columns), standing_};
+    Eigen::Index row = 0;
+    for (const Eigen::MatrixXd& part : parts_) {
+      motion.q.middleRows(row, part.rows()) = part;
+      row += part.rows();
+    }
+    return motion;
+  }
+
+ private:
+  std::vector<Eigen::MatrixXd> parts_;
+  std::vector<std::vector<int>> standing_;
+};
+
+/// Goes through the postures of a set.
+class TourPlanner {
+ public:
+  TourPlanner(const StandingRobot& robot, const PostureTour& set, const PlanOptions& options)
+      : robot_(robot),
+        set_(set),
+        options_(options),
+        build_(robot, options),
+        here_{robot.rest, robot.T_world_root} {
+    result_.name = set.name;
+  }
+
+  PlannedTour Plan() {
+    Refusal why;
+    if (StepOntoFeet(why)) {
+      result_.begin = rows_.count;
+      hub_ = here_;
+      Hold();
+      Tour();
+      for (const int coordinate : set_.sines) Sine(coordinate);
+      result_.end = rows_.count;
+      StepBack();
+    } else {
+      for (int i = 0; i < static_cast<int>(set_.postures.size()); ++i) LeaveOut(i, why, false);
+    }
+    result_.motion = rows_.Join(options_.rate_hz, robot_.rest.size());
+    return std::move(result_);
+  }
+
+ private:
+  bool OneFoot() const { return set_.standing.size() < robot_.soles.size(); }
+
+  void Hold() {
+    // What moves hold at their ends is part of it.
+    const Eigen::Index samples = build_.SamplesOf(std::max(0.0, options_.hold_s - 1.0));
+    rows_.Add(here_.q.transpose().replicate(samples, 1), set_.standing);
+  }
+
+  /// Shifts the weight and lifts the other foot; nothing to do where the set stands on all feet.
+  bool StepOntoFeet(Refusal& why) {
+    if (!OneFoot()) return true;
+    const int stands = set_.standing.front();
+    const int swings = 1 - stands;
+    PlacedPosture over = here_;
+    if (options_.balanced &&
+        !BalanceAtRest(robot_, robot_.AllFeet(), build_.HandOver(stands), over)) {
+      return false;
+    }
+    const auto shifted = build_.Shift(here_, over, stands, why);
+    if (!shifted) return false;
+    const Transform T_world_lifted =
+        Eigen::Translation3d(0.0, 0.0, options_.lift_m) * robot_.T_world_sole[Size(swings)];
+    const auto up = build_.AtRestWithFoot(set_.standing, swings, T_world_lifted, over, why);
+    if (!up) return false;
+    const auto lifted = build_.Lift(over, *up, set_.standing, swings, why);
+    if (!lifted) return false;
+    shifted_ = *shifted;
+    lifted_ = *lifted;
+    rows_.Add(shifted_, robot_.AllFeet());
+    rows_.Add(lifted_, set_.standing);
+    here_ = *up;
+    return true;
+  }
+
+  void StepBack() {
+    if (!OneFoot()) return;
+    rows_.Add(lifted_.colwise().reverse(), set_.standing);
+    rows_.Add(shifted_.colwise().reverse(), robot_.AllFeet());
+  }
+
+  void LeaveOut(int posture, const Refusal& why, bool at_rest) {
+    result_.left_out.push_back({posture, -1, why.constraint, why.value, why.index, at_rest});
+  }
+
+  void Tour() {
+    for (const int i : Order()) {
+      Refusal why;
+      if (set_.in_order) GoTo(hub_, why);
+      const auto target = build_.AtRest(set_.postures[Size(i)], set_.standing, here_, why);
+      if (!target) {
+        LeaveOut(i, why, true);
+        continue;
+      }
+      if (!GoTo(*target, why) && !GoByHub(*target, why)) {
+        LeaveOut(i, why, false);
+        continue;
+      }
+      const int ends = static_cast<int>(build_.SamplesOf(0.5));
+      result_.visits.push_back({i, rows_.count - ends, 0});
+      Hold();
+      result_.visits.back().end = rows_.count + ends;
+    }
+    GoBack();
+  }
+
+  std::vector<int> Order() const {
+    if (!set_.in_order) return OrderPostures(hub_.q, Targets());
+    std::vector<int> order(set_.postures.size());
+    std::iota(order.begin(), order.end(), 0);
+    return order;
+  }
+
+  /// The largest sine of a coordinate that keeps to the limits.
+  void Sine(int coordinate) {
+    constexpr double kSmaller = 0.8;
+    Refusal why;
+    for (double share = options_.sine.share; share >= options_.sine.least_share;
+         share *= kSmaller) {
+      const auto sine =
+          build_.Follow(hub_, hub_, set_.standing, build_.SineWay(hub_.q, coordinate, share), why);
+      if (!sine) continue;
+      rows_.Add(*sine, set_.standing);
+      return;
+    }
+    result_.left_out.push_back({-1, coordinate, why.constraint, why.value, why.index, false});
+  }
+
+  /// The postures with the joints of standing legs as in the hub: they do not decide the order.
+  std::vector<Eigen::VectorXd> Targets() const {
+    std::vector<Eigen::VectorXd> targets = set_.postures;
+    for (Eigen::VectorXd& q : targets) {
+      for (const int foot : set_.standing) {
+        for (const int c : robot_.legs[Size(foot)].coordinates()) q[c] = hub_.q[c];
+      }
+    }
+    return targets;
+  }
+
+  bool GoTo(const PlacedPosture& to, Refusal& why) {
+    if (to.q == here_.q) return true;
+    const auto move = build_.Move(here_, to, set_.standing, why);
+    if (!move) return false;
+    rows_.Add(*move, set_.standing);
+    moves_.push_back(*move);
+    before_.push_back(here_);
+    here_ = to;
+    return true;
+  }
+
+  bool GoByHub(const PlacedPosture& to, Refusal& why) {
+    return here_.q != hub_.q && GoTo(hub_, why) && GoTo(to, why);
+  }
+
+  /// To the hub; where there is no way, back as it came until there is one.
+  void GoBack() {
+    Refusal why;
+    while (!GoTo(hub_, why) && !moves_.empty()) {
+      rows_.Add(moves_.back().colwise().reverse(), set_.standing);
+      here_ = before_.back();
+      moves_.pop_back();
+      before_.pop_back();
+    }
+    Hold();
+  }
+
+  const StandingRobot& robot_;
+  const PostureTour& set_;
+  const PlanOptions& options_;
+  MoveBuilder build_;
+  PlacedPosture here_, hub_;
+  Eigen::MatrixXd shifted_, lifted_;
+  Rows rows_;
+  std::vector<Eigen::MatrixXd> moves_;  // from the hub on
+  std::vector<PlacedPosture> before_;   // where each began
+  PlannedTour result_;
+};
+
+}  // namespace
+
+PlannedTour PlanTour(const StandingRobot& robot, const PostureTour& set,
+                     const PlanOptions& options) {
+  return TourPlanner(robot, set, options).Plan();
+}
+
+std::vector<PlannedTour> PlanTours(const StandingRobot& robot, const std::vector<PostureTour>& sets,
+                                   const PlanOptions& options, int threads) {
+  std::vector<PlannedTour> planned(sets.size());
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex guard;
+  const auto work = [&] {
+    try {
+      for (std::size_t i = next++; i < sets.size(); i = next++) {
+        planned[i] = PlanTour(robot, sets[i], options);
+      }
+    } catch (...) {
+      const std::lock_guard lock(guard);
+      failure = std::current_exception();
+    }
+  };
+  std::vector<std::thread> workers;
+  for (int i = 1; i < threads; ++i) workers.emplace_back(work);
+  work();
+  for (std::thread& worker : workers) worker.join();
+  if (failure) std::rethrow_exception(failure);
+  return planned;
+}
+
+SampledMotion JoinMotions(const StandingRobot& robot, const std::vector<PlannedTour>& sets,
+                          double lead_in_s, double rate_hz) {
+  Rows rows;
+  rows.Add(robot.rest.transpose().replicate(std::lround(lead_in_s * rate_hz) + 1, 1),
+           robot.AllFeet());
+  for (const PlannedTour& set : sets) rows.Add(set.motion.q, set.motion.standing);
+  return rows.Join(rate_hz, robot.rest.size());
+}
+
+}  // namespace elastocal

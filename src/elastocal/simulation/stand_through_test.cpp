@@ -1,0 +1,63 @@
+#include "elastocal/simulation/stand_through.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/simulation/postures.hpp"
+#include "tests/biped.hpp"
+
+namespace elastocal {
+namespace {
+
+class BipedStandsThrough : public testing::Test {
+ protected:
+  BipedStandsThrough() {
+    const auto legs = FindLegs(biped_.tree, biped_.chains);
+    robot_ = NominalRobot(biped_.tree, biped_.markers, legs, {});
+    stand_ = PostureSampler(biped_.tree, legs, {}, 1).stand();
+    for (const Leg& leg : legs) soles_.push_back({leg.foot_link, {-0.1, -0.06}, {0.1, 0.06}});
+  }
+
+  /// Two seconds from standing with the trunk's pitch going to `pitch`, then one at rest.
+  JointMotion Bow(double pitch) const {
+    JointMotion motion;
+    motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 3.0);
+    motion.q = stand_.transpose().replicate(31, 1);
+    for (int i = 0; i < 31; ++i) motion.q(i, 1) += pitch * std::min(1.0, i / 20.0);
+    motion.support.assign(31, {soles_[0].link, soles_[1].link});
+    return motion;
+  }
+
+  Biped biped_ = MakeBiped();
+  TrueRobot robot_;
+  Eigen::VectorXd stand_;
+  std::vector<Sole> soles_;
+};
+
+TEST_F(BipedStandsThrough, StandsAndPressesWhereStaticsSay) {
+  const StandingRun run = StandThrough(robot_, soles_, Bow(0.0), {});
+  EXPECT_TRUE(run.stood);
+  EXPECT_NEAR(run.time_s, 3.0, 0.01);
+  EXPECT_LT(run.largest_lean, 1e-3);
+  EXPECT_LT(run.tracking, 0.01);  // servos give way by torque over 5e4 N.m/rad
+  // The nearest edge is the front or the back, as far as the centre of mass has it.
+  const Eigen::Vector3d com = CentreOfMass(biped_.tree, stand_);
+  const double x =
+      (LinkTransforms(biped_.tree, stand_)[static_cast<std::size_t>(soles_[0].link)].inverse() *
+       com)
+          .x();
+  // The floor gives way by tenths of a millimetre, the legs by some milliradians at 0.9 m.
+  EXPECT_NEAR(run.least_zmp_margin, 0.1 - std::abs(x), 0.006);
+}
+
+TEST_F(BipedStandsThrough, FallsWhereItBowsTooFar) {
+  JointMotion motion = Bow(0.0);
+  for (int i = 0; i < 31; ++i) {  // ankles forwards, and nothing behind
+    for (const Leg& leg : robot_.legs) motion.q(i, leg.joints[4]) += 0.4 * std::min(1.0, i / 20.0);
+  }
+  const StandingRun run = StandThrough(robot_, soles_, motion, {});
+  EXPECT_FALSE(run.stood);
+  EXPECT_LT(run.time_s, 3.0);
+}
+
+}  // namespace
+}  // namespace elastocal
