@@ -98,6 +98,18 @@ Files DeployableFiles(const CalibrateOptions& options, const Session& session,
           {paths[3], MakeCovarianceCsv(result)}};
 }
 
+/// What tells how it went, whether it can be deployed or not.
+void AddAccount(const CalibrateOptions& options, const Session& session, const CalibrationRun& run,
+                std::vector<InputRecord> inputs, Files& files) {
+  const std::filesystem::path folder = options.output;
+  const std::string summary = MakeSummaryJson(run);
+  files.push_back({folder / "summary.json", summary});
+  files.push_back({folder / "report_data.json", CalibrationDataJson(session, run)});
+  files.push_back(
+      {folder / "runs.json", RunsJson(folder, "calibrate", options.common, std::move(inputs))});
+  if (!options.common.json_file.empty()) files.push_back({options.common.json_file, summary});
+}
+
 }  // namespace
 
 int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
@@ -106,12 +118,12 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
                                                       options.recordings.end());
   const Session session = OpenSession(options.project, recordings, options.common.seed);
   const std::filesystem::path folder = options.output;
-  const std::filesystem::path summary_file = folder / "summary.json";
   const std::vector<std::filesystem::path> deployable_paths =
       DeployablePaths(options, session.project);
   std::vector<std::filesystem::path> outputs = deployable_paths;
-  outputs.insert(outputs.end(), {summary_file, folder / "report_data.json", folder / "runs.json",
-                                 folder / "report.html", options.common.json_file});
+  outputs.insert(outputs.end(),
+                 {folder / "summary.json", folder / "report_data.json", folder / "runs.json",
+                  folder / "report.html", options.common.json_file});
   std::vector<std::filesystem::path> inputs = {options.project, session.project.urdf};
   for (const std::filesystem::path& recording : recordings) {
     inputs.push_back(recording);
@@ -124,12 +136,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const bool deployable = run.verdict.objections.empty();
   Files files;
   if (deployable) files = DeployableFiles(options, session, run);
-  const std::string summary = MakeSummaryJson(run);
-  files.push_back({summary_file, summary});
-  files.push_back({folder / "report_data.json", CalibrationDataJson(session, run)});
-  files.push_back(
-      {folder / "runs.json", RunsJson(folder, "calibrate", options.common, inputs_read.get())});
-  if (!options.common.json_file.empty()) files.push_back({options.common.json_file, summary});
+  AddAccount(options, session, run, inputs_read.get(), files);
   WriteFiles(files);
   if (!deployable) {
     std::error_code ignored;

@@ -117,6 +117,10 @@ int Demo(const DemoOptions& options) {
   CalibrationRun run;
   const int exit_code = RunCalibration(calibrate, &run);
   Print(options.common.Silent(), TruthTable(truth, run.comparison.best()));
+  const std::filesystem::path report = std::filesystem::absolute(folder / "report.html");
+  if (std::filesystem::exists(report)) {
+    Print(options.common.Silent(), fmt::format("\nOpen in a browser: {}\n", report.string()));
+  }
   return exit_code;
 }
 

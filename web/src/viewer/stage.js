@@ -1,8 +1,7 @@
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 
-import {cssColour} from '../lib/dom.js';
-import {onTheme} from '../lib/theme.js';
+const FLOOR = 0x7d858f;  // between light and dark: it is seen on both
 
 /** Camera, light and floor; draws only when something has changed. */
 export class Stage {
@@ -22,7 +21,6 @@ export class Stage {
     canvas.addEventListener('blur', () => { this.controls.enableZoom = false; });
     canvas.addEventListener('pointerdown', () => canvas.focus({preventScroll: true}));
     canvas.addEventListener('keydown', (event) => this.onKey(event));
-    onTheme(() => { this.colourFloor(); this.draw(); });
   }
 
   addLights() {
@@ -49,20 +47,12 @@ export class Stage {
 
   addFloor(centre, height) {
     this.floor?.removeFromParent();
-    this.floor = new THREE.GridHelper(4, 16);
+    this.floor = new THREE.GridHelper(4, 16, FLOOR, FLOOR);
     this.floor.rotation.x = Math.PI / 2;
     this.floor.position.set(centre.x, centre.y, height);
     this.floor.material.transparent = true;
+    this.floor.material.opacity = 0.32;
     this.scene.add(this.floor);
-    this.colourFloor();
-  }
-
-  colourFloor() {
-    if (!this.floor) return;
-    const colour = new THREE.Color(cssColour('--floor') || '#ccc');
-    const colours = this.floor.geometry.attributes.color;
-    for (let i = 0; i < colours.count; ++i) colours.setXYZ(i, colour.r, colour.g, colour.b);
-    colours.needsUpdate = true;
   }
 
   /** Arrows turn the view, plus and minus bring it nearer, 0 takes it back. */
