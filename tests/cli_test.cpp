@@ -13,7 +13,8 @@ namespace {
 
 TEST_F(Program, HelpHasAnExampleForEveryCommand) {
   EXPECT_EQ(RunProgram("--help").exit_code, 0);
-  for (const char* command : {"inspect", "calibrate", "validate", "compare", "demo", "report"}) {
+  for (const char* command : {"inspect", "design", "assess", "plan", "simulate", "calibrate",
+                              "validate", "compare", "report", "demo"}) {
     const ProgramResult help = RunProgram(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Example: elastocal " + std::string(command)), std::string::npos);
@@ -88,7 +89,7 @@ TEST_F(Program, InspectShowsCountsThatAgreeWithTheTheory) {
 }
 
 TEST_F(Program, DemoFindsTheTruth) {
-  const ProgramResult result = RunProgram("demo --postures 25 -o " + out_);
+  const ProgramResult result = RunProgram("demo --quick --postures 25 -o " + out_);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json summary = nlohmann::json::parse(ReadFile(out_ + "/summary.json"));
   EXPECT_GT(summary["rmse_3d_mm"]["uncalibrated"], 3.0);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -34,6 +35,9 @@ void AddCommonOptions(CLI::App& command, CommonOptions& options);
 
 /// What a parsed command line is to do; the result is the exit code.
 using Action = std::function<int()>;
+
+/// Parses and runs a command line (without the program's name). Gives the exit code.
+int RunCommandLine(const std::vector<std::string>& arguments);
 
 /// Each adds its command; `action` is set when the command is on the command line.
 void AddInspect(CLI::App& app, Action& action);

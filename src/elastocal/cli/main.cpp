@@ -75,6 +75,16 @@ int Run(int argc, char** argv) {
 }
 
 }  // namespace
+
+int RunCommandLine(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"elastocal"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  return Run(static_cast<int>(words.size()), argv.data());
+}
+
 }  // namespace elastocal::cli
 
 int main(int argc, char** argv) {
