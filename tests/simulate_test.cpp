@@ -89,17 +89,17 @@ TEST_F(Simulate, DoesNotReplaceTheMotionThatItPlays) {
 
 // What is left is the micrometre to which marker files are written.
 TEST_F(Simulate, AMatchedTruthIsWhatCalibrateFinds) {
+  const std::string project = SourceFile("tests/robots/arm6_project.yaml").string();
   const ProgramResult simulated =
-      Run("matched",
-          "--arm-postures 15 --trials calibration --matched --nominal --quiet "
-          "--upper-geometry-scale 1 --upper-elasticity-scale 1 --marker-mm 3");
+      RunProgram("simulate " + project + " -o " + Folder("matched") +
+                 " --arm-postures 15 --trials calibration --matched --nominal --quiet "
+                 "--upper-geometry-scale 1 --upper-elasticity-scale 1 --marker-mm 3");
   ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
   const std::string truth = ReadFile(Folder("matched/truth.yaml"));
   EXPECT_NE(truth.find("matched: true"), std::string::npos);
   EXPECT_NE(truth.find("elbow_joint.theta: {value: "), std::string::npos) << truth;
-  const ProgramResult calibrated =
-      RunProgram("calibrate " + SourceFile("tests/robots/arm6_project.yaml").string() +
-                 " --recording " + Folder("matched") + " -o " + Folder("out"));
+  const ProgramResult calibrated = RunProgram("calibrate " + project + " --recording " +
+                                              Folder("matched") + " -o " + Folder("out"));
   ASSERT_EQ(calibrated.exit_code, 0) << calibrated.err;
   const auto summary = nlohmann::json::parse(ReadFile(Folder("out/summary.json")));
   EXPECT_GT(summary.at("rmse_3d_mm").at("uncalibrated"), 1.0);

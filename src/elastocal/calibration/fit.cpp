@@ -173,7 +173,8 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const Fit& start, bool robust, int updates) {
   Fit fit = start;
   bool settled = false;
-  for (int update = 0; update < updates && !settled; ++update) {
+  const int most = std::min(updates, problem.options.max_iterations);
+  for (int update = 0; update < most && !settled; ++update) {
     settled = UpdateByStep(problem, selection, free, robust, fit);
   }
   if (!settled) fit.settled = fit.settled && updates < kMaxUpdates;
@@ -191,7 +192,12 @@ void Polish(const FitProblem& problem, const Selection& selection, const std::ve
     const Eigen::VectorXd before = fit.delta;
     SolveOnce(problem, selection, free, false, LeastSquaresOptions().function_tolerance, fit);
     const double change = (fit.delta - before).cwiseQuotient(scale).cwiseAbs().maxCoeff();
-    if (!IsElasticFit(problem.model, free, fit.delta) || change < kLoadTolerance) return;
+    if (!IsElasticFit(problem.model, free, fit.delta) || change < kLoadTolerance) break;
+  }
+  if (!fit.settled && problem.options.max_iterations < kMaxUpdates &&
+      fit.termination == Termination::kConverged) {
+    fit.termination = Termination::kNoConvergence;
+    fit.message = "the iterations were used up before noise and prior came to rest";
   }
 }
 

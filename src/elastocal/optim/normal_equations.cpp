@@ -96,6 +96,7 @@ class NormalEquations::Builder {
       problem_.Jacobian(
           block, static_cast<int>(k),
           Eigen::Map<LeastSquaresProblem::RowMajorMatrix>(parts_[k].data(), shape.size, width));
+      parts_[k] *= factor;
     }
     const LeastSquaresProblem::RowMajorMatrix* own = nullptr;
     for (std::size_t k = 0; k < count; ++k) {
