@@ -152,7 +152,7 @@ int Plan(const PlanCommand& command) {
     PrintWarnings({"a chain has no posture that can be kept and reached: nothing is written"});
     return kNotConverged;
   }
-  Print(silent, "\n" + MarginTable(project, margins, command.limits, options.rate_hz) +
+  Print(silent, "\n" + MarginTable(project, margins, robot->limits, options.rate_hz) +
                     fmt::format("\n{:.1f} s of motion planned and checked in {:.1f} s\n",
                                 static_cast<double>(motion.q.rows()) / options.rate_hz, seconds));
   const PlannedMotion result{ToJointMotion(*robot, motion), forces.zmp, forces.torques};
@@ -170,7 +170,7 @@ int Plan(const PlanCommand& command) {
   if (!command.common.json_file.empty()) {
     WriteFile(command.common.json_file, json.dump(2) + "\n");
   }
-  const bool broken = !command.unbalanced && Broken(margins, command.limits).has_value();
+  const bool broken = !command.unbalanced && Broken(margins, robot->limits).has_value();
   return broken ? kNotConverged : kFine;
 }
 
