@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -24,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 struct PlanCommand {
   CommonOptions common;
-  std::string project, postures, output, trajectory;
+  std::string project, postures, output, trajectory, folder;
   std::string validation;
   int threads = 2;
   int tries = 0;
@@ -120,6 +121,29 @@ Json MakeJson(const Project& project, const std::vector<PlannedTour>& planned,
   return json;
 }
 
+/// Of each chain the part in which its feet stand, as a motion of its own.
+std::vector<std::pair<std::filesystem::path, std::string>> ChainFiles(
+    const Project& project, const std::vector<PlannedTour>& planned, const PlannedMotion& whole,
+    const std::filesystem::path& folder) {
+  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  Eigen::Index row = whole.motion.q.rows();
+  for (const PlannedTour& tour : planned) row -= tour.motion.q.rows();
+  for (const PlannedTour& tour : planned) {
+    const Eigen::Index first = row + tour.begin, count = tour.end - tour.begin;
+    const auto support = whole.motion.support.begin() + first;
+    PlannedMotion part;
+    part.motion.time_s =
+        whole.motion.time_s.segment(first, count).array() - whole.motion.time_s[first];
+    part.motion.q = whole.motion.q.middleRows(first, count);
+    part.motion.support.assign(support, support + count);
+    part.zmp = whole.zmp.middleRows(first, count);
+    part.torques = whole.torques.middleRows(first, count);
+    files.emplace_back(folder / (tour.name + ".csv"), FormatMotionTable(project.tree, part));
+    row += tour.motion.q.rows();
+  }
+  return files;
+}
+
 int Plan(const PlanCommand& command) {
   const Project project = ReadProject(command.project);
   CheckOutputs({command.output, command.trajectory, command.common.json_file},
@@ -152,11 +176,12 @@ int Plan(const PlanCommand& command) {
     PrintWarnings({"a chain has no posture that can be kept and reached: nothing is written"});
     return kNotConverged;
   }
-  Print(silent, "\n" + MarginTable(project, margins, command.limits, options.rate_hz) +
+  Print(silent, "\n" + MarginTable(project, margins, robot->limits, options.rate_hz) +
                     fmt::format("\n{:.1f} s of motion planned and checked in {:.1f} s\n",
                                 static_cast<double>(motion.q.rows()) / options.rate_hz, seconds));
   const PlannedMotion result{ToJointMotion(*robot, motion), forces.zmp, forces.torques};
   WriteFile(command.output, FormatMotionTable(project.tree, result));
+  if (!command.folder.empty()) WriteFiles(ChainFiles(project, planned, result, command.folder));
   if (!command.trajectory.empty()) {
     constexpr int kEvery = 5;  // 20 Hz
     WriteFile(command.trajectory, FormatJointTrajectory(project.tree, result.motion, kEvery));
@@ -170,7 +195,7 @@ int Plan(const PlanCommand& command) {
   if (!command.common.json_file.empty()) {
     WriteFile(command.common.json_file, json.dump(2) + "\n");
   }
-  const bool broken = !command.unbalanced && Broken(margins, command.limits).has_value();
+  const bool broken = !command.unbalanced && Broken(margins, robot->limits).has_value();
   return broken ? kNotConverged : kFine;
 }
 
@@ -192,6 +217,9 @@ void AddPlan(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--trajectory", options->trajectory,
                       "Also as a ROS trajectory_msgs/JointTrajectory (YAML)");
+  command->add_option("--chains", options->folder,
+                      "Also a motion a chain in this folder, without the changes of support: what "
+                      "simulate --motion plays as a trial");
   const auto number = [&](const char* name, double& value, const char* help) {
     command->add_option(name, value, help)->check(CLI::PositiveNumber)->capture_default_str();
   };

@@ -41,7 +41,10 @@ std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
     throw InputError(project.file.string() +
                      ": no section 'standing' with the soles that the robot stands on");
   }
+  // Postures may be designed right at the margin.
+  constexpr double kShareOfMargin = 0.8;
   auto robot = std::make_unique<StandingRobot>(project.tree, project.soles, limits);
+  robot->limits.clearance = kShareOfMargin * project.motion.sphere_margin;
   const std::vector<SpherePair> pairs = AllContacts(project);
   if (!pairs.empty()) {
     robot->clearances = [&tree = robot->tree, spheres = project.motion.spheres,

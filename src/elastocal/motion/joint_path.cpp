@@ -28,14 +28,20 @@ Eigen::VectorXd WayFractions(const Eigen::MatrixXd& metric) {
               .solve(metric.block(3, free + 3, free, 3).rowwise().sum());
 }
 
+double Least(const Eigen::VectorXd& distances) {
+  return distances.size() > 0 ? distances.minCoeff() : std::numeric_limits<double>::infinity();
+}
+
 /// Moves way points away from where parts of the robot are too near.
 class WayAround {
  public:
-  WayAround(const StandingRobot& robot, const std::vector<int>& moving,
-            const JointPathOptions& options, const Eigen::MatrixXd& metric)
+  WayAround(const StandingRobot& robot, const Clearances& clearances,
+            const std::vector<int>& moving, const JointPathOptions& options,
+            const Eigen::MatrixXd& metric, double least_at_ends)
       : robot_(robot),
+        clearances_(clearances),
         moving_(moving),
-        options_(options),
+        clearance_(std::min(options.clearance, least_at_ends)),
         basis_(QuinticSplineBasisRows(static_cast<int>(metric.rows()),
                                       static_cast<int>(std::lround(1.0 / options.check_step)) + 1)),
         solver_(metric.block(3, 3, metric.rows() - 6, metric.rows() - 6)) {}
@@ -43,12 +49,12 @@ class WayAround {
   /// Least distance on the way.
   double Clearance(const Eigen::MatrixXd& control) const {
     double least = std::numeric_limits<double>::infinity();
-    for (Eigen::Index i = 0; i < basis_.rows(); ++i) {
-      const Eigen::VectorXd distances = At(control, i);
-      if (distances.size() > 0) least = std::min(least, distances.minCoeff());
-    }
+    for (Eigen::Index i = 0; i < basis_.rows(); ++i) least = std::min(least, Least(At(control, i)));
     return least;
   }
+
+  /// What the way should keep: its ends may be nearer.
+  double wanted() const { return clearance_; }
 
   /// One step; false where nothing is too near that way points could help.
   bool Push(double length, Eigen::MatrixXd& control) const {
@@ -56,7 +62,7 @@ class WayAround {
     Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(free, control.cols());
     for (Eigen::Index i = 0; i < basis_.rows(); ++i) {
       const Eigen::VectorXd distances = At(control, i);
-      if (distances.size() == 0 || distances.minCoeff() >= options_.clearance) continue;
+      if (Least(distances) >= clearance_) continue;
       const Eigen::VectorXd away = Away(control.transpose() * basis_.row(i).transpose(), distances);
       slope += basis_.row(i).segment(3, free).transpose() * away.transpose();
     }
@@ -78,11 +84,11 @@ class WayAround {
 
  private:
   Eigen::VectorXd At(const Eigen::MatrixXd& control, Eigen::Index sample) const {
-    return robot_.clearances(control.transpose() * basis_.row(sample).transpose());
+    return clearances_(control.transpose() * basis_.row(sample).transpose());
   }
 
   double Lack(const Eigen::VectorXd& distances) const {
-    return (options_.clearance - distances.array()).max(0.0).square().sum();
+    return (clearance_ - distances.array()).max(0.0).square().sum();
   }
 
   /// Direction in which the lack of distance becomes less.
@@ -93,15 +99,16 @@ class WayAround {
     for (const int c : moving_) {
       const double at = q[c];
       q[c] = at + kStep;
-      away[c] = (lack - Lack(robot_.clearances(q))) / kStep;
+      away[c] = (lack - Lack(clearances_(q))) / kStep;
       q[c] = at;
     }
     return away;
   }
 
   const StandingRobot& robot_;
+  const Clearances& clearances_;
   const std::vector<int>& moving_;
-  const JointPathOptions& options_;
+  double clearance_;
   Eigen::MatrixXd basis_;
   Eigen::LDLT<Eigen::MatrixXd> solver_;
 };
@@ -122,9 +129,9 @@ double LeastDuration(const StandingRobot& robot, const Eigen::MatrixXd& control)
 
 }  // namespace
 
-JointPath PlanJointPath(const StandingRobot& robot, const Eigen::VectorXd& from,
-                        const Eigen::VectorXd& to, const std::vector<int>& moving,
-                        const JointPathOptions& options) {
+JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances,
+                        const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                        const std::vector<int>& moving, const JointPathOptions& options) {
   constexpr double kFirstPush = 0.15;  // rad, of the way point that moves most
   constexpr double kShrink = 0.96;
   const Eigen::MatrixXd metric = VelocityMetric(options.way_points + 6);
@@ -136,12 +143,13 @@ JointPath PlanJointPath(const StandingRobot& robot, const Eigen::VectorXd& from,
   JointPath path;
   path.control = RestToRestSpline(from, way_points, to);
   path.clearance = std::numeric_limits<double>::infinity();
-  if (robot.clearances) {
-    const WayAround around(robot, moving, options, metric);
+  if (clearances) {
+    const double at_ends = std::min(Least(clearances(from)), Least(clearances(to)));
+    const WayAround around(robot, clearances, moving, options, metric, at_ends);
     path.clearance = around.Clearance(path.control);
     Eigen::MatrixXd control = path.control;
     double length = kFirstPush;
-    for (int i = 0; i < options.iterations && path.clearance < options.clearance; ++i) {
+    for (int i = 0; i < options.iterations && path.clearance < around.wanted(); ++i) {
       if (!around.Push(length, control)) break;
       length *= kShrink;
       const double clearance = around.Clearance(control);

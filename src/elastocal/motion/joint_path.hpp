@@ -31,9 +31,10 @@ struct JointPath {
 /// coordinates follow the straight way. Looked at between the knots too.
 ///
 /// The clearance found says whether that was enough; a way that is not free is no failure.
-JointPath PlanJointPath(const StandingRobot& robot, const Eigen::VectorXd& from,
-                        const Eigen::VectorXd& to, const std::vector<int>& moving,
-                        const JointPathOptions& options);
+/// `clearances`: what is to be kept apart, perhaps more than the robot's own parts; may be empty.
+JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances,
+                        const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                        const std::vector<int>& moving, const JointPathOptions& options);
 
 /// samples x coordinates at a rate, from the path's begin to its end.
 Eigen::MatrixXd SamplePath(const JointPath& path, double rate_hz);

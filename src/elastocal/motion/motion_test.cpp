@@ -130,8 +130,9 @@ TEST_F(BalancedWalker, KeepsTheZeroMomentPointInFastMotions) {
                             stretch.end));
   JointPathOptions options;
   options.duration_s = 2.0;
-  const Eigen::MatrixXd way =
-      SamplePath(PlanJointPath(robot_, robot_.rest, stretch.end.q, {0, 1, 2}, options), 100.0);
+  const Eigen::MatrixXd way = SamplePath(
+      PlanJointPath(robot_, robot_.clearances, robot_.rest, stretch.end.q, {0, 1, 2}, options),
+      100.0);
   stretch.q.resize(way.rows() + 100, way.cols());
   stretch.q << way.row(0).replicate(50, 1), way, way.bottomRows(1).replicate(50, 1);
   stretch.zmp = SupportCentre(robot_, stretch.standing).transpose().replicate(stretch.q.rows(), 1);
@@ -198,9 +199,9 @@ TEST_F(BalancedWalker, WithoutBalanceTheZeroMomentPointLeavesTheFoot) {
 TEST_F(BalancedWalker, GoesAroundWhatIsInTheWay) {
   PutBallInTheWay();
   const Eigen::VectorXd from = Posture(0, 0, -1.0), to = Posture(0, 0, 1.0);
-  const JointPath blind = PlanJointPath(robot_, from, to, {2}, {});
+  const JointPath blind = PlanJointPath(robot_, robot_.clearances, from, to, {2}, {});
   EXPECT_LT(blind.clearance, 0.0);  // one joint knows no way around
-  const JointPath path = PlanJointPath(robot_, from, to, {0, 1, 2}, {});
+  const JointPath path = PlanJointPath(robot_, robot_.clearances, from, to, {0, 1, 2}, {});
   EXPECT_GE(path.clearance, JointPathOptions{}.clearance);
   const Eigen::MatrixXd way = SamplePath(path, 100.0);
   for (Eigen::Index i = 0; i < way.rows(); ++i) {

@@ -1,6 +1,7 @@
 #include "elastocal/motion/move_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -21,6 +22,29 @@ Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index
     progress[i] = SmoothStep(std::clamp(static_cast<double>(i - before) / moving, 0.0, 1.0));
   }
   return progress;
+}
+
+/// Distances of the robot's own parts, then heights of the corners of feet that do not stand.
+Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vector<int>& standing,
+                                    const Eigen::VectorXd& q) {
+  const Eigen::VectorXd apart = robot.clearances ? robot.clearances(q) : Eigen::VectorXd();
+  std::vector<double> heights;
+  for (const int foot : robot.AllFeet()) {
+    if (std::find(standing.begin(), standing.end(), foot) != standing.end()) continue;
+    const Sole& sole = robot.soles[Size(foot)];
+    const Transform T_world_sole = robot.T_world_sole[Size(standing.front())] *
+                                   robot.legs[Size(standing.front())].SolePose(q).inverse() *
+                                   robot.legs[Size(foot)].SolePose(q);
+    for (const double x : {sole.lower.x(), sole.upper.x()}) {
+      for (const double y : {sole.lower.y(), sole.upper.y()}) {
+        heights.push_back((T_world_sole * Eigen::Vector3d(x, y, 0.0)).z());
+      }
+    }
+  }
+  Eigen::VectorXd all(apart.size() + static_cast<Eigen::Index>(heights.size()));
+  all.head(apart.size()) = apart;
+  std::copy(heights.begin(), heights.end(), all.data() + apart.size());
+  return all;
 }
 
 constexpr double kEnds = 0.5;  // s, held at either end while the root link sets out and arrives
@@ -89,9 +113,32 @@ std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
 std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
                                                  const std::vector<int>& standing,
                                                  const PlacedPosture& near, Refusal& why) const {
+  // Leaning or turning the waist moves the standing leg away from a swinging one.
+  constexpr std::array<double, 5> kTilts = {0.0, 0.06, -0.06, 0.12, -0.12};  // rad, about x
+  constexpr std::array<double, 5> kTurns = {0.0, 0.12, -0.12, 0.24, -0.24};  // rad, about z
+  const bool one_foot = standing.size() < robot_.soles.size();
+  for (const double tilt : kTilts) {
+    for (const double turn : kTurns) {
+      Refusal refusal;
+      const Transform attitude = RotZ(turn) * RotX(tilt) * Transform(robot_.T_world_root.linear());
+      const auto found = AtHeights(q, standing, near, attitude.linear(), refusal);
+      if (found) return found;
+      if (tilt == 0.0 && turn == 0.0) why = refusal;
+      if (!one_foot || why.constraint != Constraint::kClearance) return std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<PlacedPosture> MoveBuilder::AtHeights(const Eigen::VectorXd& q,
+                                                    const std::vector<int>& standing,
+                                                    const PlacedPosture& near,
+                                                    const Eigen::Matrix3d& attitude,
+                                                    Refusal& why) const {
   constexpr int kHeights = 5;
   constexpr double kAboveFloor = 0.03, kLower = 0.03;  // m
   PlacedPosture pose{q, near.T_world_root};
+  pose.T_world_root.linear() = attitude;
   double& height = pose.T_world_root.translation().z();
   height = robot_.T_world_root.translation().z();
   for (int i = 0; i < kHeights; ++i) {
@@ -184,7 +231,10 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, cons
     });
     if (!stands && from.q[c] != to.q[c]) moving.push_back(c);
   }
-  JointPath path = PlanJointPath(robot_, from.q, to.q, moving, options_.path);
+  const Clearances apart = [&](const Eigen::VectorXd& q) {
+    return DistancesAboveFloor(robot_, standing, q);
+  };
+  JointPath path = PlanJointPath(robot_, apart, from.q, to.q, moving, options_.path);
   for (int i = 0; i <= options_.slower; ++i, path.duration_s *= kSlower) {
     auto found = Follow(from, to, standing, SamplePath(path, options_.rate_hz), why);
     if (found) return found;

@@ -30,8 +30,8 @@ class MoveBuilder {
 
   /// The posture, balanced at rest on the feet. Joints of standing legs are found, from those of
   /// `near`; the root link is as high as in the posture of rest, or higher where a swinging foot
-  /// would touch the floor, or lower where a leg does not reach. Nothing where it cannot be kept,
-  /// and then why.
+  /// would touch the floor, or lower where a leg does not reach; on one foot it leans or turns
+  /// where the legs would touch. Nothing where it cannot be kept, and then why.
   std::optional<PlacedPosture> AtRest(const Eigen::VectorXd& q, const std::vector<int>& standing,
                                       const PlacedPosture& near, Refusal& why) const;
 
@@ -68,6 +68,9 @@ class MoveBuilder {
   std::optional<Eigen::MatrixXd> BalanceAndCheck(const Stretch& stretch, Refusal& why) const;
   /// Holds the first and the last row for a moment more.
   Eigen::MatrixXd WithEnds(const Eigen::MatrixXd& way) const;
+  std::optional<PlacedPosture> AtHeights(const Eigen::VectorXd& q, const std::vector<int>& standing,
+                                         const PlacedPosture& near, const Eigen::Matrix3d& attitude,
+                                         Refusal& why) const;
   std::optional<Refusal> KeepAtRest(const std::vector<int>& standing, PlacedPosture& pose) const;
   bool Balanced(const std::vector<int>& standing, PlacedPosture& pose) const;
 

@@ -1,0 +1,96 @@
+// The command `plan`, from posture file to a motion that `simulate` could play.
+
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/io/motion_file.hpp"
+#include "elastocal/io/output_files.hpp"
+#include "tests/run_program.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+const char* const kPostures = R"(
+robot: talos
+chains:
+  - name: arm_left
+    support: [left_sole_link, right_sole_link]
+    postures:
+      - {arm_left_1_joint: -0.4, arm_left_2_joint: 0.6, arm_left_4_joint: -1.2}
+      - {arm_left_1_joint: 0.3, arm_left_2_joint: 0.3, arm_left_4_joint: -1.9}
+      - {arm_left_1_joint: 0.7, arm_left_2_joint: 0.02, arm_left_3_joint: 2.3, arm_left_4_joint: -2.2}
+  - name: leg_left
+    support: [right_sole_link]
+    postures:
+      - {leg_left_1_joint: 0.2, leg_left_3_joint: -0.9, leg_left_4_joint: 1.2}
+)";
+
+class Plan : public testing::Test {
+ protected:
+  std::string Path(const std::string& name) const { return (scratch_.path() / name).string(); }
+
+  ProgramResult Run(const std::string& more) const {
+    return RunProgram("plan " + SourceFile("models/talos/project.yaml").string() + " -o " +
+                      Path("motion.csv") + " " + more);
+  }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(Plan, WritesAMotionAndLeavesOutWhatWouldCollide) {
+  const std::string postures = scratch_.Write("postures.yaml", kPostures);
+  const ProgramResult result = Run("--postures " + postures + " --trajectory " +
+                                   Path("trajectory.yaml") + " --json " + Path("plan.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("arm_left, posture 3 is left out: clearance"), std::string::npos)
+      << result.err;
+  EXPECT_NE(result.out.find("zero-moment point to edge, mm"), std::string::npos) << result.out;
+  const auto json = nlohmann::json::parse(ReadFile(Path("plan.json")));
+  EXPECT_EQ(json["sets"][0]["visits"].size(), 2u);
+  EXPECT_EQ(json["sets"][1]["visits"].size(), 1u);
+  EXPECT_GE(json["margins"]["zmp_m"], 0.015);
+  EXPECT_LT(json["margins"]["foot_moved_m"], 1e-6);
+
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const JointMotion motion = ReadMotion(Path("motion.csv"), project);
+  EXPECT_EQ(motion.q.row(0), motion.q.row(motion.q.rows() - 1));
+  const std::vector<int> right = {FindLink(project.tree, "right_sole_link")};
+  EXPECT_EQ(motion.support.front().size(), 2u);
+  EXPECT_NE(std::find(motion.support.begin(), motion.support.end(), right), motion.support.end());
+  const std::string trajectory = ReadFile(Path("trajectory.yaml"));
+  EXPECT_NE(trajectory.find("joint_names:\n  - torso_1_joint\n"), std::string::npos);
+  EXPECT_NE(trajectory.find("time_from_start: {secs: 1, nsecs: 50000000}"), std::string::npos);
+}
+
+TEST_F(Plan, SaysWhichConstraintMakesItImpossible) {
+  const std::string postures = scratch_.Write("postures.yaml", kPostures);
+  const ProgramResult result = Run("--postures " + postures + " --torque-share 0.1");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_NE(result.err.find("joint torque limit"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(Path("motion.csv")));
+}
+
+TEST_F(Plan, RefusesBadInput) {
+  EXPECT_EQ(Run("").exit_code, 2);
+  const std::string none = scratch_.Write("none.yaml",
+                                          "robot: talos\nchains: [{name: arm_left, support: "
+                                          "[base_link], postures: [{arm_left_4_joint: -1}]}]\n");
+  const ProgramResult result = Run("--postures " + none);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("base_link"), std::string::npos) << result.err;
+}
+
+TEST_F(Plan, PlansValidationMotions) {
+  const ProgramResult result = Run("--validation repeatability --json " + Path("plan.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto json = nlohmann::json::parse(ReadFile(Path("plan.json")));
+  ASSERT_EQ(json["sets"].size(), 5u);
+  for (const auto& set : json["sets"]) EXPECT_EQ(set["visits"].size(), 5u) << set["name"];
+}
+
+}  // namespace
+}  // namespace elastocal
