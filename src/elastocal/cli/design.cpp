@@ -13,6 +13,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/design_problem.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/curves_file.hpp"
@@ -260,6 +261,7 @@ int Design(const DesignCommand& command) {
                            total, static_cast<double>(total) * 5.0 / 60.0, outputs[0],
                            fmt::join(outputs.begin() + 1, outputs.end(), ", ")));
   PrintWarnings(warnings);
+  WritePlanningReport(command.output, "design", command.common, project, {});
   return kFine;
 }
 

@@ -99,6 +99,15 @@ RobotView ViewOf(const Project& project) {
   RobotView view{project.tree, ReadFile(project.urdf), {}, {}, {}, {}};
   view.meshes = FindMeshes(view.urdf, project.urdf);
   for (const Chain& chain : project.chains) view.chains.push_back(ViewOf(chain, project.tree));
+  for (const CollisionSphere& sphere : project.motion.spheres) {
+    view.spheres.push_back(
+        {project.tree.links[sphere.link].name, sphere.p_link_centre, sphere.radius});
+  }
+  for (const ChainSetup& setup : project.motion.chains) {
+    if (!setup.box) continue;
+    view.workspaces.push_back(
+        {setup.name, project.tree.links[0].name, setup.box->lower, setup.box->upper});
+  }
   return view;
 }
 
@@ -188,6 +197,17 @@ std::string MakeFolderPage(const fs::path& folder, const std::vector<std::string
     sources.calibrations.push_back(ReadCalibrationOf(folder));
   }
   return MakePage(PageTemplate(), MakeReportJson(sources));
+}
+
+void WritePlanningReport(const fs::path& output, const std::string& command,
+                         const CommonOptions& options, const Project& project,
+                         const std::vector<fs::path>& inputs) {
+  const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+  std::vector<fs::path> files = {project.file, project.urdf};
+  files.insert(files.end(), inputs.begin(), inputs.end());
+  WriteFiles({{folder / "runs.json", RunsJson(folder, command, options, RecordInputs(files))},
+              {folder / "robot_data.json", RobotDataJson(project)}});
+  WriteFolderReport(folder, options.Silent());
 }
 
 void WriteFolderReport(const fs::path& folder, bool quiet) {

@@ -43,4 +43,10 @@ extern const char* const kNoPage;
 /// what is lacking where it cannot.
 void WriteFolderReport(const std::filesystem::path& folder, bool quiet);
 
+/// The end of `design` and `plan`: beside their output, what the report needs of them and the
+/// report itself.
+void WritePlanningReport(const std::filesystem::path& output, const std::string& command,
+                         const CommonOptions& options, const Project& project,
+                         const std::vector<std::filesystem::path>& inputs);
+
 }  // namespace elastocal::cli
