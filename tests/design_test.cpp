@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 
@@ -89,9 +90,8 @@ TEST_P(EachChain, IsDesignedFeasiblyOnBothSides) {
   options.nocp.plateau = {.tolerance = -1.0, .max_postures = 8};
   const ErrorModel model = ChainModel(setup.name);
   const BaseParameters base = FindChainParameters(model, Talos().motion, setup, {});
-  EXPECT_EQ(base.geometric_count, base.theoretical_count);
   const ChainDesign design = DesignChain(model, base.kept, Talos().motion, setup, options);
-  EXPECT_EQ(design.postures.size(), 8u);
+  ASSERT_EQ(design.postures.size(), 8u) << design.blame;
   ExpectFeasibleInMujoco(design);
   if (setup.mirror.empty()) return;
 
@@ -126,6 +126,11 @@ class PlainLeg : public testing::Test {
           setup_.contacts.clear();
           setup_.floor_z.reset();
           motion_.effort_share = 1e3;
+          for (int c : setup_.coordinates) {  // without the project's margin
+            const Joint& joint = model_.tree.joints[model_.tree.coordinate_joint[c]];
+            motion_.lower[c] = joint.limits.lower;
+            motion_.upper[c] = joint.limits.upper;
+          }
           IdentifiabilityOptions options;
           options.hold = {"waist.T0.*", "leg_left_1_*", "leg_left_6_*", "leg_left_5_joint.beta"};
           return FindChainParameters(model_, motion_, setup_, options);
@@ -160,7 +165,9 @@ TEST_F(PlainLeg, NocpIsNearTheBoundForEverySeedAndAboveCocp) {
     cocp[static_cast<Eigen::Index>(seed) - 1] = set.Index(Criterion::kO1);
   }
   const double least = *std::min_element(nocp.begin(), nocp.end());
-  EXPECT_NEAR(bound, 0.8035, 0.003);  // a prototype's figure, for slightly wider joint limits
+  std::printf("bound %.4f; NOCP %.4f to %.4f; COCP median %.4f\n", bound, least,
+              *std::max_element(nocp.begin(), nocp.end()), Median(cocp));
+  EXPECT_NEAR(bound, 0.8035, 0.002);  // a prototype's figure; ours may be loose by 0.2 %
   EXPECT_GT(least, 0.985 * bound);
   EXPECT_GE(least, Median(cocp));
 }

@@ -78,6 +78,35 @@ TEST_F(Simulate, PlaysAUsersPosturesAndTrajectory) {
   EXPECT_EQ(json["trials"][0]["frames"], 1150);  // 5 s at rest, 5 s, 1.5 s at rest
 }
 
+TEST_F(Simulate, DoesNotReplaceTheMotionThatItPlays) {
+  std::filesystem::create_directory(Folder("here"));
+  const std::string motion = scratch_.Write("here/motion.csv", "turret_joint\n0\n0.3\n");
+  const ProgramResult result = Run("here", "--postures " + motion);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("motion.csv"), std::string::npos) << result.err;
+  EXPECT_EQ(ReadFile(motion), "turret_joint\n0\n0.3\n");
+}
+
+// What is left is the micrometre to which marker files are written.
+TEST_F(Simulate, AMatchedTruthIsWhatCalibrateFinds) {
+  const std::string project = SourceFile("tests/robots/arm6_project.yaml").string();
+  const ProgramResult simulated =
+      RunProgram("simulate " + project + " -o " + Folder("matched") +
+                 " --arm-postures 15 --trials calibration --matched --nominal --quiet "
+                 "--upper-geometry-scale 1 --upper-elasticity-scale 1 --marker-mm 3");
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+  const std::string truth = ReadFile(Folder("matched/truth.yaml"));
+  EXPECT_NE(truth.find("matched: true"), std::string::npos);
+  EXPECT_NE(truth.find("elbow_joint.theta: {value: "), std::string::npos) << truth;
+  const ProgramResult calibrated = RunProgram("calibrate " + project + " --recording " +
+                                              Folder("matched") + " -o " + Folder("out"));
+  ASSERT_EQ(calibrated.exit_code, 0) << calibrated.err;
+  const auto summary = nlohmann::json::parse(ReadFile(Folder("out/summary.json")));
+  EXPECT_GT(summary.at("rmse_3d_mm").at("uncalibrated"), 1.0);
+  EXPECT_LT(summary.at("rmse_3d_mm").at("full"), 2e-3);
+  EXPECT_TRUE(summary.at("knocks").empty());
+}
+
 TEST_F(Simulate, RefusesWhatIsNotThere) {
   const auto refused = [&](const std::string& more, const std::string& part) {
     const ProgramResult result = Run("none", more);

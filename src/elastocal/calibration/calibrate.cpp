@@ -137,7 +137,6 @@ std::vector<int> HoldUnsupported(const FitProblem& problem, const Selection& sel
     for (int i : unsupported) fit.delta[i] = 0.0;
     fit = FitParameters(problem, selection, Without(free, unsupported), fit, false);
   }
-  Polish(problem, selection, Without(free, unsupported), fit);
   UpdatePosterior(problem, selection, free, fit);
   return unsupported;
 }
@@ -172,6 +171,8 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
     if (stands) break;
     selection = Without(recording, verdict);
   }
+  Polish(problem, selection, Without(free, unsupported), fit);
+  UpdatePosterior(problem, selection, free, fit);
   result.outliers = std::move(verdict.markers);
   result.loose_footings = std::move(verdict.footings);
   result.used = std::move(selection.markers);

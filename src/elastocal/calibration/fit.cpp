@@ -4,66 +4,29 @@
 #include <cmath>
 #include <limits>
 
+#include "elastocal/calibration/fit_residuals.hpp"
 #include "elastocal/calibration/outliers.hpp"
-#include "elastocal/calibration/residuals.hpp"
+#include "elastocal/calibration/variances.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/optim/normal_equations.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kSmallestMarkerSd = 1e-9;  // m: of noise-free data
-constexpr double kLeastTieShare = 0.1;      // of the marker noise [m, rad]: no constraint is better
-constexpr double kCauchyScale = 3.0;        // of a residual in standard deviations of the noise
-constexpr double kAbsurdSd = 0.1;           // rad or m
-constexpr double kRoughTolerance = 1e-8;    // of the cost, while noise and prior are being found
-constexpr double kHyperTolerance = 1e-3;    // of noise and prior scale, relative ...
-constexpr double kTrialTolerance = 1e-2;    // ... and of trials, whose constraints take longer
-constexpr int kTrialIterations = 3;         // of a solve whose weights will change anyway
+constexpr double kCauchyScale = 3.0;      // of a residual in standard deviations of the noise
+constexpr double kAbsurdSd = 0.1;         // rad or m
+constexpr double kRoughTolerance = 1e-8;  // of the cost, while noise and prior are being found
+constexpr double kSlightDecrease = 1e-6;  // likewise, of a step ...
+constexpr double kRobustDecrease = 1e-3;  // ... and of the robust fit to trials
+constexpr double kHyperTolerance = 1e-3;  // of noise and prior scale, relative ...
+constexpr double kTrialTolerance = 1e-2;  // ... and of trials, whose constraints take longer
+constexpr int kTrialIterations = 3;       // of a solve whose weights will change anyway
 constexpr int kMaxPolishing = 6;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 
-Prior WidenedPrior(const FitProblem& problem, const Fit& fit) {
-  return problem.options.prior.Scaled(fit.prior_scale);
-}
-
-/// Whether any elastic parameter is estimated or known: else loads do not matter.
-bool IsElasticFit(const ErrorModel& model, const std::vector<int>& free,
-                  const Eigen::VectorXd& delta) {
-  const auto elastic = [&](int i) { return IsElastic(model.parameters[i].kind); };
-  if (std::any_of(free.begin(), free.end(), elastic)) return true;
-  for (int i = 0; i < model.parameter_count(); ++i) {
-    if (elastic(i) && delta[i] != 0.0) return true;
-  }
-  return false;
-}
-
-/// The residuals of a fit as it stands, with all that they refer to.
-struct Residuals {
-  Residuals(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
-            const Fit& fit)
-      : prior(WidenedPrior(problem, fit)),
-        noise(fit.noise),
-        placement(fit.placement),
-        loads(IsElasticFit(problem.model, free, fit.delta)
-                  ? ComputeLoads(problem.model, problem.recording, fit.delta, fit.placement,
-                                 problem.options.load)
-                  : std::vector<PostureLoads>()),
-        body({problem.model, problem.recording, problem.group, selection.markers, selection.tied,
-              loads, prior, noise, problem.options.support_form},
-             free, fit.delta, placement) {}
-  Residuals(const Residuals&) = delete;
-  Residuals& operator=(const Residuals&) = delete;
-
-  Prior prior;
-  Noise noise;
-  Placement placement;
-  std::vector<PostureLoads> loads;
-  BodyResiduals body;
-};
-
 void SolveOnce(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
                bool robust, double tolerance, Fit& fit) {
-  Residuals residuals(problem, selection, free, fit);
+  FitResiduals residuals(problem, selection, free, fit);
   LeastSquaresOptions solver;
   solver.function_tolerance = tolerance;
   solver.cauchy_scale = robust ? kCauchyScale : 0.0;
@@ -82,112 +45,12 @@ void SolveOnce(const FitProblem& problem, const Selection& selection, const std:
   fit.final_cost = solved.final_cost;
 }
 
-/// Sum of squares of residuals that share a standard deviation, in units of it, and what of their
-/// number the fit explains.
-class VarianceComponent {
- public:
-  void Add(const Eigen::Ref<const Eigen::VectorXd>& residual, double explained) {
-    squares_.push_back(residual.squaredNorm());
-    rows_ += static_cast<double>(residual.size());
-    explained_ += explained;
-    size_ = static_cast<double>(residual.size());
-  }
-  bool empty() const { return squares_.empty(); }
-
-  /// By how much the standard deviation has to be multiplied; by the median where outliers may be
-  /// among the residuals.
-  double Factor(bool robust) const {
-    const Eigen::Map<const Eigen::VectorXd> s(squares_.data(),
-                                              static_cast<Eigen::Index>(squares_.size()));
-    const double total = robust ? rows_ * Median(s) / ChiSquareQuantile(0.5, size_) : s.sum();
-    // The share that is left over is positive; a hundredth of the rows where it is all but zero.
-    return std::sqrt(total / std::max({1.0, 0.01 * rows_, rows_ - explained_}));
-  }
-
- private:
-  std::vector<double> squares_;
-  double rows_ = 0.0, explained_ = 0.0, size_ = 3.0;
-};
-
-/// The noise as the residuals of the last posterior have it.
-Noise EstimateNoise(const FitProblem& problem, const Selection& selection, const Fit& fit,
-                    bool robust) {
-  const int groups = fit.noise.group_count();
-  std::vector<VarianceComponent> markers(groups), positions(groups), rotations(groups);
-  const auto by_rows = [&](std::size_t block, int first) {
-    return fit.posterior.explained[block].diagonal().segment<3>(first).sum();
-  };
-  for (std::size_t block = 0; block < fit.meanings.size(); ++block) {
-    const auto [posture, marker] = fit.meanings[block];
-    const int group = problem.group[posture];
-    const Eigen::VectorXd& residual = fit.residuals[block];
-    if (marker >= 0) {
-      if (selection.markers(posture, marker)) markers[group].Add(residual, by_rows(block, 0));
-    } else if (selection.tied[posture] != 0) {
-      positions[group].Add(residual.head<3>(), by_rows(block, 0));
-      rotations[group].Add(residual.tail<3>(), by_rows(block, 3));
-    }
-  }
-  Noise noise = fit.noise;
-  for (int g = 0; g < groups; ++g) {
-    if (problem.options.marker_sd > 0.0) {
-      noise.marker_sd[g] = problem.options.marker_sd;
-    } else if (!markers[g].empty()) {
-      noise.marker_sd[g] =
-          std::max(kSmallestMarkerSd, noise.marker_sd[g] * markers[g].Factor(robust));
-    }
-    if (positions[g].empty() || problem.options.support_form == SupportForm::kFootRooted) continue;
-    const double least = kLeastTieShare * noise.marker_sd[g];
-    noise.waist_position_sd[g] =
-        std::max(least, noise.waist_position_sd[g] * positions[g].Factor(robust));
-    noise.waist_rotation_sd[g] =
-        std::max(least, noise.waist_rotation_sd[g] * rotations[g].Factor(robust));
-  }
-  return noise;
-}
-
-/// Root mean square of the joints' angles or lengths in units of the prior as it is now, over as
-/// many as the data determine (MacKay's update); 1 where that is less than one.
-double RelativeDeviation(const FitProblem& problem, const Fit& fit, bool angles) {
-  const Prior prior = WidenedPrior(problem, fit);
-  double square_sum = 0.0;
-  double determined = 0.0;
-  for (std::size_t i = 0; i < fit.posterior.parameters.size(); ++i) {
-    const int index = fit.posterior.parameters[i];
-    const ParameterKind kind = problem.model.parameters[index].kind;
-    if (IsExternal(kind) || IsElastic(kind) || IsAngle(kind) != angles ||
-        !std::isfinite(prior[kind])) {
-      continue;
-    }
-    const auto diagonal = static_cast<Eigen::Index>(i);
-    const double variance = prior[kind] * prior[kind];
-    square_sum += fit.delta[index] * fit.delta[index] / variance;
-    determined += 1.0 - fit.posterior.covariance(diagonal, diagonal) / variance;
-  }
-  return determined < 1.0 ? 1.0 : std::sqrt(square_sum / determined);
-}
-
-/// Never narrower than the prior that was given.
-PriorScale EstimatePriorScale(const FitProblem& problem, const Fit& fit) {
-  const auto widened = [&](double scale, bool angles) {
-    return std::clamp(scale * RelativeDeviation(problem, fit, angles), 1.0, kMaxPriorScale);
-  };
-  return {widened(fit.prior_scale.angles, true), widened(fit.prior_scale.lengths, false)};
-}
-
-/// Largest relative change from one entry to the other.
-double Change(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
-  return (after.array() / before.array()).log().abs().maxCoeff();
-}
-
 /// At which change noise and prior have come to rest. The robust fit to trials, which costs most,
 /// only has to find what lies far off.
 double Tolerance(const Fit& fit, bool robust) {
   if (fit.placement.empty()) return kHyperTolerance;
   return robust ? 10.0 * kTrialTolerance : kTrialTolerance;
 }
-
-double Change(double before, double after) { return std::abs(std::log(after / before)); }
 
 /// The residuals as last evaluated; gives the number of those that take part.
 double TakeResiduals(const BodyResiduals& body, Fit& fit) {
@@ -206,9 +69,68 @@ double TakeResiduals(const BodyResiduals& body, Fit& fit) {
 
 void UpdateResiduals(const FitProblem& problem, const Selection& selection,
                      const std::vector<int>& free, Fit& fit) {
-  Residuals residuals(problem, selection, free, fit);
+  FitResiduals residuals(problem, selection, free, fit);
   residuals.body.Evaluate(residuals.body.Start(), false);
   TakeResiduals(residuals.body, fit);
+}
+
+void TakeFreedom(const FitProblem& problem, double rows_left, Fit& fit) {
+  fit.degrees_of_freedom = problem.options.marker_sd > 0.0 ? std::numeric_limits<double>::infinity()
+                                                           : std::max(1.0, rows_left);
+}
+
+/// Takes noise and, if asked to, prior scale from the residuals and the posterior of the fit.
+/// Whether they have come to rest.
+bool UpdateVariances(const FitProblem& problem, const std::vector<VarianceComponent>& components,
+                     bool robust, Fit& fit) {
+  const Noise noise = EstimateNoise(problem.options, fit.noise, components, robust);
+  const PriorScale scale =
+      problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
+  const double change = LargestChange(fit.noise, fit.prior_scale, noise, scale);
+  fit.noise = noise;
+  fit.prior_scale = scale;
+  return change < Tolerance(fit, robust);
+}
+
+/// One Gauss-Newton step and, from the same linearisation, noise and prior scale: they converge
+/// together, instead of the one waiting for the other. Whether they have.
+bool UpdateByStep(const FitProblem& problem, const Selection& selection,
+                  const std::vector<int>& free, bool robust, Fit& fit) {
+  const double cauchy_scale = robust ? kCauchyScale : 0.0;
+  FitResiduals residuals(problem, selection, free, fit);
+  BodyResiduals& body = residuals.body;
+  const Eigen::VectorXd x = body.Start();
+  const NormalEquations equations(body, x, body.WaistBlocks(), RowComponents(body, problem.group),
+                                  cauchy_scale);
+  const Eigen::MatrixXd information =
+      WithVaguePrior(problem.model, free, residuals.prior, equations.information());
+  const Eigen::MatrixXd covariance =
+      TakeCovariance(problem.model, free, residuals.prior, information, fit.posterior);
+  const Eigen::VectorXd step =
+      BoundedStep(information, equations.gradient(), x(equations.unknowns()), body.nonnegative);
+  const Eigen::VectorXd next = x + equations.Expand(step);
+  ++fit.iterations;
+  body.Evaluate(next, false);
+  const double slight = robust && !fit.placement.empty() ? kRobustDecrease : kSlightDecrease;
+  const bool small = -equations.gradient().dot(step) < slight * (1.0 + equations.cost());
+  if (!small &&
+      !(CostOf(body, cauchy_scale) <= equations.cost())) {  // far from the solution: damped steps
+    SolveOnce(problem, selection, free, robust, kRoughTolerance, fit);
+    UpdateResiduals(problem, selection, free, fit);
+  } else {
+    fit.delta = body.ToErrors(next);
+    fit.placement = body.ToPlacement(next);
+    TakeResiduals(body, fit);
+  }
+  std::vector<VarianceComponent> components = ComponentsOf(problem, selection, fit);
+  const Eigen::VectorXd explained = equations.Explained(covariance);
+  double rows = 0.0;
+  for (Eigen::Index k = 0; k < explained.size(); ++k) {
+    components[k].explained = explained[k];
+    rows += components[k].rows;
+  }
+  TakeFreedom(problem, rows - explained.sum(), fit);
+  return UpdateVariances(problem, components, robust, fit) && small;
 }
 
 }  // namespace
@@ -226,7 +148,7 @@ Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen:
   fit.noise.marker_sd.setOnes(groups);
   fit.noise.waist_position_sd.setOnes(groups);
   fit.noise.waist_rotation_sd.setOnes(groups);
-  Residuals residuals(problem, selection, {}, fit);
+  FitResiduals residuals(problem, selection, {}, fit);
   residuals.body.Evaluate(residuals.body.Start(), false);
   std::vector<std::vector<double>> norms(groups);
   for (std::size_t block = 0; block < residuals.body.meanings().size(); ++block) {
@@ -250,32 +172,13 @@ Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen:
 Fit FitParameters(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const Fit& start, bool robust, int updates) {
   Fit fit = start;
-  for (int update = 0; update < updates; ++update) {
-    SolveOnce(problem, selection, free, robust, kRoughTolerance, fit);
-    // Of the robust fit to trials only the residuals are new from step to step: what of them the
-    // fit explains hardly changes, and takes longest.
-    const bool same = robust && !fit.placement.empty() && update > 1;
-    if (same) {
-      UpdateResiduals(problem, selection, free, fit);
-    } else {
-      UpdatePosterior(problem, selection, free, fit);
-    }
-    const Noise noise = EstimateNoise(problem, selection, fit, robust);
-    const PriorScale scale =
-        problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
-    const double change = std::max({Change(fit.noise.marker_sd, noise.marker_sd),
-                                    Change(fit.noise.waist_position_sd, noise.waist_position_sd),
-                                    Change(fit.noise.waist_rotation_sd, noise.waist_rotation_sd),
-                                    Change(fit.prior_scale.angles, scale.angles),
-                                    Change(fit.prior_scale.lengths, scale.lengths)});
-    fit.noise = noise;
-    fit.prior_scale = scale;
-    if (change < Tolerance(fit, robust)) {
-      if (same) UpdatePosterior(problem, selection, free, fit);
-      return fit;
-    }
+  bool settled = false;
+  const int most = std::min(updates, problem.options.max_iterations);
+  for (int update = 0; update < most && !settled; ++update) {
+    settled = UpdateByStep(problem, selection, free, robust, fit);
   }
-  fit.settled = fit.settled && updates < kMaxUpdates;
+  if (!settled) fit.settled = fit.settled && updates < kMaxUpdates;
+  if (robust) UpdatePosterior(problem, selection, free, fit);
   return fit;
 }
 
@@ -289,19 +192,22 @@ void Polish(const FitProblem& problem, const Selection& selection, const std::ve
     const Eigen::VectorXd before = fit.delta;
     SolveOnce(problem, selection, free, false, LeastSquaresOptions().function_tolerance, fit);
     const double change = (fit.delta - before).cwiseQuotient(scale).cwiseAbs().maxCoeff();
-    if (!IsElasticFit(problem.model, free, fit.delta) || change < kLoadTolerance) return;
+    if (!IsElasticFit(problem.model, free, fit.delta) || change < kLoadTolerance) break;
+  }
+  if (!fit.settled && problem.options.max_iterations < kMaxUpdates &&
+      fit.termination == Termination::kConverged) {
+    fit.termination = Termination::kNoConvergence;
+    fit.message = "the iterations were used up before noise and prior came to rest";
   }
 }
 
 void UpdatePosterior(const FitProblem& problem, const Selection& selection,
                      const std::vector<int>& parameters, Fit& fit) {
-  Residuals residuals(problem, selection, parameters, fit);
+  FitResiduals residuals(problem, selection, parameters, fit);
   fit.posterior = ComputePosterior(problem.model, residuals.body, parameters,
                                    residuals.body.Start(), residuals.prior);
   const double rows = TakeResiduals(residuals.body, fit);
-  fit.degrees_of_freedom = problem.options.marker_sd > 0.0
-                               ? std::numeric_limits<double>::infinity()
-                               : std::max(1.0, rows - fit.posterior.effective_parameters);
+  TakeFreedom(problem, rows - fit.posterior.effective_parameters, fit);
 }
 
 std::vector<int> UnsupportedParameters(const FitProblem& problem, const Fit& fit) {

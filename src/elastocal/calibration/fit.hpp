@@ -58,11 +58,14 @@ Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen:
 
 /// Fits the parameters `free` to the observations in `selection`, from `start`; the others stay as
 /// there. Noise and prior weigh against each other and both follow from the solution, so it is a
-/// fixed-point iteration: solve, then estimate the noise (that of a marker coordinate unless it
-/// is given) and the width of the prior (if asked to) from the solution, and again. The loads that
-/// bend the robot follow along.
+/// fixed-point iteration: a Gauss-Newton step, then, from the same linearisation, the noise (that
+/// of a marker coordinate unless it is given) and the width of the prior (if asked to), and again.
+/// The loads that bend the robot follow along. Of the posterior, parameters and covariance, and the
+/// degrees of freedom, are those of the last step; see UpdatePosterior and, for the last digits,
+/// Polish.
 ///
-/// `robust`: under Cauchy's loss and with the noise by the median, which gross errors cannot move.
+/// `robust`: under Cauchy's loss and with the noise by the median, which gross errors cannot move;
+/// then the posterior is complete.
 /// `updates`: of noise and prior at most; a start for another fit needs few.
 Fit FitParameters(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const Fit& start, bool robust,

@@ -10,7 +10,7 @@ namespace elastocal {
 namespace {
 
 constexpr int kMaxKnocks = 4;
-constexpr int kFewUpdates = 2;           // of the noise
+constexpr int kFewUpdates = 6;           // steps, each with the noise
 constexpr double kLeastDistance = 1e-3;  // m
 constexpr double kLeastScatters = 3.0;
 

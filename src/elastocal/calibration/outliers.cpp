@@ -37,19 +37,32 @@ double UnusedThreshold(double level, double size, double freedom) {
 
 }  // namespace
 
-Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recording,
-                              const Eigen::VectorXd& delta, const CalibrationOptions& options) {
+Eigen::MatrixXd PredictedPositions(const ErrorModel& model, const Recording& recording,
+                                   const Eigen::VectorXd& delta,
+                                   const CalibrationOptions& options) {
   const Geometry geometry = ApplyErrors(model, delta);
   const std::vector<PostureLoads> loads = ComputeLoads(model, recording, delta, {}, options.load);
-  Eigen::MatrixXd norms(recording.posture_count(), recording.marker_count());
-  for (int i = 0; i < norms.rows(); ++i) {
-    const Eigen::Matrix3Xd predicted =
-        MarkerPositions(model, geometry, recording.q.row(i).transpose(), loads[i].joints);
-    for (int m = 0; m < norms.cols(); ++m) {
-      norms(i, m) = (MarkerPosition(recording, i, m) - predicted.col(m)).norm();
-    }
+  Eigen::MatrixXd positions(recording.posture_count(), recording.markers.cols());
+  for (int i = 0; i < positions.rows(); ++i) {
+    positions.row(i) =
+        MarkerPositions(model, geometry, recording.q.row(i).transpose(), loads[i].joints)
+            .reshaped()
+            .transpose();
   }
-  return norms;
+  return positions;
+}
+
+Eigen::MatrixXd MarkerDistances(const Recording& recording, const Eigen::MatrixXd& positions) {
+  Eigen::MatrixXd distances(recording.posture_count(), recording.marker_count());
+  for (int m = 0; m < distances.cols(); ++m) {
+    distances.col(m) = (recording.markers - positions).middleCols<3>(3 * m).rowwise().norm();
+  }
+  return distances;
+}
+
+Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recording,
+                              const Eigen::VectorXd& delta, const CalibrationOptions& options) {
+  return MarkerDistances(recording, PredictedPositions(model, recording, delta, options));
 }
 
 OutlierVerdict FindOutliers(const Fit& fit, const std::vector<int>& group, const Selection& used,

@@ -27,8 +27,16 @@ struct OutlierVerdict {
   std::vector<LooseFooting> footings;
 };
 
+/// Where the markers of a recording in a frame fixed to the waist should be, m: postures x 3 N_M.
+Eigen::MatrixXd PredictedPositions(const ErrorModel& model, const Recording& recording,
+                                   const Eigen::VectorXd& delta,
+                                   const CalibrationOptions& options = {});
+
 /// Distances between measured and predicted marker positions, m: postures x markers; NaN where a
-/// marker was not seen. For a recording in a frame fixed to the waist.
+/// marker was not seen. `positions` as Recording::markers.
+Eigen::MatrixXd MarkerDistances(const Recording& recording, const Eigen::MatrixXd& positions);
+
+/// Both together, for a recording in a frame fixed to the waist.
 Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recording,
                               const Eigen::VectorXd& delta, const CalibrationOptions& options = {});
 

@@ -14,30 +14,46 @@ constexpr double kVagueSd = 1.0;  // m or rad
 
 }  // namespace
 
+Eigen::MatrixXd WithVaguePrior(const ErrorModel& model, const std::vector<int>& parameters,
+                               const Prior& prior, Eigen::MatrixXd information) {
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  for (Eigen::Index i = 0; i < information.rows(); ++i) {
+    double vague = BodyResiduals::kPoseScale / kVagueSd;
+    if (i < count) {
+      const Parameter& parameter = model.parameters[parameters[i]];
+      vague =
+          std::isfinite(prior[parameter.kind]) ? 0.0 : ParameterScale(parameter, prior) / kVagueSd;
+    }
+    information(i, i) += vague * vague;
+  }
+  return information;
+}
+
+Eigen::MatrixXd TakeCovariance(const ErrorModel& model, const std::vector<int>& parameters,
+                               const Prior& prior, const Eigen::MatrixXd& information,
+                               Posterior& posterior) {
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  Eigen::VectorXd scale(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    scale[i] = ParameterScale(model.parameters[parameters[i]], prior);
+  }
+  Eigen::MatrixXd inverse =
+      Eigen::LLT<Eigen::MatrixXd>(information)
+          .solve(Eigen::MatrixXd::Identity(information.rows(), information.rows()));
+  posterior.parameters = parameters;
+  posterior.covariance =
+      scale.asDiagonal() * inverse.topLeftCorner(count, count) * scale.asDiagonal();
+  return inverse;
+}
+
 Posterior ComputePosterior(const ErrorModel& model, BodyResiduals& residuals,
                            const std::vector<int>& parameters, const Eigen::VectorXd& x,
                            const Prior& prior) {
   const Linearisation linear = Linearise(residuals, x, residuals.WaistBlocks());
-  const auto count = static_cast<Eigen::Index>(parameters.size());
-  const Eigen::Index size = linear.information.rows();
-  Eigen::VectorXd scale(count);
-  Eigen::MatrixXd total = linear.information;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    double vague = BodyResiduals::kPoseScale / kVagueSd;
-    if (i < count) {
-      const Parameter& parameter = model.parameters[parameters[i]];
-      scale[i] = ParameterScale(parameter, prior);
-      vague = std::isfinite(prior[parameter.kind]) ? 0.0 : scale[i] / kVagueSd;
-    }
-    total(i, i) += vague * vague;
-  }
-  const Eigen::MatrixXd inverse =
-      Eigen::LLT<Eigen::MatrixXd>(total).solve(Eigen::MatrixXd::Identity(size, size));
-
   Posterior posterior;
-  posterior.parameters = parameters;
-  posterior.covariance =
-      scale.asDiagonal() * inverse.topLeftCorner(count, count) * scale.asDiagonal();
+  const Eigen::MatrixXd inverse =
+      TakeCovariance(model, parameters, prior,
+                     WithVaguePrior(model, parameters, prior, linear.information), posterior);
   posterior.explained = ExplainedCovariances(linear, inverse);
   for (std::size_t block = 0; block < residuals.meanings().size(); ++block) {
     if (residuals.residual_blocks[block].active) {

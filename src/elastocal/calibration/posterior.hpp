@@ -30,6 +30,17 @@ Posterior ComputePosterior(const ErrorModel& model, BodyResiduals& residuals,
                            const std::vector<int>& parameters, const Eigen::VectorXd& x,
                            const Prior& prior);
 
+/// The information about unknowns in the solver's units, poses behind the parameters, with the
+/// vague prior just said.
+Eigen::MatrixXd WithVaguePrior(const ErrorModel& model, const std::vector<int>& parameters,
+                               const Prior& prior, Eigen::MatrixXd information);
+
+/// Parameters and covariance of a posterior from such information; returns its inverse, in the
+/// solver's units.
+Eigen::MatrixXd TakeCovariance(const ErrorModel& model, const std::vector<int>& parameters,
+                               const Prior& prior, const Eigen::MatrixXd& information,
+                               Posterior& posterior);
+
 /// Two parameters that the data can hardly tell apart.
 struct Correlation {
   int first = 0, second = 0;  ///< indices into the model's parameters

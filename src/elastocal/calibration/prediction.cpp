@@ -79,13 +79,11 @@ class Predictor {
 
   Prediction Result() && {
     Prediction prediction;
-    prediction.distances.setConstant(recording_.posture_count(), recording_.marker_count(), kNaN);
+    prediction.positions.resize(recording_.posture_count(), recording_.markers.cols());
     for (int i = 0; i < recording_.posture_count(); ++i) {
-      const Eigen::Matrix3Xd predicted = Markers(i);
-      for (int m = 0; m < recording_.marker_count(); ++m) {
-        prediction.distances(i, m) = (MarkerPosition(recording_, i, m) - predicted.col(m)).norm();
-      }
+      prediction.positions.row(i) = Markers(i).reshaped().transpose();
     }
+    prediction.distances = MarkerDistances(recording_, prediction.positions);
     prediction.placement = std::move(placement_);
     return prediction;
   }
@@ -189,7 +187,12 @@ class Predictor {
 Prediction Predict(const ErrorModel& model, const Eigen::VectorXd& delta,
                    const Recording& recording, const CalibrationOptions& options,
                    const Placement* footings, FootingBy by) {
-  if (recording.trials.empty()) return {ResidualNorms(model, recording, delta, options), {}};
+  if (recording.trials.empty()) {
+    Prediction prediction;
+    prediction.positions = PredictedPositions(model, recording, delta, options);
+    prediction.distances = MarkerDistances(recording, prediction.positions);
+    return prediction;
+  }
   return Predictor(model, delta, recording, options, footings, by).Result();
 }
 

@@ -9,6 +9,9 @@ namespace elastocal {
 
 /// Where a model says that the markers of a recording are.
 struct Prediction {
+  /// Where each marker should be, in the frame of the recording, m: postures x 3 N_M, as
+  /// Recording::markers; NaN where the waist could not be placed. Also of markers not seen.
+  Eigen::MatrixXd positions;
   /// Distances between measured and predicted positions, m: postures x markers; NaN where a marker
   /// was not seen or the waist could not be placed.
   Eigen::MatrixXd distances;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "elastocal/calibration/support_tie.hpp"
 #include "elastocal/math/rotation_vector.hpp"
@@ -10,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kWaistBlock = -1;        // in BlockColumns: the block of the posture's waist
+constexpr int kWaistBlock = BodyUnknowns::kWaistBlock;
 constexpr double kExactMarker = 1e-6;  // m: "exact", yet well conditioned
 constexpr double kExactLeg = 1e-6;     // m and rad
 
@@ -28,22 +27,21 @@ ObservationMask SeenMask(const Recording& recording) {
   return mask;
 }
 
-double ParameterScale(const Parameter& parameter, const Prior& prior) {
-  const double sd = prior[parameter.kind];
-  return std::isfinite(sd) ? sd : 0.01;
-}
-
 BodyResiduals::BodyResiduals(const ResidualInputs& inputs, const std::vector<int>& free,
                              const Eigen::VectorXd& delta, const Placement& placement)
-    : in_(inputs), fixed_(delta), placement_(placement), free_(free), jacobian_(inputs.model) {
-  MakeParameterBlocks(free);
-  MakePoseBlocks();
+    : in_(inputs),
+      placement_(placement),
+      unknowns_(inputs.model, inputs.prior, free, delta, placement),
+      jacobian_(inputs.model) {
+  parameter_blocks = unknowns_.block_sizes();
+  eliminated_blocks = unknowns_.EliminatedBlocks();
+  nonnegative = unknowns_.nonnegative();
   for (int m = 0; m < in_.model.marker_count(); ++m) {
-    marker_columns_.push_back(MapColumns(jacobian_.Columns(m)));
+    marker_columns_.push_back(unknowns_.MapColumns(jacobian_.Columns(m)));
   }
   for (int leg = 0; leg < in_.model.leg_count(); ++leg) {
-    leg_columns_.push_back(MapColumns(jacobian_.LegColumns(leg)));
-    deflections_.push_back(MapDeflection(leg));
+    leg_columns_.push_back(unknowns_.MapColumns(jacobian_.LegColumns(leg)));
+    deflections_.push_back(unknowns_.MapDeflection(leg));
   }
   blocks_of_posture_.resize(in_.recording.posture_count());
   MakeMarkerBlocks();
@@ -53,87 +51,6 @@ BodyResiduals::BodyResiduals(const ResidualInputs& inputs, const std::vector<int
   MakePriorBlocks();
 }
 
-void BodyResiduals::MakeParameterBlocks(const std::vector<int>& free) {
-  scale_.resize(static_cast<Eigen::Index>(free.size()));
-  const Parameter* previous = nullptr;
-  const auto same_block = [&](const Parameter& parameter) {
-    if (previous == nullptr || previous->marker != parameter.marker ||
-        previous->leg != parameter.leg) {
-      return false;
-    }
-    return parameter.leg >= 0 || previous->joint == parameter.joint;
-  };
-  std::vector<int> markers;
-  for (std::size_t u = 0; u < free.size(); ++u) {
-    const Parameter& parameter = in_.model.parameters[free[u]];
-    scale_[static_cast<Eigen::Index>(u)] = ParameterScale(parameter, in_.prior);
-    if (IsCompliance(parameter.kind)) nonnegative.push_back(static_cast<int>(u));
-    if (!same_block(parameter)) {
-      if (parameter.marker >= 0) markers.push_back(static_cast<int>(parameter_blocks.size()));
-      parameter_blocks.push_back(0);
-    }
-    ++parameter_blocks.back();
-    block_of_.push_back(static_cast<int>(parameter_blocks.size()) - 1);
-    previous = &parameter;
-  }
-  // Elimination needs something to eliminate from, and gains nothing for a single block.
-  if (placement_.empty() && markers.size() < parameter_blocks.size() && markers.size() > 1) {
-    eliminated_blocks = markers;
-  }
-}
-
-void BodyResiduals::MakePoseBlocks() {
-  first_footing_block_ = static_cast<int>(parameter_blocks.size());
-  parameter_blocks.insert(parameter_blocks.end(), placement_.footings.size(), 6);
-  first_waist_block_ = static_cast<int>(parameter_blocks.size());
-  parameter_blocks.insert(parameter_blocks.end(), placement_.T_ref_waist.size(), 6);
-  if (!placement_.empty()) eliminated_blocks = WaistBlocks();
-  first_entry_.assign(parameter_blocks.size() + 1, 0);
-  std::partial_sum(parameter_blocks.begin(), parameter_blocks.end(), first_entry_.begin() + 1);
-}
-
-std::vector<int> BodyResiduals::WaistBlocks() const {
-  std::vector<int> blocks(placement_.T_ref_waist.size());
-  std::iota(blocks.begin(), blocks.end(), first_waist_block_);
-  return blocks;
-}
-
-std::vector<BodyResiduals::BlockColumns> BodyResiduals::MapColumns(
-    const std::vector<int>& columns) const {
-  std::vector<BlockColumns> blocks;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    const bool waist = !placement_.empty() && columns[c] < kBaseParameterCount;
-    const auto found = std::lower_bound(free_.begin(), free_.end(), columns[c]);
-    if (!waist && (found == free_.end() || *found != columns[c])) continue;
-    const auto unknown = found - free_.begin();
-    const int block = waist ? kWaistBlock : block_of_[unknown];
-    if (blocks.empty() || blocks.back().block != block) blocks.push_back({block, {}, {}});
-    BlockColumns& last = blocks.back();
-    last.source.push_back(static_cast<int>(c));
-    last.scale.conservativeResize(last.scale.size() + 1);
-    last.scale[last.scale.size() - 1] = waist ? kPoseScale : scale_[unknown];
-  }
-  return blocks;
-}
-
-BodyResiduals::Deflection BodyResiduals::MapDeflection(int leg) const {
-  Deflection deflection;
-  for (std::size_t u = 0; u < free_.size(); ++u) {
-    if (in_.model.parameters[free_[u]].leg != leg) continue;
-    deflection.block = block_of_[u];
-    deflection.parameters.push_back(free_[u]);
-    deflection.scale.conservativeResize(deflection.scale.size() + 1);
-    deflection.scale[deflection.scale.size() - 1] = scale_[static_cast<Eigen::Index>(u)];
-  }
-  return deflection;
-}
-
-bool BodyResiduals::IsMarkerBlock(int block) const {
-  const auto first = std::find(block_of_.begin(), block_of_.end(), block);
-  return first != block_of_.end() &&
-         in_.model.parameters[free_[first - block_of_.begin()]].marker >= 0;
-}
-
 void BodyResiduals::MakeMarkerBlocks() {
   const ObservationMask seen = SeenMask(in_.recording);
   for (int i = 0; i < seen.rows(); ++i) {
@@ -141,12 +58,12 @@ void BodyResiduals::MakeMarkerBlocks() {
       if (!seen(i, m) || marker_columns_[m].empty()) continue;
       ResidualBlock block{3, {}, true, in_.used(i, m)};
       if (OnStandingFoot(i, m)) {
-        block.parameter_blocks = {first_footing_block_ + placement_.footing[i]};
+        block.parameter_blocks = {unknowns_.FootingBlock(placement_.footing[i])};
         const int last = marker_columns_[m].back().block;
-        if (IsMarkerBlock(last)) block.parameter_blocks.push_back(last);
+        if (unknowns_.IsMarkerBlock(last)) block.parameter_blocks.push_back(last);
       } else {
-        for (const BlockColumns& columns : marker_columns_[m]) {
-          block.parameter_blocks.push_back(columns.block == kWaistBlock ? first_waist_block_ + i
+        for (const BodyUnknowns::Columns& columns : marker_columns_[m]) {
+          block.parameter_blocks.push_back(columns.block == kWaistBlock ? unknowns_.WaistBlock(i)
                                                                         : columns.block);
         }
       }
@@ -164,9 +81,9 @@ void BodyResiduals::MakeTieBlocks() {
     if (footing < 0) continue;
     const int leg = placement_.footings[footing].leg;
     ResidualBlock block{
-        6, {first_waist_block_ + i, first_footing_block_ + footing}, true, in_.tied[i] != 0};
+        6, {unknowns_.WaistBlock(i), unknowns_.FootingBlock(footing)}, true, in_.tied[i] != 0};
     if (leg >= 0) {
-      for (const BlockColumns& columns : leg_columns_[leg]) {
+      for (const BodyUnknowns::Columns& columns : leg_columns_[leg]) {
         if (columns.block != kWaistBlock) block.parameter_blocks.push_back(columns.block);
       }
       if (deflections_[leg].block >= 0) block.parameter_blocks.push_back(deflections_[leg].block);
@@ -178,38 +95,11 @@ void BodyResiduals::MakeTieBlocks() {
 }
 
 void BodyResiduals::MakePriorBlocks() {
-  for (std::size_t u = 0; u < free_.size(); ++u) {
-    if (!std::isfinite(in_.prior[in_.model.parameters[free_[u]].kind])) continue;
-    residual_blocks.push_back({1, {block_of_[u]}, false, true});
+  for (std::size_t u = 0; u < unknowns_.free().size(); ++u) {
+    if (!std::isfinite(in_.prior[in_.model.parameters[unknowns_.free()[u]].kind])) continue;
+    residual_blocks.push_back({1, {unknowns_.block_of(static_cast<int>(u))}, false, true});
     prior_unknowns_.push_back(static_cast<int>(u));
   }
-}
-
-Eigen::VectorXd BodyResiduals::Start() const {
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(first_entry_.back());
-  x.head(scale_.size()) = fixed_(free_).cwiseQuotient(scale_);
-  return x;
-}
-
-Eigen::VectorXd BodyResiduals::ToErrors(const Eigen::VectorXd& x) const {
-  Eigen::VectorXd delta = fixed_;
-  delta(free_) = scale_.cwiseProduct(x.head(scale_.size()));
-  return delta;
-}
-
-Placement BodyResiduals::ToPlacement(const Eigen::VectorXd& x) const {
-  Placement placement = placement_;
-  for (std::size_t f = 0; f < placement.footings.size(); ++f) {
-    placement.T_ref_footing[f] = FootingPose(x, static_cast<int>(f));
-  }
-  Geometry geometry = ApplyErrors(in_.model, fixed_);
-  for (std::size_t i = 0; i < placement.T_ref_waist.size(); ++i) {
-    const Vector6d step =
-        kPoseScale * x.segment<6>(first_entry_[first_waist_block_ + static_cast<int>(i)]);
-    PlaceWaist(placement_.T_ref_waist[i], step, geometry);
-    placement.T_ref_waist[i] = WaistPose(geometry);
-  }
-  return placement;
 }
 
 double BodyResiduals::MarkerSd(int posture, int marker) const {
@@ -219,10 +109,6 @@ double BodyResiduals::MarkerSd(int posture, int marker) const {
   return exact ? kExactMarker : in_.noise.marker_sd[in_.group[posture]];
 }
 
-Vector6d BodyResiduals::PoseAt(int block) const {
-  return kPoseScale * x_.segment<6>(first_entry_[block]);
-}
-
 bool BodyResiduals::OnStandingFoot(int posture, int marker) const {
   if (placement_.empty() || placement_.footing[posture] < 0) return false;
   const int leg = placement_.footings[placement_.footing[posture]].leg;
@@ -230,30 +116,14 @@ bool BodyResiduals::OnStandingFoot(int posture, int marker) const {
   return leg >= 0 && body(in_.model.markers[marker].link) == body(in_.model.legs[leg].link);
 }
 
-Transform BodyResiduals::FootingPose(const Eigen::VectorXd& x, int footing) const {
-  const Vector6d step = kPoseScale * x.segment<6>(first_entry_[first_footing_block_ + footing]);
-  Transform T = placement_.T_ref_footing[footing];
-  T.translation() += T.linear() * step.head<3>();
-  T.linear() = T.linear() * RotationFromVector(step.tail<3>());
-  return T;
-}
-
-Matrix6d BodyResiduals::FootingChart(int footing) const {
-  const Vector6d step = PoseAt(first_footing_block_ + footing);
-  Matrix6d chart = Matrix6d::Identity();
-  chart.topLeftCorner<3, 3>() = RotationFromVector(-step.tail<3>());
-  chart.bottomRightCorner<3, 3>() = LeftJacobian(step.tail<3>()).transpose();
-  return kPoseScale * chart;
-}
-
 void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool /*with_jacobians*/) {
   x_ = x;
-  delta_ = ToErrors(x);
-  geometry_ = ApplyErrors(in_.model, delta_);
+  geometry_ = ApplyErrors(in_.model, unknowns_.ToErrors(x));
   for (int i = 0; i < in_.recording.posture_count(); ++i) {
     if (blocks_of_posture_[i].empty()) continue;
     if (!placement_.empty()) {
-      PlaceWaist(placement_.T_ref_waist[i], PoseAt(first_waist_block_ + i), geometry_);
+      PlaceWaist(placement_.T_ref_waist[i], unknowns_.PoseStep(x, unknowns_.WaistBlock(i)),
+                 geometry_);
     }
     jacobian_.Evaluate(geometry_, in_.recording.q.row(i).transpose(),
                        in_.loads.empty() ? JointLoads() : in_.loads[i].joints);
@@ -277,10 +147,11 @@ void BodyResiduals::EvaluateMarker(int block, int posture, int marker) {
   const auto all = jacobian_.Block(marker);
   RowMajorMatrix& J = jacobians_[block];
   Eigen::Index width = 0;
-  for (const BlockColumns& columns : marker_columns_[marker]) width += columns.scale.size();
+  for (const BodyUnknowns::Columns& columns : marker_columns_[marker])
+    width += columns.scale.size();
   J.resize(3, width);
   Eigen::Index at = 0;
-  for (const BlockColumns& columns : marker_columns_[marker]) {
+  for (const BodyUnknowns::Columns& columns : marker_columns_[marker]) {
     for (std::size_t c = 0; c < columns.source.size(); ++c) {
       J.col(at++) =
           (-weight * columns.scale[static_cast<Eigen::Index>(c)]) * all.col(columns.source[c]);
@@ -292,17 +163,17 @@ void BodyResiduals::EvaluateFootMarker(int block, int posture, int marker) {
   const int footing = placement_.footing[posture];
   const int link = in_.model.legs[placement_.footings[footing].leg].link;
   const MarkerInLink on_foot = PlaceMarker(in_.model, geometry_, marker, link);
-  const Transform T_ref_foot = FootingPose(x_, footing);
+  const Transform T_ref_foot = unknowns_.FootingPose(x_, footing);
   const double weight = 1.0 / MarkerSd(posture, marker);
   residuals_[block] =
       weight * (MarkerPosition(in_.recording, posture, marker) - T_ref_foot * on_foot.position);
   RowMajorMatrix& J = jacobians_[block];
   const bool estimated = residual_blocks[block].parameter_blocks.size() > 1;
-  const BlockColumns& own = marker_columns_[marker].back();
+  const BodyUnknowns::Columns& own = marker_columns_[marker].back();
   J.resize(3, estimated ? 6 + own.scale.size() : 6);
   Eigen::Matrix<double, 3, 6> by_foot;
   by_foot << Eigen::Matrix3d::Identity(), -Skew(on_foot.position);
-  J.leftCols(6) = -weight * T_ref_foot.linear() * by_foot * FootingChart(footing);
+  J.leftCols(6) = -weight * T_ref_foot.linear() * by_foot * unknowns_.FootingChart(x_, footing);
   if (!estimated) return;
   // The marker's own coordinates are the last three columns of its block.
   const Eigen::Matrix3d by_marker = T_ref_foot.linear() * on_foot.axes;
@@ -321,7 +192,7 @@ void BodyResiduals::EvaluateTieBlock(int block, int posture) {
       leg < 0 ? Vector6d(Vector6d::Zero()) : load.WaistLoad(in_.model, geometry_, leg);
   SupportTie tie;
   tie.T_ref_waist = jacobian_.WaistPose();
-  tie.T_ref_foot = FootingPose(x_, footing);
+  tie.T_ref_foot = unknowns_.FootingPose(x_, footing);
   tie.T_ref_foot_predicted = leg < 0 ? tie.T_ref_waist : jacobian_.LegPose(leg);
   if (leg >= 0) tie.deflection = geometry_.leg_compliance[leg].cwiseProduct(wrench);
   const TieResidual at = EvaluateTie(tie);
@@ -337,9 +208,9 @@ void BodyResiduals::EvaluateTieBlock(int block, int posture) {
   Eigen::Index width = 0;
   for (int k : residual_blocks[block].parameter_blocks) width += parameter_blocks[k];
   J.resize(6, width);
-  J.middleCols<6>(6) = at.by_foot * FootingChart(footing);
+  J.middleCols<6>(6) = at.by_foot * unknowns_.FootingChart(x_, footing);
   if (leg < 0) {
-    J.leftCols<6>() = kPoseScale * at.by_waist * jacobian_.WaistScrews();
+    J.leftCols<6>() = BodyUnknowns::kPoseScale * at.by_waist * jacobian_.WaistScrews();
   } else {
     FillTieJacobian(leg, load, wrench, at, J);
   }
@@ -350,7 +221,7 @@ void BodyResiduals::FillTieJacobian(int leg, const PostureLoads& load, const Vec
                                     const TieResidual& at, RowMajorMatrix& J) const {
   const auto& screws = jacobian_.LegScrews(leg);
   Eigen::Index next = 12;  // after waist and footing
-  for (const BlockColumns& columns : leg_columns_[leg]) {
+  for (const BodyUnknowns::Columns& columns : leg_columns_[leg]) {
     const bool waist = columns.block == kWaistBlock;
     Eigen::Index to = waist ? 0 : next;
     for (std::size_t c = 0; c < columns.source.size(); ++c) {
@@ -359,7 +230,7 @@ void BodyResiduals::FillTieJacobian(int leg, const PostureLoads& load, const Vec
     }
     if (!waist) next = to;
   }
-  const Deflection& deflection = deflections_[leg];
+  const BodyUnknowns::Deflection& deflection = deflections_[leg];
   for (std::size_t c = 0; c < deflection.parameters.size(); ++c) {
     const Parameter& parameter = in_.model.parameters[deflection.parameters[c]];
     Vector6d by = Vector6d::Zero();
@@ -395,7 +266,7 @@ void BodyResiduals::Jacobian(int block, int k, Eigen::Map<RowMajorMatrix> jacobi
   }
   jacobian.setZero();
   jacobian(0, prior_unknowns_[block - observation_count] -
-                  first_entry_[residual_blocks[block].parameter_blocks[0]]) = 1.0;
+                  unknowns_.first_entry(residual_blocks[block].parameter_blocks[0])) = 1.0;
 }
 
 }  // namespace elastocal

@@ -7,6 +7,7 @@
 
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/math/random.hpp"
+#include "tests/dense_problem.hpp"
 #include "tests/test_robots.hpp"
 
 namespace elastocal {
@@ -42,39 +43,6 @@ class Residuals : public ::testing::Test {
                          free_,
                          fixed_,
                          placement_};
-
-  Eigen::VectorXd All(const Eigen::VectorXd& x) {
-    problem_.Evaluate(x, false);
-    std::vector<double> all;
-    for (std::size_t i = 0; i < problem_.residual_blocks.size(); ++i) {
-      Eigen::VectorXd r(problem_.residual_blocks[i].size);
-      problem_.Residual(static_cast<int>(i), Eigen::Map<Eigen::VectorXd>(r.data(), r.size()));
-      all.insert(all.end(), r.begin(), r.end());
-    }
-    return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
-  }
-
-  Eigen::MatrixXd Jacobian(const Eigen::VectorXd& x) {
-    problem_.Evaluate(x, true);
-    std::vector<int> start = {0};
-    for (int size : problem_.parameter_blocks) start.push_back(start.back() + size);
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(All(x).size(), x.size());
-    problem_.Evaluate(x, true);
-    int row = 0;
-    for (std::size_t i = 0; i < problem_.residual_blocks.size(); ++i) {
-      const auto& shape = problem_.residual_blocks[i];
-      for (std::size_t k = 0; k < shape.parameter_blocks.size(); ++k) {
-        const int block = shape.parameter_blocks[k];
-        LeastSquaresProblem::RowMajorMatrix part(shape.size, problem_.parameter_blocks[block]);
-        problem_.Jacobian(
-            static_cast<int>(i), static_cast<int>(k),
-            Eigen::Map<LeastSquaresProblem::RowMajorMatrix>(part.data(), part.rows(), part.cols()));
-        J.block(row, start[block], part.rows(), part.cols()) = part;
-      }
-      row += shape.size;
-    }
-    return J;
-  }
 };
 
 TEST_F(Residuals, UnseenMarkersTakeNoPart) {
@@ -99,14 +67,15 @@ TEST_F(Residuals, ErrorsAndUnknownsAreOneToOne) {
 // with a step of 1e-4 leave 1e-8 of truncation and 1e-8 of rounding of these.
 TEST_F(Residuals, JacobianEqualsDifferences) {
   const Eigen::VectorXd x = Random(3).NormalVector(static_cast<Eigen::Index>(free_.size()), 1.0);
-  const Eigen::MatrixXd J = Jacobian(x);
+  const Eigen::MatrixXd J = DenseJacobian(problem_, x);
   constexpr double kStep = 1e-4;
   for (Eigen::Index u = 0; u < x.size(); ++u) {
     Eigen::VectorXd plus = x;
     Eigen::VectorXd minus = x;
     plus[u] += kStep;
     minus[u] -= kStep;
-    const Eigen::VectorXd difference = (All(plus) - All(minus)) / (2.0 * kStep);
+    const Eigen::VectorXd difference =
+        (AllResiduals(problem_, plus) - AllResiduals(problem_, minus)) / (2.0 * kStep);
     EXPECT_LT((difference - J.col(u)).norm(), 1e-7 * J.norm())
         << model_.parameters[free_[static_cast<std::size_t>(u)]].name;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -26,6 +27,7 @@ constexpr double kDegrees = 180.0 / M_PI;
 struct AssessCommand {
   CommonOptions common;
   std::string project, postures;
+  std::vector<std::filesystem::path> recordings;
   std::vector<std::string> chains;
   double marker_sd_mm = 0.2;
   int weakest = 5;
@@ -143,10 +145,47 @@ Json AssessedJson(const Assessed& assessed, int weakest) {
           {"infeasible", broken}};
 }
 
+/// Whether a posture of a recording exercises the chain: in a trial with a chain that ends where
+/// this one does, or in a table of postures.
+bool Exercises(const Recording& recording, Eigen::Index posture, const Project& project,
+               const ChainSetup& setup) {
+  if (recording.trials.empty()) return true;
+  const Trial& trial = recording.trials[recording.trial[posture]];
+  return std::any_of(project.chains.begin(), project.chains.end(), [&](const Chain& chain) {
+    const auto& names = trial.chains;
+    return chain.tip_link == setup.tip_link &&
+           std::find(names.begin(), names.end(), chain.name) != names.end();
+  });
+}
+
+/// The postures of a recording, by chain of the project's design and of their mirror images.
+std::vector<ChainPostures> RecordedPostures(const AssessCommand& command) {
+  const Session session = OpenSession(command.project, command.recordings, command.common.seed);
+  std::vector<ChainSetup> setups;
+  for (const ChainSetup& setup : session.project.motion.chains) {
+    setups.push_back(setup);
+    if (!setup.mirror.empty()) setups.push_back(OtherSide(session.project, setup));
+  }
+  std::vector<ChainPostures> sets;
+  for (const ChainSetup& setup : setups) {
+    ChainPostures set{setup.name, setup.support, {}};
+    for (Eigen::Index i = 0; i < session.recording.q.rows(); ++i) {
+      if (Exercises(session.recording, i, session.project, setup)) {
+        set.q.push_back(session.recording.q.row(i).transpose());
+      }
+    }
+    if (!set.q.empty()) sets.push_back(std::move(set));
+  }
+  return sets;
+}
+
 int Assess(const AssessCommand& command) {
   const Project project = ReadProject(command.project);
   CheckOutputs({command.common.json_file}, {command.project, project.urdf, command.postures});
-  const std::vector<ChainPostures> sets = ReadPostureFile(command.postures, project);
+  ChosenSetups(project, {});  // says so where there is no section `design`
+  const std::vector<ChainPostures> sets = command.postures.empty()
+                                              ? RecordedPostures(command)
+                                              : ReadPostureFile(command.postures, project);
   const bool quiet = command.common.Silent();
   AssessOptions options;
   options.marker_sd = 1e-3 * command.marker_sd_mm;
@@ -168,7 +207,7 @@ int Assess(const AssessCommand& command) {
     Print(quiet, AssessedText(assessed, project.tree, command.weakest) + "\n");
     chains.push_back(AssessedJson(assessed, command.weakest));
   }
-  if (chains.empty()) throw InputError("--chain: " + command.postures + " has none of these");
+  if (chains.empty()) throw InputError("--chain: there are no postures of these chains");
   if (!command.common.json_file.empty()) {
     WriteFile(command.common.json_file, Json{{"chains", chains}}.dump(2) + "\n");
   }
@@ -183,7 +222,12 @@ void AddAssess(CLI::App& app, Action& action) {
       app.add_subcommand("assess", "Say what a set of calibration postures is worth");
   command->add_option("project", options->project, "Project file (YAML) with a section 'design'")
       ->required();
-  command->add_option("--postures", options->postures, "Posture file (YAML)")->required();
+  auto* postures = command->add_option("--postures", options->postures, "Posture file (YAML)");
+  command
+      ->add_option("--recording", options->recordings,
+                   "Instead: a posture table (CSV), or recording folders")
+      ->excludes(postures)
+      ->expected(-1);
   command->add_option("--chain", options->chains, "Only these chains")->expected(-1);
   command
       ->add_option("--marker-sd", options->marker_sd_mm,
@@ -197,7 +241,12 @@ void AddAssess(CLI::App& app, Action& action) {
                     "The compliances of the joints shall be determined too");
   AddCommonOptions(*command, options->common);
   command->footer("Example: elastocal assess models/talos/project.yaml --postures postures.yaml");
-  command->callback([&action, options] { action = [options] { return Assess(*options); }; });
+  command->callback([&action, options] {
+    if (options->postures.empty() && options->recordings.empty()) {
+      throw CLI::RequiredError("--postures or --recording");
+    }
+    action = [options] { return Assess(*options); };
+  });
 }
 
 }  // namespace elastocal::cli

@@ -8,6 +8,7 @@
 
 #include "elastocal/cli/calibration_report.hpp"
 #include "elastocal/cli/calibration_run.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/identifiability/regressor.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/output_files.hpp"
@@ -58,6 +59,7 @@ CalibrationRun Calculate(const Session& session, const CalibrateOptions& options
                       TerminalProgress("cross-validation", options.common.quiet));
   }
   run.trials = session.trials;
+  run.knocks = session.knocks;
   if (session.validation.posture_count() > 0) {
     run.held_out = JudgeOnTrials(run.comparison, session.validation, settings);
   }
@@ -96,6 +98,18 @@ Files DeployableFiles(const CalibrateOptions& options, const Session& session,
           {paths[3], MakeCovarianceCsv(result)}};
 }
 
+/// What tells how it went, whether it can be deployed or not.
+void AddAccount(const CalibrateOptions& options, const Session& session, const CalibrationRun& run,
+                std::vector<InputRecord> inputs, Files& files) {
+  const std::filesystem::path folder = options.output;
+  const std::string summary = MakeSummaryJson(run);
+  files.push_back({folder / "summary.json", summary});
+  files.push_back({folder / "report_data.json", CalibrationDataJson(session, run)});
+  files.push_back(
+      {folder / "runs.json", RunsJson(folder, "calibrate", options.common, std::move(inputs))});
+  if (!options.common.json_file.empty()) files.push_back({options.common.json_file, summary});
+}
+
 }  // namespace
 
 int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
@@ -103,11 +117,13 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
                                                       options.recordings.end());
   const Session session = OpenSession(options.project, recordings, options.common.seed);
-  const std::filesystem::path summary_file = std::filesystem::path(options.output) / "summary.json";
+  const std::filesystem::path folder = options.output;
   const std::vector<std::filesystem::path> deployable_paths =
       DeployablePaths(options, session.project);
   std::vector<std::filesystem::path> outputs = deployable_paths;
-  outputs.insert(outputs.end(), {summary_file, options.common.json_file});
+  outputs.insert(outputs.end(),
+                 {folder / "summary.json", folder / "report_data.json", folder / "runs.json",
+                  folder / "report.html", options.common.json_file});
   std::vector<std::filesystem::path> inputs = {options.project, session.project.urdf};
   for (const std::filesystem::path& recording : recordings) {
     inputs.push_back(recording);
@@ -115,13 +131,12 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   }
   CheckOutputs(outputs, inputs);
 
+  auto inputs_read = StartRecordingInputs(session.project, recordings);
   CalibrationRun run = Calculate(session, options);
   const bool deployable = run.verdict.objections.empty();
   Files files;
   if (deployable) files = DeployableFiles(options, session, run);
-  const std::string summary = MakeSummaryJson(run);
-  files.push_back({summary_file, summary});
-  if (!options.common.json_file.empty()) files.push_back({options.common.json_file, summary});
+  AddAccount(options, session, run, inputs_read.get(), files);
   WriteFiles(files);
   if (!deployable) {
     std::error_code ignored;
@@ -133,6 +148,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   for (const std::string& objection : run.verdict.objections) spdlog::error("{}", objection);
   if (!deployable) spdlog::error("no calibrated URDF is written");
   Print(quiet, fmt::format("\nWritten to {}\n", options.output));
+  WriteFolderReport(folder, quiet);
   if (run_out != nullptr) *run_out = std::move(run);
   return deployable ? kFine : kNotConverged;
 }
@@ -161,8 +177,10 @@ void AddCalibrate(CLI::App& app, Action& action) {
       ->capture_default_str();
   AddCommonOptions(*command, options->common);
   command->footer(
-      "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro, covariance.csv and\n"
-      "summary.json; the last alone, with exit code 4, where the result is not to be trusted.\n"
+      "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro and covariance.csv, and, "
+      "also\n"
+      "where the result is not to be trusted (exit code 4), summary.json, report_data.json,\n"
+      "runs.json and report.html.\n"
       "Example: elastocal calibrate project.yaml --recording postures.csv --kfold 10 -o out");
   command->callback(
       [&action, options] { action = [options] { return RunCalibration(*options); }; });

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -35,6 +36,9 @@ void AddCommonOptions(CLI::App& command, CommonOptions& options);
 /// What a parsed command line is to do; the result is the exit code.
 using Action = std::function<int()>;
 
+/// Parses and runs a command line (without the program's name). Gives the exit code.
+int RunCommandLine(const std::vector<std::string>& arguments);
+
 /// Each adds its command; `action` is set when the command is on the command line.
 void AddInspect(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
@@ -44,6 +48,7 @@ void AddDemo(CLI::App& app, Action& action);
 void AddSimulate(CLI::App& app, Action& action);
 void AddDesign(CLI::App& app, Action& action);
 void AddAssess(CLI::App& app, Action& action);
+void AddReport(CLI::App& app, Action& action);
 void AddPlan(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

@@ -1,19 +1,14 @@
-#include <cmath>
 #include <filesystem>
 #include <memory>
-#include <set>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "elastocal/cli/calibration_run.hpp"
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/quick_demo.hpp"
 #include "elastocal/cli/session.hpp"
-#include "elastocal/cli/text_table.hpp"
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/posture_table.hpp"
-#include "elastocal/math/input_error.hpp"
-#include "elastocal/simulation/synthetic_recording.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -21,7 +16,8 @@ namespace {
 struct DemoOptions {
   CommonOptions common;
   std::string output = "elastocal_demo";
-  int postures = 60;
+  int postures = 0;  ///< of each chain; 0: as many as it takes
+  bool quick = false;
 };
 
 /// The embedded models: where they are installed beside the program, or the source tree's.
@@ -33,90 +29,61 @@ std::filesystem::path ModelsFolder() {
   return ELASTOCAL_SOURCE_MODELS;
 }
 
-/// Markers of the whole upper body: on all links that no leg carries.
-std::vector<std::string> UpperBodyMarkers(const Project& project) {
-  std::set<std::string> legs;
-  for (const Chain& chain : project.chains) {
-    if (!chain.name.starts_with("leg")) continue;
-    for (const std::string& name : ChainMarkers(project, chain)) legs.insert(name);
+using CommandLine = std::vector<std::string>;
+
+/// From the robot's description to a calibrated one: the commands that a user would give.
+std::vector<CommandLine> CompleteChain(const std::string& project, const DemoOptions& options) {
+  const auto in = [&](const char* name) {
+    return (std::filesystem::path(options.output) / name).string();
+  };
+  const std::string seed = std::to_string(options.common.seed.value_or(1));
+  CommandLine design = {"design", project, "-o", in("postures.yaml"), "--seed", seed};
+  if (options.postures > 0) {
+    design.insert(design.end(), {"--postures", std::to_string(options.postures)});
   }
-  std::vector<std::string> names;
-  for (const Marker& marker : project.markers) {
-    if (!legs.contains(marker.name)) names.push_back(marker.name);
+  std::vector<CommandLine> chain = {
+      design,
+      {"plan", project, "--postures", in("postures.yaml"), "-o", in("motion.csv")},
+      {"simulate", project, "--motion", in("motion.csv"), "-o", in("recording"), "--seed", seed}};
+  CommandLine calibrate = {"calibrate",    project,       "-o",
+                           options.output, "--recording", in("recording")};
+  for (const char* kind : {"sine", "random"}) {
+    const std::string motion = in((std::string(kind) + ".csv").c_str());
+    const std::string recording = in((std::string("recording_") + kind).c_str());
+    chain.push_back({"plan", project, "--validation", kind, "-o", motion, "--seed", seed});
+    chain.push_back(
+        {"simulate", project, "--motion", motion, "--kind", kind, "-o", recording, "--seed", seed});
+    calibrate.push_back(recording);
   }
-  return names;
+  chain.push_back(calibrate);
+  return chain;
 }
 
-/// A robot with errors of the size of the paper's Table 1, seen from a camera frame a few metres
-/// away, its markers a few millimetres from where they were meant to be.
-struct Truth {
-  ErrorModel model;
-  Eigen::VectorXd delta;
-};
-
-Truth DrawTruth(const Project& project, std::uint64_t seed) {
-  constexpr double kDegree = M_PI / 180.0;
-  Truth truth;
-  truth.model = SelectMarkers(MakeErrorModel(project.tree, project.markers, project.placement),
-                              UpperBodyMarkers(project));
-  truth.model.T_ref_waist = Transform(Eigen::Translation3d(1.2, -0.8, 1.0)) * RotZ(2.0);
-  using Kind = ParameterKind;
-  truth.delta =
-      DrawErrors(truth.model, FindBaseParameters(truth.model, project.identifiability).kept,
-                 {{Kind::kTheta, 1.0 * kDegree},
-                  {Kind::kR, 1e-3},
-                  {Kind::kD, 1e-3},
-                  {Kind::kB, 1e-3},
-                  {Kind::kAlpha, 0.3 * kDegree},
-                  {Kind::kBeta, 0.3 * kDegree},
-                  {Kind::kGamma, 0.3 * kDegree},
-                  {Kind::kMarker, 5e-3}},
-                 seed);
-  return truth;
+int RunCompleteChain(const std::string& project, const DemoOptions& options) {
+  for (CommandLine command : CompleteChain(project, options)) {
+    if (options.common.Silent()) command.push_back("--quiet");
+    Print(options.common.Silent(), fmt::format("\n$ elastocal {}\n", fmt::join(command, " ")));
+    const int exit_code = RunCommandLine(command);
+    if (exit_code != kFine) return exit_code;
+  }
+  return kFine;
 }
 
-std::string TruthTable(const Truth& truth, const CalibrationResult& result) {
-  TextTable table({"parameter", "unit", "truth", "estimate", "sd", "error / sd"});
-  int inside = 0;
-  int count = 0;
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    const Parameter& parameter = result.model.parameters[i];
-    if (parameter.joint < 0 || result.status[i] != ParameterStatus::kEstimated) continue;
-    const double true_value = truth.delta[FindParameter(truth.model.parameters, parameter.name)];
-    const double error = result.delta[i] - true_value;
-    inside += std::abs(error) <= result.interval_factor * result.sd[i] ? 1 : 0;
-    ++count;
-    table.Add({parameter.name, UserUnit(parameter),
-               fmt::format("{:.4f}", InUserUnits(parameter, true_value)),
-               fmt::format("{:.4f}", InUserUnits(parameter, result.delta[i])),
-               fmt::format("{:.4f}", InUserUnits(parameter, result.sd[i])),
-               fmt::format("{:+.2f}", error / result.sd[i])});
+/// The last line: what to look at.
+void PointToReport(const DemoOptions& options) {
+  const std::filesystem::path report =
+      std::filesystem::absolute(std::filesystem::path(options.output) / "report.html");
+  if (std::filesystem::exists(report)) {
+    Print(options.common.Silent(), fmt::format("\nOpen in a browser: {}\n", report.string()));
   }
-  return "\nTruth against estimate\n" + table.Render() +
-         fmt::format("  {} of {} joint parameters lie within their 95 % interval\n", inside, count);
 }
 
 int Demo(const DemoOptions& options) {
-  const std::filesystem::path source = ModelsFolder() / "talos" / "project.yaml";
-  const std::filesystem::path folder = options.output;
-  const Project project = ReadProject(source);
-  const std::uint64_t seed = options.common.seed.value_or(1);
-  const Truth truth = DrawTruth(project, seed);
-  const Recording recording = MakeSyntheticRecording(
-      truth.model, truth.delta, {.postures = options.postures, .seed = seed + 1});
-  WritePostureTable(folder / "recording.csv", recording, project.tree);
-  Print(
-      options.common.Silent(),
-      fmt::format("A TALOS with known errors, {} random postures of its upper body, 0.2 mm marker "
-                  "noise: {}\n\n",
-                  options.postures, (folder / "recording.csv").string()));
-
-  CalibrateOptions calibrate{
-      options.common, source.string(), folder.string(), {(folder / "recording.csv").string()}, 5,
-      "origin"};
-  CalibrationRun run;
-  const int exit_code = RunCalibration(calibrate, &run);
-  Print(options.common.Silent(), TruthTable(truth, run.comparison.best()));
+  const std::string project = (ModelsFolder() / "talos" / "project.yaml").string();
+  QuickDemoOptions quick{options.common, project, options.output};
+  if (options.postures > 0) quick.postures = options.postures;
+  const int exit_code = options.quick ? QuickDemo(quick) : RunCompleteChain(project, options);
+  PointToReport(options);
   return exit_code;
 }
 
@@ -125,14 +92,19 @@ int Demo(const DemoOptions& options) {
 void AddDemo(CLI::App& app, Action& action) {
   auto options = std::make_shared<DemoOptions>();
   CLI::App* command = app.add_subcommand(
-      "demo", "Calibrate the embedded humanoid from a generated recording with known truth");
-  command->add_option("-o,--output", options->output, "Folder for the recording and the results")
+      "demo",
+      "The complete chain on a virtual humanoid: design, plan, simulate, calibrate, validate");
+  command->add_option("-o,--output", options->output, "Folder for all files")
       ->capture_default_str();
-  command->add_option("--postures", options->postures, "Number of random postures")
-      ->check(CLI::Range(10, 10000))
-      ->capture_default_str();
+  command
+      ->add_option("--postures", options->postures,
+                   "Postures of each chain; default: as many as it takes (--quick: 60 in all)")
+      ->check(CLI::Range(4, 10000));
+  command->add_flag("--quick", options->quick,
+                    "Only estimate, from a generated table of random postures of the upper body, "
+                    "and show truth against estimate");
   AddCommonOptions(*command, options->common);
-  command->footer("Example: elastocal demo --seed 7");
+  command->footer("Example: elastocal demo --quick --seed 7");
   command->callback([&action, options] { action = [options] { return Demo(*options); }; });
 }
 

@@ -1,6 +1,7 @@
 #include "elastocal/posture/design.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/design_problem.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/curves_file.hpp"
@@ -26,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 struct DesignCommand {
   CommonOptions common;
-  std::string project, output, criterion = "O1";
+  std::string project, output, criterion = "O1", algorithm = "nocp";
   std::vector<std::string> chains;
   int postures = 0, max_postures = PlateauRule().max_postures, block = 4;
   double plateau = PlateauRule().tolerance;
@@ -43,17 +45,25 @@ double Seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+constexpr std::array kAlgorithms = {DesignAlgorithm::kNocp, DesignAlgorithm::kCocp,
+                                    DesignAlgorithm::kIoops, DesignAlgorithm::kExchange,
+                                    DesignAlgorithm::kRandom};
+
 DesignOptions MakeOptions(const DesignCommand& command) {
   DesignOptions options;
   options.criterion = static_cast<Criterion>(command.criterion[1] - '1');
   options.certify = !command.no_certificate;
   options.seed = command.common.seed.value_or(1);
+  for (DesignAlgorithm algorithm : kAlgorithms) {
+    if (command.algorithm == AlgorithmName(algorithm)) options.algorithm = algorithm;
+  }
   options.nocp.block = command.block;
   options.nocp.plateau.tolerance = command.plateau;
   options.nocp.plateau.max_postures = command.max_postures;
   if (command.postures > 0) {
     options.nocp.plateau.tolerance = -1.0;
     options.nocp.plateau.max_postures = command.postures;
+    options.postures = command.postures;
   }
   return options;
 }
@@ -63,7 +73,7 @@ const char* StatusText(DesignResult::Status status) {
     case DesignResult::Status::kPlateau:
       return "plateau";
     case DesignResult::Status::kMaxPostures:
-      return "largest number";
+      return "number";
     case DesignResult::Status::kNoPosture:
       return "no feasible posture";
     default:
@@ -107,7 +117,7 @@ void DesignSides(const Project& project, const ChainSetup& setup, const DesignCo
       DesignChain(*chain.model, chain.base.kept, project.motion, setup, options);
   programme.designed.push_back({design, Seconds() - start});
   for (std::size_t i = 0; i < design.sizes.size(); ++i) {
-    programme.points.push_back({"nocp", setup.name, design.sizes[i], design.indices[i]});
+    programme.points.push_back({options.algorithm, setup.name, design.sizes[i], design.indices[i]});
   }
   if (design.index == 0.0) return;
   if (command.curves) {
@@ -166,8 +176,8 @@ Json DesignJson(const std::vector<Designed>& designed, const Project& project,
 std::string CurvesCsv(const std::vector<CurvePoint>& points, std::uint64_t seed) {
   std::string text = "algorithm,chain,seed,postures,o1\n";
   for (const CurvePoint& point : points) {
-    text += fmt::format("{},{},{},{},{:.9g}\n", point.algorithm, point.chain, seed, point.postures,
-                        point.index);
+    text += fmt::format("{},{},{},{},{:.9g}\n", AlgorithmName(point.algorithm), point.chain, seed,
+                        point.postures, point.index);
   }
   return text;
 }
@@ -176,10 +186,10 @@ std::string CurvesSvg(const std::vector<CurvePoint>& points, const std::string& 
   std::vector<Curve> curves;
   for (const CurvePoint& point : points) {
     auto found = std::find_if(curves.begin(), curves.end(), [&](const Curve& curve) {
-      return curve.name == point.algorithm && curve.panel == point.chain;
+      return curve.name == AlgorithmName(point.algorithm) && curve.panel == point.chain;
     });
     if (found == curves.end()) {
-      curves.push_back({point.algorithm, point.chain, {}, {}});
+      curves.push_back({AlgorithmName(point.algorithm), point.chain, {}, {}});
       found = curves.end() - 1;
     }
     found->x.push_back(point.postures);
@@ -214,6 +224,9 @@ int Design(const DesignCommand& command) {
                                             Beside(command.output, "_curves.svg")};
   CheckOutputs({outputs.begin(), outputs.end()}, {command.project, project.urdf});
   CheckOutputs({command.common.json_file}, {command.project, project.urdf});
+  if (command.algorithm == "exchange" && command.criterion != "O1") {
+    throw InputError("--algorithm exchange is for --criterion O1");
+  }
   const bool quiet = command.common.Silent();
   const DesignOptions options = MakeOptions(command);
   Programme programme;
@@ -248,6 +261,7 @@ int Design(const DesignCommand& command) {
                            total, static_cast<double>(total) * 5.0 / 60.0, outputs[0],
                            fmt::join(outputs.begin() + 1, outputs.end(), ", ")));
   PrintWarnings(warnings);
+  WritePlanningReport(command.output, "design", command.common, project, {});
   return kFine;
 }
 
@@ -275,6 +289,11 @@ void AddDesign(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--block", options->block, "Postures added at a time (N_p)")
       ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command
+      ->add_option("--algorithm", options->algorithm,
+                   "nocp finds out how many postures it takes; the others take --postures (24)")
+      ->check(CLI::IsMember({"nocp", "cocp", "ioops", "exchange", "random"}))
       ->capture_default_str();
   command->add_option("--criterion", options->criterion, "Observability index")
       ->check(CLI::IsMember({"O1", "O2", "O3", "O4", "O5"}))

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal::cli {
@@ -37,6 +38,7 @@ std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Run(int argc, char** argv) {
+  SetCommandLine(argc, argv);
   CLI::App app("Elasto-geometric calibration of humanoid robots from marker positions.");
   app.name("elastocal");
   app.set_version_flag("--version", ELASTOCAL_VERSION);
@@ -53,6 +55,7 @@ int Run(int argc, char** argv) {
   AddSimulate(app, action);
   AddDesign(app, action);
   AddAssess(app, action);
+  AddReport(app, action);
   AddPlan(app, action);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {
     spdlog::error("{} (elastocal --help lists the commands)", unknown);
@@ -72,6 +75,16 @@ int Run(int argc, char** argv) {
 }
 
 }  // namespace
+
+int RunCommandLine(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"elastocal"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  return Run(static_cast<int>(words.size()), argv.data());
+}
+
 }  // namespace elastocal::cli
 
 int main(int argc, char** argv) {

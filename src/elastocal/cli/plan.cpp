@@ -10,6 +10,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/plan_problem.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/output_files.hpp"
@@ -195,6 +196,11 @@ int Plan(const PlanCommand& command) {
   if (!command.common.json_file.empty()) {
     WriteFile(command.common.json_file, json.dump(2) + "\n");
   }
+  const std::filesystem::path output(command.output);
+  WriteFile(output.parent_path() / (output.stem().string() + "_margins.json"), json.dump(2) + "\n");
+  std::vector<std::filesystem::path> inputs;
+  if (!command.postures.empty()) inputs.push_back(command.postures);
+  WritePlanningReport(output, "plan", command.common, project, inputs);
   const bool broken = !command.unbalanced && Broken(margins, robot->limits).has_value();
   return broken ? kNotConverged : kFine;
 }

@@ -8,7 +8,6 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "elastocal/calibration/knocks.hpp"
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/io/summary.hpp"
@@ -118,9 +117,10 @@ std::vector<LabelCluster> SeenClusters(const Project& project, const Recording& 
 
 /// Takes knocked clusters as two, and says so.
 void SplitKnocked(Session& session) {
-  const std::vector<Knock> knocks =
+  session.knocks =
       FindKnocks(session.model, session.recording, session.base,
                  SeenClusters(session.project, session.recording), session.project.calibration);
+  const std::vector<Knock>& knocks = session.knocks;
   if (knocks.empty()) return;
   for (const Knock& knock : knocks) {
     session.warnings.push_back(fmt::format(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/calibration/knocks.hpp"
 #include "elastocal/io/posture_table.hpp"
 #include "elastocal/io/project.hpp"
 #include "elastocal/measurement/trial_summary.hpp"
@@ -23,6 +24,7 @@ struct Session {
   std::vector<std::optional<Transform>> recording_truth, validation_truth;
   ErrorModel model;  ///< with the recording's markers
   BaseParameters base;
+  std::vector<Knock> knocks;          ///< found in the recording; their clusters are taken as two
   std::vector<std::string> warnings;  ///< of reading, and of special marker positions
 };
 

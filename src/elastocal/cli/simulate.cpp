@@ -16,6 +16,7 @@
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/io/output_files.hpp"
+#include "elastocal/io/posture_file.hpp"
 #include "elastocal/io/simulation_settings.hpp"
 #include "elastocal/io/truth_file.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -139,6 +140,13 @@ VirtualExperimentOptions Settings(const SimulateOptions& options) {
   return settings;
 }
 
+/// A list of postures as a table, or a posture file.
+JointMotion ReadPostures(const std::string& file, const Project& project) {
+  const std::string extension = std::filesystem::path(file).extension().string();
+  if (extension != ".yaml" && extension != ".yml") return ReadPostureList(file, project);
+  return ListPostures(ReadPostureFile(file, project), file);
+}
+
 /// The experiment with the trials that it plans or with those that the user gives.
 VirtualExperiment Prepare(const SimulateOptions& options, const Project& project) {
   VirtualExperimentOptions settings = Settings(options);
@@ -149,7 +157,7 @@ VirtualExperiment Prepare(const SimulateOptions& options, const Project& project
   }
   const std::string& file = options.motion.empty() ? options.postures : options.motion;
   const JointMotion motion =
-      options.motion.empty() ? ReadPostureList(file, project) : ReadMotion(file, project);
+      options.motion.empty() ? ReadPostures(file, project) : ReadMotion(file, project);
   GivenMotionOptions given;
   given.name = std::filesystem::path(file).stem().string();
   given.kind = TrialKindNamed(options.kind);
@@ -161,12 +169,26 @@ VirtualExperiment Prepare(const SimulateOptions& options, const Project& project
       robot, settings, PlanGivenMotion(robot.tree, robot.chains, motion, settings.motion, given));
 }
 
+/// No file that is written may replace one that was read.
+void CheckSimulated(const SimulateOptions& options, const Project& project,
+                    const VirtualExperiment& experiment, const std::vector<std::size_t>& chosen) {
+  const std::filesystem::path folder = options.output;
+  std::vector<std::filesystem::path> outputs = {options.common.json_file,
+                                                folder / "experiment.yaml", folder / "truth.yaml"};
+  for (std::size_t i : chosen) {
+    for (const char* end : {".tsv", ".csv", "_waist.csv"}) {
+      outputs.push_back(folder / (experiment.trials[i].name + end));
+    }
+  }
+  CheckOutputs(outputs,
+               {options.project, project.urdf, options.settings, options.postures, options.motion});
+}
+
 int Simulate(const SimulateOptions& options) {
   const Project project = ReadProject(options.project);
-  CheckOutputs({options.common.json_file},
-               {options.project, project.urdf, options.settings, options.postures, options.motion});
   Played play{Prepare(options, project)};
   const std::vector<std::size_t> chosen = Chosen(play.experiment, options.trials);
+  CheckSimulated(options, project, play.experiment, chosen);
   if (options.matched) {
     play.matched = Match(play.experiment, project, chosen);
     play.experiment = play.matched->plan;
@@ -209,7 +231,7 @@ void AddSimulate(CLI::App& app, Action& action) {
       ->capture_default_str();
   auto* postures = command->add_option(
       "--postures", options->postures,
-      "Plays these postures instead, move_s + rest_s apart (CSV; docs/formats.md, Motion)");
+      "Plays these postures instead, move_s + rest_s apart (CSV or a posture file, YAML)");
   command
       ->add_option("--motion", options->motion,
                    "Plays this joint trajectory instead (CSV with time)")

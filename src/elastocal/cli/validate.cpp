@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/calibration_file.hpp"
@@ -21,6 +22,7 @@ namespace {
 struct ValidateOptions {
   CommonOptions common;
   std::string project, calibration, recording;
+  std::string output;  ///< folder; empty: none
 };
 
 /// A calibration means something only for the robot description that it was made with.
@@ -71,11 +73,33 @@ Json MakeJson(const Session& session, const TransferValidation& validation,
   return json;
 }
 
+std::vector<std::filesystem::path> OutputFiles(const ValidateOptions& options) {
+  std::vector<std::filesystem::path> files = {options.common.json_file};
+  if (options.output.empty()) return files;
+  for (const char* name : {"validation.json", "runs.json", "report.html"}) {
+    files.push_back(std::filesystem::path(options.output) / name);
+  }
+  return files;
+}
+
+/// The results where they are wanted, and the report of the folder.
+void Write(const ValidateOptions& options, const Session& session, const std::string& json) {
+  if (!options.common.json_file.empty()) WriteFile(options.common.json_file, json);
+  if (options.output.empty()) return;
+  const std::filesystem::path folder = options.output;
+  std::vector<InputRecord> inputs =
+      StartRecordingInputs(session.project, {options.recording, options.calibration}).get();
+  WriteFiles(
+      {{folder / "validation.json", json},
+       {folder / "runs.json", RunsJson(folder, "validate", options.common, std::move(inputs))}});
+  WriteFolderReport(folder, options.common.Silent());
+}
+
 int Validate(const ValidateOptions& options) {
   const StoredCalibration stored = ReadCalibration(options.calibration);
   Session session = OpenSession(options.project, {options.recording}, options.common.seed);
   CheckRobot(stored, session, options.calibration);
-  CheckOutputs({options.common.json_file},
+  CheckOutputs(OutputFiles(options),
                {options.project, session.project.urdf, options.recording, options.calibration});
   const TransferValidation validation =
       ValidateTransfer(session.model, session.recording, session.base, session.project.calibration,
@@ -107,11 +131,9 @@ int Validate(const ValidateOptions& options) {
   PrintWarnings(session.warnings);
   if (!converged) spdlog::error("the fit of waist and markers has not converged");
   if (!better) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
-  if (!options.common.json_file.empty()) {
-    const std::string status = !converged ? "not converged" : better ? "better" : "not better";
-    WriteFile(options.common.json_file,
-              MakeJson(session, validation, status, options.calibration).dump(2) + "\n");
-  }
+  const std::string status = !converged ? "not converged" : better ? "better" : "not better";
+  Write(options, session,
+        MakeJson(session, validation, status, options.calibration).dump(2) + "\n");
   return converged && better ? kFine : kNotConverged;
 }
 
@@ -129,10 +151,12 @@ void AddValidate(CLI::App& app, Action& action) {
       ->add_option("--recording", options->recording,
                    "Table of static postures (CSV), or a folder with experiment.yaml")
       ->required();
+  command->add_option("-o,--output", options->output,
+                      "Folder for validation.json and a report with it: that of the calibration");
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal validate project.yaml --calibration out/calibration.yaml "
-      "--recording other_day.csv");
+      "--recording other_day.csv -o out");
   command->callback([&action, options] { action = [options] { return Validate(*options); }; });
 }
 

@@ -107,4 +107,21 @@ std::vector<ChainPostures> ParsePostureFile(const std::string& text, const std::
   return chains;
 }
 
+JointMotion ListPostures(const std::vector<ChainPostures>& chains, const std::string& source) {
+  JointMotion motion;
+  motion.source = source;
+  std::vector<Eigen::VectorXd> rows;
+  for (const ChainPostures& chain : chains) {
+    for (const Eigen::VectorXd& q : chain.q) {
+      rows.push_back(q);
+      motion.support.push_back(chain.support);
+    }
+  }
+  motion.q.resize(static_cast<Eigen::Index>(rows.size()), rows.empty() ? 0 : rows[0].size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    motion.q.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
+  }
+  return motion;
+}
+
 }  // namespace elastocal

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastocal/io/project.hpp"
+#include "elastocal/robot/joint_motion.hpp"
 
 namespace elastocal {
 
@@ -26,5 +27,8 @@ std::vector<ChainPostures> ReadPostureFile(const std::filesystem::path& file,
                                            const Project& project);
 std::vector<ChainPostures> ParsePostureFile(const std::string& text, const std::string& source,
                                             const Project& project);
+
+/// The postures one after the other, for those that play lists of postures.
+JointMotion ListPostures(const std::vector<ChainPostures>& chains, const std::string& source);
 
 }  // namespace elastocal

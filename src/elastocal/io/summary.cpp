@@ -148,6 +148,13 @@ void AddTrials(const CalibrationRun& run, Json& json) {
   for (const Slip& slip : result.slips) {
     json["slips"].push_back({{"posture", slip.posture}, {"distance_mm", 1e3 * slip.distance}});
   }
+  json["knocks"] = Json::array();
+  for (const Knock& knock : run.knocks) {
+    json["knocks"].push_back({{"cluster", knock.cluster},
+                              {"last_before", knock.last_before},
+                              {"posture", knock.posture},
+                              {"distance_mm", 1e3 * knock.distance}});
+  }
 }
 
 }  // namespace

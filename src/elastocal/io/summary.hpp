@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/calibration/knocks.hpp"
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_summary.hpp"
@@ -21,6 +22,7 @@ struct CalibrationRun {
   ModelComparison comparison;
   CrossValidation cross_validation;  ///< folds 0: not asked for
   std::vector<TrialSummary> trials;  ///< of recording folders
+  std::vector<Knock> knocks;         ///< whose clusters are taken as two
   std::optional<HeldOut> held_out;   ///< where trials for validation were recorded
   ByModel<double> waist_error = {};  ///< m, see WaistError; NaN where the truth is unknown
   Verdict verdict;

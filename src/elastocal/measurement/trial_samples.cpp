@@ -119,8 +119,10 @@ class TrialSampler {
                     trajectories_.rate_hz, least_rate);
       throw InputError(trajectories_.source + text);
     }
+    summary().signal = TakeExcerpt(trajectories_);
     summary().labels = CorrectLabels(TakeClusters(), options_.labels, trajectories_);
     summary().smoothing = SmoothTrajectories(options_.smoothing, trajectories_);
+    AddFiltered(trajectories_, summary().signal);
     smoothed_log_ = SmoothLog(log_, options_.smoothing);
   }
 
@@ -171,6 +173,8 @@ class TrialSampler {
     result_.wrenches.resize(count, log_.wrenches.cols());
     for (Eigen::Index i = 0; i < count; ++i) {
       const std::vector<int>& frames = postures[static_cast<std::size_t>(i)];
+      std::vector<int>& chosen = summary().signal.chosen;
+      chosen.insert(chosen.end(), frames.begin(), frames.end());
       result_.frames.push_back(static_cast<int>(frames.size()));
       AverageMarkers(frames, i);
       AverageLog(frames, i);

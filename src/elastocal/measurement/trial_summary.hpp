@@ -8,6 +8,7 @@
 #include "elastocal/measurement/gaps.hpp"
 #include "elastocal/measurement/labels.hpp"
 #include "elastocal/measurement/recording.hpp"
+#include "elastocal/measurement/signal_excerpt.hpp"
 #include "elastocal/measurement/stable_samples.hpp"
 #include "elastocal/measurement/torque_sensors.hpp"
 
@@ -33,6 +34,7 @@ struct TrialSummary {
   int outside_log = 0;                        ///< frames at which the robot's log has nothing
   double log_begin_s = 0.0, log_end_s = 0.0;  ///< of the log, in camera time
   std::optional<StableSamples> rests;         ///< not of refused trials
+  SignalExcerpt signal;                       ///< without samples in refused trials
 
   std::vector<std::string> markers;        ///< that take part in the trial and are in the file
   std::vector<MarkerSmoothing> smoothing;  ///< as `markers`

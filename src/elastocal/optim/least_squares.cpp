@@ -15,21 +15,22 @@ namespace {
 /// weakly determined directions crept for as many steps as it took the radius to grow.
 constexpr double kInitialTrustRegionRadius = 1e8;
 
-/// Tells the problem of every new point before Ceres asks for residuals.
+/// Tells the problem of every new point before Ceres asks for residuals. With derivatives at once:
+/// most steps are taken, and then they are asked for.
 class PointCallback : public ceres::EvaluationCallback {
  public:
   PointCallback(LeastSquaresProblem& problem, const Eigen::VectorXd& x)
       : problem_(problem), x_(x) {}
 
-  void PrepareForEvaluation(bool with_jacobians, bool new_point) override {
-    if (new_point || (with_jacobians && !has_jacobians_)) problem_.Evaluate(x_, with_jacobians);
-    has_jacobians_ = with_jacobians || (has_jacobians_ && !new_point);
+  void PrepareForEvaluation(bool /*with_jacobians*/, bool new_point) override {
+    if (new_point || !evaluated_) problem_.Evaluate(x_, true);
+    evaluated_ = true;
   }
 
  private:
   LeastSquaresProblem& problem_;
   const Eigen::VectorXd& x_;
-  bool has_jacobians_ = false;
+  bool evaluated_ = false;
 };
 
 class BlockCost : public ceres::CostFunction {

@@ -152,8 +152,12 @@ Linearisation Linearise(LeastSquaresProblem& problem, const Eigen::VectorXd& x,
     const Eigen::MatrixXd own = assembler.Assemble(nuisance_of_group[g], group);
     const Eigen::VectorXd activity = Activity(problem, group);
     if (own.cols() > 0) Eliminate(own, activity, group);
-    linearisation.information(group.columns, group.columns) +=
-        group.jacobian.transpose() * activity.asDiagonal() * group.jacobian;
+    const Eigen::MatrixXd active = activity.asDiagonal() * group.jacobian;
+    const auto width = active.cols();
+    Eigen::MatrixXd own_information = Eigen::MatrixXd::Zero(width, width);
+    own_information.selfadjointView<Eigen::Lower>().rankUpdate(active.transpose());
+    own_information.triangularView<Eigen::StrictlyUpper>() = own_information.transpose();
+    linearisation.information(group.columns, group.columns) += own_information;
   }
   return linearisation;
 }

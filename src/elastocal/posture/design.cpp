@@ -28,13 +28,35 @@ std::uint64_t Derived(std::uint64_t seed, int stream) {
   return seed * 1000003u + static_cast<std::uint64_t>(stream);
 }
 
+DesignResult Run(PostureProblem& problem, const DesignOptions& options) {
+  if (options.algorithm == DesignAlgorithm::kNocp) return Nocp(problem, options.seed, options.nocp);
+  const std::uint64_t seed = Derived(options.seed, options.postures);
+  if (options.algorithm == DesignAlgorithm::kExchange) {
+    return ExchangeDesign(problem, options.postures, seed);
+  }
+  DesignResult result = RandomDesign(problem, options.postures, seed);
+  if (result.indices[0] == 0.0 || options.algorithm == DesignAlgorithm::kRandom) return result;
+  if (options.algorithm == DesignAlgorithm::kCocp) {
+    Cocp(problem, result.set);
+  } else {
+    Ioops(problem, result.set, Derived(options.seed, -options.postures));
+  }
+  result.indices = {result.set.Index(problem.criterion)};
+  return result;
+}
+
 }  // namespace
+
+const char* AlgorithmName(DesignAlgorithm algorithm) {
+  static constexpr const char* kNames[] = {"nocp", "cocp", "ioops", "exchange", "random"};
+  return kNames[static_cast<int>(algorithm)];
+}
 
 ChainDesign DesignChain(const ErrorModel& model, const std::vector<int>& base,
                         const MotionSetup& motion, const ChainSetup& chain,
                         const DesignOptions& options) {
   PostureProblem problem = MakeChainProblem(model, base, motion, chain, options.criterion);
-  const DesignResult result = Nocp(problem, options.seed, options.nocp);
+  const DesignResult result = Run(problem, options);
   ChainDesign design;
   design.setup = chain;
   design.status = result.status;
@@ -93,23 +115,16 @@ std::vector<CurvePoint> CompareAlgorithms(const ErrorModel& model, const std::ve
                                           const DesignOptions& options) {
   PostureProblem problem = MakeChainProblem(model, base, motion, chain, options.criterion);
   std::vector<CurvePoint> points;
-  const auto add = [&](const char* algorithm, const PostureSet& set) {
-    points.push_back({algorithm, chain.name, set.size(), set.Index(options.criterion)});
-  };
   for (int size : sizes) {
-    const DesignResult random = RandomDesign(problem, size, Derived(options.seed, size));
-    if (random.status == DesignResult::Status::kNoPosture) break;
-    add("random", random.set);
-    if (options.criterion == Criterion::kO1) {
-      add("exchange", ExchangeDesign(problem, size, Derived(options.seed, size)).set);
+    for (DesignAlgorithm algorithm : {DesignAlgorithm::kCocp, DesignAlgorithm::kIoops,
+                                      DesignAlgorithm::kExchange, DesignAlgorithm::kRandom}) {
+      if (algorithm == DesignAlgorithm::kExchange && options.criterion != Criterion::kO1) continue;
+      DesignOptions one = options;
+      one.algorithm = algorithm;
+      one.postures = size;
+      const DesignResult result = Run(problem, one);
+      points.push_back({algorithm, chain.name, size, result.set.Index(options.criterion)});
     }
-    if (random.indices[0] == 0.0) continue;  // too few to start from
-    PostureSet cocp = random.set;
-    Cocp(problem, cocp, options.nocp.cocp);
-    add("cocp", cocp);
-    PostureSet ioops = random.set;
-    Ioops(problem, ioops, Derived(options.seed, -size));
-    add("ioops", ioops);
   }
   return points;
 }

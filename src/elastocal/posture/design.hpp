@@ -11,7 +11,15 @@
 
 namespace elastocal {
 
+/// How postures are chosen. All but NOCP take a number of postures, and all but random sets and
+/// NOCP start from random feasible ones.
+enum class DesignAlgorithm { kNocp, kCocp, kIoops, kExchange, kRandom };
+
+const char* AlgorithmName(DesignAlgorithm algorithm);  ///< nocp, cocp, ioops, exchange, random
+
 struct DesignOptions {
+  DesignAlgorithm algorithm = DesignAlgorithm::kNocp;
+  int postures = 24;  ///< of algorithms other than NOCP
   NocpOptions nocp = {};
   Criterion criterion = Criterion::kO1;
   bool certify = true;
@@ -36,8 +44,8 @@ struct ChainDesign {
   double Efficiency() const { return certificate.bound > 0.0 ? index / certificate.bound : 0.0; }
 };
 
-/// The smallest set of postures for a chain: NOCP until the plateau, with a certificate of how far
-/// it is from the best there is.
+/// The smallest set of postures for a chain (or what the algorithm gives), with a certificate of
+/// how far it is from the best there is.
 ChainDesign DesignChain(const ErrorModel& model, const std::vector<int>& base,
                         const MotionSetup& motion, const ChainSetup& chain,
                         const DesignOptions& options);
@@ -52,7 +60,7 @@ ChainDesign MirrorDesign(const ChainDesign& design, const MirrorMap& mirror,
 
 /// O1 against the number of postures (paper Fig. 6).
 struct CurvePoint {
-  std::string algorithm;  ///< nocp, cocp, ioops, exchange, random
+  DesignAlgorithm algorithm;
   std::string chain;
   int postures = 0;
   double index = 0.0;

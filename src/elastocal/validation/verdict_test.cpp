@@ -93,5 +93,43 @@ TEST_F(VerdictTest, HeldOutErrorsNoBetter) {
   EXPECT_TRUE(Judged().objections.empty());
 }
 
+ErrorTable HeldOutTable(const std::map<ModelKind, double>& rmse) {
+  ErrorTableRow row;
+  row.group = "leg_left";
+  for (const auto& [kind, value] : rmse) row.metrics[kind].rmse_3d = value;
+  ErrorTable table;
+  table.groups = {row};
+  return table;
+}
+
+TEST(JudgeHeldOut, ObjectsToWhatErrsNoLessThanTheUncalibratedRobot) {
+  using enum ModelKind;
+  Verdict verdict;
+  JudgeHeldOut(HeldOutTable({{kUncalibrated, 2e-3}, {kGeometric, 1.5e-3}, {kFull, 1e-3}}), kFull,
+               verdict);
+  EXPECT_TRUE(verdict.objections.empty());
+  EXPECT_TRUE(verdict.remarks.empty());
+  JudgeHeldOut(HeldOutTable({{kUncalibrated, 2e-3}, {kGeometric, 0.5e-3}, {kFull, 1e-3}}), kFull,
+               verdict);
+  EXPECT_TRUE(verdict.objections.empty());
+  ASSERT_EQ(verdict.remarks.size(), 1u);  // a simpler model does better: worth knowing, deployable
+  EXPECT_NE(verdict.remarks[0].find("leg_left"), std::string::npos);
+  EXPECT_NE(verdict.remarks[0].find("geometric"), std::string::npos);
+  JudgeHeldOut(HeldOutTable({{kUncalibrated, 1e-3}, {kGeometric, 2e-3}, {kFull, 1e-3}}), kFull,
+               verdict);
+  ASSERT_EQ(verdict.objections.size(), 1u);  // as good is not enough
+  EXPECT_NE(verdict.objections[0].find("1 mm"), std::string::npos) << verdict.objections[0];
+}
+
+TEST(JudgeHeldOut, SaysNothingWithoutObservations) {
+  Verdict verdict;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  JudgeHeldOut(HeldOutTable({{ModelKind::kUncalibrated, nan}, {ModelKind::kFull, nan}}),
+               ModelKind::kFull, verdict);
+  JudgeHeldOut(HeldOutTable({{ModelKind::kUncalibrated, 1e-3}}), ModelKind::kFull, verdict);
+  EXPECT_TRUE(verdict.objections.empty());
+  EXPECT_TRUE(verdict.remarks.empty());
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -1,0 +1,34 @@
+#include "elastocal/calibration/leg_stiffness.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/standing_biped.hpp"
+
+namespace elastocal {
+namespace {
+
+// Nothing else gives way, so that the lumped compliance is the leg's own.
+TEST(AssessLegs, TheStiffnessIsThatOfItsCompliancesInTheMeanPosture) {
+  const StandingBiped robot;
+  Recording recording = robot.Empty({{.name = "left", .chains = {}, .support = {robot.left}}}, 3);
+  recording.q.col(0) = Eigen::Vector3d(0.1, 0.2, 0.6);
+  CalibrationResult result;
+  result.model = robot.model;
+  result.delta.setZero(robot.model.parameter_count());
+  for (int i = 0; i < robot.model.parameter_count(); ++i) {
+    const Parameter& parameter = robot.model.parameters[i];
+    if (parameter.kind == ParameterKind::kBaseForce) result.delta[i] = 1e-6 * (1 + parameter.axis);
+    if (parameter.kind == ParameterKind::kBaseMoment) result.delta[i] = 1e-5 * (1 + parameter.axis);
+  }
+  result.placement.footings = {{0, 0, {0, 2}}};
+  const std::vector<LegStiffness> legs = AssessLegs(result, recording);
+  ASSERT_EQ(legs.size(), 1u);  // the right one never stood
+  EXPECT_EQ(legs[0].leg, "left");
+  EXPECT_DOUBLE_EQ(legs[0].q[0], 0.35);
+  Vector6d expected;
+  expected << 1e6, 1e6 / 2, 1e6 / 3, 1e5, 1e5 / 2, 1e5 / 3;
+  EXPECT_LT((legs[0].stiffness - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+#include "elastocal/cli/commands.hpp"
+
+namespace elastocal::cli {
+
+struct QuickDemoOptions {
+  CommonOptions common;
+  std::filesystem::path project;  ///< of the embedded humanoid
+  std::filesystem::path output;   ///< folder for the recording and the results
+  int postures = 60;
+};
+
+/// Calibrates the upper body from a generated table of random postures and shows truth against
+/// estimate. Gives the exit code.
+int QuickDemo(const QuickDemoOptions& options);
+
+}  // namespace elastocal::cli

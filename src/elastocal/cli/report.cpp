@@ -1,0 +1,71 @@
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/report_page.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/report/page.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+struct ReportOptions {
+  CommonOptions common;
+  std::string folder, output;
+  std::vector<std::string> earlier;
+};
+
+int Report(const ReportOptions& options) {
+  if (PageTemplate().empty()) {
+    spdlog::error("{}", kNoPage);
+    return kNotConverged;
+  }
+  const std::filesystem::path folder = options.folder;
+  const std::filesystem::path output =
+      options.output.empty() ? folder / "report.html" : std::filesystem::path(options.output);
+  std::vector<std::filesystem::path> inputs;
+  for (const char* name : {"summary.json", "report_data.json", "calibration.yaml", "covariance.csv",
+                           "validation.json", "comparison.json", "runs.json", "motion.csv"}) {
+    inputs.push_back(folder / name);
+  }
+  CheckOutputs({output, options.common.json_file}, inputs);
+  const std::string page = MakeFolderPage(folder, options.earlier);
+  WriteFile(output, page);
+  if (!options.common.json_file.empty()) {
+    const nlohmann::ordered_json json = {{"report", output.string()}, {"bytes", page.size()}};
+    WriteFile(options.common.json_file, json.dump(2) + "\n");
+  }
+  Print(options.common.Silent() || options.output == "-",
+        fmt::format("Report: {} ({:.1f} MB)\n", output.string(),
+                    1e-6 * static_cast<double>(page.size())));
+  return kFine;
+}
+
+}  // namespace
+
+void AddReport(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ReportOptions>();
+  CLI::App* command = app.add_subcommand(
+      "report", "One page with all results of a folder: HTML that needs no network");
+  command->add_option("folder", options->folder, "Folder that calibrate, design or plan wrote to")
+      ->required();
+  command->add_option("-o,--output", options->output,
+                      "The page; default: report.html in the folder");
+  command->add_option("--earlier", options->earlier,
+                      "Earlier calibrations of this robot, the oldest first: output folders of "
+                      "calibrate, or calibration.yaml files");
+  AddCommonOptions(*command, options->common);
+  command->footer(
+      "calibrate -o and validate -o end with this report by themselves. A program that was built\n"
+      "without Node.js has no page: it says so and ends with 4.\n"
+      "Example: elastocal report out --earlier out_spring -o report.html");
+  command->callback([&action, options] { action = [options] { return Report(*options); }; });
+}
+
+}  // namespace elastocal::cli

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace elastocal {
+
+/// Base64 (RFC 4648, with padding) of bytes.
+std::string Base64(std::string_view bytes);
+
+/// Numbers as 32-bit floats, little-endian, in base64: what the page reads long series from.
+/// Matrices row by row; NaN stays NaN.
+std::string Base64Floats(const std::vector<double>& values);
+std::string Base64Floats(const Eigen::MatrixXd& values);
+
+/// A number with `digits` significant ones: what is beyond is not worth its place in a file.
+double Rounded(double value, int digits = 5);
+
+}  // namespace elastocal

@@ -1,0 +1,64 @@
+#include "elastocal/report/run_record.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/report/sha256.hpp"
+
+namespace elastocal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kPlain =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+@%";
+
+}  // namespace
+
+std::vector<InputRecord> RecordInputs(const std::vector<std::filesystem::path>& files) {
+  std::vector<InputRecord> records;
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) continue;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) continue;
+    std::ostringstream bytes;
+    bytes << stream.rdbuf();
+    const std::string_view view = bytes.view();
+    records.push_back({file.string(), view.size(), Sha256(view)});
+  }
+  return records;
+}
+
+std::string QuoteCommandLine(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) {
+    if (!line.empty()) line += ' ';
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+      line += word;
+      continue;
+    }
+    line += '\'';
+    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += '\'';
+  }
+  return line;
+}
+
+std::string UpdateRuns(const std::string& runs, const RunRecord& record) {
+  Json json = Json::parse(runs, nullptr, false);
+  if (!json.is_object()) json = Json::object();
+  Json item = {{"command_line", record.command_line}, {"version", record.version}};
+  item["seed"] = record.seed ? Json(*record.seed) : Json(nullptr);
+  item["inputs"] = Json::array();
+  for (const InputRecord& input : record.inputs) {
+    item["inputs"].push_back(
+        {{"file", input.file}, {"bytes", input.bytes}, {"sha256", input.sha256}});
+  }
+  json[record.command] = std::move(item);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal

@@ -1,0 +1,145 @@
+// The command `calibrate` as its users run it: files, exit codes and messages.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/io/output_files.hpp"
+#include "tests/program_fixture.hpp"
+
+namespace elastocal {
+namespace {
+
+TEST_F(Program, CalibrateWritesAllResults) {
+  const std::string json_file = (scratch_.path() / "copy.json").string();
+  const ProgramResult result = Calibrate(project_, recording_, "--kfold 5 --json " + json_file);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const char* file :
+       {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro", "summary.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(out_) / file)) << file;
+  }
+  const std::string text = ReadFile(std::filesystem::path(out_) / "summary.json");
+  EXPECT_EQ(text, ReadFile(json_file));
+  const nlohmann::json summary = nlohmann::json::parse(text);
+  EXPECT_EQ(summary["status"], "converged");
+  EXPECT_EQ(summary["postures"], 30);
+  EXPECT_EQ(summary["kfold"]["folds"], 5);
+  EXPECT_EQ(summary["identifiable"], summary["identifiable_theory"]);
+  EXPECT_TRUE(summary["outliers"].empty());
+  EXPECT_GT(summary["solve_seconds"], 0.0);
+  for (const char* model : {"uncalibrated", "offsets_only", "geometric"}) {
+    EXPECT_GT(summary["rmse_3d_mm"][model], 0.0);
+    EXPECT_NEAR(summary["rmse_coordinate_mm"][model].get<double>() * std::sqrt(3.0),
+                summary["rmse_3d_mm"][model].get<double>(), 1e-12);
+    EXPECT_GT(summary["kfold"]["rmse_3d_mm"][model], 0.0);
+  }
+  // Noise of 0.2 mm a coordinate is 0.35 mm in 3-D; the fit takes a part of it away.
+  EXPECT_LT(summary["rmse_3d_mm"]["geometric"], 0.35);
+  EXPECT_GT(summary["kfold"]["rmse_3d_mm"]["geometric"], 0.34);
+}
+
+TEST_F(Program, SameInputSameFiles) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const auto files = {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro"};
+  std::vector<std::string> first;
+  for (const char* file : files) first.push_back(ReadFile(std::filesystem::path(out_) / file));
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  std::size_t i = 0;
+  for (const char* file : files) {
+    EXPECT_EQ(ReadFile(std::filesystem::path(out_) / file), first[i++]) << file;
+  }
+}
+
+// A project whose URDF is the calibrated one has nothing left to calibrate: offsets vanish.
+TEST_F(Program, CalibratedUrdfNeedsNoCalibration) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  std::string project = ReadFile(project_);
+  project.replace(project.find("arm6.urdf"), 9, "arm6_calibrated.urdf");
+  const std::string again = out_ + "/project.yaml";
+  std::ofstream(again) << project;
+  const std::string json_file = (scratch_.path() / "again.json").string();
+  ASSERT_EQ(RunProgram("calibrate " + again + " --recording " + recording_ + " -o " + out_ +
+                       "/again --json " + json_file)
+                .exit_code,
+            0);
+  const nlohmann::json summary = nlohmann::json::parse(ReadFile(json_file));
+  const double before =
+      nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["rmse_3d_mm"]["geometric"];
+  // Uncalibrated now means with the calibrated URDF: as good as the calibration was, but for marker
+  // positions refitted.
+  EXPECT_LT(summary["rmse_3d_mm"]["uncalibrated"], 1.05 * before);
+}
+
+TEST_F(Program, EncoderOffsetsAreWrittenApart) {
+  ASSERT_EQ(Calibrate(project_, recording_, "--zero-offsets encoder").exit_code, 0);
+  const std::string xacro = ReadFile(out_ + "/offsets.xacro");
+  EXPECT_NE(xacro.find("NOT in these origins"), std::string::npos);
+  EXPECT_NE(xacro.find("name=\"elbow_joint_offset\""), std::string::npos) << xacro;
+  EXPECT_NE(ReadFile(out_ + "/calibration.yaml").find("zero_offsets: encoder"), std::string::npos);
+}
+
+TEST_F(Program, NothingIsLeftWhenAnOutputCannotBeWritten) {
+  const std::string file = scratch_.Write("file", "");
+  const ProgramResult result = Calibrate(project_, recording_, "--json " + file + "/summary.json");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find(file), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(Program, OutputsMayNotReplaceInputs) {
+  const std::string before = ReadFile(recording_);
+  ExpectRefused(Calibrate(project_, recording_, "--json " + recording_),
+                {"recording.csv", "input"});
+  EXPECT_EQ(ReadFile(recording_), before);
+  const std::string project = scratch_.Write("arm6_project.yaml", ReadFile(project_));
+  scratch_.Write("arm6.urdf", ReadFile(SourceFile("tests/robots/arm6.urdf")));
+  ExpectRefused(RunProgram("inspect " + project + " --json " + project), {"input"});
+  EXPECT_EQ(ReadFile(project), ReadFile(project_));
+}
+
+TEST_F(Program, JsonCanGoToStandardOutput) {
+  const ProgramResult result = Calibrate(project_, recording_, "--json -");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "converged");
+  const ProgramResult demo = RunProgram("demo --quick --postures 15 --json - -o " + out_);
+  EXPECT_EQ(nlohmann::json::parse(demo.out)["status"], "converged") << demo.err;
+}
+
+// Two joint columns exchanged: every number is fine, the whole is nonsense.
+TEST_F(Program, NonsenseIsNotDeployed) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  std::string table = ReadFile(recording_);
+  table.replace(table.find("elbow_joint"), 11, "elbow_jXint");
+  table.replace(table.find("turret_joint"), 12, "elbow_joint");
+  table.replace(table.find("elbow_jXint"), 11, "turret_joint");
+  const ProgramResult result = Calibrate(project_, scratch_.Write("swapped.csv", table));
+  EXPECT_EQ(result.exit_code, 4) << result.out;
+  EXPECT_NE(result.err.find("does not explain this recording"), std::string::npos) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["status"], "implausible");
+  // Neither new results nor those of the run before.
+  for (const char* file : {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro"}) {
+    EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(out_) / file)) << file;
+  }
+}
+
+TEST_F(Program, AJointBeyondItsLimitsIsAWarning) {
+  std::string project = ReadFile(project_);
+  std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  const std::size_t joint = urdf.find("name=\"elbow_joint\"");
+  const std::size_t upper = urdf.find("upper=\"", joint) + 7;
+  const std::size_t lower = urdf.find("lower=\"", joint) + 7;
+  for (const auto& [at, value] :
+       {std::pair{std::max(upper, lower), upper > lower ? "0.1" : "-0.1"},
+        std::pair{std::min(upper, lower), upper > lower ? "-0.1" : "0.1"}}) {
+    urdf.replace(at, urdf.find('"', at) - at, value);
+  }
+  scratch_.Write("arm6.urdf", urdf);
+  const ProgramResult result = Calibrate(scratch_.Write("tight.yaml", project), recording_);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("elbow_joint"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("beyond its limit"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace elastocal

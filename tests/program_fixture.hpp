@@ -1,0 +1,86 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/posture_table.hpp"
+#include "elastocal/io/project.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/run_program.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Project project = ReadProject(SourceFile(kProject));
+    const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+    const BaseParameters base = FindBaseParameters(model, project.identifiability);
+    truth_ = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+    const Recording recording = MakeSyntheticRecording(model, truth_, {.postures = 30});
+    WritePostureTable(scratch_.path() / "recording.csv", recording, project.tree);
+    project_ = SourceFile(kProject).string();
+    recording_ = (scratch_.path() / "recording.csv").string();
+    out_ = (scratch_.path() / "out").string();
+  }
+
+  ProgramResult Calibrate(const std::string& project, const std::string& recording,
+                          const std::string& more = "") {
+    return RunProgram("calibrate " + project + " --recording " + recording + " -o " + out_ + " " +
+                      more);
+  }
+
+  /// The recording with the cell of a row (0: header) and column replaced.
+  std::string WithCell(int row, int column, const std::string& text) {
+    std::ifstream stream(recording_);
+    std::string line, changed;
+    for (int r = 0; std::getline(stream, line); ++r) {
+      if (r == row) {
+        std::size_t begin = 0;
+        for (int c = 0; c < column; ++c) begin = line.find(',', begin) + 1;
+        line.replace(begin, line.find(',', begin) - begin, text);
+      }
+      changed += line + "\n";
+    }
+    return scratch_.Write("changed.csv", changed);
+  }
+
+  /// Bad input: exit code 3, all parts in the message, and no output at all.
+  void ExpectRefused(const ProgramResult& result, std::initializer_list<std::string> parts) {
+    EXPECT_EQ(result.exit_code, 3) << result.out << result.err;
+    for (const std::string& part : parts) {
+      EXPECT_NE(result.err.find(part), std::string::npos) << part << " not in: " << result.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  }
+
+  /// Another recording of the arm, its parameter changed, calibrated into `folder`.
+  std::string CalibratedLater(const std::string& folder, const std::string& parameter,
+                              double change) {
+    const Project project = ReadProject(project_);
+    const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+    Eigen::VectorXd later = truth_;
+    later[FindParameter(model.parameters, parameter)] += change;
+    const std::string table = (scratch_.path() / (folder + ".csv")).string();
+    WritePostureTable(table, MakeSyntheticRecording(model, later, {.postures = 25, .seed = 9}),
+                      project.tree);
+    const std::string out = (scratch_.path() / folder).string();
+    const ProgramResult result =
+        RunProgram("calibrate " + project_ + " --recording " + table + " -o " + out);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return out;
+  }
+
+  static constexpr const char* kProject = "tests/robots/arm6_project.yaml";
+  ScratchFolder scratch_;
+  Eigen::VectorXd truth_;
+  std::string project_, recording_, out_;
+};
+
+}  // namespace elastocal

@@ -1,0 +1,27 @@
+function bytes(base64) {
+  const text = atob(base64);
+  const result = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) result[i] = text.charCodeAt(i);
+  return result;
+}
+
+/** Little-endian 32-bit floats from base64; the NaNs of unseen markers are kept. */
+export function floats(base64) {
+  const view = new DataView(bytes(base64 ?? '').buffer);
+  const result = new Float32Array(view.byteLength / 4);
+  for (let i = 0; i < result.length; ++i) result[i] = view.getFloat32(4 * i, true);
+  return result;
+}
+
+/** Signed bytes from base64. */
+export const signedBytes = (base64) => new Int8Array(bytes(base64 ?? '').buffer);
+
+/** The square matrix of coefficients, from the bytes of its lower triangle, row by row. */
+export function unpackTriangle(values, size) {
+  const matrix = Array.from({length: size}, () => new Float32Array(size));
+  let k = 0;
+  for (let i = 0; i < size; ++i) {
+    for (let j = 0; j <= i; ++j, ++k) matrix[i][j] = matrix[j][i] = values[k] / 100;
+  }
+  return matrix;
+}

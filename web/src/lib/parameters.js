@@ -1,0 +1,79 @@
+import {userUnit} from './units.js';
+
+/** 'arm_left_1_joint' and 'theta' of 'arm_left_1_joint.theta'; the kind is behind the last dot. */
+export function splitName(name) {
+  const dot = name.lastIndexOf('.');
+  return {owner: name.slice(0, dot), kind: name.slice(dot + 1)};
+}
+
+const MARKER = /^marker\./;
+const WAIST = /^waist\.T0\./;
+
+/** 'marker', 'waist', 'leg' (lumped compliance) or 'joint'. */
+export function family(parameter, legs) {
+  if (MARKER.test(parameter.name)) return 'marker';
+  if (WAIST.test(parameter.name)) return 'waist';
+  const {owner, kind} = splitName(parameter.name);
+  return legs.includes(owner) && kind.startsWith('compliance') ? 'leg' : 'joint';
+}
+
+/** The order in which Table 1 has its columns, with the signs of the paper. */
+export const KINDS = [
+  {kind: 'theta', symbol: 'θ', what: 'offset of the joint'},
+  {kind: 'r', symbol: 'r', what: 'translation along its axis'},
+  {kind: 'd', symbol: 'd', what: 'translation along the common normal'},
+  {kind: 'alpha', symbol: 'α', what: 'angle between consecutive axes'},
+  {kind: 'beta', symbol: 'β', what: 'angle between parallel axes'},
+  {kind: 'gamma', symbol: 'γ', what: 'rotation of the branch frame'},
+  {kind: 'b', symbol: 'b', what: 'translation of the branch frame'},
+  {kind: 'compliance_z', symbol: 'c_z', what: 'compliance about the axis'},
+  {kind: 'compliance_x', symbol: 'c_x', what: 'compliance across the axis, x'},
+  {kind: 'compliance_y', symbol: 'c_y', what: 'compliance across the axis, y'},
+  {kind: 'torque_bias', symbol: 'τ₀', what: 'bias of the torque sensor'},
+];
+
+/** Joints with their parameters by kind, in the order of the file. */
+export function byJoint(parameters, legs) {
+  const joints = new Map();
+  for (const parameter of parameters) {
+    if (family(parameter, legs) !== 'joint') continue;
+    const {owner, kind} = splitName(parameter.name);
+    if (!joints.has(owner)) joints.set(owner, new Map());
+    joints.get(owner).set(kind, parameter);
+  }
+  return joints;
+}
+
+/** The kinds that any of the joints has, in the order of the table. */
+export function kindsOf(joints) {
+  const present = new Set([...joints.values()].flatMap((kinds) => [...kinds.keys()]));
+  return KINDS.filter(({kind}) => present.has(kind));
+}
+
+export const STATUS_WORDS = {
+  estimated: 'estimated',
+  unsupported: 'held at nominal: the data say hardly more than the prior',
+  dropped: 'held at nominal: cannot be told from other parameters',
+  held: 'held at nominal by the project file',
+  not_in_model: 'not in this model',
+};
+
+/** How many parameters have each status, markers and waist aside. */
+export function countByStatus(parameters, legs) {
+  const counts = {};
+  for (const parameter of parameters) {
+    if (['marker', 'waist'].includes(family(parameter, legs))) continue;
+    counts[parameter.status] = (counts[parameter.status] ?? 0) + 1;
+  }
+  return counts;
+}
+
+/** Joint offsets that any of the calibrations estimated: [{joint, unit, of: [{value, sd} | null]}]. */
+export function offsetsOverTime(calibrations) {
+  const names = new Set(calibrations.flatMap((c) => c.parameters.filter((p) => /\.theta$/.test(p.name) && !/^waist\./.test(p.name) && p.status === 'estimated').map((p) => p.name)));
+  return [...names].map((name) => {
+    const of = calibrations.map((c) => c.parameters.find((p) => p.name === name && p.status === 'estimated') ?? null);
+    const {unit, factor} = userUnit(of.find(Boolean).unit);
+    return {joint: splitName(name).owner, unit, of: of.map((p) => p && {value: p.value * factor, sd: p.sd * factor})};
+  });
+}

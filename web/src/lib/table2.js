@@ -1,0 +1,25 @@
+import {kindName} from './format.js';
+
+const CASES = {SW: 'sine', RP: 'random', RM: 'repeatability'};
+const readable = (chain) => chain.replaceAll('+', ' + ').replaceAll('_', ' ');
+
+/** Rows of Table 2: by chain and motion, then the chains as a whole and the mean. */
+export function table2Rows(errors, models) {
+  const values = (row, figure) => models.map((model) => row[figure]?.[model]);
+  const row = (chain, motion, item) => ({chain, motion, rmse: values(item, 'rmse_3d_mm'), max: values(item, 'max_mm')});
+  const rows = (errors.rows ?? []).map((item) =>
+    row(readable(item.chain), kindName(CASES[item.case] ?? item.case), item));
+  if ((errors.rows ?? []).length > (errors.chains ?? []).length) {
+    rows.push(...errors.chains.map((item) => ({...row(readable(item.chain), 'all motions', item), total: true})));
+  }
+  rows.push({chain: 'Mean', motion: '', rmse: models.map((m) => errors.mean_rmse_3d_mm?.[m]), max: models.map(() => undefined), total: true});
+  return rows;
+}
+
+/** Recordings without trials for validation: in sample, and held-out folds. */
+export function inSampleRows(summary, models) {
+  const row = (chain, motion, item) => ({chain, motion, rmse: models.map((m) => item.rmse_3d_mm?.[m]), max: models.map((m) => item.max_mm?.[m])});
+  const rows = [row('All chains', 'calibration postures, in sample', summary)];
+  if (summary.kfold) rows.push(row('All chains', `held out, ${summary.kfold.folds} folds`, summary.kfold));
+  return rows;
+}

@@ -1,0 +1,57 @@
+import {fixed, list} from './format.js';
+import {family} from './parameters.js';
+
+/** The most complete model that was calibrated: full, or geometric. */
+export function bestModel(summary) {
+  const models = Object.keys(summary.rmse_3d_mm ?? {});
+  return ['full', 'geometric', 'offsets_only'].find((model) => models.includes(model)) ?? 'geometric';
+}
+
+/** What the verdict stands on: {before, after, on}, mm, the most independent of what there is. */
+export function judgedErrors(summary) {
+  const best = bestModel(summary);
+  const sources = [
+    [summary.held_out_rmse_3d_mm, 'on motions that took no part in the estimate'],
+    [summary.kfold?.rmse_3d_mm, 'on held-out postures'],
+    [summary.rmse_3d_mm, 'on the calibration postures themselves'],
+  ];
+  for (const [figures, on] of sources) {
+    if (typeof figures?.uncalibrated === 'number' && typeof figures?.[best] === 'number') {
+      return {before: figures.uncalibrated, after: figures[best], on, best};
+    }
+  }
+  return null;
+}
+
+const deployable = (summary) => summary.status === 'converged' && (summary.objections ?? []).length === 0;
+
+/** Joint and leg parameters that the recording could not determine, for the verdict's last words. */
+export function undetermined(summary) {
+  const legs = (summary.legs ?? []).map((leg) => leg.name);
+  return (summary.parameters ?? []).filter((parameter) => parameter.status === 'unsupported' &&
+    ['joint', 'leg'].includes(family(parameter, legs))).map((parameter) => parameter.name);
+}
+
+/**
+ * The verdict as {state: 'deploy' | 'check' | 'reject', word, sentence, rest}: the sentence says
+ * from where to where the errors went and on what data, `rest` what was not identifiable.
+ */
+export function verdict(summary) {
+  const errors = judgedErrors(summary);
+  const from = errors ? `from ${fixed(errors.before)} to ${fixed(errors.after)}\u00a0mm ${errors.on}` : '';
+  if (!deployable(summary)) {
+    const why = summary.objections?.[0] ?? summary.message ?? summary.status;
+    return {state: 'reject', word: 'Do not deploy', sentence: from ? `Errors went ${from}, but the result is not to be trusted.` : 'The result is not to be trusted.', rest: why};
+  }
+  const open = undetermined(summary);
+  const rest = open.length === 0
+    ? 'Everything in the model could be determined.'
+    : `Not identifiable from this recording, and held at nominal: ${list(open, 4)}.`;
+  const remarks = (summary.remarks ?? []).length > 0;
+  return {
+    state: remarks ? 'check' : 'deploy',
+    word: remarks ? 'Deploy after a look at the remarks' : 'Deploy',
+    sentence: errors ? `Calibrated ${from}.` : 'Calibrated.',
+    rest,
+  };
+}

@@ -1,0 +1,65 @@
+import './style.css';
+import './print.css';
+
+import {h} from './lib/dom.js';
+import {isDark, setTheme} from './lib/theme.js';
+import {designSection} from './sections/design.js';
+import {findingsSection} from './sections/findings.js';
+import {historySection} from './sections/history.js';
+import {identifiabilitySection} from './sections/identifiability.js';
+import {modelsSection} from './sections/models.js';
+import {motionSection} from './sections/motion.js';
+import {missingSection, reproduceSection} from './sections/reproduce.js';
+import {residualsSection} from './sections/residuals.js';
+import {robotSection} from './sections/robot.js';
+import {signalSection} from './sections/signal.js';
+import {table1Section} from './sections/table1.js';
+import {verdictSection} from './sections/verdict.js';
+
+// In the order in which an engineer asks: can I use it, what is off, can I believe it.
+const SECTIONS = [
+  verdictSection, robotSection, table1Section, modelsSection, residualsSection, identifiabilitySection,
+  signalSection, designSection, motionSection, historySection, findingsSection, reproduceSection,
+  missingSection,
+];
+
+/** A part that fails says so in its place and leaves the others alone. */
+function build(make, report) {
+  try {
+    return make(report);
+  } catch (error) {
+    console.error(error);
+    return h('section', {class: 'notice'}, `A part of this report cannot be shown: ${error.message}`);
+  }
+}
+
+function header(report) {
+  const dark = h('button', {type: 'button', class: 'quiet', onclick: () => setTheme(isDark() ? 'light' : 'dark')}, 'Light / dark');
+  const robot = report.summary?.robot ?? report.data?.robot?.name ?? '';
+  return h('header', {class: 'top'}, h('p', {class: 'brand'}, h('strong', {}, 'elastocal'), ' calibration report'),
+    h('h1', {}, robot || report.folder || 'Report'),
+    h('p', {class: 'source'}, report.summary?.recording ? `from ${report.summary.recording}` : report.folder ?? ''), dark);
+}
+
+function contents(sections) {
+  const items = sections.filter((s) => s.dataset.short).map((s) =>
+    h('li', {}, h('a', {href: `#${s.id}`}, s.dataset.short)));
+  return h('nav', {'aria-label': 'Contents'}, h('ol', {}, ...items));
+}
+
+function show(report) {
+  const sections = SECTIONS.map((make) => build(make, report)).filter(Boolean);
+  const title = report.summary?.robot ?? report.folder ?? '';
+  document.title = `${title} – elastocal report`;
+  document.getElementById('app').append(
+    h('a', {class: 'skip', href: '#main'}, 'Skip to the report'), header(report), contents(sections),
+    h('main', {id: 'main'}, ...sections),
+    h('footer', {}, `Made by elastocal ${report.version ?? ''}. This file is complete: it loads nothing.`));
+}
+
+const report = JSON.parse(document.getElementById('report-data').textContent);
+if (typeof report === 'string') {
+  document.getElementById('app').append(h('p', {class: 'notice'}, 'This is the template of a report; elastocal puts the data in.'));
+} else {
+  show(report);
+}

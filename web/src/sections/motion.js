@@ -1,0 +1,66 @@
+import {SERIES} from '../lib/colours.js';
+import {toCsv} from '../lib/csv.js';
+import {h} from '../lib/dom.js';
+import {figure, section} from '../lib/figure.js';
+import {fixed, flatten, plural, significant} from '../lib/format.js';
+import {plot} from '../lib/plot.js';
+import {table} from '../lib/table.js';
+
+const TORQUE = 'torque_';
+
+function marginsFigure(motion) {
+  const rows = flatten(motion.margins?.margins ?? motion.margins);
+  if (rows.length === 0) return null;
+  return figure({title: 'Margins', data: {name: 'margins.csv', text: () => toCsv(['margin', 'value', 'unit'], rows)},
+    body: table({caption: 'Margins of the motion', columns: [{text: 'Margin'}, {text: 'Least of the motion', number: true}],
+      rows: rows.map(([name, value, unit]) => [name, [typeof value === 'number' ? significant(value) : value, h('span', {class: 'unit'}, ` ${unit}`)]])})});
+}
+
+/** Postures that could not be kept or reached, with the reason. */
+function leftOut(motion) {
+  const items = (motion.margins?.sets ?? []).flatMap((set) => (set.left_out ?? []).map((left) =>
+    `${set.name}, posture ${left.posture + 1}: ${left.reason}`));
+  return items.length > 0 && h('div', {class: 'words'}, h('h3', {}, 'Left out'), h('ul', {}, ...items.map((text) => h('li', {}, text))));
+}
+
+function zmpFigure(motion) {
+  const c = motion.columns;
+  if (!c.zmp_x || !c.zmp_y) return null;
+  return figure({title: 'Zero-moment point', data: {name: 'zmp.csv', text: () => toCsv(['time_s', 'zmp_x_m', 'zmp_y_m'], c.time.map((t, i) => [t, c.zmp_x[i], c.zmp_y[i]]))},
+    body: plot({label: 'Zero-moment point against time', x: {label: 'time [s]', short: 's'}, y: {label: 'zero-moment point [mm]'}, height: 220,
+      series: [{text: 'x', colour: SERIES[0]}, {text: 'y', colour: SERIES[1]}], data: [c.time, c.zmp_x.map((x) => 1e3 * x), c.zmp_y.map((y) => 1e3 * y)]})});
+}
+
+function jointPlot(c, joint) {
+  return plot({label: `Position of ${joint} against time`, x: {label: 'time [s]', short: 's'}, y: {label: 'position [rad or m]'}, height: 220,
+               series: [{text: 'position', colour: SERIES[0]}], data: [c.time, c[joint]]});
+}
+
+function torquePlot(c, joint) {
+  return plot({label: `Torque of ${joint} against time`, x: {label: 'time [s]', short: 's'}, y: {label: 'torque [N·m]'}, height: 220,
+               series: [{text: 'torque', colour: SERIES[2]}], data: [c.time, c[TORQUE + joint]]});
+}
+
+function jointFigure(motion, joints) {
+  const c = motion.columns;
+  if (joints.length === 0) return null;
+  let joint = joints[0];
+  const holder = h('div', {class: 'hold-plot two'});
+  const show = () => holder.replaceChildren(...[jointPlot(c, joint), c[TORQUE + joint] && torquePlot(c, joint)].filter(Boolean));
+  show();
+  return figure({title: 'Joints', body: [h('label', {class: 'select'}, h('span', {}, 'Joint'),
+    h('select', {onchange: (e) => { joint = e.target.value; show(); }}, ...joints.map((j) => h('option', {value: j}, j)))), holder],
+    data: {name: 'motion_joint.csv', text: () => toCsv(['time_s', joint, TORQUE + joint], c.time.map((t, i) => [t, c[joint][i], c[TORQUE + joint]?.[i]]))}});
+}
+
+/** The planned motion: margins, balance and joints. */
+export function motionSection(report) {
+  const parts = (report.motions ?? []).filter((m) => m.columns?.time?.length).flatMap((motion) => {
+    const joints = Object.keys(motion.columns).filter((n) => !['time', 'support', 'zmp_x', 'zmp_y'].includes(n) && !n.startsWith(TORQUE) && typeof motion.columns[n][0] === 'number');
+    return [report.motions.length > 1 && h('h3', {}, motion.name), marginsFigure(motion), leftOut(motion), zmpFigure(motion), jointFigure(motion, joints)];
+  });
+  if (parts.length === 0) return null;
+  const {columns, rows} = report.motions[0];
+  return section('motion', 'Motion', 'The planned motion',
+    `${fixed(columns.time.at(-1) - columns.time[0], 0)} s that take the robot through the postures while it stands; ${plural(columns.time.length, 'moment')}${rows > columns.time.length ? ` of ${rows} planned` : ''} are in this report. Play it above.`, ...parts);
+}

@@ -1,0 +1,51 @@
+import {floats} from '../lib/binary.js';
+import {columnsToCsv} from '../lib/csv.js';
+import {OKABE_ITO} from '../lib/colours.js';
+import {h} from '../lib/dom.js';
+import {figure, section} from '../lib/figure.js';
+import {fixed, plural} from '../lib/format.js';
+import {plot} from '../lib/plot.js';
+
+/** Columns of one excerpt: time, raw, filtered, and the filtered value in chosen frames alone. */
+export function signalColumns(signal) {
+  const millimetres = (text) => Array.from(floats(text), (x) => Number.isFinite(x) ? 1e3 * x : null);
+  const filtered = millimetres(signal.filtered);
+  const raw = millimetres(signal.raw);
+  const time = filtered.map((_, i) => i / signal.rate_hz);
+  const chosen = new Set(signal.chosen);
+  return {time, raw, filtered, chosen: filtered.map((x, i) => chosen.has(i) ? x : null)};
+}
+
+function signalPlot(signal) {
+  const {time, raw, filtered, chosen} = signalColumns(signal);
+  return plot({
+    label: `Signal of marker ${signal.marker} in ${signal.trial}`,
+    x: {label: 'time [s]', short: 's'}, y: {label: `marker ${signal.marker}, ${signal.axis} [mm]`},
+    series: [{text: 'raw', colour: '#9aa0a8', width: 1}, {text: 'filtered', colour: OKABE_ITO.blue},
+             {text: 'chosen sample', colour: OKABE_ITO.vermillion, dots: 'only', dotSize: 5}],
+    data: [time, raw, filtered, chosen],
+    bands: signal.rests.map(([from, to]) => [from / signal.rate_hz, to / signal.rate_hz]),
+    height: 300,
+  });
+}
+
+/** Fig. 4: the filtered signal and the samples that were chosen of it. */
+export function signalSection(report) {
+  const signals = report.data?.signals ?? [];
+  if (signals.length === 0) return null;
+  let chosen = signals[0];
+  const holder = h('div', {class: 'hold-plot'}, signalPlot(chosen));
+  const note = h('span', {});
+  const describe = () => { note.textContent = `Shaded: at rest by the speed of all markers (below ${fixed(chosen.threshold_mm_per_s, 1)} mm/s). ${plural(chosen.chosen.length, 'frame')} chosen in ${plural(chosen.rests.length, 'rest')}.`; };
+  describe();
+  const chooser = signals.length > 1 && h('label', {class: 'select'}, h('span', {}, 'Trial'),
+    h('select', {onchange: (e) => { chosen = signals[Number(e.target.value)]; holder.replaceChildren(signalPlot(chosen)); describe(); }},
+      ...signals.map((s, i) => h('option', {value: i}, s.trial))));
+  return section('signal', 'Signal', 'From the cameras to samples',
+    'One coordinate of the marker that moves most, low-passed without delay, and the frames at rest that became postures.',
+    figure({title: 'Filtered signal and chosen samples', body: [chooser, holder], note,
+      data: {name: 'signal.csv', text: () => {
+        const {time, raw, filtered, chosen: dots} = signalColumns(chosen);
+        return columnsToCsv(['time_s', 'raw_mm', 'filtered_mm', 'chosen_mm'], [time, raw, filtered, dots]);
+      }}}));
+}

@@ -1,0 +1,89 @@
+import {floats} from '../lib/binary.js';
+import {kindName} from '../lib/format.js';
+
+const POSTURES_PER_SECOND = 1.5;
+
+/** Feet of a cell of motion.csv: links joined by '+', 'both' of the feet known, or 'none'. */
+export function feet(cell, all) {
+  if (cell === undefined || cell === null || cell === 'both') return all;
+  return cell === 'none' ? [] : String(cell).split('+').filter(Boolean);
+}
+
+/** Every foot that is named in the column of supports, or in the recorded trials. */
+function knownFeet(cells, scenes) {
+  const named = [...new Set(cells ?? [])].flatMap((cell) => feet(cell, []));
+  return [...new Set([...named, ...scenes.flatMap((scene) => scene.support ?? [])])];
+}
+
+/** Positions of all markers from those of the scene's own; NaN for the others. */
+function spread(values, scene, count) {
+  const all = new Float32Array(3 * count).fill(NaN);
+  scene.markers.forEach((marker, k) => all.set(values.subarray(3 * k, 3 * k + 3), 3 * marker));
+  return all;
+}
+
+function recordedClip(scene, data) {
+  const n = data.robot.coordinates.length;
+  const width = 3 * scene.markers.length;
+  const frame = (values, i) => spread(values.subarray(width * i, width * (i + 1)), scene, data.markers.length);
+  const [q, waist, measured] = [scene.q, scene.waist, scene.measured].map(floats);
+  const predicted = Object.fromEntries(Object.entries(scene.predicted).map(([m, text]) => [m, floats(text)]));
+  const moving = scene.kind === 'sine';
+  return {
+    name: scene.name,
+    group: kindName(scene.kind),
+    count: Math.floor(q.length / n),
+    total: scene.total,
+    markers: scene.markers.length,
+    moving,
+    time: scene.time_s ?? [],
+    joints: data.robot.coordinates,
+    at: (i) => ({
+      q: q.subarray(n * i, n * (i + 1)),
+      root: {position: Array.from(waist.subarray(7 * i, 7 * i + 3)), quaternion: Array.from(waist.subarray(7 * i + 3, 7 * i + 7))},
+      support: scene.support ?? [],
+      measured: frame(measured, i),
+      predicted: (model) => predicted[model] && frame(predicted[model], i),
+    }),
+  };
+}
+
+function plannedClip(motion, robot, scenes) {
+  const {columns} = motion;
+  const joints = Object.keys(columns).filter((name) => robot.object.joints[name]);
+  const time = columns.time ?? columns.t ?? [];
+  const all = knownFeet(columns.support, scenes);
+  return {
+    name: motion.name,
+    group: 'planned motion',
+    count: time.length,
+    total: motion.rows ?? time.length,
+    markers: 0,
+    moving: true,
+    time,
+    joints,
+    at: (i) => ({
+      q: joints.map((name) => columns[name][i]),
+      root: null,
+      support: feet(columns.support?.[i], all),
+      zmp: columns.zmp_x ? [columns.zmp_x[i], columns.zmp_y[i]] : undefined,
+    }),
+  };
+}
+
+/** All that the viewer can show, one after the other: recorded trials, then planned motions. */
+export function makeClips(report, robot) {
+  const recorded = (report.data?.scenes ?? []).map((scene) => recordedClip(scene, report.data));
+  const planned = (report.motions ?? []).map((motion) => plannedClip(motion, robot, report.data?.scenes ?? []));
+  return [...recorded, ...planned].filter((clip) => clip.count > 0);
+}
+
+/** Where the clip is after `seconds` more of playing, from `position` (a real number of frames). */
+export function advance(clip, position, seconds) {
+  if (!clip.moving || clip.time.length < 2) return (position + seconds * POSTURES_PER_SECOND) % clip.count;
+  const i = Math.floor(position);
+  const j = Math.min(clip.count - 1, i + 1);
+  const span = Math.max(1e-3, clip.time[j] - clip.time[i] || 0.1);
+  // Gaps in the recording are not waited for.
+  return (position + seconds / Math.min(span, 0.5)) % clip.count;
+}

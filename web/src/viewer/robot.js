@@ -1,0 +1,135 @@
+import * as THREE from 'three';
+import {STLLoader} from 'three/examples/jsm/loaders/STLLoader.js';
+import URDFLoader from 'urdf-loader';
+
+const BONE = 0x8a8f98;
+
+/** The meshes that came along, by the file name that the URDF has; others are left out. */
+function meshLoader(meshes) {
+  return (path, manager, material, done) => {
+    const base64 = meshes[path] ?? meshes[path.replace(/^\.?\//, '')];
+    if (base64 === undefined) return done(new THREE.Group());
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    return done(new THREE.Mesh(new STLLoader().parse(bytes.buffer), material));
+  };
+}
+
+/** A rod to each joint of a link, so that a robot without shapes can be seen as well. */
+function addBones(link) {
+  for (const joint of link.children.filter((child) => child.isURDFJoint)) {
+    const length = joint.position.length();
+    if (length < 1e-3) continue;
+    const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.012, 0.012, length, 10),
+                               new THREE.MeshLambertMaterial({color: BONE}));
+    rod.position.copy(joint.position).multiplyScalar(0.5);
+    rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), joint.position.clone().normalize());
+    link.add(rod);
+  }
+}
+
+const meshesOf = (object) => {
+  const meshes = [];
+  const visit = (node) => {
+    if (node.isMesh) meshes.push(node);
+    for (const child of node.children) if (!child.isURDFJoint) visit(child);
+  };
+  visit(object);
+  return meshes;
+};
+
+/**
+ * The robot as the URDF describes it: boxes, cylinders, spheres, and meshes that are given
+ * (`meshes`: STL as base64, by file name). z is up in its root link, in metres and radians.
+ */
+export class Robot {
+  constructor(urdf, meshes = {}) {
+    const loader = new URDFLoader();
+    loader.parseCollision = false;
+    loader.packages = (name) => `package://${name}`;  // as the URDF has it
+    loader.loadMeshCb = meshLoader(meshes);
+    this.object = loader.parse(urdf);
+    this.links = this.object.links;
+    const drawn = Object.values(this.links).filter((link) => meshesOf(link).length > 0).length;
+    for (const link of Object.values(this.links)) {
+      if (meshesOf(link).length === 0 && drawn * 2 < Object.keys(this.links).length) addBones(link);
+      for (const mesh of meshesOf(link)) {
+        const color = mesh.material.color?.clone() ?? new THREE.Color(BONE);
+        mesh.material = new THREE.MeshLambertMaterial({color});
+      }
+    }
+  }
+
+  /** Sets joints by name; names that the robot has not are passed over. */
+  setPosture(names, values) {
+    names.forEach((name, i) => {
+      const joint = this.object.joints[name];
+      if (joint && Number.isFinite(values[i])) joint.setJointValue(values[i]);
+    });
+  }
+
+  /** Puts the root link at a pose: position and quaternion x, y, z, w. */
+  setRoot(position, quaternion) {
+    this.object.position.set(...position);
+    this.object.quaternion.set(...quaternion);
+    this.object.updateMatrixWorld(true);
+  }
+
+  /**
+   * Puts the robot so that a foot is where it is in the zero posture, the root link above the origin
+   * and the foot on the ground: where planned motions have their feet. Without a foot the root
+   * link stays at the origin.
+   */
+  standOn(linkName) {
+    this.setRoot([0, 0, 0], [0, 0, 0, 1]);
+    const link = this.links[linkName];
+    if (!link) return;
+    const root = this.zeroPose(linkName).multiply(link.matrixWorld.clone().invert());
+    const position = new THREE.Vector3();
+    const quaternion = new THREE.Quaternion();
+    root.decompose(position, quaternion, new THREE.Vector3());
+    this.setRoot(position.toArray(), quaternion.toArray());
+  }
+
+  /** Pose of a foot on the ground, all joints at zero. */
+  zeroPose(linkName) {
+    this.zero ??= new Map();
+    if (!this.zero.has(linkName)) {
+      const joints = Object.values(this.object.joints).filter((joint) => joint.jointType !== 'fixed');
+      const positions = joints.map((joint) => [...joint.jointValue]);
+      for (const joint of joints) joint.setJointValue(...joint.jointValue.map(() => 0));
+      this.object.updateMatrixWorld(true);
+      const pose = this.links[linkName].matrixWorld.clone();
+      pose.elements[14] = 0;
+      this.zero.set(linkName, pose);
+      joints.forEach((joint, k) => joint.setJointValue(...positions[k]));
+      this.object.updateMatrixWorld(true);
+    }
+    return this.zero.get(linkName).clone();
+  }
+
+  /** Colours the links on which the robot stands. */
+  tint(linkNames, colour) {
+    for (const mesh of this.tinted ?? []) mesh.material.color.copy(mesh.userData.own);
+    this.tinted = linkNames.flatMap((name) => {
+      let link = this.links[name];
+      // A sole often has no shape of its own; then that of the link that it is fixed to.
+      while (link && meshesOf(link).length === 0) link = link.parent?.parent?.isURDFLink ? link.parent.parent : null;
+      return link ? meshesOf(link) : [];
+    });
+    for (const mesh of this.tinted) {
+      mesh.userData.own ??= mesh.material.color.clone();
+      mesh.material.color.set(colour);
+    }
+  }
+
+  bounds() {
+    const box = new THREE.Box3();
+    for (const link of Object.values(this.links)) {
+      for (const mesh of meshesOf(link)) {
+        mesh.geometry.computeBoundingBox();
+        box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrixWorld));
+      }
+    }
+    return box.isEmpty() ? box.setFromObject(this.object) : box;
+  }
+}

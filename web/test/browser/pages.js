@@ -1,0 +1,53 @@
+import {readFileSync} from 'node:fs';
+import {pathToFileURL} from 'node:url';
+
+/** Opens a file; `problems`: what the console, scripts and dialogs said; `requests`: all but the file. */
+export async function openPage(browser, file, options = {}) {
+  const page = await browser.newPage({viewport: {width: 1280, height: 900}, acceptDownloads: true, ...options});
+  const problems = [];
+  const requests = [];
+  const url = pathToFileURL(file).href;
+  page.on('console', (message) => ['error', 'warning'].includes(message.type()) && !isDriverNote(message.text()) && problems.push(message.text()));
+  page.on('pageerror', (error) => problems.push(error.message));
+  page.on('dialog', (dialog) => { problems.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
+  page.on('request', (request) => !request.url().startsWith('data:') && !request.url().startsWith('blob:') && request.url() !== url && requests.push(request.url()));
+  await page.goto(url);
+  return {page, problems, requests};
+}
+
+/** What WebGL in software says of itself when pixels are read back: no fault of the page. */
+const isDriverNote = (text) => /GPU stall due to ReadPixels|GL Driver Message/.test(text);
+
+/** Milliseconds from the start of loading to the first picture of the viewer. */
+export async function waitForViewer(page) {
+  await page.waitForSelector('.viewer[data-ready]', {timeout: 20000});
+  return page.getAttribute('.viewer', 'data-ready');
+}
+
+/** What the 3-D view shows: how many pixels are drawn, in how many colours, and a number for all. */
+export function picture(page) {
+  return page.evaluate(async () => {
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    const source = document.querySelector('.viewer canvas');
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [source.width, source.height];
+    const context = copy.getContext('2d');
+    context.drawImage(source, 0, 0);
+    const {data} = context.getImageData(0, 0, copy.width, copy.height);
+    const colours = new Set();
+    let opaque = 0;
+    let hash = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      const colour = data[i] << 16 | data[i + 1] << 8 | data[i + 2];
+      if (data[i + 3] === 255) { ++opaque; colours.add(colour); }
+      hash = (Math.imul(hash, 31) + colour + data[i + 3]) | 0;
+    }
+    return {pixels: data.length / 4, opaque, colours: colours.size, hash};
+  });
+}
+
+/** The data that a report holds. */
+export function embeddedReport(file) {
+  const text = readFileSync(file, 'utf8');
+  return JSON.parse(text.match(/<script type="application\/json" id="report-data">([^<]*)<\/script>/)[1]);
+}

@@ -1,0 +1,233 @@
+// The page in a real browser, with a report made by hand and, where REPORT names one, with one that
+// the program made. TEMPLATE: the built page; default web/dist/index.html.
+import assert from 'node:assert/strict';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join, resolve} from 'node:path';
+import {after, before, test} from 'node:test';
+import {fileURLToPath} from 'node:url';
+
+import {page as fill, sampleReport} from '../sample.js';
+import {EVIL} from '../sample_robot.js';
+import {openBrowser} from './chromium.js';
+import {embeddedReport, openPage, picture, waitForViewer} from './pages.js';
+
+const template = process.env.TEMPLATE ?? fileURLToPath(new URL('../../dist/index.html', import.meta.url));
+const folder = mkdtempSync(join(tmpdir(), 'elastocal-report-'));
+const sample = join(folder, 'sample.html');
+const files = {sample, ...(process.env.REPORT && {program: resolve(process.env.REPORT)})};
+let browser;
+
+before(async () => {
+  writeFileSync(sample, fill(readFileSync(template, 'utf8'), sampleReport()));
+  browser = await openBrowser();
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, {recursive: true, force: true});
+});
+
+for (const [name, file] of Object.entries(files)) {
+  test(`${name}: opens without an error, a request or a jump, and draws the robot`, async () => {
+    const {page, problems, requests} = await openPage(browser, file);
+    await waitForViewer(page);
+    const drawn = await picture(page);
+    assert.ok(drawn.opaque > 0.02 * drawn.pixels, `${drawn.opaque} of ${drawn.pixels} pixels are drawn`);
+    assert.ok(drawn.colours > 50, `${drawn.colours} colours`);
+    const jump = await page.evaluate(() => new Promise((done) => {
+      let sum = 0;
+      new PerformanceObserver((list) => { for (const e of list.getEntries()) sum += e.value; }).observe({type: 'layout-shift', buffered: true});
+      setTimeout(() => done(sum), 300);
+    }));
+    assert.ok(jump < 0.01, `layout shift ${jump}`);
+    assert.deepEqual(problems, []);
+    assert.deepEqual(requests, [], 'nothing is loaded');
+    await page.close();
+  });
+
+  test(`${name}: fits widths of 390 and 1280, and paper`, async () => {
+    for (const [width, media] of [[390, 'screen'], [1280, 'screen'], [680, 'print']]) {
+      const {page} = await openPage(browser, file, {viewport: {width, height: 900}});
+      await page.emulateMedia({media});
+      await waitForViewer(page);
+      const [content, room] = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.clientWidth]);
+      assert.ok(content <= room, `${media} ${width}: ${content} > ${room}`);
+      // On paper nothing scrolls, so tables must fit as well.
+      const wide = media === 'print' ? await page.$$eval('table', (all) => all.filter((t) => t.getBoundingClientRect().right > innerWidth + 1).map((t) => t.caption?.textContent)) : [];
+      assert.deepEqual(wide, []);
+      await page.close();
+    }
+  });
+
+  test(`${name}: slider, play and magnification change the picture`, async () => {
+    const {page, problems} = await openPage(browser, file);
+    await waitForViewer(page);
+    const first = await picture(page);
+    await page.focus('#posture');
+    await page.keyboard.press('ArrowRight');
+    await page.keyboard.press('ArrowRight');
+    const second = await picture(page);
+    assert.notEqual(second.hash, first.hash, 'slider');
+    const label = () => page.textContent('.viewer-status ~ .transport output');
+    const still = await label();
+    await page.click('.play');
+    await page.waitForFunction((before) => document.querySelector('.transport output').textContent !== before, still, {timeout: 5000});
+    await page.click('.play');
+    assert.equal(await page.getAttribute('.play', 'aria-pressed'), 'false');
+    const third = await picture(page);
+    assert.notEqual(third.hash, second.hash, 'play');
+    await page.focus('#magnification');
+    await page.keyboard.press('End');
+    assert.notEqual((await picture(page)).hash, third.hash, 'magnification');
+    await page.focus('.viewer canvas');
+    const before = await picture(page);
+    for (let i = 0; i < 5; ++i) await page.keyboard.press('ArrowLeft');
+    await page.waitForTimeout(100);
+    assert.notEqual((await picture(page)).hash, before.hash, 'arrow keys turn the view');
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+
+  test(`${name}: the tables hold the numbers of summary.json`, async () => {
+    const {summary} = embeddedReport(file);
+    const {page} = await openPage(browser, file);
+    const shown = new Map(await page.$$eval('#parameters [data-parameter]', (all) => all.map((e) => [e.dataset.parameter, {value: e.dataset.value, text: e.querySelector('.value')?.textContent}])));
+    const unit = {'rad': [180 / Math.PI, 3], 'm': [1e3, 2], 'rad/(N.m)': [1e6, 1]};
+    let checked = 0;
+    for (const p of summary.parameters) {
+      if (p.status !== 'estimated' || /^(marker|waist)\./.test(p.name) || !shown.has(p.name)) continue;
+      const [factor, digits] = unit[p.unit];
+      assert.equal(Number(shown.get(p.name).value), p.value);
+      assert.equal(Math.abs(Number(shown.get(p.name).text.replace('−', '-')) - p.value * factor) <= 0.51 * 10 ** -digits, true, `${p.name}: ${shown.get(p.name).text}`);
+      ++checked;
+    }
+    assert.ok(checked > 5, `${checked} parameters`);
+    const text = await page.textContent('#models');
+    const errors = summary.kfold ?? summary;
+    for (const value of Object.values(errors.rmse_3d_mm)) assert.ok(text.includes(value.toFixed(2)), `${value}`);
+    await page.close();
+  });
+
+  test(`${name}: every figure gives its data as CSV`, async () => {
+    const atOnce = 8;  // Chromium asks the user at the eleventh download of a page
+    for (let first = 0, all = 1; first < all; first += atOnce) {
+      const {page, problems} = await openPage(browser, file);
+      await waitForViewer(page);
+      const buttons = await page.$$('figure .figure-head button');
+      all = buttons.length;
+      assert.equal(all, await page.$$eval('figure', (figures) => figures.length));
+      for (const button of buttons.slice(first, first + atOnce)) {
+        const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
+        const lines = readFileSync(await download.path(), 'utf8').trimEnd().split('\n');
+        assert.match(download.suggestedFilename(), /\.csv$/);
+        assert.ok(lines.length > 1, download.suggestedFilename());
+      }
+      assert.deepEqual(problems, []);
+      await page.close();
+    }
+  });
+
+  test(`${name}: the viewer is there within 2 s, in less than 5 MB`, async (t) => {
+    const times = [];
+    for (let i = 0; i < 3; ++i) {
+      const {page} = await openPage(browser, file);
+      times.push(Number(await waitForViewer(page)));
+      await page.close();
+    }
+    t.diagnostic(`first picture of the viewer after ${times.join(', ')} ms; ${(readFileSync(file).length / 1e6).toFixed(2)} MB`);
+    assert.ok(Math.min(...times) < 2000, `${times} ms`);
+    assert.ok(readFileSync(file).length < 5e6);
+  });
+}
+
+test('names from the user’s files are shown, not run', async () => {
+  const {page, problems} = await openPage(browser, sample);
+  await waitForViewer(page);
+  assert.equal(await page.$$eval('#app script', (all) => all.length), 0);
+  assert.ok((await page.textContent('h1')).includes(EVIL));
+  for (const id of ['parameters', 'models', 'residuals', 'findings', 'reproduce', 'history', 'identifiability']) {
+    assert.ok((await page.textContent(`#${id}`)).includes(EVIL), id);
+  }
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('the chain filter, dark colours and keys on plots work', async () => {
+  const {page, problems} = await openPage(browser, sample, {colorScheme: 'dark'});
+  await waitForViewer(page);
+  const rows = () => page.$$eval('#parameters figure:first-of-type tbody tr', (all) => all.length);
+  const all = await rows();
+  await page.click('#parameters .choice label:nth-of-type(2)');
+  assert.ok(await rows() < all);
+  const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const dark = await background();
+  await page.click('.top button');
+  assert.notEqual(await background(), dark);
+  const readout = () => page.textContent('#residuals .readout');
+  const hint = await readout();
+  await page.focus('#residuals .plot');
+  await page.keyboard.press('ArrowRight');
+  assert.notEqual(await readout(), hint);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('a planned motion plays, with spheres and workspaces', async () => {
+  const {page, problems} = await openPage(browser, sample);
+  await waitForViewer(page);
+  await page.selectOption('#clip', {label: 'motion'});
+  const plain = await picture(page);
+  await page.getByLabel('Collision spheres').check();
+  const spheres = await picture(page);
+  assert.notEqual(spheres.hash, plain.hash);
+  await page.getByLabel('Workspaces').check();
+  assert.notEqual((await picture(page)).hash, spheres.hash);
+  await page.focus('#posture');
+  await page.keyboard.press('End');
+  assert.notEqual((await picture(page)).hash, spheres.hash);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('a folder with a plan alone plays it', async () => {
+  const {data: {robot, spheres}, motions} = sampleReport();
+  const file = join(folder, 'plan.html');
+  writeFileSync(file, fill(readFileSync(template, 'utf8'), {format: 'elastocal-report-1', folder: 'out', data: {robot, spheres}, motions, calibrations: [], missing: []}));
+  const {page, problems} = await openPage(browser, file);
+  await waitForViewer(page);
+  const first = await picture(page);
+  assert.ok(first.opaque > 0.005 * first.pixels);
+  await page.focus('#posture');
+  await page.keyboard.press('End');
+  assert.notEqual((await picture(page)).hash, first.hash);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('meshes are drawn where they came along, and a robot without any is drawn by its bones', async () => {
+  const pictures = [];
+  for (const change of [(robot) => robot, (robot) => ({...robot, meshes: {}}), (robot) => ({...robot, urdf: robot.urdf.replace(/<visual>[^]*?<\/visual>/g, '')})]) {
+    const report = sampleReport();
+    report.data.robot = change(report.data.robot);
+    const file = join(folder, `robot${pictures.length}.html`);
+    writeFileSync(file, fill(readFileSync(template, 'utf8'), report));
+    const {page, problems} = await openPage(browser, file);
+    await waitForViewer(page);
+    pictures.push(await picture(page));
+    assert.deepEqual(problems, []);
+    await page.close();
+  }
+  assert.equal(new Set(pictures.map((p) => p.hash)).size, 3);
+  for (const {opaque, pixels} of pictures) assert.ok(opaque > 0.005 * pixels, `${opaque}`);
+});
+
+test('a report with nothing but a summary says what is missing', async () => {
+  const {summary, missing} = sampleReport();
+  const file = join(folder, 'poor.html');
+  writeFileSync(file, fill(readFileSync(template, 'utf8'), {format: 'elastocal-report-1', folder: 'out', summary, motions: [], calibrations: [], missing}));
+  const {page, problems} = await openPage(browser, file);
+  assert.ok((await page.textContent('#missing')).includes('elastocal report DIR --earlier OLD'));
+  assert.equal(await page.$('.viewer'), null);
+  assert.deepEqual(problems, []);
+  await page.close();
+});

@@ -1,0 +1,98 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {floats, signedBytes, unpackTriangle} from '../../src/lib/binary.js';
+import {diverging, sequential} from '../../src/lib/colours.js';
+import {columnsToCsv, toCsv} from '../../src/lib/csv.js';
+import {chainRows, medianCurves} from '../../src/lib/curves.js';
+import {byJoint, countByStatus, family, kindsOf, offsetsOverTime, splitName} from '../../src/lib/parameters.js';
+import {table2Rows} from '../../src/lib/table2.js';
+import {stiffness, userUnit} from '../../src/lib/units.js';
+import {advance, feet} from '../../src/viewer/clips.js';
+
+test('floats are little-endian and keep NaN', () => {
+  assert.deepEqual([...floats('AACAPwAAAMA=')], [1, -2]);
+  assert.ok(Number.isNaN(floats('AADAfw==')[0]));
+  assert.deepEqual([...signedBytes('ZM5k')], [100, -50, 100]);
+});
+
+test('a triangle of correlations becomes a symmetric matrix', () => {
+  const matrix = unpackTriangle(Int8Array.from([100, -50, 100]), 2);
+  assert.equal(matrix[0][1], -0.5);
+  assert.equal(matrix[1][0], -0.5);
+  assert.equal(matrix[1][1], 1);
+});
+
+test('CSV quotes, keeps gaps, and hands no formula to a spreadsheet', () => {
+  assert.equal(toCsv(['a', 'b'], [['x,"y"', null], ['=1+1', NaN], [-1.5, 'p']]), 'a,b\n"x,""y""",\n\'=1+1,\n-1.5,p\n');
+  assert.equal(columnsToCsv(['t', 'x'], [[0, 1], [2, null]]), 't,x\n0,2\n1,\n');
+});
+
+test('parameters are told apart by their names', () => {
+  assert.deepEqual(splitName('a.b_joint.theta'), {owner: 'a.b_joint', kind: 'theta'});
+  const of = (name) => family({name}, ['leg']);
+  assert.equal(of('marker.M.x'), 'marker');
+  assert.equal(of('waist.T0.r'), 'waist');
+  assert.equal(of('leg.compliance_x'), 'leg');
+  assert.equal(of('leg_1.compliance_x'), 'joint');
+});
+
+test('Table 1 has a row a joint and the columns that occur, in order', () => {
+  const parameters = [{name: 'b.compliance_z', status: 'estimated'}, {name: 'a.r', status: 'held'}, {name: 'a.theta', status: 'estimated'}, {name: 'marker.M.x', status: 'estimated'}];
+  const joints = byJoint(parameters, []);
+  assert.deepEqual([...joints.keys()], ['b', 'a']);
+  assert.deepEqual(kindsOf(joints).map((k) => k.kind), ['theta', 'r', 'compliance_z']);
+  assert.deepEqual(countByStatus(parameters, []), {estimated: 2, held: 1});
+});
+
+test('units', () => {
+  assert.equal(Math.PI * userUnit('rad').factor, 180);
+  assert.deepEqual(stiffness({unit: 'm/N', value: 5e-6}), {value: 200, unit: 'N/mm'});
+  assert.equal(stiffness({unit: 'rad/(N.m)', value: 0}), null);
+});
+
+test('Table 2 has motions, then chains, then the mean', () => {
+  const row = (chain, value) => ({chain, case: 'SW', rmse_3d_mm: {full: value}, max_mm: {full: 2 * value}});
+  const errors = {rows: [row('a+b_c', 1), row('d', 3), {...row('d', 5), case: 'RP'}], chains: [row('a+b_c', 1), row('d', 4)], mean_rmse_3d_mm: {full: 3}};
+  const rows = table2Rows(errors, ['full']);
+  assert.deepEqual(rows.map((r) => r.chain), ['a + b c', 'd', 'd', 'a + b c', 'd', 'Mean']);
+  assert.deepEqual(rows.map((r) => r.rmse[0]), [1, 3, 5, 1, 4, 3]);
+  assert.equal(rows[2].motion, 'random postures');
+});
+
+test('curves are medians over seeds, with gaps where an algorithm has none', () => {
+  const columns = {algorithm: ['A', 'A', 'A', 'B', 'A'], chain: ['leg', 'leg', 'leg', 'leg', 'arm'], postures: [4, 4, 4, 8, 4], o1: [1, 3, 2, 9, 100]};
+  const {postures, curves} = medianCurves(columns, 'leg');
+  assert.deepEqual(postures, [4, 8]);
+  assert.deepEqual(curves, [{algorithm: 'A', o1: [2, null]}, {algorithm: 'B', o1: [null, 9]}]);
+  assert.deepEqual(chainRows({leg: {o1: 1}, seed: 3}), [{chain: 'leg', o1: 1}]);
+  assert.deepEqual(chainRows({chains: [{chain: 'leg', index: 2}]}), [{chain: 'leg', index: 2, o1: 2}]);
+});
+
+test('offsets of several calibrations stand side by side in degrees', () => {
+  const p = (name, value, status = 'estimated') => ({name, unit: 'rad', value, sd: 0.01, status});
+  const rows = offsetsOverTime([{parameters: [p('a.theta', Math.PI / 180), p('b.theta', 0, 'dropped')]}, {parameters: [p('b.theta', 0)]}]);
+  assert.deepEqual(rows.map((r) => r.joint), ['a', 'b']);
+  assert.ok(Math.abs(rows[0].of[0].value - 1) < 1e-12);
+  assert.equal(rows[0].of[1], null);
+});
+
+test('playing goes with the recording’s time, passes gaps quickly and begins anew at the end', () => {
+  const motion = {moving: true, count: 3, time: [0, 0.1, 60]};
+  assert.equal(advance(motion, 0, 0.1), 1);
+  assert.equal(advance(motion, 1, 0.5), 2);
+  assert.ok(advance({moving: false, count: 3, time: []}, 2.9, 1) < 2.9);
+});
+
+test('the feet of a planned motion', () => {
+  assert.deepEqual(feet('a+b', []), ['a', 'b']);
+  assert.deepEqual(feet('both', ['l', 'r']), ['l', 'r']);
+  assert.deepEqual(feet(undefined, ['l']), ['l']);
+  assert.deepEqual(feet('none', ['l']), []);
+});
+
+test('colours run evenly from one end to the other', () => {
+  assert.notDeepEqual(sequential(0), sequential(1));
+  assert.deepEqual(sequential(2), sequential(1));
+  assert.deepEqual(diverging(0, false), [247, 247, 245]);
+});
