@@ -22,7 +22,7 @@ chains:
     postures:
       - {arm_left_1_joint: -0.4, arm_left_2_joint: 0.6, arm_left_4_joint: -1.2}
       - {arm_left_1_joint: 0.3, arm_left_2_joint: 0.3, arm_left_4_joint: -1.9}
-      - {arm_left_1_joint: 0.7, arm_left_2_joint: 0.02, arm_left_3_joint: 2.3, arm_left_4_joint: -2.2}
+      - {arm_left_1_joint: 0.3, arm_left_2_joint: 0.3, arm_left_3_joint: -1.57, arm_left_4_joint: -1.9}
   - name: leg_left
     support: [right_sole_link]
     postures:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace elastocal {
 namespace {
@@ -11,8 +10,6 @@ namespace {
 std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 double SmoothStep(double s) { return s * s * s * (10.0 + s * (6.0 * s - 15.0)); }
-
-Refusal OutOfReach() { return {Constraint::kReach, std::numeric_limits<double>::quiet_NaN(), -1}; }
 
 /// Of rows that rest at both ends and move between: 0 to 1 as they go.
 Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index after) {
@@ -47,40 +44,10 @@ Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vecto
   return all;
 }
 
+constexpr double kLeastHeight = 0.02;  // m, of a swinging foot in a posture at rest
 constexpr double kEnds = 0.5;  // s, held at either end while the root link sets out and arrives
 
 }  // namespace
-
-std::optional<Refusal> Refuse(const MotionMargins& margins, const MotionLimits& limits) {
-  const auto broken = Broken(margins, limits);
-  if (!broken) return std::nullopt;
-  const auto because = [&](const Worst& worst) {
-    return Refusal{*broken, worst.value, worst.index};
-  };
-  switch (*broken) {
-    case Constraint::kPosition:
-      return because(margins.position);
-    case Constraint::kVelocity:
-      return because(margins.velocity);
-    case Constraint::kTorque:
-      return because(margins.torque);
-    case Constraint::kClearance:
-      return because(margins.clearance);
-    case Constraint::kZmp:
-      return because(margins.zmp);
-    case Constraint::kFriction:
-      return because(margins.friction);
-    case Constraint::kKnee:
-      return because(margins.knee);
-    case Constraint::kFeet:
-      return because(margins.foot_moved);
-    case Constraint::kFloor:
-      return because(margins.floor);
-    case Constraint::kReach:
-      break;
-  }
-  return OutOfReach();
-}
 
 Eigen::Index MoveBuilder::SamplesOf(double seconds) const {
   return static_cast<Eigen::Index>(std::lround(seconds * options_.rate_hz));
@@ -106,8 +73,12 @@ std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
                                                PlacedPosture& pose) const {
   if (!Balanced(standing, pose)) return OutOfReach();
   if (!options_.balanced) return std::nullopt;
-  return Refuse(CheckMotion(robot_, {options_.rate_hz, pose.q.transpose(), {standing}}),
-                robot_.limits);
+  const MotionMargins margins =
+      CheckMotion(robot_, {options_.rate_hz, pose.q.transpose(), {standing}});
+  if (margins.floor.value < kLeastHeight) {
+    return Refusal{Constraint::kFloor, margins.floor.value, margins.floor.index};
+  }
+  return Refuse(margins, robot_.limits);
 }
 
 std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
@@ -154,6 +125,7 @@ std::optional<PlacedPosture> MoveBuilder::AtHeights(const Eigen::VectorXd& q,
                refusal->constraint == Constraint::kKnee) {
       height -= kLower;
     } else {
+      why = *refusal;
       break;
     }
   }

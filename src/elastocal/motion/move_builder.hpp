@@ -4,18 +4,9 @@
 #include <vector>
 
 #include "elastocal/motion/plan.hpp"
+#include "elastocal/motion/refusal.hpp"
 
 namespace elastocal {
-
-/// Why a stretch of motion is not taken.
-struct Refusal {
-  Constraint constraint = Constraint::kReach;
-  double value = 0.0;
-  int index = -1;
-};
-
-/// What the margins say of the constraint that they break, if any.
-std::optional<Refusal> Refuse(const MotionMargins& margins, const MotionLimits& limits);
 
 /// Makes motions from rest to rest on given feet, and checks each. All of them hold still for
 /// a moment at both ends, in which the root link begins and ends to move: a part of the hold.
