@@ -84,6 +84,23 @@ TEST_F(Plan, RefusesBadInput) {
   EXPECT_NE(result.err.find("base_link"), std::string::npos) << result.err;
 }
 
+TEST_F(Plan, StandsOnOneFootAndFallsWithoutBalance) {
+  // One posture of a leg on a robot with errors and flexible legs whose feet lie on the floor. The
+  // whole programme is in docs/accuracy.md.
+  const std::string postures = scratch_.Write(
+      "leg.yaml",
+      "robot: talos\nchains: [{name: leg_left, support: [right_sole_link], postures: "
+      "[{leg_left_1_joint: 0.2, leg_left_3_joint: -1.3, leg_left_4_joint: 1.9}]}]\n");
+  const auto stands = [&](const std::string& more) {
+    const ProgramResult result =
+        Run("--postures " + postures + " --try 1 --seed 4 --json " + Path("plan.json") + more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(ReadFile(Path("plan.json")))["tries"][0]["stood"].get<bool>();
+  };
+  EXPECT_TRUE(stands(""));
+  EXPECT_FALSE(stands(" --unbalanced"));
+}
+
 TEST_F(Plan, PlansValidationMotions) {
   const ProgramResult result = Run("--validation repeatability --json " + Path("plan.json"));
   ASSERT_EQ(result.exit_code, 0) << result.err;

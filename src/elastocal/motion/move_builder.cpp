@@ -69,7 +69,7 @@ bool MoveBuilder::Balanced(const std::vector<int>& standing, PlacedPosture& pose
   });
 }
 
-std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
+std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing, double spare,
                                                PlacedPosture& pose) const {
   if (!Balanced(standing, pose)) return OutOfReach();
   if (!options_.balanced) return std::nullopt;
@@ -78,7 +78,9 @@ std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
   if (margins.floor.value < kLeastHeight) {
     return Refusal{Constraint::kFloor, margins.floor.value, margins.floor.index};
   }
-  return Refuse(margins, robot_.limits);
+  MotionLimits limits = robot_.limits;
+  limits.clearance += spare;
+  return Refuse(margins, limits);
 }
 
 std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
@@ -87,15 +89,21 @@ std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
   // Leaning or turning the waist moves the standing leg away from a swinging one.
   constexpr std::array<double, 5> kTilts = {0.0, 0.06, -0.06, 0.12, -0.12};  // rad, about x
   constexpr std::array<double, 5> kTurns = {0.0, 0.12, -0.12, 0.24, -0.24};  // rad, about z
-  const bool one_foot = standing.size() < robot_.soles.size();
-  for (const double tilt : kTilts) {
-    for (const double turn : kTurns) {
-      Refusal refusal;
-      const Transform attitude = RotZ(turn) * RotX(tilt) * Transform(robot_.T_world_root.linear());
-      const auto found = AtHeights(q, standing, near, attitude.linear(), refusal);
-      if (found) return found;
-      if (tilt == 0.0 && turn == 0.0) why = refusal;
-      if (!one_foot || why.constraint != Constraint::kClearance) return std::nullopt;
+  constexpr double kSpare = 0.006;  // m, so that there is a way as well, if it can be had
+  if (standing.size() == robot_.soles.size()) {
+    return AtHeights(q, standing, near, {robot_.T_world_root.linear(), 0.0}, why);
+  }
+  for (const double spare : {kSpare, 0.0}) {
+    for (const double tilt : kTilts) {
+      for (const double turn : kTurns) {
+        Refusal refusal;
+        const Transform attitude =
+            RotZ(turn) * RotX(tilt) * Transform(robot_.T_world_root.linear());
+        const auto found = AtHeights(q, standing, near, {attitude.linear(), spare}, refusal);
+        if (found) return found;
+        if (tilt == 0.0 && turn == 0.0) why = refusal;
+        if (why.constraint != Constraint::kClearance) return std::nullopt;
+      }
     }
   }
   return std::nullopt;
@@ -103,20 +111,19 @@ std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
 
 std::optional<PlacedPosture> MoveBuilder::AtHeights(const Eigen::VectorXd& q,
                                                     const std::vector<int>& standing,
-                                                    const PlacedPosture& near,
-                                                    const Eigen::Matrix3d& attitude,
+                                                    const PlacedPosture& near, const Manner& manner,
                                                     Refusal& why) const {
   constexpr int kHeights = 5;
   constexpr double kAboveFloor = 0.03, kLower = 0.03;  // m
   PlacedPosture pose{q, near.T_world_root};
-  pose.T_world_root.linear() = attitude;
+  pose.T_world_root.linear() = manner.attitude;
   double& height = pose.T_world_root.translation().z();
   height = robot_.T_world_root.translation().z();
   for (int i = 0; i < kHeights; ++i) {
     for (const int foot : standing) {
       for (const int c : robot_.legs[Size(foot)].coordinates()) pose.q[c] = near.q[c];
     }
-    const auto refusal = KeepAtRest(standing, pose);
+    const auto refusal = KeepAtRest(standing, manner.spare, pose);
     if (!refusal) return pose;
     if (i == 0) why = *refusal;
     if (refusal->constraint == Constraint::kFloor) {

@@ -59,10 +59,16 @@ class MoveBuilder {
   std::optional<Eigen::MatrixXd> BalanceAndCheck(const Stretch& stretch, Refusal& why) const;
   /// Holds the first and the last row for a moment more.
   Eigen::MatrixXd WithEnds(const Eigen::MatrixXd& way) const;
+  /// Attitude of the root link, and what parts shall keep beyond the limit, m.
+  struct Manner {
+    Eigen::Matrix3d attitude;
+    double spare;
+  };
   std::optional<PlacedPosture> AtHeights(const Eigen::VectorXd& q, const std::vector<int>& standing,
-                                         const PlacedPosture& near, const Eigen::Matrix3d& attitude,
+                                         const PlacedPosture& near, const Manner& manner,
                                          Refusal& why) const;
-  std::optional<Refusal> KeepAtRest(const std::vector<int>& standing, PlacedPosture& pose) const;
+  std::optional<Refusal> KeepAtRest(const std::vector<int>& standing, double spare,
+                                    PlacedPosture& pose) const;
   bool Balanced(const std::vector<int>& standing, PlacedPosture& pose) const;
 
   const StandingRobot& robot_;

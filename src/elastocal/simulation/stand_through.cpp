@@ -69,8 +69,8 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
     if (i % per_look != 0) continue;
     const Transform waist = body.WaistPose();
     if (!(waist.translation().z() > kFallen * begin.translation().z())) return run;
-    run.largest_lean =
-        std::max(run.largest_lean, RotationAngle(waist.linear() * begin.linear().transpose()));
+    const double upright = waist.linear().col(2).dot(begin.linear().col(2));
+    run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
     run.tracking = std::max(run.tracking, TrackingError(robot, body.Encoders(), command));
     run.least_zmp_margin = std::min(
         run.least_zmp_margin, ZmpMargin(body, soles, motion.support[static_cast<std::size_t>(at)]));

@@ -12,7 +12,7 @@ namespace elastocal {
 struct StandingRun {
   bool stood = false;         ///< to the end: the waist never sank below 0.7 of its height
   double time_s = 0.0;        ///< until it fell, or the whole
-  double largest_lean = 0.0;  ///< of the root link from its attitude at the begin, rad
+  double largest_lean = 0.0;  ///< of the root link's z axis from where it points at the begin, rad
   double tracking = 0.0;      ///< largest difference of encoders and command, rad or m
   /// Least distance of the zero-moment point of the true contact forces to the edge of what the
   /// soles that should stand cover, m; negative: the robot stood on an edge.
