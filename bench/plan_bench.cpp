@@ -30,7 +30,7 @@ void PlanPostures(benchmark::State& state) {
   Random random(1);
   const auto sets =
       ValidationTours(*robot, project.motion, project.motion.chains, ValidationKind::kRandom,
-                     {.random_postures = static_cast<int>(state.range(0))}, random);
+                      {.random_postures = static_cast<int>(state.range(0))}, random);
   double seconds = 0.0;
   for (auto _ : state) {
     const auto planned = PlanTours(*robot, sets, {}, 2);

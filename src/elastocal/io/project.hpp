@@ -12,8 +12,8 @@
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_samples.hpp"
 #include "elastocal/robot/error_model.hpp"
-#include "elastocal/robot/standing.hpp"
 #include "elastocal/robot/motion_setup.hpp"
+#include "elastocal/robot/standing.hpp"
 
 namespace elastocal {
 
@@ -67,7 +67,7 @@ struct Project {
   CalibrationOptions calibration;
   ElasticityChoice elasticity;
   std::vector<Sole> soles;  ///< that the robot can stand on; none: it is not planned for
-  MotionSetup motion;  ///< what the calibration postures and motions keep to
+  MotionSetup motion;       ///< what the calibration postures and motions keep to
 };
 
 /// Reads a project file and the URDF that it names (docs/formats.md).

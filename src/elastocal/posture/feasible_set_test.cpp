@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/random.hpp"
-#include "elastocal/posture/leg_problem_testing.hpp"
 #include "elastocal/posture/random_posture.hpp"
+#include "tests/leg_problem.hpp"
 
 namespace elastocal {
 namespace {

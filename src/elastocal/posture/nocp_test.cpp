@@ -6,7 +6,7 @@
 #include "elastocal/posture/certificate.hpp"
 #include "elastocal/posture/exchange.hpp"
 #include "elastocal/posture/ioops.hpp"
-#include "elastocal/posture/leg_problem_testing.hpp"
+#include "tests/leg_problem.hpp"
 
 namespace elastocal {
 namespace {

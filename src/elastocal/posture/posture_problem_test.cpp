@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/random.hpp"
-#include "elastocal/posture/leg_problem_testing.hpp"
 #include "elastocal/posture/random_posture.hpp"
+#include "tests/leg_problem.hpp"
 #include "tests/random_robot.hpp"
 
 namespace elastocal {
