@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kPlace = "\"@ELASTOCAL_REPORT_DATA@\"";
 constexpr std::size_t kMostCurveRows = 20000;
-constexpr std::size_t kMostMotionRows = 1500;
+constexpr std::size_t kMostMotionRows = 800;
 
 std::string WithoutSuffix(const std::string& name, std::string_view suffix) {
   return name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : std::string();

@@ -54,6 +54,7 @@ class GivenMotionPlanner {
       if (stretches.size() > 1) trial.name += "_" + std::to_string(trials.size() + 1);
       trial.support = stretch.support;
       trial.chains = given_.chains.empty() ? MovingChains(stretch) : given_.chains;
+      if (trial.chains.empty()) continue;  // only what stands moves: a shift of weight
       if (motion_.time_s.size() == 0) {
         VisitPostures(stretch, trial);
       } else {
@@ -62,6 +63,10 @@ class GivenMotionPlanner {
       trial.kind =
           given_.kind.value_or(trial.postures > 0 ? TrialKind::kCalibration : TrialKind::kSine);
       trials.push_back(std::move(trial));
+    }
+    if (trials.empty()) {
+      throw InputError(PlaceOf(motion_, 0) +
+                       "no chain of the project moves from here on while the support is the same");
     }
     return trials;
   }
@@ -123,10 +128,6 @@ class GivenMotionPlanner {
                       [&](int k) { return Moves(tree_.joints[k].coordinate, stretch); })) {
         moving.push_back(static_cast<int>(c));
       }
-    }
-    if (moving.empty()) {
-      throw InputError(PlaceOf(motion_, stretch.first) +
-                       "no chain of the project moves from here on while the support is the same");
     }
     return moving;
   }

@@ -24,8 +24,10 @@ struct GivenMotionOptions {
 /// at rest and ends at rest; postures are MotionOptions::move_s + rest_s apart. Joints of which
 /// nothing is said stay as the robot stands when its own trials begin.
 ///
+/// Stretches in which nothing moves but what stands (the weight is shifted) are passed over.
+///
 /// Throws InputError, naming the line, where the feet on the floor move against each other, where
-/// nothing moves that the trial could exercise, and for a stretch of one sample of a trajectory.
+/// nothing is left to play, and for a stretch of one sample of a trajectory.
 std::vector<PlannedTrial> PlanGivenMotion(const RobotTree& tree,
                                           const std::vector<NamedChain>& chains,
                                           const JointMotion& motion, const MotionOptions& options,
