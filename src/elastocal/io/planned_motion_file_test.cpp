@@ -40,8 +40,8 @@ TEST(ProjectFile, ReadsSoles) {
   const auto parse = [&](const std::string& soles) {
     return ParseProject(
         "robot: {urdf: talos.urdf}\nmarkers: {reference: W, clusters: [{name: W, "
-        "link: base_link, positions_mm: [[0, 0, 0], [9, 0, 0], [0, 9, 0]]}], "
-        "single: [{name: H, link: head_2_link, position_mm: [0, 0, 0]}]}\n"
+        "link: base_link, positions_mm: [[0, 0, 0], [9, 0, 0], [0, 9, 0]]}, {name: H, "
+        "link: head_2_link, positions_mm: [[0, 0, 0], [9, 0, 0], [0, 9, 0]]}]}\n"
         "standing: {soles: " +
             soles + "}\n",
         SourceFile("models/talos/project.yaml"));
