@@ -12,8 +12,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastWeight = 1e-6;  // postures with less leave the weighted set
-constexpr int kWeightIterations = 2000;
-constexpr double kWeightTolerance = 1e-4;  // of phi over the support, relative
+constexpr int kWeightIterations = 300;
+constexpr double kWeightTolerance = 1e-3;  // of phi over the support, relative
 
 /// phi(q) with a fixed M^-1.
 class VarianceProgram : public NonlinearProgram {
