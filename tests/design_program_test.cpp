@@ -55,7 +55,7 @@ TEST_F(DesignProgram, DesignsAndAssessesAndTellsTheTruthAboutBoth) {
   const auto summary = nlohmann::json::parse(ReadFile(File("postures_summary.json")));
   const auto found = nlohmann::json::parse(ReadFile(File("assessed.json")));
   const double index = summary["chains"][0]["index"];
-  // The file holds nine digits.
+  // The file holds twelve digits.
   EXPECT_NEAR(found["chains"][0]["o1"].get<double>(), index, 1e-6 * index);
   EXPECT_TRUE(found["chains"][0]["infeasible"].empty());
   EXPECT_GT(found["chains"][0]["efficiency"].get<double>(), 0.9);

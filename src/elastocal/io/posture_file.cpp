@@ -65,7 +65,7 @@ std::string FormatPostureFile(const RobotTree& tree, const std::vector<ChainPost
     for (const Eigen::VectorXd& q : chain.q) {
       text += "      - {";
       for (int i = 0; i < tree.coordinate_count(); ++i) {
-        text += fmt::format("{}{}: {:.9g}", i > 0 ? ", " : "",
+        text += fmt::format("{}{}: {:.12g}", i > 0 ? ", " : "",
                             Quoted(tree.joints[tree.coordinate_joint[i]].name), q[i]);
       }
       text += "}\n";

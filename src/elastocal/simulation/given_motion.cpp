@@ -11,6 +11,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kStill = 1e-9;      // rad or m between samples
+constexpr double kMoves = 1e-3;      // rad or m over a stretch: less is rounding, no exercise
 constexpr double kLeastRest = 0.3;   // s: shorter ones are turning points
 constexpr double kFeetApart = 2e-3;  // m: what the floor and the soles take up ...
 constexpr double kFeetTurn = 0.01;   // ... and rad
@@ -111,7 +112,7 @@ class GivenMotionPlanner {
 
   bool Moves(int coordinate, const Stretch& stretch) const {
     const auto q = q_.col(coordinate).segment(stretch.first, stretch.last - stretch.first + 1);
-    return q.maxCoeff() - q.minCoeff() > kStill;
+    return q.maxCoeff() - q.minCoeff() > kMoves;
   }
 
   std::vector<int> MovingChains(const Stretch& stretch) const {
