@@ -33,16 +33,17 @@ struct Leg {
   std::vector<int> base;
 };
 
-void NocpUpTo24(benchmark::State& state) {
+/// Up to as many postures as the argument says.
+void NocpUpTo(benchmark::State& state) {
   const Leg leg;
   PostureProblem problem = leg.Problem();
   NocpOptions options;
-  options.plateau = {.tolerance = -1.0, .max_postures = kPostures};
+  options.plateau = {.tolerance = -1.0, .max_postures = static_cast<int>(state.range(0))};
   double o1 = 0.0;
   for (auto _ : state) o1 = Nocp(problem, 1, options).set.Index(Criterion::kO1);
   state.counters["O1"] = o1;
 }
-BENCHMARK(NocpUpTo24)->Unit(benchmark::kMillisecond);
+BENCHMARK(NocpUpTo)->Arg(8)->Arg(kPostures)->Unit(benchmark::kMillisecond);
 
 void NocpToPlateau(benchmark::State& state) {
   const Leg leg;
