@@ -80,11 +80,12 @@ Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int
 std::vector<int> HardlyExcited(const std::vector<Parameter>& parameters,
                                const std::vector<int>& base, const Excitation& excitation) {
   std::vector<int> weak;
-  for (std::size_t i = 0; i < base.size(); ++i) {
-    if (IsElastic(parameters[base[i]].kind)) continue;
-    const bool angle = parameters[base[i]].unit == ParameterUnit::kRadian;
+  Eigen::Index geometric = 0;  // elastic parameters have no entry in the excitation
+  for (int i : base) {
+    if (IsElastic(parameters[i].kind)) continue;
+    const bool angle = parameters[i].unit == ParameterUnit::kRadian;
     const double limit = angle ? M_PI / 180.0 : 5e-3;
-    if (excitation.parameter_sd[static_cast<Eigen::Index>(i)] > limit) weak.push_back(base[i]);
+    if (excitation.parameter_sd[geometric++] > limit) weak.push_back(i);
   }
   return weak;
 }

@@ -34,7 +34,7 @@ struct Excitation {
 };
 
 /// Identifiable parameters that this recording alone leaves uncertain by more than a degree or 5
-/// mm.
+/// mm. `excitation`: of the geometric ones among `base`, in their order.
 std::vector<int> HardlyExcited(const std::vector<Parameter>& parameters,
                                const std::vector<int>& base, const Excitation& excitation);
 
