@@ -45,9 +45,8 @@ struct Assessed {
 
 /// The set-up of a chain of either side.
 ChainSetup SetupOf(const Project& project, const std::string& chain) {
-  for (const ChainSetup& setup : project.motion.chains) {
+  for (const ChainSetup& setup : SetupsOfBothSides(project)) {
     if (setup.name == chain) return setup;
-    if (setup.mirror == chain) return OtherSide(project, setup);
   }
   throw InputError(project.file.string() + ": section 'design' says nothing of chain '" + chain +
                    "'");
@@ -161,13 +160,8 @@ bool Exercises(const Recording& recording, Eigen::Index posture, const Project& 
 /// The postures of a recording, by chain of the project's design and of their mirror images.
 std::vector<ChainPostures> RecordedPostures(const AssessCommand& command) {
   const Session session = OpenSession(command.project, command.recordings, command.common.seed);
-  std::vector<ChainSetup> setups;
-  for (const ChainSetup& setup : session.project.motion.chains) {
-    setups.push_back(setup);
-    if (!setup.mirror.empty()) setups.push_back(OtherSide(session.project, setup));
-  }
   std::vector<ChainPostures> sets;
-  for (const ChainSetup& setup : setups) {
+  for (const ChainSetup& setup : SetupsOfBothSides(session.project)) {
     ChainPostures set{setup.name, setup.support, {}};
     for (Eigen::Index i = 0; i < session.recording.q.rows(); ++i) {
       if (Exercises(session.recording, i, session.project, setup)) {

@@ -132,7 +132,8 @@ void DesignSides(const Project& project, const ChainSetup& setup, const DesignCo
 }
 
 std::string DesignTable(const std::vector<Designed>& designed) {
-  TextTable table({"chain", "parameters", "postures", "ended by", "O", "efficiency %", "time s"});
+  TextTable table(
+      {"chain", "parameters", "postures", "ended by", "O", "efficiency %", "yield %", "time s"});
   for (const auto& [design, seconds] : designed) {
     table.Add(
         {design.setup.name, std::to_string(design.parameter_count),
@@ -141,6 +142,7 @@ std::string DesignTable(const std::vector<Designed>& designed) {
                                       : "mirror of " + design.mirrored_from,
          fmt::format("{:.4f}", design.index),
          design.certificate.bound > 0.0 ? fmt::format("{:.1f}", 100.0 * design.Efficiency()) : "",
+         design.sampling.tries > 0 ? fmt::format("{:.0f}", 100.0 * design.sampling.Yield()) : "",
          fmt::format("{:.2f}", seconds)});
   }
   return table.Render();
@@ -159,6 +161,10 @@ Json DesignJson(const std::vector<Designed>& designed, const Project& project,
                   {"index", design.index},
                   {"bound", design.certificate.bound},
                   {"efficiency", design.Efficiency()},
+                  {"random_postures",
+                   {{"tries", design.sampling.tries},
+                    {"feasible_at_once", design.sampling.feasible_at_once},
+                    {"found", design.sampling.found}}},
                   {"time_s", seconds},
                   {"mirror_of", design.mirrored_from},
                   {"sizes", design.sizes},

@@ -7,11 +7,6 @@
 namespace elastocal::cli {
 namespace {
 
-const Chain& FindChain(const Project& project, const std::string& name) {
-  return *std::find_if(project.chains.begin(), project.chains.end(),
-                       [&](const Chain& chain) { return chain.name == name; });
-}
-
 Elasticity JointElasticity(const RobotTree& tree, const ChainSetup& setup) {
   Elasticity elasticity;
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
@@ -28,7 +23,8 @@ Elasticity JointElasticity(const RobotTree& tree, const ChainSetup& setup) {
 }  // namespace
 
 DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic) {
-  const std::vector<std::string> markers = ChainMarkers(project, FindChain(project, setup.name));
+  const std::vector<std::string> markers =
+      ChainMarkers(project, project.chains[FindChain(project, setup.name)]);
   if (markers.empty()) {
     throw InputError(project.file.string() + ": chain '" + setup.name + "' carries no markers");
   }
@@ -65,7 +61,7 @@ std::vector<ChainSetup> ChosenSetups(const Project& project,
 }
 
 ChainSetup OtherSide(const Project& project, const ChainSetup& setup) {
-  const Chain& other = FindChain(project, setup.mirror);
+  const Chain& other = project.chains[FindChain(project, setup.mirror)];
   std::string reason;
   const auto mirrored = MirrorSetup(project.tree, project.motion, setup, other.name,
                                     other.from_link, other.tip_link, &reason);
@@ -74,6 +70,15 @@ ChainSetup OtherSide(const Project& project, const ChainSetup& setup) {
                      setup.mirror + "': " + reason);
   }
   return *mirrored;
+}
+
+std::vector<ChainSetup> SetupsOfBothSides(const Project& project) {
+  std::vector<ChainSetup> setups;
+  for (const ChainSetup& setup : project.motion.chains) {
+    setups.push_back(setup);
+    if (!setup.mirror.empty()) setups.push_back(OtherSide(project, setup));
+  }
+  return setups;
 }
 
 }  // namespace elastocal::cli

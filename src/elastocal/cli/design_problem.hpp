@@ -29,4 +29,7 @@ std::vector<ChainSetup> ChosenSetups(const Project& project, const std::vector<s
 /// Set-up of the chain on the other side. Throws InputError where there is no mirror image.
 ChainSetup OtherSide(const Project& project, const ChainSetup& setup);
 
+/// The project's chain set-ups, each followed by that of the other side where it has one.
+std::vector<ChainSetup> SetupsOfBothSides(const Project& project);
+
 }  // namespace elastocal::cli

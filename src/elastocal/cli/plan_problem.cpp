@@ -19,12 +19,8 @@ std::size_t Size(int i) { return static_cast<std::size_t>(i); }
 /// Pairs of spheres of all chains and of those on the other side, each once.
 std::vector<SpherePair> AllContacts(const Project& project) {
   std::set<SpherePair> pairs;
-  const auto add = [&](const ChainSetup& setup) {
+  for (const ChainSetup& setup : SetupsOfBothSides(project)) {
     for (const auto& [a, b] : setup.contacts) pairs.insert(std::minmax(a, b));
-  };
-  for (const ChainSetup& setup : project.motion.chains) {
-    add(setup);
-    if (!setup.mirror.empty()) add(OtherSide(project, setup));
   }
   return {pairs.begin(), pairs.end()};
 }
@@ -78,16 +74,11 @@ std::vector<PostureTour> PostureTours(const StandingRobot& robot,
 
 std::vector<PostureTour> ProjectValidationTours(const Project& project, const StandingRobot& robot,
                                                 const std::string& kind, std::uint64_t seed) {
-  std::vector<ChainSetup> chains;
-  for (const ChainSetup& setup : project.motion.chains) {
-    chains.push_back(setup);
-    if (!setup.mirror.empty()) chains.push_back(OtherSide(project, setup));
-  }
   Random random(seed);
   const ValidationKind which = kind == "sine"     ? ValidationKind::kSine
                                : kind == "random" ? ValidationKind::kRandom
                                                   : ValidationKind::kRepeatability;
-  return ValidationTours(robot, project.motion, chains, which, {}, random);
+  return ValidationTours(robot, project.motion, SetupsOfBothSides(project), which, {}, random);
 }
 
 JointMotion ToJointMotion(const StandingRobot& robot, const SampledMotion& motion) {

@@ -25,15 +25,6 @@ bool Contains(const std::vector<Value>& values, const Value& value) {
   return std::find(values.begin(), values.end(), value) != values.end();
 }
 
-int ChainNamedBy(const YamlValue& value, const Project& project) {
-  const std::string name = value.Text();
-  try {
-    return FindChain(project, name);
-  } catch (const InputError& error) {
-    value.Fail(error.what());
-  }
-}
-
 /// `chain: name` or `chains: [name, ...]`.
 std::vector<int> ReadChains(const YamlValue& trial, const Project& project) {
   const auto one = trial.Find("chain");
@@ -163,17 +154,6 @@ std::optional<TrialKind> TrialKindNamed(const std::string& name) {
     if (TrialKindName(kind) == name) return kind;
   }
   return std::nullopt;
-}
-
-int FindChain(const Project& project, const std::string& name) {
-  std::vector<std::string> known;
-  for (const Chain& chain : project.chains) known.push_back(chain.name);
-  const auto found = std::find(known.begin(), known.end(), name);
-  if (found == known.end()) {
-    throw InputError("there is no chain " + Quote(name) + " in " + project.file.string() +
-                     DidYouMean(name.substr(0, 60), known));
-  }
-  return static_cast<int>(found - known.begin());
 }
 
 Experiment ReadExperiment(const fs::path& folder, const Project& project) {

@@ -15,10 +15,6 @@ std::string TrialKindName(TrialKind kind);
 /// The kind of that name; nothing where there is none.
 std::optional<TrialKind> TrialKindNamed(const std::string& name);
 
-/// Index of a chain of the project. Throws InputError with the nearest known name where there is
-/// none.
-int FindChain(const Project& project, const std::string& name);
-
 /// One motion as it was recorded, by cameras and robot.
 struct TrialFiles {
   std::string name;

@@ -4,6 +4,7 @@
 
 #include "elastocal/io/posture_columns.hpp"
 #include "elastocal/io/text.hpp"
+#include "elastocal/io/unknown_column.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
@@ -51,20 +52,6 @@ Roles FindRoles(const Project& project) {
   }
   for (const std::string& column : project.recording.ignore) roles[column] = Role{};
   return roles;
-}
-
-[[noreturn]] void FailUnknown(const std::string& column, const std::string& place,
-                              const Roles& roles, const Project& project) {
-  if (ParseNumber(column)) {
-    throw InputError(place + "found the number " + Quote(column) +
-                     " in the first row; a header row with the names of the columns was expected");
-  }
-  std::vector<std::string> known;
-  for (const auto& [name, role] : roles) known.push_back(name);
-  throw InputError(place + "unknown column " + Quote(column) +
-                   DidYouMean(column.substr(0, 60), known) +
-                   " (columns that are not to be read are listed in recording.ignore of " +
-                   project.file.string() + ")");
 }
 
 /// Keeps the joints whose positions are there.
@@ -121,7 +108,7 @@ JointColumns FindJointColumns(const std::vector<std::string>& header, const std:
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto role = roles.find(header[i]);
     if (role == roles.end() && header[i].ends_with("_velocity")) continue;
-    if (role == roles.end()) FailUnknown(header[i], place, roles, project);
+    if (role == roles.end()) FailUnknownColumn(header[i], place, KeysOf(roles), project.file);
     const auto& [kind, index] = role->second;
     if (kind == Role::Kind::kIgnored) continue;
     int& column = kind == Role::Kind::kTime       ? result.time

@@ -5,6 +5,7 @@
 
 #include "elastocal/io/posture_columns.hpp"
 #include "elastocal/io/text.hpp"
+#include "elastocal/io/unknown_column.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/simulation/legs.hpp"
 
@@ -42,18 +43,6 @@ Roles FindRoles(const Project& project, bool timed) {
   return roles;
 }
 
-[[noreturn]] void FailUnknown(const std::string& column, const std::string& place,
-                              const Roles& roles) {
-  if (ParseNumber(column)) {
-    throw InputError(place + "found the number " + Quote(column) +
-                     " in the first row; a header row with the names of the columns was expected");
-  }
-  std::vector<std::string> known;
-  for (const auto& [name, role] : roles) known.push_back(name);
-  throw InputError(place + "unknown column " + Quote(column) +
-                   DidYouMean(column.substr(0, 60), known));
-}
-
 }  // namespace
 
 MotionColumns FindMotionColumns(const std::vector<std::string>& header, const std::string& place,
@@ -70,7 +59,7 @@ MotionColumns FindMotionColumns(const std::vector<std::string>& header, const st
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto column = static_cast<int>(i);
     const auto role = roles.find(header[i]);
-    if (role == roles.end()) FailUnknown(header[i], place, roles);
+    if (role == roles.end()) FailUnknownColumn(header[i], place, KeysOf(roles), project.file);
     if (role->second.kind == Role::Kind::kTime) take(columns.time, column);
     if (role->second.kind == Role::Kind::kSupport) take(columns.support, column);
     if (role->second.kind == Role::Kind::kCoordinate) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "elastocal/io/text.hpp"
+#include "elastocal/io/unknown_column.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
@@ -47,20 +48,6 @@ Roles FindRoles(const Project& project) {
   }
   for (const std::string& column : project.recording.ignore) roles[column] = Role{};
   return roles;
-}
-
-[[noreturn]] void FailUnknown(const std::string& column, const std::string& place,
-                              const Roles& roles, const Project& project) {
-  std::vector<std::string> known;
-  for (const auto& [name, role] : roles) known.push_back(name);
-  if (ParseNumber(column)) {
-    throw InputError(place + "found the number " + Quote(column) +
-                     " in the first row; a header row with the names of the columns was expected");
-  }
-  throw InputError(place + "unknown column " + Quote(column) +
-                   DidYouMean(column.substr(0, 60), known) +
-                   " (columns that are not to be read are listed in recording.ignore of " +
-                   project.file.string() + ")");
 }
 
 void KeepCompleteMarkers(const std::vector<std::array<int, 3>>& columns, const std::string& place,
@@ -140,7 +127,7 @@ PostureColumns FindPostureColumns(const std::vector<std::string>& header, const 
       throw InputError(place + "empty column name, cell " + std::to_string(i + 1));
     }
     const auto role = roles.find(header[i]);
-    if (role == roles.end()) FailUnknown(header[i], place, roles, project);
+    if (role == roles.end()) FailUnknownColumn(header[i], place, KeysOf(roles), project.file);
     const auto& [kind, index, axis] = role->second;
     if (kind == Role::Kind::kIgnored) continue;
     if (!seen.insert(header[i]).second) {

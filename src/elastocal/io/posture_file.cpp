@@ -1,8 +1,5 @@
 #include "elastocal/io/posture_file.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "elastocal/io/output_files.hpp"
@@ -29,14 +26,8 @@ Eigen::VectorXd ReadPosture(const YamlValue& value, const Project& project) {
   const RobotTree& tree = project.tree;
   Eigen::VectorXd q = project.motion.rest;
   for (const auto& [name, position] : value.Entries()) {
-    int joint = 0;
-    try {
-      joint = FindJoint(tree, name);
-    } catch (const InputError& error) {
-      position.Fail(error.what());
-    }
+    const int joint = DriverNamedBy(name, position, tree);
     const JointLimits& limits = tree.joints[joint].limits;
-    if (tree.joints[joint].mimic) position.Fail("the joint follows another one");
     const double wanted = position.Number();
     position.Expect(wanted >= limits.lower - kBeyond && wanted <= limits.upper + kBeyond,
                     "a position within the joint's limits, " + FormatNumber(limits.lower) + " to " +
@@ -87,13 +78,7 @@ std::vector<ChainPostures> ParsePostureFile(const std::string& text, const std::
   for (const YamlValue& value : root.Get("chains").Items()) {
     value.ExpectKeys({"name", "support", "postures"});
     ChainPostures chain;
-    const YamlValue name = value.Get("name");
-    chain.chain = name.Text();
-    std::vector<std::string> known;
-    for (const Chain& other : project.chains) known.push_back(other.name);
-    if (std::find(known.begin(), known.end(), chain.chain) == known.end()) {
-      name.Fail("there is no chain " + Quote(chain.chain) + DidYouMean(chain.chain, known));
-    }
+    chain.chain = project.chains[ChainNamedBy(value.Get("name"), project)].name;
     if (const auto support = value.Find("support")) {
       chain.support = ReadFeet(*support, project.tree);
     }

@@ -141,6 +141,41 @@ int JointNamedBy(const YamlValue& value, const RobotTree& tree) {
   }
 }
 
+int DriverNamedBy(const std::string& name, const YamlValue& value, const RobotTree& tree) {
+  int joint = -1;
+  try {
+    joint = FindJoint(tree, name);
+  } catch (const InputError& error) {
+    value.Fail(error.what());
+  }
+  if (tree.joints[joint].mimic) {
+    const int driver = tree.coordinate_joint[tree.joints[joint].coordinate];
+    value.Fail("joint " + Quote(name) + " follows joint " + Quote(tree.joints[driver].name) +
+               "; name that one");
+  }
+  return joint;
+}
+
+int ChainNamedBy(const YamlValue& value, const Project& project) {
+  const std::string name = value.Text();
+  try {
+    return FindChain(project, name);
+  } catch (const InputError& error) {
+    value.Fail(error.what());
+  }
+}
+
+int FindChain(const Project& project, const std::string& name) {
+  std::vector<std::string> known;
+  for (const Chain& chain : project.chains) known.push_back(chain.name);
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end()) {
+    throw InputError("there is no chain " + Quote(name) + " in " + project.file.string() +
+                     DidYouMean(name.substr(0, 60), known));
+  }
+  return static_cast<int>(found - known.begin());
+}
+
 Project ReadProject(const std::filesystem::path& file) {
   return ParseProject(ReadFile(file), file);
 }

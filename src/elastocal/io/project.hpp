@@ -82,6 +82,10 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
 /// postures). Legs are the chains on whose tip alone a trial stands.
 ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& trials);
 
+/// Index of a chain of the project. Throws InputError with the nearest known name where there is
+/// none.
+int FindChain(const Project& project, const std::string& name);
+
 /// Markers carried by the links of a chain, beyond its `from` link up to and including its tip.
 std::vector<std::string> ChainMarkers(const Project& project, const Chain& chain);
 

@@ -33,15 +33,6 @@ int SphereNamedBy(const YamlValue& value, const std::vector<CollisionSphere>& sp
   value.Fail("there is no sphere " + Quote(value.Text()) + DidYouMean(value.Text(), names));
 }
 
-const Chain& ChainNamedBy(const YamlValue& value, const std::vector<Chain>& chains) {
-  std::vector<std::string> names;
-  for (const Chain& chain : chains) {
-    if (chain.name == value.Text()) return chain;
-    names.push_back(chain.name);
-  }
-  value.Fail("there is no chain " + Quote(value.Text()) + DidYouMean(value.Text(), names));
-}
-
 std::vector<int> ReadSupport(const YamlValue& value, const RobotTree& tree) {
   std::vector<int> links;
   for (const YamlValue& item : value.Items()) links.push_back(LinkNamedBy(item, tree));
@@ -72,14 +63,14 @@ std::vector<SpherePair> ReadContacts(const YamlValue& value,
 
 ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
   value.ExpectKeys({"chain", "mirror", "support", "box_mm", "cone_deg", "floor_mm", "contacts"});
-  const Chain& chain = ChainNamedBy(value.Get("chain"), project.chains);
+  const Chain& chain = project.chains[ChainNamedBy(value.Get("chain"), project)];
   ChainSetup setup;
   setup.name = chain.name;
   setup.from_link = chain.from_link;
   setup.tip_link = chain.tip_link;
   setup.coordinates = ChainCoordinates(project.tree, chain.from_link, chain.tip_link);
   if (const auto mirror = value.Find("mirror")) {
-    setup.mirror = ChainNamedBy(*mirror, project.chains).name;
+    setup.mirror = project.chains[ChainNamedBy(*mirror, project)].name;
   }
   if (const auto support = value.Find("support")) {
     setup.support = ReadSupport(*support, project.tree);
@@ -114,16 +105,10 @@ void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
 
 void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& motion) {
   for (const auto& [name, value] : section.Entries()) {
-    int joint = 0;
-    try {
-      joint = FindJoint(tree, name);
-    } catch (const InputError& error) {
-      value.Fail(error.what());
-    }
+    const int joint = DriverNamedBy(name, value, tree);
     const int i = tree.joints[joint].coordinate;
     const double unit =
         tree.joints[joint].type == JointType::kRevolute ? kRadiansPerDegree : kMetresPerMm;
-    if (tree.joints[joint].mimic) value.Fail("the joint follows another one");
     motion.rest[i] = unit * value.Number();
     value.Expect(motion.rest[i] >= motion.lower[i] && motion.rest[i] <= motion.upper[i],
                  "a position within the joint's limits, " + FormatNumber(motion.lower[i] / unit) +

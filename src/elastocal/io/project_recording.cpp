@@ -8,22 +8,6 @@
 namespace elastocal {
 namespace {
 
-/// A joint with a position of its own: what another joint decides cannot be recorded or given.
-int DriverNamedBy(const std::string& name, const YamlValue& value, const RobotTree& tree) {
-  int joint = -1;
-  try {
-    joint = FindJoint(tree, name);
-  } catch (const InputError& error) {
-    value.Fail(error.what());
-  }
-  if (tree.joints[joint].mimic) {
-    const int driver = tree.coordinate_joint[tree.joints[joint].coordinate];
-    value.Fail("joint " + Quote(name) + " follows joint " + Quote(tree.joints[driver].name) +
-               "; name that one");
-  }
-  return joint;
-}
-
 void ReadMarkerColumns(const YamlValue& section, Project& project) {
   std::vector<std::string> names;
   for (const Marker& marker : project.markers) names.push_back(marker.name);

@@ -23,5 +23,10 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
 /// The link or movable joint that a value names.
 int LinkNamedBy(const YamlValue& value, const RobotTree& tree);
 int JointNamedBy(const YamlValue& value, const RobotTree& tree);
+/// The joint `name`, a key whose value is `value`, with a position of its own: what another joint
+/// decides cannot be recorded or given.
+int DriverNamedBy(const std::string& name, const YamlValue& value, const RobotTree& tree);
+/// The chain that a value names: index into Project::chains.
+int ChainNamedBy(const YamlValue& value, const Project& project);
 
 }  // namespace elastocal

@@ -5,15 +5,13 @@
 #include <Eigen/Sparse>
 
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/math/smooth_step.hpp"
 #include "elastocal/motion/sampled_motion.hpp"
 
 namespace elastocal {
 namespace {
 
 std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
-
-/// From 0 to 1 with speed and acceleration zero at both ends.
-double SmoothStep(double s) { return s * s * s * (10.0 + s * (6.0 * s - 15.0)); }
 
 /// The root link's way from begin to end without regard to dynamics.
 std::vector<Transform> RootWay(const Stretch& stretch) {

@@ -4,19 +4,19 @@
 #include <array>
 #include <cmath>
 
+#include "elastocal/math/smooth_step.hpp"
+
 namespace elastocal {
 namespace {
 
 std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
-
-double SmoothStep(double s) { return s * s * s * (10.0 + s * (6.0 * s - 15.0)); }
 
 /// Of rows that rest at both ends and move between: 0 to 1 as they go.
 Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index after) {
   Eigen::VectorXd progress(samples);
   const auto moving = static_cast<double>(samples - 1 - before - after);
   for (Eigen::Index i = 0; i < samples; ++i) {
-    progress[i] = SmoothStep(std::clamp(static_cast<double>(i - before) / moving, 0.0, 1.0));
+    progress[i] = SmoothStep(static_cast<double>(i - before) / moving);
   }
   return progress;
 }
@@ -240,8 +240,8 @@ Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, d
   Eigen::MatrixXd way = q.transpose().replicate(SamplesOf(duration) + 1, 1);
   for (Eigen::Index i = 0; i < way.rows(); ++i) {
     const double time = static_cast<double>(i) / options_.rate_hz;
-    const double in = SmoothStep(std::min(1.0, time / ramp));
-    const double out = SmoothStep(std::min(1.0, (duration - time) / ramp));
+    const double in = SmoothStep(time / ramp);
+    const double out = SmoothStep((duration - time) / ramp);
     way(i, coordinate) += in * out * (centre - q[coordinate] + amplitude * std::sin(omega * time));
   }
   return way;

@@ -65,6 +65,7 @@ ChainDesign DesignChain(const ErrorModel& model, const std::vector<int>& base,
   design.index = result.set.Index(options.criterion);
   design.sizes = result.sizes;
   design.indices = result.indices;
+  design.sampling = result.sampling;
   SetPostures(problem, result.set, design);
   if (design.index > 0.0) Certify(problem, result.set, options, design);
   return design;

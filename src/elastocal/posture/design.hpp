@@ -38,6 +38,7 @@ struct ChainDesign {
   std::vector<int> sizes = {};       ///< of the set after each addition ...
   std::vector<double> indices = {};  ///< ... and its index
   Certificate certificate = {};
+  SamplingCount sampling = {};          ///< of the random postures drawn
   std::string mirrored_from = {};       ///< the chain that it is the mirror image of
   std::vector<std::string> notes = {};  ///< what a user should know
 

@@ -22,6 +22,7 @@ std::vector<Eigen::VectorXd> DrawPool(PostureProblem& problem, int count, std::u
     }
     pool.push_back(*drawn);
   }
+  result.sampling = sampler.count();
   return pool;
 }
 

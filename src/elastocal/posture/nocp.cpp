@@ -43,6 +43,7 @@ DesignResult Nocp(PostureProblem& problem, std::uint64_t seed, const NocpOptions
       if (!posture) {
         result.status = DesignResult::Status::kNoPosture;
         result.blame = sampler.Blame();
+        result.sampling = sampler.count();
         return result;
       }
       added.push_back(set.size());
@@ -67,6 +68,7 @@ DesignResult Nocp(PostureProblem& problem, std::uint64_t seed, const NocpOptions
   } else {
     Polish(problem, options.cocp, sampler, set);
   }
+  result.sampling = sampler.count();
   return result;
 }
 

@@ -33,6 +33,7 @@ struct DesignResult {
   std::string blame = {};
   std::vector<int> sizes = {};       ///< of the set after each addition
   std::vector<double> indices = {};  ///< after each addition
+  SamplingCount sampling = {};       ///< of the random postures drawn
 };
 
 struct NocpOptions {

@@ -94,6 +94,22 @@ TEST_F(GivenMotion, EachStretchOfOneSupportIsATrial) {
   EXPECT_EQ(trials[1].postures, 3);
 }
 
+TEST_F(GivenMotion, AStretchInWhichOnlyWhatStandsMovesIsPassedOver) {
+  JointMotion motion = Samples({0.1, 0.1, 0.1, 0.1}, {0.5, 0.5, 0.6, 0.8});
+  motion.support = {{left_, right_}, {left_, right_}, {right_}, {right_}};
+  const std::vector<PlannedTrial> trials = Plan(motion);
+  ASSERT_EQ(trials.size(), 1u);
+  EXPECT_EQ(trials[0].support, std::vector<int>{right_});
+  EXPECT_EQ(trials[0].postures, 2);
+}
+
+TEST_F(GivenMotion, ARoundingExercisesNoChain) {
+  // Positions that were written with nine digits and with sixteen.
+  JointMotion motion = Samples({0.1, 0.1 + 3e-9, 0.1}, {0.5, 0.6, 0.8});
+  motion.support = {{right_}, {right_}, {right_}};
+  EXPECT_EQ(Plan(motion)[0].chains, std::vector<int>{1});  // the left leg, not the trunk
+}
+
 TEST_F(GivenMotion, RefusesWhatCannotBePlayed) {
   const JointMotion knee = Samples({0, 0, 0}, {0.5, 0.5, 0.8});
   ExpectInputError([&] { Plan(knee); },

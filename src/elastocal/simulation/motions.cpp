@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "elastocal/math/smooth_step.hpp"
 #include "elastocal/simulation/motion_writer.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
@@ -11,12 +12,6 @@ namespace elastocal {
 namespace {
 
 std::size_t Size(int i) { return static_cast<std::size_t>(i); }
-
-/// Quintic from 0 to 1 with speed and acceleration zero at both ends.
-double SmoothStep(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10.0 + s * (6.0 * s - 15.0));
-}
 
 /// Slope of the samples at one of them; one-sided at the ends.
 Eigen::VectorXd SlopeAt(const MotionSegment& segment, Eigen::Index i) {

@@ -79,7 +79,8 @@ TEST(PlanTrials, SwingAboveTheFloorOnABentLegThatCarries) {
       EXPECT_TRUE((p.array() >= options.postures.foot.lower.array()).all()) << p.transpose();
       EXPECT_TRUE((p.array() <= options.postures.foot.upper.array()).all()) << p.transpose();
       // Balanced over the sole.
-      const Eigen::Vector3d com = T_sole_waist * CentreOfMass(biped.tree, segment.to);
+      const Eigen::Vector3d com =
+          T_sole_waist * CentreOfMass(biped.tree, BodyInertias(biped.tree), segment.to);
       EXPECT_LE(std::abs(com.x()), options.postures.sway.x() + 0.01);
       EXPECT_LE(std::abs(com.y()), options.postures.sway.y() + 0.01);
       const double knee = segment.to[FindJoint(biped.tree, "right_4")];

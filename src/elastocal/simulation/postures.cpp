@@ -95,23 +95,13 @@ std::optional<Eigen::VectorXd> PlaceFoot(const RobotTree& tree, const Leg& leg,
   }
 }
 
-Eigen::Vector3d CentreOfMass(const RobotTree& tree, const Eigen::VectorXd& q) {
-  const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
-  double mass = 0.0;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < tree.links.size(); ++i) {
-    mass += tree.links[i].mass;
-    moment += tree.links[i].mass * (T_root_link[i] * tree.links[i].com);
-  }
-  return mass > 0.0 ? Eigen::Vector3d(moment / mass) : moment;
-}
-
 PostureSampler::PostureSampler(const RobotTree& tree, const std::vector<Leg>& legs,
                                const PostureOptions& options, std::uint64_t seed)
     : tree_(tree),
       legs_(legs),
       options_(options),
       random_(seed),
+      inertias_(BodyInertias(tree)),
       T_root_link_zero_(LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()))),
       height_(StandingHeight(tree, legs)),
       scale_(height_ > 0.0 ? height_ / kDescribedHeight : 1.0),
@@ -229,7 +219,7 @@ std::optional<Eigen::VectorXd> PostureSampler::DrawSupport(Eigen::VectorXd q, co
   Eigen::Vector3d p_floor_waist = -T_root_link_zero_[Size(support.foot_link)].translation() -
                                   Eigen::Vector3d(0, 0, drop * height_);
   for (int i = 0; i < kBalanceSteps; ++i) {
-    const Eigen::Vector3d com = p_floor_waist + R_floor_waist * CentreOfMass(tree_, q);
+    const Eigen::Vector3d com = p_floor_waist + R_floor_waist * CentreOfMass(tree_, inertias_, q);
     p_floor_waist.head<2>() += aim - com.head<2>();
     Transform T_floor_waist = Transform::Identity();
     T_floor_waist.linear() = R_floor_waist;

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "elastocal/math/random.hpp"
+#include "elastocal/robot/inverse_dynamics.hpp"
 #include "elastocal/simulation/legs.hpp"
 
 namespace elastocal {
@@ -47,9 +48,6 @@ std::optional<Eigen::VectorXd> PlaceFoot(const RobotTree& tree, const Leg& leg,
                                          const Transform& T_waist_foot, Eigen::VectorXd q,
                                          double tolerance = 1e-8);
 
-/// Centre of mass of the whole robot in the root link's frame, m.
-Eigen::Vector3d CentreOfMass(const RobotTree& tree, const Eigen::VectorXd& q);
-
 /// Draws feasible postures of a robot, from its description.
 class PostureSampler {
  public:
@@ -89,6 +87,7 @@ class PostureSampler {
   const std::vector<Leg>& legs_;
   PostureOptions options_;
   Random random_;
+  std::vector<BodyInertia> inertias_;
   std::vector<Transform> T_root_link_zero_;
   double height_, scale_;
   Eigen::VectorXd stand_;
