@@ -6,6 +6,8 @@
 #include <IpSolveStatistics.hpp>
 #include <IpTNLP.hpp>
 
+#include "elastocal/optim/quasi_newton.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -15,7 +17,8 @@ using Ipopt::Number;
 /// Ipopt's view of a programme.
 class IpoptProgram : public Ipopt::TNLP {
  public:
-  IpoptProgram(NonlinearProgram& program, const Eigen::VectorXd& x0) : program_(program), x_(x0) {}
+  IpoptProgram(NonlinearProgram& program, const Eigen::VectorXd& x0)
+      : program_(program), x_(x0), hessian_(x0.size()) {}
 
   const Eigen::VectorXd& x() const { return x_; }
   double objective() const { return objective_; }
@@ -28,7 +31,7 @@ class IpoptProgram : public Ipopt::TNLP {
     jacobian_entries = 0;
     for (const auto& block : program_.jacobian_blocks)
       jacobian_entries += block.rows * block.columns;
-    hessian_entries = 0;
+    hessian_entries = n * (n + 1) / 2;
     style = C_STYLE;
     return true;
   }
@@ -80,6 +83,31 @@ class IpoptProgram : public Ipopt::TNLP {
     return true;
   }
 
+  bool eval_h(Index n, const Number* x, bool fresh, Number objective_factor, Index m,
+              const Number* multipliers, bool, Index, Index* rows, Index* columns,
+              Number* values) override {
+    if (values == nullptr) {
+      for (Index j = 0; j < n; ++j) {
+        for (Index i = j; i < n; ++i) {
+          *rows++ = i;
+          *columns++ = j;
+        }
+      }
+      return true;
+    }
+    if (!Update(n, x, fresh)) return false;
+    // Of the restoration of feasibility the objective is no part, and nothing is to be learned.
+    if (objective_factor > 0.0) {
+      LearnCurvature(objective_factor, Eigen::Map<const Eigen::VectorXd>(x, n),
+                     Eigen::Map<const Eigen::VectorXd>(multipliers, m));
+    }
+    for (Index j = 0; j < n; ++j) {
+      Map(values, n - j) = hessian_.hessian().col(j).tail(n - j);
+      values += n - j;
+    }
+    return true;
+  }
+
   void finalize_solution(Ipopt::SolverReturn status, Index n, const Number* x, const Number*,
                          const Number*, Index, const Number*, const Number*, Number objective,
                          const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
@@ -102,6 +130,35 @@ class IpoptProgram : public Ipopt::TNLP {
     return defined_;
   }
 
+  /// Gradients at a point.
+  struct Slopes {
+    Eigen::VectorXd x, objective;
+    std::vector<Eigen::MatrixXd> constraints;
+  };
+
+  /// Gradient of the Lagrangian.
+  Eigen::VectorXd Slope(const Slopes& at, double objective_factor,
+                        const Eigen::VectorXd& multipliers) const {
+    Eigen::VectorXd slope = objective_factor * at.objective;
+    for (std::size_t b = 0; b < at.constraints.size(); ++b) {
+      const auto& block = program_.jacobian_blocks[b];
+      slope.segment(block.column, block.columns) +=
+          at.constraints[b].transpose() * multipliers.segment(block.row, block.rows);
+    }
+    return slope;
+  }
+
+  /// From the last iterate to this one, both with the multipliers of this one.
+  void LearnCurvature(double objective_factor, const Eigen::VectorXd& x,
+                      const Eigen::VectorXd& multipliers) {
+    Slopes now{x, program_.Gradient(), program_.Jacobian()};
+    if (last_.x.size() > 0) {
+      hessian_.Update(now.x - last_.x, Slope(now, objective_factor, multipliers) -
+                                           Slope(last_, objective_factor, multipliers));
+    }
+    last_ = std::move(now);
+  }
+
   void WriteStructure(Index* rows, Index* columns) const {
     for (const auto& block : program_.jacobian_blocks) {
       for (int j = 0; j < block.columns; ++j) {
@@ -115,6 +172,8 @@ class IpoptProgram : public Ipopt::TNLP {
 
   NonlinearProgram& program_;
   Eigen::VectorXd x_;
+  QuasiNewtonHessian hessian_;
+  Slopes last_;
   double objective_ = NAN;
   Termination termination_ = Termination::kFailure;
   bool evaluated_ = false, defined_ = false;
@@ -124,12 +183,14 @@ void Configure(Ipopt::IpoptApplication& ipopt, const NonlinearProgramOptions& op
   Ipopt::OptionsList& list = *ipopt.Options();
   list.SetIntegerValue("print_level", 0);
   list.SetStringValue("sb", "yes");  // no banner
-  list.SetStringValue("hessian_approximation", "limited-memory");
   list.SetIntegerValue("max_iter", options.max_iterations);
   list.SetNumericValue("tol", options.tolerance);
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
   list.SetNumericValue("bound_relax_factor", 0.0);  // bounds are kept, not nearly kept
-  list.SetStringValue("mu_strategy", "adaptive");
+  list.SetNumericValue("mu_init", options.first_barrier);
+  // Programmes of this size are assembled in no time: nothing is to be gained from reordering.
+  list.SetIntegerValue("mumps_permuting_scaling", 0);
+  list.SetIntegerValue("mumps_pivot_order", 0);
 }
 
 }  // namespace
@@ -141,7 +202,7 @@ NonlinearProgramResult Solve(NonlinearProgram& program, const Eigen::VectorXd& x
   NonlinearProgramResult result;
   result.x = x0;
   result.objective = NAN;
-  if (ipopt->Initialize() != Ipopt::Solve_Succeeded) {
+  if (ipopt->Initialize("") != Ipopt::Solve_Succeeded) {  // reads no ipopt.opt
     result.message = "Ipopt does not start";
     return result;
   }

@@ -37,6 +37,7 @@ class NonlinearProgram {
 struct NonlinearProgramOptions {
   int max_iterations = 100;
   double tolerance = 1e-6;             ///< of optimality, scaled (Ipopt's `tol`)
+  double first_barrier = 0.1;          ///< Ipopt's `mu_init`; less where x0 is good already
   double constraint_tolerance = 1e-8;  ///< largest violation of g, in its own units
 };
 
@@ -48,7 +49,8 @@ struct NonlinearProgramResult {
   std::string message;  ///< the solver's own words
 };
 
-/// Interior-point method (Ipopt, Wachter and Biegler 2006) with a quasi-Newton Hessian, from `x0`.
+/// Interior-point method (Ipopt, Wachter and Biegler 2006) with a dense quasi-Newton Hessian, for
+/// programmes of up to some hundred variables, from `x0`.
 /// On one thread, and not from several at once (MUMPS, its linear solver, is not thread-safe); same
 /// input, same bits out.
 NonlinearProgramResult Solve(NonlinearProgram& program, const Eigen::VectorXd& x0,

@@ -99,6 +99,7 @@ bool PartialOptim(PostureProblem& problem, const std::vector<int>& which, Postur
   NonlinearProgramOptions solver;
   solver.max_iterations = options.max_iterations;
   solver.tolerance = options.tolerance;
+  solver.first_barrier = 1e-3;  // postures are feasible already
   const NonlinearProgramResult solved = Solve(program, x0, solver);
   program.MoveTo(solved.x);
   PostureSet moved = set;
