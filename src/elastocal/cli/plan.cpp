@@ -32,7 +32,7 @@ struct PlanCommand {
   int tries = 0;
   double leg_errors = TruthOptions{}.leg_geometry_scale;
   double friction = 0.5;
-  bool unbalanced = false;
+  bool unbalanced = false, unstabilised = false;
   PlanOptions plan;
   MotionLimits limits;
 };
@@ -75,26 +75,30 @@ std::string TryTable(const Project& project, const JointMotion& motion, const Pl
   const TrueRobot nominal =
       NominalRobot(described.tree, described.markers, FindLegs(described.tree, described.chains),
                    described.torque_sensors);
-  TextTable table({"robot", "stands s", "largest lean deg", "tracking deg", "zmp to edge mm"});
+  TextTable table(
+      {"robot", "stands s", "largest lean deg", "tracking deg", "zmp to edge mm", "shift mm"});
   for (int i = 1; i <= command.tries; ++i) {
     TruthOptions truth;
     truth.seed = command.common.seed.value_or(1) + static_cast<std::uint64_t>(i) - 1;
     truth.leg_geometry_scale = command.leg_errors;
     PhysicsOptions physics;
     physics.floor_friction = command.friction;
-    const StandingRun run =
-        StandThrough(DrawTrueRobot(nominal, truth), project.soles, motion, physics);
+    Stabiliser stabiliser(project.tree, project.soles);
+    const StandingRun run = StandThrough(DrawTrueRobot(nominal, truth), project.soles, motion,
+                                         physics, command.unstabilised ? nullptr : &stabiliser);
     table.Add({std::to_string(truth.seed),
                fmt::format("{:.2f}{}", run.time_s, run.stood ? "" : " FELL"),
                fmt::format("{:.2f}", run.largest_lean * 180.0 / M_PI),
                fmt::format("{:.2f}", run.tracking * 180.0 / M_PI),
-               fmt::format("{:.1f}", 1e3 * run.least_zmp_margin)});
+               fmt::format("{:.1f}", 1e3 * run.least_zmp_margin),
+               fmt::format("{:.1f}", 1e3 * run.largest_shift)});
     json["tries"].push_back({{"seed", truth.seed},
                              {"stood", run.stood},
                              {"time_s", run.time_s},
                              {"largest_lean", run.largest_lean},
                              {"tracking", run.tracking},
-                             {"least_zmp_margin", run.least_zmp_margin}});
+                             {"least_zmp_margin", run.least_zmp_margin},
+                             {"largest_shift", run.largest_shift}});
   }
   return table.Render();
 }
@@ -245,6 +249,9 @@ void AddPlan(CLI::App& app, Action& action) {
                    "Play the motion on as many robots with errors, standing free")
       ->check(CLI::Range(0, 1000));
   number("--leg-errors", options->leg_errors, "Factor on the errors of their legs' geometry");
+  command->add_flag("--no-stabiliser", options->unstabilised,
+                    "They follow the motion blindly: nothing corrects it by what the feet and the "
+                    "inertial unit feel");
   command->add_flag("--unbalanced", options->unbalanced, "Do not balance, to see what comes of it");
   AddCommonOptions(*command, options->common);
   command->footer(

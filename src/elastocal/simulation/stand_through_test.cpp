@@ -40,7 +40,7 @@ TEST_F(BipedStandsThrough, StandsAndPressesWhereStaticsSay) {
   EXPECT_LT(run.largest_lean, 1e-3);
   EXPECT_LT(run.tracking, 0.01);  // servos give way by torque over 5e4 N.m/rad
   // The nearest edge is the front or the back, as far as the centre of mass has it.
-  const Eigen::Vector3d com = CentreOfMass(biped_.tree, stand_);
+  const Eigen::Vector3d com = CentreOfMass(biped_.tree, BodyInertias(biped_.tree), stand_);
   const double x =
       (LinkTransforms(biped_.tree, stand_)[static_cast<std::size_t>(soles_[0].link)].inverse() *
        com)
@@ -57,6 +57,21 @@ TEST_F(BipedStandsThrough, FallsWhereItBowsTooFar) {
   const StandingRun run = StandThrough(robot_, soles_, motion, {});
   EXPECT_FALSE(run.stood);
   EXPECT_LT(run.time_s, 3.0);
+}
+
+TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
+  // A trunk heavier in front than described: what is planned to stay 4 cm inside goes out.
+  RobotTree& tree = robot_.tree;
+  const int trunk = tree.joints[1].child_link;
+  tree.links[static_cast<std::size_t>(trunk)].com.x() += 0.1;
+  JointMotion motion = Bow(0.0);
+  motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 24.0);
+  for (int i = 0; i < 31; ++i) motion.q(i, 1) += 0.5 * std::clamp((i - 15) / 10.0, 0.0, 1.0);
+  EXPECT_FALSE(StandThrough(robot_, soles_, motion, {}).stood);
+  Stabiliser stabiliser(biped_.tree, soles_);
+  const StandingRun run = StandThrough(robot_, soles_, motion, {}, &stabiliser);
+  EXPECT_TRUE(run.stood);
+  EXPECT_NEAR(run.largest_shift, 29.0 / 60.0 * 0.1, 0.015);
 }
 
 }  // namespace

@@ -82,6 +82,20 @@ struct VirtualRobot::Simulation {
     return T;
   }
 
+  /// What the floor exerts in a contact: force and moment about the world's origin.
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> ContactWrench(int i) const {
+    std::array<double, 6> local{};  // in the contact's axes; the floor is the first geometry
+    mj_contactForce(model.get(), data.get(), i, local.data());
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(
+        data->contact[i].frame);
+    const Eigen::Vector3d force =
+        axes.transpose() * Eigen::Map<const Eigen::Vector3d>(local.data());
+    const Eigen::Map<const Eigen::Vector3d> point(data->contact[i].pos);
+    const Eigen::Vector3d moment =
+        point.cross(force) + axes.transpose() * Eigen::Map<const Eigen::Vector3d>(local.data() + 3);
+    return {force, moment};
+  }
+
   /// Coulomb friction as the friction of a bristle that bends before it slips (Dahl): it holds at
   /// rest, and needs no constraint.
   void ApplyFriction() {
@@ -205,21 +219,30 @@ Eigen::Matrix3Xd VirtualRobot::MarkerPositions() const {
 }
 
 std::pair<Eigen::Vector3d, Eigen::Vector3d> VirtualRobot::FloorWrench() const {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
-  const mjData& data = *simulation_->data;
-  for (int i = 0; i < data.ncon; ++i) {
-    std::array<double, 6> local{};  // in the contact's axes; the floor is the first geometry
-    mj_contactForce(simulation_->model.get(), &data, i, local.data());
-    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(
-        data.contact[i].frame);
-    const Eigen::Vector3d pressed =
-        axes.transpose() * Eigen::Map<const Eigen::Vector3d>(local.data());
-    const Eigen::Map<const Eigen::Vector3d> point(data.contact[i].pos);
-    force += pressed;
-    moment += point.cross(pressed);
-    moment += axes.transpose() * Eigen::Map<const Eigen::Vector3d>(local.data() + 3);
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> total{Eigen::Vector3d::Zero(),
+                                                    Eigen::Vector3d::Zero()};
+  for (int i = 0; i < simulation_->data->ncon; ++i) {
+    const auto [force, moment] = simulation_->ContactWrench(i);
+    total.first += force;
+    total.second += moment;
   }
-  return {force, moment};
+  return total;
+}
+
+Vector6d VirtualRobot::SoleWrench(int index) const {
+  const int body = simulation_->soles[static_cast<std::size_t>(index)];
+  const mjModel& model = *simulation_->model;
+  const mjData& data = *simulation_->data;
+  const Transform T_world_sole = simulation_->BodyPose(body);
+  const Eigen::Matrix3d R = T_world_sole.linear().transpose();
+  Vector6d wrench = Vector6d::Zero();
+  for (int i = 0; i < data.ncon; ++i) {
+    if (model.geom_bodyid[data.contact[i].geom2] != body) continue;
+    const auto [force, moment] = simulation_->ContactWrench(i);
+    wrench.head<3>() += R * force;
+    wrench.tail<3>() += R * (moment - T_world_sole.translation().cross(force));
+  }
+  return wrench;
 }
 
 int VirtualRobot::coordinate_count() const { return simulation_->model->nv; }

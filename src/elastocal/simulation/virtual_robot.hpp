@@ -48,6 +48,9 @@ class VirtualRobot {
   /// What the floor exerts on soles that stand free: force, N, and moment about the world's origin,
   /// N.m, in the world's axes.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> FloorWrench() const;
+  /// The same of one sole in `support` alone: force, and moment about its origin, in its axes, as
+  /// the force sensor of a foot shows it.
+  Vector6d SoleWrench(int index) const;
   int coordinate_count() const;  ///< of the simulation
 
  private:

@@ -1,0 +1,114 @@
+#include "elastocal/motion/stabiliser.hpp"
+
+#include <algorithm>
+
+#include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/math/smooth_step.hpp"
+
+namespace elastocal {
+namespace {
+
+std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
+
+Eigen::Vector3d Level(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0.0}; }
+
+Eigen::Vector2d Within(const Eigen::Vector2d& v, double largest) {
+  return v.cwiseMax(-largest).cwiseMin(largest);
+}
+
+}  // namespace
+
+Stabiliser::Stabiliser(const RobotTree& tree, const std::vector<Sole>& soles,
+                       const StabiliserOptions& options)
+    : tree_(tree),
+      options_(options),
+      inertias_(BodyInertias(tree)),
+      correction_(Eigen::VectorXd::Zero(tree.coordinate_count())) {
+  for (const Sole& sole : soles) legs_.emplace_back(tree, sole.link);
+}
+
+Eigen::VectorXd Stabiliser::Correct(const Eigen::VectorXd& planned, const std::vector<int>& support,
+                                    const StandingSense& sense, double interval_s) {
+  const auto stands = [&](const LegChain& leg) {
+    return std::find(support.begin(), support.end(), leg.sole_link()) != support.end();
+  };
+  const auto standing = std::find_if(legs_.begin(), legs_.end(), stands);
+  if (standing == legs_.end()) return planned + correction_;
+  T_root_sole_.clear();
+  for (const LegChain& leg : legs_) T_root_sole_.push_back(leg.SolePose(planned));
+  StandOn(static_cast<int>(standing - legs_.begin()));
+  LearnTurn(sense, interval_s);
+  LearnFeet(sense, interval_s);
+  LearnShift(planned, sense, interval_s);
+  const double largest = options_.largest_speed * interval_s;
+  correction_ += (Corrected(planned) - planned - correction_).cwiseMax(-largest).cwiseMin(largest);
+  return planned + correction_;
+}
+
+/// Expresses what was learned in the axes of another sole.
+void Stabiliser::StandOn(int reference) {
+  if (reference == reference_) return;
+  const Eigen::Matrix3d R =
+      T_root_sole_[Size(reference)].linear().transpose() * T_root_sole_[Size(reference_)].linear();
+  for (Eigen::Vector2d* v : {&shift_, &turn_, &off_}) *v = (R * Level(*v)).head<2>();
+  reference_ = reference;
+}
+
+void Stabiliser::LearnTurn(const StandingSense& sense, double interval_s) {
+  // Upwards, as the inertial unit has it, is the sole's z axis where nothing leans.
+  const Eigen::Vector3d up =
+      T_root_sole_[Size(reference_)].linear().transpose() * sense.R_world_root.row(2).transpose();
+  const Eigen::Vector2d lean = up.cross(Eigen::Vector3d::UnitZ()).head<2>();
+  turn_ = Within(turn_ - options_.turn_rate * interval_s * lean, options_.largest_turn);
+}
+
+void Stabiliser::LearnFeet(const StandingSense& sense, double interval_s) {
+  if (legs_.size() != 2 || sense.wrenches.row(2).minCoeff() < options_.least_pressure) return;
+  const auto pressed = [&](Eigen::Index i) {
+    return ZeroMomentPoint(sense.wrenches.col(i).head<3>(), sense.wrenches.col(i).tail<3>());
+  };
+  const Eigen::Vector2d apart = pressed(0) - pressed(1);
+  const Eigen::Vector2d turn(apart.y(), -apart.x());  // lifts the edge that is pressed more
+  foot_ = Within(foot_ + options_.foot_rate * interval_s * turn, options_.largest_turn);
+}
+
+void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense& sense,
+                            double interval_s) {
+  const Transform T_reference_root = T_root_sole_[Size(reference_)].inverse();
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    const Transform T = T_reference_root * T_root_sole_[i];
+    const auto wrench = sense.wrenches.col(static_cast<Eigen::Index>(i));
+    const Eigen::Vector3d pressed = T.linear() * wrench.head<3>();
+    force += pressed;
+    moment += T.linear() * wrench.tail<3>() + T.translation().cross(pressed);
+  }
+  if (!(force.z() > options_.least_pressure)) return;
+  const Eigen::Vector3d com = T_reference_root * CentreOfMass(tree_, inertias_, planned);
+  const Eigen::Vector2d off = ZeroMomentPoint(force, moment) - com.head<2>();
+  off_ += std::min(1.0, interval_s / options_.filter_s) * (off - off_);
+  shift_ = Within(shift_ - options_.shift_rate * interval_s * off_, options_.largest_shift);
+}
+
+Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
+  const Transform T_root_reference = T_root_sole_[Size(reference_)];
+  Eigen::VectorXd corrected = planned;
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    const double height = (T_root_reference.inverse() * T_root_sole_[i]).translation().z();
+    const double share =
+        1.0 - SmoothStep((height - options_.low_m) / (options_.high_m - options_.low_m));
+    if (share == 0.0) continue;
+    Transform T_reference_root = T_root_reference.inverse();
+    T_reference_root.linear() =
+        RotationFromVector(share * Level(turn_)) * T_reference_root.linear();
+    T_reference_root.translation() += share * Level(shift_);
+    const Eigen::Vector2d foot = i == 0 ? foot_ : Eigen::Vector2d(-foot_);
+    Transform T_moved_sole = (T_root_reference * T_reference_root).inverse() * T_root_sole_[i];
+    T_moved_sole.linear() = T_moved_sole.linear() * RotationFromVector(share * Level(foot));
+    if (legs_[i].Place(T_moved_sole, corrected)) continue;
+    for (const int c : legs_[i].coordinates()) corrected[c] = planned[c] + correction_[c];
+  }
+  return corrected;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,107 @@
+#include "elastocal/motion/stabiliser.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/rotation_vector.hpp"
+#include "tests/biped.hpp"
+
+namespace elastocal {
+namespace {
+
+class BipedStabiliser : public testing::Test {
+ protected:
+  BipedStabiliser() {
+    for (const char* name : {"left", "right"}) {
+      for (const auto& [joint, bent] : {std::pair("_3", -0.3), {"_4", 0.6}, {"_5", -0.3}}) {
+        const int k = FindJoint(tree_, std::string(name) + joint);
+        planned_[tree_.joints[static_cast<std::size_t>(k)].coordinate] = bent;
+      }
+    }
+    const LegChain left(tree_, soles_[0].link), right(tree_, soles_[1].link);
+    T_root_sole_ = {left.SolePose(planned_), right.SolePose(planned_)};
+    const Eigen::Vector3d com = CentreOfMass(tree_, BodyInertias(tree_), planned_);
+    sense_.wrenches.setZero(6, 2);
+    for (Eigen::Index i = 0; i < 2; ++i) {  // half of the weight each, under the centre of mass
+      const double ahead = com.x() - T_root_sole_[static_cast<std::size_t>(i)].translation().x();
+      sense_.wrenches.col(i) << 0.0, 0.0, kHalf, 0.0, -kHalf * ahead, 0.0;
+    }
+    const double middle = 0.5 * (T_root_sole_[0].translation() + T_root_sole_[1].translation()).y();
+    for (Eigen::Index i = 0; i < 2; ++i) sense_.wrenches(3, i) = kHalf * (com.y() - middle);
+  }
+
+  /// The root link's pose in the first sole after ten steps of 10 ms, against the planned one.
+  Transform RootMoved() {
+    Stabiliser stabiliser(tree_, soles_);
+    Eigen::VectorXd q;
+    for (int i = 0; i < 10; ++i) {
+      q = stabiliser.Correct(planned_, {soles_[0].link, soles_[1].link}, sense_, 0.01);
+    }
+    const LegChain left(tree_, soles_[0].link);
+    return left.SolePose(q).inverse() * T_root_sole_[0];
+  }
+
+  static constexpr double kHalf = 300.0;  // N
+  Biped biped_ = MakeBiped();
+  const RobotTree& tree_ = biped_.tree;
+  std::vector<Sole> soles_ = {{FindLink(biped_.tree, "left_sole"), {-0.1, -0.06}, {0.1, 0.06}},
+                              {FindLink(biped_.tree, "right_sole"), {-0.1, -0.06}, {0.1, 0.06}}};
+  Eigen::VectorXd planned_ = Eigen::VectorXd::Zero(biped_.tree.coordinate_count());
+  std::vector<Transform> T_root_sole_;
+  StandingSense sense_;
+};
+
+TEST_F(BipedStabiliser, LeavesAloneWhatStandsAsPlanned) {
+  const Transform moved = RootMoved();
+  EXPECT_LT(moved.translation().norm(), 1e-9);
+  EXPECT_LT(RotationVector(moved.linear()).norm(), 1e-9);
+}
+
+TEST_F(BipedStabiliser, TurnsBackARootThatLeansForwards) {
+  sense_.R_world_root = RotationFromVector({0.0, 0.05, 0.0});
+  const Eigen::Vector3d turn = RotationVector(RootMoved().linear());
+  EXPECT_NEAR(turn.y(), -0.8 * 0.1 * 0.05, 1e-5);  // rate, time, error
+  EXPECT_NEAR(turn.x(), 0.0, 1e-5);
+}
+
+TEST_F(BipedStabiliser, DoesNotMindTheHeading) {
+  sense_.R_world_root = RotationFromVector({0.0, 0.0, 0.7});
+  EXPECT_LT(RotationVector(RootMoved().linear()).norm(), 1e-9);
+}
+
+TEST_F(BipedStabiliser, ShiftsBackWhatPressesAheadOfItsPlan) {
+  for (Eigen::Index i = 0; i < 2; ++i) sense_.wrenches(4, i) -= kHalf * 0.03;  // 3 cm ahead
+  const Transform moved = RootMoved();
+  EXPECT_LT(moved.translation().x(), -1e-5);
+  EXPECT_NEAR(moved.translation().y(), 0.0, 1e-6);
+}
+
+TEST_F(BipedStabiliser, TurnsFeetUntilBothArePressedAlike) {
+  sense_.wrenches(4, 0) -= kHalf * 0.05;  // the left one on its toes: they are to be lifted
+  sense_.wrenches(4, 1) += kHalf * 0.05;  // the right one on its heel
+  Stabiliser stabiliser(tree_, soles_);
+  Eigen::VectorXd q;
+  for (int i = 0; i < 10; ++i) {
+    q = stabiliser.Correct(planned_, {soles_[0].link, soles_[1].link}, sense_, 0.01);
+  }
+  const auto turned = [&](std::size_t i) {
+    const Eigen::Matrix3d R = LegChain(tree_, soles_[i].link).SolePose(q).linear();
+    return RotationVector(T_root_sole_[i].linear().transpose() * R).y();
+  };
+  EXPECT_NEAR(turned(0), -0.2 * 0.1 * 0.1, 1e-5);  // rate, distance, time
+  EXPECT_NEAR(turned(1), 0.2 * 0.1 * 0.1, 1e-5);
+}
+
+TEST_F(BipedStabiliser, LetsALiftedLegGoAsPlanned) {
+  sense_.R_world_root = RotationFromVector({0.0, 0.05, 0.0});
+  const int knee = FindJoint(tree_, "right_4");
+  Eigen::VectorXd lifted = planned_;
+  lifted[tree_.joints[static_cast<std::size_t>(knee)].coordinate] = 1.6;
+  Stabiliser stabiliser(tree_, soles_);
+  const Eigen::VectorXd q = stabiliser.Correct(lifted, {soles_[0].link}, sense_, 0.01);
+  const LegChain left(tree_, soles_[0].link), right(tree_, soles_[1].link);
+  EXPECT_TRUE(right.SolePose(q).isApprox(right.SolePose(lifted), 1e-12));
+  EXPECT_FALSE(left.SolePose(q).isApprox(left.SolePose(lifted), 1e-6));
+}
+
+}  // namespace
+}  // namespace elastocal
