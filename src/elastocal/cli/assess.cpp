@@ -231,8 +231,10 @@ void AddAssess(CLI::App& app, Action& action) {
   command->add_option("--weakest", options->weakest, "How many of the weakest parameters to show")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  command->add_flag("--elastic", options->elastic,
-                    "The compliances of the joints shall be determined too");
+  command->add_flag(
+      "--elastic", options->elastic,
+      "The compliances of the joints (eq. 5), and of the one leg that stands (eq. 6), shall be "
+      "determined too");
   AddCommonOptions(*command, options->common);
   command->footer("Example: elastocal assess models/talos/project.yaml --postures postures.yaml");
   command->callback([&action, options] {

@@ -304,8 +304,10 @@ void AddDesign(CLI::App& app, Action& action) {
   command->add_option("--criterion", options->criterion, "Observability index")
       ->check(CLI::IsMember({"O1", "O2", "O3", "O4", "O5"}))
       ->capture_default_str();
-  command->add_flag("--elastic", options->elastic,
-                    "The compliances of the joints shall be determined too");
+  command->add_flag(
+      "--elastic", options->elastic,
+      "The compliances of the joints (eq. 5), and of the one leg that stands (eq. 6), shall be "
+      "determined too");
   command->add_flag("--curves", options->curves,
                     "Also show what the other algorithms reach (takes several times as long)");
   command->add_flag("--no-certificate", options->no_certificate,

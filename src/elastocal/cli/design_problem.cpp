@@ -7,8 +7,16 @@
 namespace elastocal::cli {
 namespace {
 
-Elasticity JointElasticity(const RobotTree& tree, const ChainSetup& setup) {
+/// What can give way while the chain moves: its joints, and the leg that the robot stands on, if
+/// it is one. (How two legs share the load, statics does not say.)
+Elasticity ChainElasticity(const Project& project, const ChainSetup& setup) {
+  const RobotTree& tree = project.tree;
   Elasticity elasticity;
+  if (setup.support.size() == 1) {
+    for (const Chain& chain : project.chains) {
+      if (chain.tip_link == setup.support[0]) elasticity.legs = {{chain.name, chain.tip_link}};
+    }
+  }
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     const auto& own = setup.coordinates;
     if (std::find(own.begin(), own.end(), tree.joints[k].coordinate) == own.end()) continue;
@@ -28,9 +36,8 @@ DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool
   if (markers.empty()) {
     throw InputError(project.file.string() + ": chain '" + setup.name + "' carries no markers");
   }
-  const ErrorModel all =
-      MakeErrorModel(project.tree, project.markers, project.placement,
-                     elastic ? JointElasticity(project.tree, setup) : Elasticity());
+  const ErrorModel all = MakeErrorModel(project.tree, project.markers, project.placement,
+                                        elastic ? ChainElasticity(project, setup) : Elasticity());
   DesignedChain chain;
   chain.setup = setup;
   chain.model = std::make_unique<ErrorModel>(SelectMarkers(all, markers));

@@ -6,6 +6,7 @@
 
 #include "elastocal/math/random.hpp"
 #include "elastocal/posture/random_posture.hpp"
+#include "elastocal/robot/leg_load.hpp"
 #include "tests/leg_problem.hpp"
 #include "tests/random_robot.hpp"
 
@@ -79,7 +80,66 @@ TEST(PostureRegressor, IsTheGeneralizedJacobianUnderGravity) {
   EXPECT_LT((regressor.Evaluate(chain, x) - jacobian.Dense()).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(PostureRegressor, RefusesWhatDependsOnMoreThanThePosture) {
+/// The leg's robot on another leg, of which the chain's motion is seen through the waist.
+struct StandingLegProblem {
+  StandingLegProblem() {
+    RobotTree tree = MakeLegRobot();
+    int link = AddJoint(tree, "other_hip", 0, Offset(0.0, -0.1, -0.1), {0.3, 0.5, 0.8});
+    link = AddJoint(tree, "other_knee", link, Offset(0, 0, -0.4), {0, 1, 0});
+    const int foot = AddFixedLink(tree, "other_foot", link, Offset(0.02, 0.0, -0.4));
+    Elasticity elasticity;
+    elasticity.torsion = {2, 3};
+    elasticity.legs = {{"other", foot}};
+    model = MakeErrorModel(tree, LegMarkers(tree), {}, elasticity);
+    rest.setZero(tree.coordinate_count());
+    rest[4] = 0.2;
+    rest[5] = 0.4;
+  }
+  ErrorModel model;
+  Eigen::VectorXd rest;
+};
+
+TEST(PostureRegressor, GradientOfAStandingLegsCompliancesEqualsDifferences) {
+  const StandingLegProblem leg;
+  Random random(8);
+  // Weights of 100 N multiply the columns.
+  ExpectGradient(leg.model, MovingChain(leg.model.tree, {0, 1, 2, 3}, leg.rest), random, 1e-3);
+}
+
+TEST(PostureRegressor, AStandingLegMovesTheMarkersAsItsWaistGivesWay) {
+  const StandingLegProblem leg;
+  MovingChain chain(leg.model.tree, {0, 1, 2, 3}, leg.rest);
+  PostureRegressor regressor(leg.model, AllParameters(leg.model), chain);
+  const Eigen::VectorXd x = Eigen::Vector4d(0.1, 0.2, -0.4, 0.9);
+  const Eigen::MatrixXd psi = regressor.Evaluate(chain, x);
+  const Geometry geometry =
+      ApplyErrors(leg.model, Eigen::VectorXd::Zero(leg.model.parameter_count()));
+  const LegPosture posture = PlaceLeg(leg.model, geometry, chain.FullPosture(x), 0);
+  const Vector6d load = LoadFromStatics(leg.model, posture, kGravity);
+  const Transform T_ref_foot = leg.model.T_ref_waist * posture.T_foot_waist.inverse();
+  const char* const names[] = {"other.compliance_x",  "other.compliance_y",  "other.compliance_z",
+                               "other.compliance_rx", "other.compliance_ry", "other.compliance_rz"};
+  for (int entry = 0; entry < 6; ++entry) {
+    constexpr double kSmall = 1e-8;  // m/N or rad/(N.m)
+    const WaistDeflection given =
+        DeflectWaist(posture.T_foot_waist, kSmall * Vector6d::Unit(entry), load);
+    const Transform moved =
+        T_ref_foot * given.T_foot_waist * (T_ref_foot * posture.T_foot_waist).inverse();
+    const int column = FindParameter(leg.model.parameters, names[entry]);
+    for (int m = 0; m < leg.model.marker_count(); ++m) {
+      const Marker& marker = leg.model.markers[static_cast<std::size_t>(m)];
+      const Eigen::Vector3d p =
+          leg.model.T_ref_waist *
+          (LinkTransforms(leg.model.tree,
+                          chain.FullPosture(x))[static_cast<std::size_t>(marker.link)] *
+           marker.p_link_marker);
+      const Eigen::Vector3d expected = (moved * p - p) / kSmall;
+      EXPECT_LT((psi.block<3, 1>(3 * m, column) - expected).norm(), 1e-3) << names[entry];
+    }
+  }
+}
+
+TEST(PostureRegressor, RefusesTheComplianceOfALegThatMoves) {
   Elasticity elasticity;
   elasticity.legs = {{"leg", FindLink(MakeLegRobot(), "foot")}};
   const ErrorModel model =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "elastocal/robot/leg_load.hpp"
 #include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
@@ -14,6 +15,18 @@ constexpr int kBaseColumn = -1, kMarkerColumn = -2;  // in place of a joint
 
 bool IsJointCompliance(ParameterKind kind) {
   return kind == ParameterKind::kTorsion || kind == ParameterKind::kBending;
+}
+
+bool IsLegCompliance(ParameterKind kind) {
+  return kind == ParameterKind::kBaseForce || kind == ParameterKind::kBaseMoment;
+}
+
+/// Whether the chain moves a joint of the leg.
+bool Moves(const MovingChain& chain, const ErrorModel& model, const SupportLeg& leg) {
+  return std::any_of(leg.joints.begin(), leg.joints.end(), [&](int joint) {
+    const auto& own = chain.coordinates();
+    return std::find(own.begin(), own.end(), model.tree.joints[joint].coordinate) != own.end();
+  });
 }
 
 /// The parameter that displaces a marker as the joint's motion does.
@@ -35,12 +48,19 @@ PostureRegressor::PostureRegressor(const ErrorModel& model, std::vector<int> bas
       base_(std::move(base)),
       geometry_(ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()))),
       jacobian_(model) {
-  for (int parameter : base_) {
-    const ParameterKind kind = model_.parameters[parameter].kind;
-    if (IsJointCompliance(kind)) {
+  for (std::size_t column = 0; column < base_.size(); ++column) {
+    const Parameter& parameter = model_.parameters[base_[column]];
+    if (IsJointCompliance(parameter.kind)) {
       elastic_ = true;
-    } else if (IsElastic(kind)) {
-      throw std::invalid_argument("PostureRegressor: " + model_.parameters[parameter].name +
+    } else if (IsLegCompliance(parameter.kind) &&
+               !Moves(chain, model_, model_.legs[parameter.leg])) {
+      const int entry = parameter.axis + (parameter.kind == ParameterKind::kBaseMoment ? 3 : 0);
+      LegColumn& leg = legs_.emplace_back();
+      leg.column = static_cast<int>(column);
+      leg.leg = parameter.leg;
+      leg.entry = entry;
+    } else if (IsElastic(parameter.kind)) {
+      throw std::invalid_argument("PostureRegressor: " + parameter.name +
                                   " depends on more than this posture");
     }
   }
@@ -82,6 +102,25 @@ double PostureRegressor::Load(int parameter) const {
   return IsJointCompliance(p.kind) ? loads_(p.axis, p.joint) : 1.0;
 }
 
+double PostureRegressor::LegLoad(const LegColumn& column, const Eigen::VectorXd& q) const {
+  return LoadFromStatics(model_, PlaceLeg(model_, geometry_, q, column.leg),
+                         kGravity)[column.entry];
+}
+
+void PostureRegressor::EvaluateLegs(const Eigen::VectorXd& q) {
+  const Vector3d waist = jacobian_.WaistPose().translation();
+  for (LegColumn& column : legs_) {
+    const Vector3d direction =  // the foot's axes
+        jacobian_.LegPose(column.leg).linear().col(column.entry % 3);
+    column.axis = column.entry < 3 ? Vector3d::Zero().eval() : direction;
+    column.translation = column.entry < 3 ? direction : waist.cross(direction).eval();
+    column.load = LegLoad(column, q);
+    for (int m = 0; m < model_.marker_count(); ++m) {
+      psi_.block<3, 1>(3 * m, column.column) = column.load * column.Of(jacobian_.Position(m));
+    }
+  }
+}
+
 const Eigen::MatrixXd& PostureRegressor::Evaluate(MovingChain& chain, const Eigen::VectorXd& x) {
   x_ = x;
   const Eigen::VectorXd q = chain.FullPosture(x);
@@ -93,13 +132,14 @@ const Eigen::MatrixXd& PostureRegressor::Evaluate(MovingChain& chain, const Eige
       psi_.block<3, 1>(3 * m, c.column) = Load(c.parameter) * block.col(c.source);
     }
   }
+  EvaluateLegs(q);
   return psi_;
 }
 
 Eigen::VectorXd PostureRegressor::Gradient(MovingChain& chain, const Eigen::MatrixXd& weight) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(chain.size());
   for (int m = 0; m < model_.marker_count(); ++m) AddMarkerGradient(m, weight, gradient);
-  if (elastic_) AddLoadGradient(chain, weight, gradient);
+  if (elastic_ || !legs_.empty()) AddLoadGradient(chain, weight, gradient);
   return gradient;
 }
 
@@ -127,6 +167,10 @@ void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weig
       turned += v_cross_w(c);
     }
   }
+  for (const LegColumn& leg : legs_) {
+    const Vector3d w = weight.block<3, 1>(3 * marker, leg.column);
+    moved += w.cross(leg.load * leg.axis);
+  }
   auto next = std::find_if(columns.begin(), columns.end(),
                            [](const MarkerColumn& c) { return c.joint != kBaseColumn; });
   for (const PathJoint& joint : paths_[marker]) {
@@ -146,7 +190,8 @@ void PostureRegressor::AddLoadGradient(MovingChain& chain, const Eigen::MatrixXd
                                        Eigen::VectorXd& gradient) const {
   // Loads are smooth and of the order of 100 N.m: central differences are good to 1e-9 of them.
   constexpr double kStep = 1e-5;
-  Eigen::MatrixXd by_load = Eigen::MatrixXd::Zero(3, loads_.cols());
+  Eigen::MatrixXd by_load =
+      Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(model_.tree.joints.size()));
   for (int m = 0; m < model_.marker_count(); ++m) {
     const auto block = jacobian_.Block(m);
     for (const MarkerColumn& c : columns_[m]) {
@@ -155,14 +200,24 @@ void PostureRegressor::AddLoadGradient(MovingChain& chain, const Eigen::MatrixXd
       by_load(p.axis, p.joint) += block.col(c.source).dot(weight.block<3, 1>(3 * m, c.column));
     }
   }
+  std::vector<double> by_leg_load;
+  for (const LegColumn& leg : legs_) {
+    double sum = 0.0;
+    for (int m = 0; m < model_.marker_count(); ++m) {
+      sum += leg.Of(jacobian_.Position(m)).dot(weight.block<3, 1>(3 * m, leg.column));
+    }
+    by_leg_load.push_back(sum);
+  }
+  const auto weighted = [&](const Eigen::VectorXd& x) {
+    const Eigen::VectorXd q = chain.FullPosture(x);
+    double sum = 0.0;
+    if (elastic_) sum = by_load.cwiseProduct(GravityLoads(model_, geometry_, q, kGravity, 0)).sum();
+    for (std::size_t i = 0; i < legs_.size(); ++i) sum += by_leg_load[i] * LegLoad(legs_[i], q);
+    return sum;
+  };
   for (int i = 0; i < chain.size(); ++i) {
-    Eigen::VectorXd ahead = x_, behind = x_;
-    ahead[i] += kStep;
-    behind[i] -= kStep;
-    const JointLoads change =
-        GravityLoads(model_, geometry_, chain.FullPosture(ahead), kGravity, 0) -
-        GravityLoads(model_, geometry_, chain.FullPosture(behind), kGravity, 0);
-    gradient[i] += by_load.cwiseProduct(change).sum() / (2.0 * kStep);
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(chain.size(), i);
+    gradient[i] += (weighted(x_ + step) - weighted(x_ - step)) / (2.0 * kStep);
   }
 }
 

@@ -11,12 +11,15 @@
 namespace elastocal {
 
 /// The base generalized Jacobian Psi_b of one posture (eq. 4): markers by identifiable parameters,
-/// at nominal geometry, and how it changes with the posture. Compliances of joints (eq. 5) may be
-/// among the parameters: they act under gravity with the root link held.
+/// at nominal geometry, and how it changes with the posture. Compliances may be among the
+/// parameters: those of joints (eq. 5) act under the weight of what they carry; those of a leg (eq.
+/// 6) move the root link with all markers, by its lumped compliance under the whole robot's weight,
+/// the robot standing on that leg alone.
 class PostureRegressor {
  public:
-  /// `base`: columns, indices into the model's parameters, ascending; compliances of legs and
-  /// torque biases may not be among them (std::invalid_argument). Keeps a reference to the model.
+  /// `base`: columns, indices into the model's parameters, ascending; torque biases, and
+  /// compliances of a leg that the chain moves, may not be among them (std::invalid_argument).
+  /// Keeps a reference to the model.
   PostureRegressor(const ErrorModel& model, std::vector<int> base, const MovingChain& chain);
 
   int rows() const { return 3 * model_.marker_count(); }
@@ -42,8 +45,20 @@ class PostureRegressor {
     int variable;       // entry of x; -1: it rests
     double multiplier;
   };
+  /// A compliance of a standing leg: how it moves the root link, and the load that it bears.
+  struct LegColumn {
+    int column = 0, leg = 0;
+    int entry = 0;  // of the leg's six compliances and of its load
+    // Of unit load: a marker at p moves by axis x p + translation.
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero(), translation = Eigen::Vector3d::Zero();
+    double load = 0.0;
+
+    Eigen::Vector3d Of(const Eigen::Vector3d& p) const { return axis.cross(p) + translation; }
+  };
   void LayOut(const MovingChain& chain);
   double Load(int parameter) const;
+  double LegLoad(const LegColumn& column, const Eigen::VectorXd& q) const;
+  void EvaluateLegs(const Eigen::VectorXd& q);
   void AddMarkerGradient(int marker, const Eigen::MatrixXd& weight,
                          Eigen::VectorXd& gradient) const;
   void AddLoadGradient(MovingChain& chain, const Eigen::MatrixXd& weight,
@@ -58,6 +73,7 @@ class PostureRegressor {
   JointLoads unit_loads_, loads_;
   std::vector<std::vector<MarkerColumn>> columns_;  // by marker, in the order of the path
   std::vector<std::vector<PathJoint>> paths_;       // by marker
+  std::vector<LegColumn> legs_;
   Eigen::MatrixXd psi_;
 };
 
