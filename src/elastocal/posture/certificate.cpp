@@ -15,6 +15,10 @@ constexpr double kLeastWeight = 1e-6;  // postures with less leave the weighted 
 constexpr int kWeightIterations = 300;
 constexpr double kWeightTolerance = 1e-3;  // of phi over the support, relative
 
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& M) {
+  return M.llt().solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
+}
+
 /// phi(q) with a fixed M^-1.
 class VarianceProgram : public NonlinearProgram {
  public:
@@ -49,18 +53,17 @@ class VarianceProgram : public NonlinearProgram {
   std::vector<Eigen::MatrixXd> jacobian_;
 };
 
-/// Postures with weights that sum to one.
+/// Postures, by their information Psi^T Psi, with weights that sum to one.
 class WeightedSet {
  public:
   explicit WeightedSet(const PostureSet& set)
       : weights_(Eigen::VectorXd::Constant(set.size(), 1.0 / set.size())) {
-    for (int k = 0; k < set.size(); ++k) psi_.push_back(set.psi(k));
+    for (int k = 0; k < set.size(); ++k) parts_.push_back(set.psi(k).transpose() * set.psi(k));
   }
 
-  int size() const { return static_cast<int>(psi_.size()); }
-  int columns() const { return static_cast<int>(psi_[0].cols()); }
+  int size() const { return static_cast<int>(parts_.size()); }
   void Add(const Eigen::MatrixXd& psi) {
-    psi_.push_back(psi);
+    parts_.push_back(psi.transpose() * psi);
     const Eigen::Index count = weights_.size() + 1;
     weights_ *= 1.0 - 1.0 / static_cast<double>(count);
     weights_.conservativeResize(count);
@@ -68,21 +71,19 @@ class WeightedSet {
   }
 
   Eigen::MatrixXd Information() const {
-    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(psi_[0].cols(), psi_[0].cols());
-    for (int k = 0; k < size(); ++k) {
-      M.selfadjointView<Eigen::Lower>().rankUpdate(psi_[k].transpose(), weights_[k]);
-    }
-    return M.selfadjointView<Eigen::Lower>();
+    Eigen::MatrixXd M = weights_[0] * parts_[0];
+    for (int k = 1; k < size(); ++k) M += weights_[k] * parts_[k];
+    return M;
   }
 
   /// The multiplicative algorithm (Silvey, Titterington and Torsney 1978): weights times phi / N_b,
   /// which never lowers the determinant.
   void OptimiseWeights() {
     for (int i = 0; i < kWeightIterations; ++i) {
-      const Eigen::LLT<Eigen::MatrixXd> factor(Information());
+      const Eigen::MatrixXd inverse = Inverse(Information());
       Eigen::VectorXd ratio(size());
       for (int k = 0; k < size(); ++k) {
-        ratio[k] = factor.matrixL().solve(psi_[k].transpose()).squaredNorm() / columns();
+        ratio[k] = inverse.cwiseProduct(parts_[k]).sum() / static_cast<double>(inverse.cols());
       }
       weights_.array() *= ratio.array();
       weights_ /= weights_.sum();
@@ -97,16 +98,16 @@ class WeightedSet {
     std::vector<double> weights;
     for (int k = 0; k < size(); ++k) {
       if (weights_[k] < kLeastWeight) continue;
-      kept.push_back(psi_[k]);
+      kept.push_back(parts_[k]);
       weights.push_back(weights_[k]);
     }
-    psi_ = std::move(kept);
+    parts_ = std::move(kept);
     weights_ =
         Eigen::Map<Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()));
     weights_ /= weights_.sum();
   }
 
-  std::vector<Eigen::MatrixXd> psi_;
+  std::vector<Eigen::MatrixXd> parts_;
   Eigen::VectorXd weights_;
 };
 
@@ -131,8 +132,7 @@ Certificate CertifyBound(PostureProblem& problem, const PostureSet& set,
   for (; certificate.rounds < options.max_rounds; ++certificate.rounds) {
     weighted.OptimiseWeights();
     const Eigen::MatrixXd information = weighted.Information();
-    const Eigen::MatrixXd inverse =
-        information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+    const Eigen::MatrixXd inverse = Inverse(information);
     const double o1 = O1(LogDet(information), problem.column_count(), 1);
     VarianceProgram program(problem, inverse);
     std::vector<std::pair<double, int>> ranked;

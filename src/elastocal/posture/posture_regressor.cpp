@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "elastocal/robot/leg_load.hpp"
+#include "elastocal/robot/mdh_frames.hpp"
 #include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
@@ -188,8 +189,6 @@ void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weig
 
 void PostureRegressor::AddLoadGradient(MovingChain& chain, const Eigen::MatrixXd& weight,
                                        Eigen::VectorXd& gradient) const {
-  // Loads are smooth and of the order of 100 N.m: central differences are good to 1e-9 of them.
-  constexpr double kStep = 1e-5;
   Eigen::MatrixXd by_load =
       Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(model_.tree.joints.size()));
   for (int m = 0; m < model_.marker_count(); ++m) {
@@ -200,25 +199,28 @@ void PostureRegressor::AddLoadGradient(MovingChain& chain, const Eigen::MatrixXd
       by_load(p.axis, p.joint) += block.col(c.source).dot(weight.block<3, 1>(3 * m, c.column));
     }
   }
-  std::vector<double> by_leg_load;
+  // In the root link's axes, as the chain has everything.
+  const Transform T_root_ref = jacobian_.WaistPose().inverse();
+  std::vector<LoadComponent> components;
+  const auto visit = [&](int k, const Geometry::JointConstants& constants, const MdhFrame&,
+                         const MdhFrame& twisted, const MdhFrame&) {
+    if (k == kWaist || by_load.col(k).isZero(0.0)) return;
+    const Vector3d centre = twisted.p + constants.centre * twisted.R.col(2);
+    const Vector3d direction = twisted.R * by_load.col(k);
+    components.push_back({k, T_root_ref * centre, T_root_ref.linear() * direction});
+  };
+  std::vector<MdhFrame> frames(static_cast<std::size_t>(model_.tree.body_count()));
+  if (elastic_) EvaluateMdhFrames(model_, geometry_, chain.FullPosture(x_), {}, frames, visit);
   for (const LegColumn& leg : legs_) {
+    if (leg.entry < 3) continue;  // the weight does not change
     double sum = 0.0;
     for (int m = 0; m < model_.marker_count(); ++m) {
       sum += leg.Of(jacobian_.Position(m)).dot(weight.block<3, 1>(3 * m, leg.column));
     }
-    by_leg_load.push_back(sum);
+    components.push_back({-1, Vector3d::Zero(), T_root_ref.linear() * (sum * leg.axis)});
   }
-  const auto weighted = [&](const Eigen::VectorXd& x) {
-    const Eigen::VectorXd q = chain.FullPosture(x);
-    double sum = 0.0;
-    if (elastic_) sum = by_load.cwiseProduct(GravityLoads(model_, geometry_, q, kGravity, 0)).sum();
-    for (std::size_t i = 0; i < legs_.size(); ++i) sum += by_leg_load[i] * LegLoad(legs_[i], q);
-    return sum;
-  };
-  for (int i = 0; i < chain.size(); ++i) {
-    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(chain.size(), i);
-    gradient[i] += (weighted(x_ + step) - weighted(x_ - step)) / (2.0 * kStep);
-  }
+  chain.Move(x_);
+  gradient += chain.LoadGradient(components, T_root_ref.linear() * kGravity);
 }
 
 }  // namespace elastocal

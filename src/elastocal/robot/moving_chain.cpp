@@ -117,4 +117,29 @@ Eigen::RowVectorXd MovingChain::GravityTorqueGradient(int coordinate) const {
   return gradient;
 }
 
+Eigen::VectorXd MovingChain::LoadGradient(const std::vector<LoadComponent>& components,
+                                          const Vector3d& gravity) const {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size());
+  for (const Driven& d : all_driven_) {
+    const bool turns = tree_.joints[d.joint].type == JointType::kRevolute;
+    const Vector3d moved = MomentGradient(d.joint).cross(gravity);
+    double sum = 0.0;
+    for (const LoadComponent& c : components) {
+      const bool slides = c.joint >= 0 && tree_.joints[c.joint].type == JointType::kPrismatic;
+      if (c.joint >= 0 && c.joint != d.joint && carries_[d.joint][c.joint]) {
+        // The whole turns: against gravity as if that turned the other way.
+        if (!turns) continue;
+        const CarriedLoad& carried = carried_[c.joint];
+        const Vector3d back = gravity.cross(Axis(d.joint));
+        sum += slides ? carried.mass * c.direction.dot(back)
+                      : c.direction.dot((carried.moment - carried.mass * c.point).cross(back));
+      } else if (!slides && (c.joint < 0 || carries_[c.joint][d.joint])) {
+        sum += c.direction.dot(moved);
+      }
+    }
+    gradient[d.variable] += d.multiplier * sum;
+  }
+  return gradient;
+}
+
 }  // namespace elastocal

@@ -13,6 +13,14 @@ namespace elastocal {
 /// follow others stand for both, once.
 std::vector<int> ChainCoordinates(const RobotTree& tree, int from_link, int tip_link);
 
+/// A component of what gravity does to a joint: of the moment, about a point and along a direction,
+/// of all that the joint carries (N.m), or along a prismatic joint of the force (N). Point and
+/// direction are fixed to the body that carries the joint.
+struct LoadComponent {
+  int joint = -1;  ///< -1: the moment of the whole robot
+  Eigen::Vector3d point = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
+};
+
 /// A nominal robot of which some coordinates x move while all others rest: poses, gravity torques
 /// and their derivatives by x. Everything is in the root link's frame. Holds the last posture.
 class MovingChain {
@@ -39,6 +47,10 @@ class MovingChain {
   /// held, N.m or N, and its derivatives by x (eq. 9).
   double GravityTorque(int coordinate) const;
   Eigen::RowVectorXd GravityTorqueGradient(int coordinate) const;
+
+  /// Derivatives by x of a sum of components of loads, `gravity` in m/s^2.
+  Eigen::VectorXd LoadGradient(const std::vector<LoadComponent>& components,
+                               const Eigen::Vector3d& gravity) const;
 
  private:
   struct Driven {

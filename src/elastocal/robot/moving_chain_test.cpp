@@ -89,6 +89,44 @@ TEST_P(MovingChainOfRandomRobot, TorquesAreThoseOfStatics) {
   }
 }
 
+TEST_P(MovingChainOfRandomRobot, LoadGradientEqualsDifferences) {
+  const Eigen::Vector3d gravity(1.0, -2.0, -9.0), point(0.1, 0.2, -0.3), direction(0.5, -0.7, 0.4);
+  // One component a joint, fixed to the link before it, and one of the whole robot.
+  const auto components = [&] {
+    std::vector<LoadComponent> all = {{-1, point, direction}};
+    for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
+      const Transform& T =
+          chain_.link_poses()[static_cast<std::size_t>(tree_.joints[k].parent_link)];
+      all.push_back({static_cast<int>(k), T * point, T.linear() * direction});
+    }
+    return all;
+  };
+  const auto sum = [&](const Eigen::VectorXd& x) {
+    chain_.Move(x);
+    const std::vector<CarriedLoad> carried = CarriedLoads(tree_, chain_.link_poses(), 0);
+    CarriedLoad whole;
+    for (std::size_t i = 0; i < tree_.links.size(); ++i) {
+      whole.mass += tree_.links[i].mass;
+      whole.moment += tree_.links[i].mass * (chain_.link_poses()[i] * tree_.links[i].com);
+    }
+    double value = 0.0;
+    for (const LoadComponent& c : components()) {
+      const CarriedLoad& load = c.joint < 0 ? whole : carried[static_cast<std::size_t>(c.joint)];
+      const bool slides = c.joint >= 0 && tree_.joints[static_cast<std::size_t>(c.joint)].type ==
+                                              JointType::kPrismatic;
+      value += slides ? load.mass * c.direction.dot(gravity)
+                      : c.direction.dot((load.moment - load.mass * c.point).cross(gravity));
+    }
+    return value;
+  };
+  chain_.Move(x_);
+  const Eigen::VectorXd gradient = chain_.LoadGradient(components(), gravity);
+  for (int i = 0; i < chain_.size(); ++i) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(chain_.size(), i);
+    EXPECT_NEAR(gradient[i], (sum(x_ + step) - sum(x_ - step)) / (2 * kStep), kNearTorque);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, MovingChainOfRandomRobot, testing::Range(1, 9));
 
 TEST(ChainCoordinates, CountsAFollowerOnceAndLeavesOutWhatIsBefore) {
