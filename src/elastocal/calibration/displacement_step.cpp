@@ -5,6 +5,7 @@
 #include <map>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "elastocal/calibration/residuals.hpp"
 #include "elastocal/math/statistics.hpp"
@@ -14,7 +15,8 @@
 namespace elastocal {
 namespace {
 
-constexpr int kLeastPostures = 3;  // on either side
+constexpr int kLeastPostures = 3;    // on either side
+constexpr double kLargestSd = 5e-4;  // m, of a displacement that is believed
 constexpr double kVague = 1e-4;  // information that keeps free unknowns from being divided by zero
 
 /// What a displacement of one cluster, in the axes of its link, does in one posture.
@@ -128,6 +130,20 @@ class Lineariser {
   Linearised result_;
 };
 
+/// The displacement in those directions in which it is known; elsewhere none.
+Eigen::Vector3d KnownDisplacement(const Eigen::Matrix3d& information,
+                                  const Eigen::Vector3d& score) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(information);
+  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const double known = directions.eigenvalues()[i];  // sd^-2
+    if (!(known > 1.0 / (kLargestSd * kLargestSd))) continue;
+    const Eigen::Vector3d along = directions.eigenvectors().col(i);
+    displacement += along.dot(score) / known * along;
+  }
+  return displacement;
+}
+
 /// The best step of one cluster; counts those tried.
 DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::VectorXd& explained,
                           int& tried) {
@@ -148,8 +164,7 @@ DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::Ve
     const Eigen::MatrixXd W = linear.factor.matrixL().solve(after.cross.transpose());
     const Eigen::Matrix3d information = after.information - W.transpose() * W;
     const Eigen::Vector3d score = after.score - W.transpose() * explained;
-    const Eigen::LLT<Eigen::Matrix3d> factor(information + kVague * Eigen::Matrix3d::Identity());
-    const Eigen::Vector3d displacement = factor.solve(score);
+    const Eigen::Vector3d displacement = KnownDisplacement(information, score);
     const double gain = score.dot(displacement);
     if (!(gain > best.gain)) continue;
     best = {cluster, at->first, std::next(at)->first, displacement, gain, 0.0, 0.0};

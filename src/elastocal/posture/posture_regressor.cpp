@@ -103,7 +103,7 @@ double PostureRegressor::Load(int parameter) const {
   return IsJointCompliance(p.kind) ? loads_(p.axis, p.joint) : 1.0;
 }
 
-double PostureRegressor::LegLoad(const LegColumn& column, const Eigen::VectorXd& q) const {
+double PostureRegressor::LoadOn(const LegColumn& column, const Eigen::VectorXd& q) const {
   return LoadFromStatics(model_, PlaceLeg(model_, geometry_, q, column.leg),
                          kGravity)[column.entry];
 }
@@ -115,7 +115,7 @@ void PostureRegressor::EvaluateLegs(const Eigen::VectorXd& q) {
         jacobian_.LegPose(column.leg).linear().col(column.entry % 3);
     column.axis = column.entry < 3 ? Vector3d::Zero().eval() : direction;
     column.translation = column.entry < 3 ? direction : waist.cross(direction).eval();
-    column.load = LegLoad(column, q);
+    column.load = LoadOn(column, q);
     for (int m = 0; m < model_.marker_count(); ++m) {
       psi_.block<3, 1>(3 * m, column.column) = column.load * column.Of(jacobian_.Position(m));
     }

@@ -57,7 +57,7 @@ class PostureRegressor {
   };
   void LayOut(const MovingChain& chain);
   double Load(int parameter) const;
-  double LegLoad(const LegColumn& column, const Eigen::VectorXd& q) const;
+  double LoadOn(const LegColumn& column, const Eigen::VectorXd& q) const;
   void EvaluateLegs(const Eigen::VectorXd& q);
   void AddMarkerGradient(int marker, const Eigen::MatrixXd& weight,
                          Eigen::VectorXd& gradient) const;
