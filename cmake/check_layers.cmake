@@ -11,6 +11,7 @@ endif()
 
 set(unrestricted cli)  # the program may include everything
 set(ceres_layer optim)  # the only layer that may include Ceres
+set(ipopt_layer nlp)  # the only layer that may include Ipopt
 
 set(layers "")
 file(STRINGS "${RULES}" lines)
@@ -55,6 +56,8 @@ foreach(file IN LISTS files)
     set(header "${CMAKE_MATCH_1}")
     if(header MATCHES "^ceres/" AND NOT layer STREQUAL ceres_layer)
       report("${layer} may not include ${header}: only ${ceres_layer} may")
+    elseif(header MATCHES "^(coin/)?Ip[A-Z]" AND NOT layer STREQUAL ipopt_layer)
+      report("${layer} may not include ${header}: only ${ipopt_layer} may")
     elseif(header MATCHES "^elastocal/([^/]+)/")
       if(NOT CMAKE_MATCH_1 IN_LIST allowed_${layer})
         report("${layer} may not include ${header}")

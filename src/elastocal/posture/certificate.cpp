@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "elastocal/optim/nonlinear_program.hpp"
+#include "elastocal/nlp/nonlinear_program.hpp"
 
 namespace elastocal {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "elastocal/optim/nonlinear_program.hpp"
+#include "elastocal/nlp/nonlinear_program.hpp"
 
 namespace elastocal {
 namespace {

@@ -1,3 +1,4 @@
+#include <IpTNLP.hpp>
 #include <ceres/ceres.h>
 
 #include "elastocal/low/upwards.hpp"

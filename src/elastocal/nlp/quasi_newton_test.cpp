@@ -1,4 +1,4 @@
-#include "elastocal/optim/quasi_newton.hpp"
+#include "elastocal/nlp/quasi_newton.hpp"
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>

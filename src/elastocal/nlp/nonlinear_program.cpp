@@ -1,4 +1,4 @@
-#include "elastocal/optim/nonlinear_program.hpp"
+#include "elastocal/nlp/nonlinear_program.hpp"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 #include <IpSolveStatistics.hpp>
 #include <IpTNLP.hpp>
 
-#include "elastocal/optim/quasi_newton.hpp"
+#include "elastocal/nlp/quasi_newton.hpp"
 
 namespace elastocal {
 namespace {

@@ -1,4 +1,4 @@
-#include "elastocal/optim/nonlinear_program.hpp"
+#include "elastocal/nlp/nonlinear_program.hpp"
 
 #include <cmath>
 
