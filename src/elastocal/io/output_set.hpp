@@ -1,66 +1,71 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace elastocal {
 
-/// The files that one run of a command writes: declared before any work, published together after it.
+/// The files that one run of a command writes: declared before any work, published together after
+/// it.
 ///
 ///   OutputSet outputs;
-///   outputs.Protect({project, recording});           // what is read is never replaced
+///   outputs.Protect({project, recording});       // what is read is never replaced
 ///   outputs.Declare(folder / "summary.json");
 ///   outputs.Declare(folder / "robot_calibrated.urdf");
-///   outputs.Prepare();                                // all places writable, or InputError at once
-///   ...                                               // the work
+///   outputs.Prepare();                           // every place can be written, or InputError at
+///   once
+///   ...                                          // the work
 ///   outputs.Set(folder / "summary.json", text);
-///   outputs.Publish();                                // all files of this run, or none
+///   outputs.Publish();                           // all files of this run, or none
 ///
 /// A declared file that the run does not set is removed on publication: what an earlier run of the
-/// same command left there would contradict this run's other files. Files that are not declared stay
-/// as they are.
+/// same command left there would contradict this run's files. Files that nobody declared stay.
 ///
-/// Until Publish, nothing is visible but a hidden folder `.elastocal-...` in each folder written to.
-/// Publish writes and fsyncs every file there, then commits: from then on, the run is published even
-/// if the program is killed, because the next OutputSet or RecoverOutputs on that folder finishes
-/// what was committed. Before the commit a killed run leaves the earlier files untouched.
+/// Until Publish nothing is visible but a hidden folder `.elastocal-...` in each folder that gets a
+/// file. Publish writes and syncs every file there, then commits. A run that is killed before the
+/// commit leaves the earlier files untouched; a run that is killed after it is finished by the next
+/// OutputSet or RecoverOutputs on that folder. With files in several folders, each folder has a
+/// commit of its own.
 ///
-/// Symbolic links are followed. A replaced file keeps its mode. Devices and pipes are written to, not
-/// replaced; "-" and /dev/stdout are standard output. Not copyable; not for several threads, except
-/// StagingPath files, which the caller may write as it likes.
+/// Symbolic links are followed. A file that is replaced keeps its mode. Devices and pipes are
+/// written to, not replaced; "-" and /dev/stdout are standard output. One thread at a time, except
+/// that files at a StagingPath may be written by several.
 class OutputSet {
  public:
   OutputSet();
-  ~OutputSet();  ///< removes what was not published, and folders made for it
+  ~OutputSet();  ///< removes what was not published, and the folders made for it
   OutputSet(OutputSet&&) noexcept;
   OutputSet& operator=(OutputSet&&) noexcept;
 
-  /// Files that the run reads; paths that are empty or lead to nothing are passed over. Throws
-  /// InputError where one of them is declared already.
+  /// Files that the run reads. Empty paths are passed over. Throws InputError where one of them is
+  /// declared as an output.
   void Protect(const std::vector<std::filesystem::path>& inputs);
 
-  /// A file that the run may write. An empty path is passed over, and a second declaration of the
-  /// same file as well. Throws InputError where the file is protected ("this is an input; choose
-  /// another output").
+  /// A file that the run may write. An empty path is passed over. Throws InputError where the file
+  /// is an input, or where it is declared already (two outputs under one name).
   void Declare(const std::filesystem::path& file);
 
-  /// Makes the folders and tries whether each declared file can be written. Throws InputError naming
-  /// the file as it was given: a folder, no permission, no such parent, read-only. Finishes first
-  /// what an earlier run committed and could not finish.
+  /// Makes the folders and tries whether each declared file can be written. Throws InputError
+  /// naming the file as it was given: it is a folder, it or its folder is read-only, its folder
+  /// cannot be made. Finishes first what an earlier run committed.
   void Prepare();
 
-  /// Contents of a declared file, kept until Publish; an empty path is passed over. Throws
+  /// Contents of a declared file, kept until Publish. An empty path is passed over. Throws
   /// std::invalid_argument for a file that was not declared.
   void Set(const std::filesystem::path& file, std::string contents);
 
-  /// Where to write a declared regular file piece by piece instead of Set; only after Prepare.
+  /// Whether the file is declared, and its contents where Set gave them (else null).
+  bool IsDeclared(const std::filesystem::path& file) const;
+  const std::string* Contents(const std::filesystem::path& file) const;
+
+  /// Where to write a declared file piece by piece instead of Set, after Prepare. Throws
+  /// std::invalid_argument where the file is not declared, or is a device, a pipe or "-".
   std::filesystem::path StagingPath(const std::filesystem::path& file);
 
-  /// Makes all files visible: those set or staged get their names, the other declared ones are
-  /// removed. Throws InputError where the file system fails; then nothing has changed. Called once.
+  /// Gives all files their names. Throws InputError naming the file where the file system fails; a
+  /// failure before the commit leaves the earlier files as they were. Called once.
   void Publish();
 
  private:
@@ -68,8 +73,9 @@ class OutputSet {
   std::unique_ptr<State> state_;
 };
 
-/// Finishes in `folder` what a killed run had committed, and removes what one had only begun (its
-/// process is gone). For commands that read a result folder.
+/// Finishes in `folder` what a killed run had committed, and removes what it had only begun.
+/// Commands that read a folder of results call it first. Does nothing where there is no such folder
+/// or no permission.
 void RecoverOutputs(const std::filesystem::path& folder);
 
 }  // namespace elastocal

@@ -1,0 +1,390 @@
+#include "elastocal/io/output_set.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kStagingPrefix = ".elastocal-";
+constexpr const char* kCommit = ".commit";  // no output has this name: it is in the staging folder
+
+std::string SystemError() { return errno != 0 ? std::strerror(errno) : "input or output error"; }
+
+[[noreturn]] void FailToWrite(const fs::path& file, const std::string& reason) {
+  throw InputError("cannot write " + file.string() + ": " + reason);
+}
+
+bool IsStandardOutput(const fs::path& file) { return file == "-" || file == "/dev/stdout"; }
+
+/// Where the symbolic links that `file` may be lead, also when nothing is there yet.
+fs::path FollowLinks(const fs::path& file) {
+  constexpr int kMostLinks = 40;
+  fs::path target = file;
+  for (int i = 0; i < kMostLinks; ++i) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) FailToWrite(file, error.message());
+  }
+  FailToWrite(file, "too many symbolic links");
+}
+
+/// Whether two paths name one file, whether it is there or not.
+bool SamePlace(const fs::path& a, const fs::path& b) {
+  if (SameFile(a, b)) return true;
+  std::error_code error;
+  const fs::path whole_a = fs::weakly_canonical(a, error);
+  return !error && whole_a == fs::weakly_canonical(b, error) && !error;
+}
+
+fs::path FolderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+void SyncFolder(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
+/// Writes a new file and waits until it is on the disk. Throws in the name of `given`.
+void WriteNew(const fs::path& path, const std::string& contents, const fs::path& given) {
+  errno = 0;
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) FailToWrite(given, SystemError());
+  std::size_t done = 0;
+  bool fine = true;
+  while (fine && done < contents.size()) {
+    const ssize_t written = write(descriptor, contents.data() + done, contents.size() - done);
+    if (written >= 0) done += static_cast<std::size_t>(written);
+    fine = written >= 0 || errno == EINTR;
+  }
+  fine = fine && fsync(descriptor) == 0;
+  const std::string reason = SystemError();
+  close(descriptor);
+  if (!fine) FailToWrite(given, reason);
+}
+
+/// Waits until a file that somebody else wrote is on the disk.
+void SyncFile(const fs::path& path, const fs::path& given) {
+  errno = 0;
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool fine = descriptor >= 0 && fsync(descriptor) == 0;
+  const std::string reason = SystemError();
+  if (descriptor >= 0) close(descriptor);
+  if (!fine) FailToWrite(given, reason);
+}
+
+/// What is no regular file cannot be written beforehand.
+void WriteStream(const fs::path& file, const std::string& contents) {
+  errno = 0;
+  const auto size = static_cast<std::streamsize>(contents.size());
+  if (IsStandardOutput(file)) {
+    std::cout.write(contents.data(), size).flush();
+    if (!std::cout) throw InputError("cannot write to standard output: " + SystemError());
+    return;
+  }
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(contents.data(), size);
+  stream.close();
+  if (!stream) FailToWrite(file, SystemError());
+}
+
+/// Folders made for files; those that are empty are removed again unless they are kept.
+class NewFolders {
+ public:
+  ~NewFolders() {
+    std::error_code ignored;
+    for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) {
+      fs::remove(*folder, ignored);
+    }
+  }
+
+  void Create(const fs::path& folder) {
+    std::error_code error;
+    if (folder.empty() || fs::is_directory(folder, error)) return;
+    Create(folder.parent_path());
+    if (fs::create_directory(folder, error)) created_.push_back(folder);
+    if (error) {
+      throw InputError("cannot create the folder " + folder.string() + ": " + error.message());
+    }
+  }
+
+  void Keep() { created_.clear(); }
+
+ private:
+  std::vector<fs::path> created_;
+};
+
+/// A staging folder, locked by its run: whoever gets the lock knows that the run is gone.
+class Staging {
+ public:
+  /// A new one in `folder`, for `file`.
+  Staging(const fs::path& folder, const fs::path& file) {
+    std::string name = (folder / (std::string(kStagingPrefix) + "XXXXXX")).string();
+    errno = 0;
+    if (mkdtemp(name.data()) == nullptr) FailToWrite(file, SystemError());
+    path_ = name;
+    Lock();
+  }
+  /// One that is there already; `locked()` tells whether its run is gone.
+  explicit Staging(const fs::path& path) : path_(path) { Lock(); }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+  ~Staging() {
+    std::error_code ignored;
+    if (locked_ && !fs::exists(path_ / kCommit, ignored)) fs::remove_all(path_, ignored);
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+
+  const fs::path& path() const { return path_; }
+  bool locked() const { return locked_; }
+
+ private:
+  void Lock() {
+    descriptor_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    locked_ = descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  }
+
+  fs::path path_;
+  int descriptor_ = -1;
+  bool locked_ = false;
+};
+
+/// Interrupts wait while files get their names.
+class SignalsHeld {
+ public:
+  SignalsHeld() {
+    sigset_t held;
+    sigemptyset(&held);
+    for (int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&held, signal);
+    pthread_sigmask(SIG_BLOCK, &held, &before_);
+  }
+  SignalsHeld(const SignalsHeld&) = delete;
+  SignalsHeld& operator=(const SignalsHeld&) = delete;
+  ~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_{};
+};
+
+/// Does what the commit of a staging folder says, as far as it is not done yet: "+NAME" moves a
+/// file into the folder around it, "-NAME" removes one there; each entry ends with a NUL.
+void ApplyCommit(const Staging& staging) {
+  const SignalsHeld held;
+  const fs::path folder = staging.path().parent_path();
+  const std::string commit = ReadFile(staging.path() / kCommit);
+  for (std::size_t at = 0; at < commit.size();) {
+    const std::size_t end = commit.find('\0', at);
+    if (end == std::string::npos) break;
+    const char action = commit[at];
+    const std::string name = commit.substr(at + 1, end - at - 1);
+    at = end + 1;
+    if (name != fs::path(name).filename()) continue;  // not written by this program
+    std::error_code error, ignored;
+    if (action == '-') {
+      fs::remove(folder / name, error);
+    } else if (fs::exists(staging.path() / name, ignored)) {
+      fs::rename(staging.path() / name, folder / name, error);
+    }
+    if (error) FailToWrite(folder / name, error.message());
+  }
+  SyncFolder(folder);
+  std::error_code ignored;
+  fs::remove(staging.path() / kCommit, ignored);
+}
+
+}  // namespace
+
+struct OutputSet::State {
+  struct Output {
+    fs::path given;
+    fs::path target;                           // where links lead; empty for streams
+    std::optional<std::string> contents = {};  // of Set
+    bool staged = false;                       // written by the caller at its StagingPath
+  };
+
+  // The order matters on destruction: staging folders go before the folders made for them.
+  NewFolders folders;
+  std::map<fs::path, Staging> staging;  // by folder
+  std::vector<fs::path> inputs;
+  std::vector<Output> outputs;
+
+  Output* Find(const fs::path& file) {
+    for (Output& output : outputs) {
+      if (output.given == file) return &output;
+    }
+    return nullptr;
+  }
+
+  Output& Declared(const fs::path& file) {
+    if (Output* output = Find(file)) return *output;
+    throw std::invalid_argument("OutputSet: " + file.string() + " was not declared");
+  }
+
+  fs::path StagingPathOf(const Output& output) {
+    return staging.at(FolderOf(output.target)).path() / output.target.filename();
+  }
+
+  void PrepareOutput(Output& output) {
+    const fs::path& file = output.given;
+    if (IsStandardOutput(file)) return;
+    if (file.filename().empty()) FailToWrite(file, "the name of a file was expected");
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (fs::is_directory(status)) FailToWrite(file, "is a folder");
+    if (fs::exists(status) && access(file.c_str(), W_OK) != 0) FailToWrite(file, SystemError());
+    if (fs::exists(status) && !fs::is_regular_file(status)) return;
+    output.target = FollowLinks(file);
+    const fs::path folder = FolderOf(output.target);
+    if (staging.contains(folder)) return;
+    folders.Create(folder);
+    RecoverOutputs(folder);
+    staging.try_emplace(folder, folder, file);
+  }
+
+  /// The files on the disk, in their staging folders, with the modes of those that they replace.
+  void WriteStaged() {
+    for (const Output& output : outputs) {
+      if (output.target.empty() || (!output.contents && !output.staged)) continue;
+      const fs::path path = StagingPathOf(output);
+      if (output.contents) WriteNew(path, *output.contents, output.given);
+      if (output.staged) SyncFile(path, output.given);
+      struct stat before {};
+      if (stat(output.target.c_str(), &before) == 0) chmod(path.c_str(), before.st_mode & 07777);
+    }
+  }
+
+  void WriteStreams() const {
+    for (const Output& output : outputs) {
+      if (output.target.empty() && output.contents) WriteStream(output.given, *output.contents);
+    }
+  }
+
+  /// From here on the files of a folder are published, come what may.
+  void Commit(const fs::path& folder, const Staging& place) {
+    std::string commit;
+    for (const Output& output : outputs) {
+      if (output.target.empty() || FolderOf(output.target) != folder) continue;
+      const bool there = output.contents || output.staged;
+      commit += (there ? '+' : '-') + output.target.filename().string() + '\0';
+    }
+    const fs::path written = place.path() / (std::string(kCommit) + ".new");
+    WriteNew(written, commit, folder);
+    std::error_code error;
+    fs::rename(written, place.path() / kCommit, error);
+    if (error) FailToWrite(folder, error.message());
+    SyncFolder(place.path());
+  }
+
+  /// All folders, or none where one of them fails.
+  void CommitAll() {
+    try {
+      for (const auto& [folder, place] : staging) Commit(folder, place);
+    } catch (...) {
+      std::error_code ignored;
+      for (const auto& [folder, place] : staging) fs::remove(place.path() / kCommit, ignored);
+      throw;
+    }
+  }
+};
+
+OutputSet::OutputSet() : state_(std::make_unique<State>()) {}
+OutputSet::~OutputSet() = default;
+OutputSet::OutputSet(OutputSet&&) noexcept = default;
+OutputSet& OutputSet::operator=(OutputSet&&) noexcept = default;
+
+void OutputSet::Protect(const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    if (input.empty()) continue;
+    for (const State::Output& output : state_->outputs) {
+      if (SamePlace(output.given, input)) {
+        throw InputError(output.given.string() + ": this is an input; choose another output");
+      }
+    }
+    state_->inputs.push_back(input);
+  }
+}
+
+void OutputSet::Declare(const fs::path& file) {
+  if (file.empty()) return;
+  for (const fs::path& input : state_->inputs) {
+    if (SamePlace(file, input)) {
+      throw InputError(file.string() + ": this is an input; choose another output");
+    }
+  }
+  for (const State::Output& output : state_->outputs) {
+    if (SamePlace(file, output.given)) {
+      throw InputError(file.string() + ": this run writes something else to this file already (" +
+                       output.given.string() + "); choose another output");
+    }
+  }
+  state_->outputs.push_back({file, {}});
+}
+
+void OutputSet::Prepare() {
+  for (State::Output& output : state_->outputs) state_->PrepareOutput(output);
+}
+
+void OutputSet::Set(const fs::path& file, std::string contents) {
+  if (!file.empty()) state_->Declared(file).contents = std::move(contents);
+}
+
+bool OutputSet::IsDeclared(const fs::path& file) const { return state_->Find(file) != nullptr; }
+
+const std::string* OutputSet::Contents(const fs::path& file) const {
+  const State::Output* output = state_->Find(file);
+  return output != nullptr && output->contents ? &*output->contents : nullptr;
+}
+
+fs::path OutputSet::StagingPath(const fs::path& file) {
+  State::Output& output = state_->Declared(file);
+  if (output.target.empty()) {
+    throw std::invalid_argument("OutputSet: " + file.string() +
+                                " is no regular file, or Prepare was not called");
+  }
+  output.staged = true;
+  return state_->StagingPathOf(output);
+}
+
+void OutputSet::Publish() {
+  state_->WriteStaged();
+  state_->WriteStreams();
+  state_->CommitAll();
+  for (const auto& [folder, place] : state_->staging) ApplyCommit(place);
+  state_->folders.Keep();
+}
+
+void RecoverOutputs(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> left;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (entry->path().filename().string().starts_with(kStagingPrefix)) left.push_back(*entry);
+  }
+  for (const fs::path& path : left) {
+    const Staging staging(path);
+    if (staging.locked() && fs::exists(path / kCommit, error)) ApplyCommit(staging);
+  }
+}
+
+}  // namespace elastocal
