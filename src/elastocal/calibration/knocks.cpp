@@ -10,7 +10,7 @@ namespace elastocal {
 namespace {
 
 constexpr int kMaxKnocks = 4;
-constexpr int kFewUpdates = 6;           // steps, each with the noise
+constexpr int kKnockUpdates = 6;         // steps, each with the noise
 constexpr double kLeastDistance = 1e-3;  // m
 constexpr double kLeastScatters = 3.0;
 
@@ -108,7 +108,7 @@ std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recordin
   std::vector<Knock> knocks;
   for (;;) {
     const Selection selection = SelectAll(split);
-    fit = FitParameters(problem, selection, free, fit, false, kFewUpdates);
+    fit = FitParameters(problem, selection, free, fit, false, kKnockUpdates);
     const DisplacementStep step =
         FindLargestStep(problem, selection, free, fit, sets, options.outlier_probability);
     if (!IsKnock(step)) break;

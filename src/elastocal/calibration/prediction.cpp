@@ -1,18 +1,16 @@
 #include "elastocal/calibration/prediction.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "elastocal/calibration/loads.hpp"
 #include "elastocal/calibration/outliers.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/robot/leg_load.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Pairs of points that a rigid motion shall bring together.
 class Registration {

@@ -15,7 +15,7 @@ using Indices = std::vector<int>;
 
 constexpr double kTolerance = 1e-6;
 // Roundings of numbers near 1 in matrices of some ten columns.
-constexpr double kRounding = 1e-13;
+constexpr double kQrRounding = 1e-13;
 
 MatrixXd RandomMatrix(int rows, int cols, std::uint64_t seed) {
   return Random(seed).NormalVector(rows * cols, 1.0).reshaped(rows, cols);
@@ -42,9 +42,9 @@ TEST(PriorityQr, ByHand) {
   const PriorityQrResult qr = PriorityQr(A, kTolerance);
   EXPECT_EQ(qr.kept, (Indices{0, 1, 3}));
   EXPECT_EQ(qr.dropped, Indices{2});
-  EXPECT_LT((qr.regrouping - Eigen::Vector3d(2, 3, 0)).norm(), kRounding);
+  EXPECT_LT((qr.regrouping - Eigen::Vector3d(2, 3, 0)).norm(), kQrRounding);
   const Eigen::Vector4d remainder(1.0, 2.0 / std::sqrt(5.0), 0.0, std::sqrt(0.5));
-  EXPECT_LT((qr.remainder - remainder).norm(), kRounding);
+  EXPECT_LT((qr.remainder - remainder).norm(), kQrRounding);
 }
 
 TEST(PriorityQr, TheFirstColumnsWin) {
@@ -62,7 +62,7 @@ TEST(PriorityQr, DroppedColumnsFollowFromTheKept) {
     const PriorityQrResult qr = PriorityQr(A, kTolerance);
     EXPECT_EQ(qr.kept.size(), 7u);
     // Random square matrices reach a condition number of 1e3 or so.
-    ExpectRegrouping(A, qr, 1e3 * kRounding);
+    ExpectRegrouping(A, qr, 1e3 * kQrRounding);
   }
 }
 
@@ -73,7 +73,7 @@ TEST(PriorityQr, UnitsOfColumnsDoNotMatter) {
   const PriorityQrResult a = PriorityQr(A, kTolerance);
   const PriorityQrResult b = PriorityQr(A * units.asDiagonal(), kTolerance);
   EXPECT_EQ(a.kept, b.kept);
-  EXPECT_LT((a.remainder - b.remainder).norm(), kRounding);
+  EXPECT_LT((a.remainder - b.remainder).norm(), kQrRounding);
   const MatrixXd expected =
       units(a.kept).cwiseInverse().asDiagonal() * a.regrouping * units(a.dropped).asDiagonal();
   // Compared entry by entry: they reach from 1e-8 to 1e8.
@@ -110,7 +110,7 @@ TEST(PriorityQr, WideMatrix) {
   const MatrixXd A = RandomMatrix(4, 9, 7);
   const PriorityQrResult qr = PriorityQr(A, kTolerance);
   EXPECT_EQ(qr.kept, (Indices{0, 1, 2, 3}));
-  ExpectRegrouping(A, qr, 1e3 * kRounding);
+  ExpectRegrouping(A, qr, 1e3 * kQrRounding);
 }
 
 TEST(PriorityQr, WithoutRowsOrColumns) {

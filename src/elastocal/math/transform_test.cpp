@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // A handful of roundings of numbers near 1.
-constexpr double kRounding = 1e-15;
+constexpr double kTransformRounding = 1e-15;
 constexpr double kHalfPi = M_PI / 2.0;
 
 Matrix3d FromRpy(const Vector3d& rpy) { return FromXyzRpy(Vector3d::Zero(), rpy).linear(); }
@@ -24,27 +24,28 @@ double RoundTripError(const Matrix3d& R, const Vector3d& near) {
 }
 
 TEST(Transform, ElementaryRotationsTurnTheNextAxisTowardsTheOneAfter) {
-  EXPECT_LT((RotX(kHalfPi) * Vector3d::UnitY() - Vector3d::UnitZ()).norm(), kRounding);
-  EXPECT_LT((RotY(kHalfPi) * Vector3d::UnitZ() - Vector3d::UnitX()).norm(), kRounding);
-  EXPECT_LT((RotZ(kHalfPi) * Vector3d::UnitX() - Vector3d::UnitY()).norm(), kRounding);
+  EXPECT_LT((RotX(kHalfPi) * Vector3d::UnitY() - Vector3d::UnitZ()).norm(), kTransformRounding);
+  EXPECT_LT((RotY(kHalfPi) * Vector3d::UnitZ() - Vector3d::UnitX()).norm(), kTransformRounding);
+  EXPECT_LT((RotZ(kHalfPi) * Vector3d::UnitX() - Vector3d::UnitY()).norm(), kTransformRounding);
 }
 
 TEST(Transform, RotationAboutTheDiagonalPermutesTheAxes) {
   const Transform T = RotAxis(Vector3d::Ones().normalized(), 2.0 * M_PI / 3.0);
-  EXPECT_LT((T * Vector3d(1, 2, 3) - Vector3d(3, 1, 2)).norm(), 4 * kRounding);
+  EXPECT_LT((T * Vector3d(1, 2, 3) - Vector3d(3, 1, 2)).norm(), 4 * kTransformRounding);
 }
 
 TEST(Transform, TranslationsAreAlongTheTurnedAxes) {
   EXPECT_EQ(TrX(2.0) * Vector3d(1, 1, 1), Vector3d(3, 1, 1));
   EXPECT_EQ(TrZ(2.0) * Vector3d(1, 1, 1), Vector3d(1, 1, 3));
-  EXPECT_LT((RotZ(kHalfPi) * TrX(2.0) * Vector3d::Zero() - Vector3d(0, 2, 0)).norm(), kRounding);
+  EXPECT_LT((RotZ(kHalfPi) * TrX(2.0) * Vector3d::Zero() - Vector3d(0, 2, 0)).norm(),
+            kTransformRounding);
 }
 
 TEST(Transform, UrdfOriginTurnsAboutFixedAxesRollFirst) {
   // Roll takes y to z, yaw leaves z; roll leaves x, yaw takes it to y.
   const Transform T = FromXyzRpy({10, 20, 30}, {kHalfPi, 0, kHalfPi});
-  EXPECT_LT((T * Vector3d::UnitY() - Vector3d(10, 20, 31)).norm(), 40 * kRounding);
-  EXPECT_LT((T * Vector3d::UnitX() - Vector3d(10, 21, 30)).norm(), 40 * kRounding);
+  EXPECT_LT((T * Vector3d::UnitY() - Vector3d(10, 20, 31)).norm(), 40 * kTransformRounding);
+  EXPECT_LT((T * Vector3d::UnitX() - Vector3d(10, 21, 30)).norm(), 40 * kTransformRounding);
 }
 
 TEST(Transform, SkewIsTheCrossProduct) {
@@ -62,7 +63,7 @@ TEST(ToRpy, ReturnsTheAnglesThatARotationWasMadeOf) {
     const double amplification = 1.0 / std::abs(std::cos(rpy.y()));
     const Vector3d near = rpy + Vector3d(0.1, -0.1, 0.1);
     if (amplification > 5.0) continue;  // the other representation may be nearer
-    EXPECT_LT((ToRpy(FromRpy(rpy), near) - rpy).norm(), 20 * kRounding * amplification)
+    EXPECT_LT((ToRpy(FromRpy(rpy), near) - rpy).norm(), 20 * kTransformRounding * amplification)
         << rpy.transpose();
   }
 }
@@ -70,17 +71,17 @@ TEST(ToRpy, ReturnsTheAnglesThatARotationWasMadeOf) {
 TEST(ToRpy, TakesTheNearerOfTheTwoRepresentations) {
   const Vector3d rpy(0.2, 0.3, 0.4);
   const Vector3d other(0.2 + M_PI, M_PI - 0.3, 0.4 + M_PI);
-  EXPECT_LT((ToRpy(FromRpy(rpy), Vector3d::Zero()) - rpy).norm(), 4 * kRounding);
-  EXPECT_LT((ToRpy(FromRpy(rpy), Vector3d(3, 3, 3)) - other).norm(), 8 * kRounding);
+  EXPECT_LT((ToRpy(FromRpy(rpy), Vector3d::Zero()) - rpy).norm(), 4 * kTransformRounding);
+  EXPECT_LT((ToRpy(FromRpy(rpy), Vector3d(3, 3, 3)) - other).norm(), 8 * kTransformRounding);
   EXPECT_LT((ToRpy(FromRpy(rpy), Vector3d(0, 0, 6)) - rpy - Vector3d(0, 0, 2.0 * M_PI)).norm(),
-            8 * kRounding);
+            8 * kTransformRounding);
 }
 
 TEST(ToRpy, KeepsRollAndPitchAndYawOfAGivenOriginAtTheSingularity) {
   // What a URDF may hold: the corrected origin must not turn roll into yaw.
   for (double pitch : {kHalfPi, -kHalfPi}) {
     const Vector3d rpy(0.7, pitch, -0.4);
-    EXPECT_LT((ToRpy(FromRpy(rpy), rpy) - rpy).norm(), 4 * kRounding);
+    EXPECT_LT((ToRpy(FromRpy(rpy), rpy) - rpy).norm(), 4 * kTransformRounding);
   }
 }
 
@@ -99,12 +100,14 @@ TEST(ToRpy, RoundTripNearTheSingularity) {
 TEST(RotationAngle, IsExactAtBothEnds) {
   const Vector3d axis = Vector3d(1, -2, 3).normalized();
   for (double angle : {0.0, 1e-12, 1e-9, 1e-6, 0.5, kHalfPi, 3.0, M_PI - 1e-9}) {
-    EXPECT_NEAR(RotationAngle(RotAxis(axis, angle).linear()), angle, 2 * kRounding) << angle;
-    EXPECT_NEAR(RotationAngle(RotAxis(axis, -angle).linear()), angle, 2 * kRounding) << angle;
+    EXPECT_NEAR(RotationAngle(RotAxis(axis, angle).linear()), angle, 2 * kTransformRounding)
+        << angle;
+    EXPECT_NEAR(RotationAngle(RotAxis(axis, -angle).linear()), angle, 2 * kTransformRounding)
+        << angle;
   }
   // Small angles to relative precision as well.
   EXPECT_NEAR(RotationAngle(RotZ(1e-12).linear()), 1e-12, 1e-24);
-  EXPECT_NEAR(RotationAngle(RotX(M_PI).linear()), M_PI, kRounding);
+  EXPECT_NEAR(RotationAngle(RotX(M_PI).linear()), M_PI, kTransformRounding);
 }
 
 }  // namespace

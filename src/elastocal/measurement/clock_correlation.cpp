@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLongestHole_s = 0.1;
 constexpr double kCoarseRate_hz = 20.0;  // four times the cutoff of the marker filter
 constexpr double kLeastShare = 0.5;      // of the shorter signal, that must be in common
@@ -28,7 +28,7 @@ UniformSpeed Decimate(const UniformSpeed& fine, int factor) {
       sum += value;
       ++known;
     }
-    coarse.values[k] = 2 * known >= factor ? sum / known : kNan;
+    coarse.values[k] = 2 * known >= factor ? sum / known : kNaN;
   }
   return coarse;
 }
@@ -51,11 +51,11 @@ struct Masked {
 double CorrelationAt(const Masked& x, const Masked& y, Eigen::Index shift, double least_count) {
   const Eigen::Index begin = std::max<Eigen::Index>(0, -shift);
   const Eigen::Index size = std::min(x.value.size(), y.value.size() - shift) - begin;
-  if (size <= 0) return kNan;
+  if (size <= 0) return kNaN;
   const auto of_x = [&](const Eigen::VectorXd& v) { return v.segment(begin, size); };
   const auto of_y = [&](const Eigen::VectorXd& v) { return v.segment(begin + shift, size); };
   const double count = of_x(x.known).dot(of_y(y.known));
-  if (count < least_count) return kNan;
+  if (count < least_count) return kNaN;
   const double mean_x = of_x(x.value).dot(of_y(y.known)) / count;
   const double mean_y = of_x(x.known).dot(of_y(y.value)) / count;
   const double xx = of_x(x.square).dot(of_y(y.known)) / count - mean_x * mean_x;
@@ -101,7 +101,7 @@ UniformSpeed Resample(const PredictedSpeed& predicted, double rate_hz) {
     const double u = (t - time[next - 1]) / step;
     const bool hole = step > kLongestHole_s && u > 0.0 && u < 1.0;
     result.values[k] =
-        hole ? kNan : (1.0 - u) * predicted.values[next - 1] + u * predicted.values[next];
+        hole ? kNaN : (1.0 - u) * predicted.values[next - 1] + u * predicted.values[next];
   }
   return result;
 }

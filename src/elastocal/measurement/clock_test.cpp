@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // True clocks: robot time = (1 + 1e-6 drift) camera time - lag.
 struct Clocks {
@@ -50,7 +48,7 @@ MeasuredSpeed Measure(const Speed& speed, double duration, double noise, double 
   MeasuredSpeed measured{100.0, Eigen::VectorXd(static_cast<Eigen::Index>(duration * 100.0))};
   for (Eigen::Index i = 0; i < measured.values.size(); ++i) {
     measured.values[i] = speed(0.01 * static_cast<double>(i)) + random.Normal(noise);
-    if (random.Uniform(0.0, 1.0) < missing) measured.values[i] = kNan;
+    if (random.Uniform(0.0, 1.0) < missing) measured.values[i] = kNaN;
   }
   return measured;
 }

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 
 namespace elastocal {
@@ -14,9 +15,8 @@ constexpr int kIterations = 20;
 constexpr double kConverged_s = 1e-7;
 constexpr double kFarthest_s = 0.5;
 constexpr double kLeastCorrelation = 0.5;
-constexpr double kLeastShare = 0.5;    // of a window's frames known in both signals
-constexpr double kBiweight = 4.685;    // 95 % efficient for normal errors
-constexpr double kNormalMad = 1.4826;  // standard deviation over median absolute deviation
+constexpr double kLeastKnownShare = 0.5;  // of a window's frames known in both signals
+constexpr double kBiweight = 4.685;       // 95 % efficient for normal errors
 
 // Value and derivative (a second) of the cubic through a signal's samples, at a time.
 struct Interpolated {
@@ -170,7 +170,7 @@ std::optional<WindowLag> FitWindowLag(const UniformSpeed& measured, const Unifor
   double lag = coarse_lag_s;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const WindowSystem system(measured, predicted, frames, lag);
-    if (system.count < 10 || system.count < kLeastShare * frames.size()) return std::nullopt;
+    if (system.count < 10 || system.count < kLeastKnownShare * frames.size()) return std::nullopt;
     const Eigen::FullPivLU<Eigen::Matrix3d> lu(system.normal);
     if (!lu.isInvertible()) return std::nullopt;  // nothing moves
     const Eigen::Vector3d fit = lu.solve(system.right);

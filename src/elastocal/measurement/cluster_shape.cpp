@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 
 namespace elastocal {
@@ -13,7 +14,6 @@ namespace {
 
 constexpr Eigen::Index kMostFrames = 4000;  // give a median to 2 % of the noise
 constexpr int kAllPermutationsUpTo = 5;     // 120 of them
-constexpr double kNormalMad = 1.4826;       // standard deviation over median absolute deviation
 
 std::vector<Permutation> ListPermutations(int size) {
   Permutation order(static_cast<std::size_t>(size));

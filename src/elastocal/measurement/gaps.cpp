@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <Eigen/Cholesky>
+
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
@@ -13,7 +14,6 @@ namespace {
 constexpr double kNeighbourhood_s = 0.1;
 constexpr int kLeastNeighbourhood = 4;  // frames on a side: two sides give a cubic and a remainder
 constexpr int kLeastSeenOnASide = 2;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Cubic = Eigen::Matrix<double, 4, 3>;  // coefficients x coordinates
 
@@ -106,7 +106,7 @@ std::vector<std::vector<FrameInterval>> FilterPieces(const SecondOrderSections& 
       if (piece.size() > padding) {
         FiltFilt(sections, block);
       } else {
-        block.setConstant(kNan);
+        block.setConstant(kNaN);
         dropped[marker].push_back(piece);
       }
     }

@@ -1,19 +1,18 @@
 #include "elastocal/measurement/gaps.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/measurement/frame_interval.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Intervals = std::vector<FrameInterval>;
 
 // Two markers at 100 Hz on cubics in time.
@@ -29,7 +28,7 @@ MarkerTrajectories CubicMotion(int frames) {
 }
 
 void Hide(MarkerTrajectories& trajectories, int marker, FrameInterval gap) {
-  trajectories.positions.block(gap.begin, 3 * marker, gap.size(), 3).setConstant(kNan);
+  trajectories.positions.block(gap.begin, 3 * marker, gap.size(), 3).setConstant(kNaN);
 }
 
 TEST(FillGaps, ReproducesACubicUpToTheLongestGap) {

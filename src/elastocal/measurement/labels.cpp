@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
+
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kOpen = -1;  // the order of labels is not known from the frame itself
 
 // What is to be done with a cluster, frame by frame.
@@ -194,7 +194,7 @@ void Apply(const Plan& plan, const ClusterShape& shape, const std::vector<int>& 
       }
     }
     for (int i = 0; i < shape.size; ++i) {
-      if (IsRemoved(plan, shape, frame, i)) position(i).setConstant(kNan);
+      if (IsRemoved(plan, shape, frame, i)) position(i).setConstant(kNaN);
     }
   }
 }

@@ -1,18 +1,17 @@
 #include "elastocal/measurement/labels.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoise = 0.2e-3;  // m, of the cameras
 
 // One cluster with the given places (3 x markers, m) turning and moving, at 100 Hz.
@@ -52,8 +51,8 @@ void Exchange(MarkerTrajectories& trajectories, int a, int b, FrameInterval fram
   second = kept;
 }
 
-void Hide(MarkerTrajectories& trajectories, int marker, FrameInterval frames) {
-  trajectories.positions.block(frames.begin, 3 * marker, frames.size(), 3).setConstant(kNan);
+void HideFrames(MarkerTrajectories& trajectories, int marker, FrameInterval frames) {
+  trajectories.positions.block(frames.begin, 3 * marker, frames.size(), 3).setConstant(kNaN);
 }
 
 // Equal, with NaN equal to NaN.
@@ -100,10 +99,11 @@ TEST(CorrectLabels, UndoesExchangesForTwentySeconds) {
 
 TEST(CorrectLabels, CarriesAnExchangeThroughHiddenMarkers) {
   MarkerTrajectories trajectories = Move(Triangle(), 3000);
-  Hide(trajectories, 1, {1200, 1300});  // the remaining distance is the same under the exchange
-  Hide(trajectories, 0, {1500, 1550});
-  Hide(trajectories, 2, {1520, 1530});  // one alone
-  Hide(trajectories, 0, {2200, 2210});  // outside
+  HideFrames(trajectories, 1,
+             {1200, 1300});  // the remaining distance is the same under the exchange
+  HideFrames(trajectories, 0, {1500, 1550});
+  HideFrames(trajectories, 2, {1520, 1530});  // one alone
+  HideFrames(trajectories, 0, {2200, 2210});  // outside
   const MarkerTrajectories truth = trajectories;
   Exchange(trajectories, 0, 2, {1000, 2000});
   const auto labels = CorrectLabels(kThree, {}, trajectories);
@@ -122,7 +122,7 @@ TEST(CorrectLabels, RemovesOutliersAlsoWithinAnExchange) {
                                     trajectories.positions.block<1, 3>(frame, 0) -
                                     trajectories.positions.block<1, 3>(frame, marker == 1 ? 6 : 3);
     trajectories.positions.block<1, 3>(frame, 3 * marker) += 0.01 * away.normalized();
-    Hide(truth, marker, {frame, frame + 1});
+    HideFrames(truth, marker, {frame, frame + 1});
   }
   Exchange(trajectories, 0, 2, {1000, 2000});
   const auto labels = CorrectLabels(kThree, {}, trajectories);
@@ -150,7 +150,7 @@ TEST(CorrectLabels, RemovesWhatItCannotPutRight) {
   Exchange(trajectories, 0, 2, {500, 600});
   Exchange(trajectories, 0, 1, {800, 900});
   MarkerTrajectories expected = trajectories;
-  expected.positions.middleRows(500, 100).setConstant(kNan);
+  expected.positions.middleRows(500, 100).setConstant(kNaN);
   const auto labels = CorrectLabels(kThree, {}, trajectories);
   EXPECT_TRUE(labels[0].ambiguous);
   EXPECT_TRUE(labels[0].swaps.empty() && labels[0].outliers.empty());
@@ -182,7 +182,7 @@ TEST(CorrectLabels, TakesClustersOfAnySize) {
 
 TEST(CorrectLabels, FindsTheShapeThoughAMarkerWasLostOrKnocked) {
   MarkerTrajectories trajectories = Move(Triangle(), 4000);
-  Hide(trajectories, 0, {0, 2000});
+  HideFrames(trajectories, 0, {0, 2000});
   MarkerTrajectories truth = trajectories;
   Exchange(trajectories, 1, 2, {3000, 3200});
   CorrectLabels(kThree, {}, trajectories);

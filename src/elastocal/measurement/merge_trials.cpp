@@ -1,13 +1,12 @@
 #include "elastocal/measurement/merge_trials.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <set>
+
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // One matrix of all trials, below each other.
 template <typename Member>
@@ -46,7 +45,7 @@ void StackWrenches(const std::vector<TrialSamples>& trials, Recording& recording
   if (links.empty()) return;
   recording.wrench_links.assign(links.begin(), links.end());
   recording.wrenches.setConstant(recording.posture_count(),
-                                 6 * static_cast<Eigen::Index>(links.size()), kNan);
+                                 6 * static_cast<Eigen::Index>(links.size()), kNaN);
   Eigen::Index row = 0;
   for (const TrialSamples& trial : trials) {
     const auto rows = static_cast<Eigen::Index>(trial.frames.size());

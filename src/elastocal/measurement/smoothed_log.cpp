@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLongestHole_s = 0.1;
+constexpr double kLongestLogHole_s = 0.1;
 constexpr double kHoleSteps = 2.5;  // of a slow log: two samples lost are a hole
 constexpr double kRegular = 1e-4;   // of a step: times closer than this need no interpolation
 
@@ -20,7 +20,7 @@ std::vector<FrameInterval> SplitAtHoles(const Eigen::VectorXd& time_s) {
   const Eigen::Index steps = time_s.size() - 1;
   if (steps < 1) return {};
   const double step = Median(time_s.tail(steps) - time_s.head(steps));
-  const double hole = std::max(kLongestHole_s, kHoleSteps * step);
+  const double hole = std::max(kLongestLogHole_s, kHoleSteps * step);
   std::vector<FrameInterval> pieces;
   int begin = 0;
   for (int i = 1; i <= static_cast<int>(time_s.size()); ++i) {

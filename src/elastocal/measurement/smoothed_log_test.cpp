@@ -1,18 +1,16 @@
 #include "elastocal/measurement/smoothed_log.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "tests/expect_input_error.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 double Wave(double time_s) { return std::sin(std::numbers::pi * time_s); }  // 0.5 Hz
 
@@ -24,7 +22,7 @@ JointLog MakeLog(Eigen::VectorXd time_s) {
   log.time_s = std::move(time_s);
   const Eigen::Index rows = log.time_s.size();
   log.positions.resize(rows, 2);
-  log.torques.setConstant(rows, 2, kNan);
+  log.torques.setConstant(rows, 2, kNaN);
   log.wrench_sensors = {{"ft", 0}};
   log.wrenches.setZero(rows, 6);
   for (Eigen::Index i = 0; i < rows; ++i) {

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/gaps.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRestingShare = 0.05;  // of the windows that are surely at rest
 
 // What the samples are chosen by, of one frame.
@@ -40,7 +39,7 @@ std::vector<FrameSpeed> SummariseFrames(const Eigen::MatrixXd& speeds,
 
 // The value below which `share` of the values lie; reorders them.
 double Quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return kNan;
+  if (values.empty()) return kNaN;
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
@@ -149,7 +148,7 @@ int StableSamples::UnusedCount(UnusedReason reason) const {
 Eigen::MatrixXd MarkerSpeeds(const MarkerTrajectories& trajectories) {
   const Eigen::Index inner = trajectories.positions.rows() - 2;
   Eigen::MatrixXd speeds =
-      Eigen::MatrixXd::Constant(trajectories.frame_count(), trajectories.marker_count(), kNan);
+      Eigen::MatrixXd::Constant(trajectories.frame_count(), trajectories.marker_count(), kNaN);
   if (inner < 1) return speeds;
   for (int marker = 0; marker < trajectories.marker_count(); ++marker) {
     const auto track = trajectories.positions.middleCols<3>(3 * marker);
@@ -177,7 +176,7 @@ void ForgetEdges(const MarkerTrajectories& trajectories, double margin_s, Eigen:
     for (const FrameInterval& gap : gaps) {
       const int begin = std::max(0, gap.begin - margin);
       const int end = std::min(frames, gap.end + margin);
-      speeds.col(marker).segment(begin, end - begin).setConstant(kNan);
+      speeds.col(marker).segment(begin, end - begin).setConstant(kNaN);
     }
   }
 }

@@ -1,20 +1,19 @@
 #include "elastocal/measurement/stable_samples.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/measurement/gaps.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Intervals = std::vector<FrameInterval>;
 
 std::vector<int> AllOf(int count) {
@@ -40,7 +39,7 @@ TEST(MarkerSpeeds, AreCentralDifferences) {
   trajectories.rate_hz = 10.0;
   trajectories.positions.resize(6, 6);
   for (int i = 0; i < 6; ++i) trajectories.positions.row(i) << 0, 3.0 * i, 4.0 * i, i * i, 0, 0;
-  trajectories.positions.block(3, 0, 1, 3).setConstant(kNan);
+  trajectories.positions.block(3, 0, 1, 3).setConstant(kNaN);
   const Eigen::MatrixXd speeds = MarkerSpeeds(trajectories);
   ASSERT_EQ(speeds.rows(), 6);
   EXPECT_DOUBLE_EQ(speeds(1, 0), 50.0);
@@ -54,8 +53,8 @@ TEST(FindStableSamples, FindsRunsAndSaysWhyOthersAreNot) {
   speeds.block(20, 1, 10, 1).setConstant(0.1);   // moving
   speeds(25, 2) = 0.2;                           // the fastest of it
   speeds.block(35, 0, 5, 1).setConstant(0.05);   // leaves 30 to 34 at rest: too short
-  speeds.block(60, 0, 10, 2).setConstant(kNan);  // one of three left
-  speeds.block(80, 2, 20, 1).setConstant(kNan);  // two of three
+  speeds.block(60, 0, 10, 2).setConstant(kNaN);  // one of three left
+  speeds.block(80, 2, 20, 1).setConstant(kNaN);  // two of three
   const StableSamples samples = FindStableSamples(
       speeds, AllOf(3), 100.0, {.threshold_m_per_s = 0.01, .hold_s = 0.1, .samples_per_run = 2});
   EXPECT_EQ(samples.runs, (Intervals{{0, 20}, {40, 60}, {70, 100}}));

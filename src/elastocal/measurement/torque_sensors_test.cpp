@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // A minute at 100 Hz: a joint that goes to a posture within 4 s, rests for a second, and goes back;
 // its torque follows, with noise, and is rounded to `resolution` if that is above 0.
@@ -79,7 +77,7 @@ TEST(CheckTorqueSensors, FindsASaturatedSensorAtEitherEnd) {
 
 TEST(CheckTorqueSensors, PassesOverJointsWithoutSensorsAndRobotsAtRest) {
   JointLog log = MakeLog(0.2);
-  log.torques.setConstant(kNan);
+  log.torques.setConstant(kNaN);
   EXPECT_TRUE(Check(log).empty());
   log = MakeLog(0.2);
   log.torques.col(0).segment(420, 60).setConstant(30.0);  // no motion within this

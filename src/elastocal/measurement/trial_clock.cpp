@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/stable_samples.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWidest_s = 600.0;  // keeps the search linear
 constexpr double kMostSamples = 1e8;
 constexpr double kRestWindow_s = 0.3;
@@ -72,7 +71,7 @@ Eigen::VectorXd MeanKnown(const Eigen::MatrixXd& values, const std::vector<bool>
       count[row] += 1.0;
     }
   }
-  return (count.array() >= least).select(sum.array() / count.array(), kNan);
+  return (count.array() >= least).select(sum.array() / count.array(), kNaN);
 }
 
 // The two mean speeds, over the same markers in each moment.
@@ -112,7 +111,7 @@ MeansOfSeen TakeMeansOfSeen(const Eigen::MatrixXd& measured, const Eigen::Vector
     if (std::abs(means.logged[i] - before) <= jump) continue;
     const Eigen::Index begin = std::max<Eigen::Index>(0, frame - reach);
     const Eigen::Index end = std::min(measured.rows(), frame + reach);
-    means.measured.segment(begin, end - begin).setConstant(kNan);
+    means.measured.segment(begin, end - begin).setConstant(kNaN);
   }
   return means;
 }

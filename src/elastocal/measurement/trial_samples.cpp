@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <map>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/posture_frames.hpp"
 #include "elastocal/measurement/smoothed_log.hpp"
 #include "elastocal/measurement/trial_clock.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // One trial on its way through the steps of SampleTrial.
 class TrialSampler {
@@ -145,7 +143,7 @@ class TrialSampler {
     summary().log_end_s = summary().clock.CameraTime(log_.time_s[log_.time_s.size() - 1]);
     for (int frame = 0; frame < trajectories_.frame_count(); ++frame) {
       if (smoothed_log_.Covers(RobotTime(frame))) continue;
-      speeds.row(frame).setConstant(kNan);
+      speeds.row(frame).setConstant(kNaN);
       ++summary().outside_log;
     }
   }
@@ -165,8 +163,8 @@ class TrialSampler {
     const auto joints = static_cast<Eigen::Index>(robot_.tree.joints.size());
     result_.time_s.resize(count);
     result_.q = robot_.q_not_logged.transpose().replicate(count, 1);
-    result_.markers.setConstant(count, 3 * static_cast<Eigen::Index>(robot_.markers.size()), kNan);
-    result_.torques.setConstant(count, joints, kNan);
+    result_.markers.setConstant(count, 3 * static_cast<Eigen::Index>(robot_.markers.size()), kNaN);
+    result_.torques.setConstant(count, joints, kNaN);
     for (const ForceTorqueSensor& sensor : log_.wrench_sensors) {
       result_.wrench_links.push_back(sensor.link);
     }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/test_robots.hpp"
@@ -14,8 +15,6 @@
 
 namespace elastocal {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // The mean of eight frames after the filter: 0.2 mm at 100 Hz, of which a tenth of the bandwidth
 // passes, leave 0.063 mm a frame. 0.3 mm is five times that; means do better.

@@ -4,14 +4,13 @@
 
 #include <Eigen/Sparse>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/smooth_step.hpp"
 #include "elastocal/motion/sampled_motion.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 /// The root link's way from begin to end without regard to dynamics.
 std::vector<Transform> RootWay(const Stretch& stretch) {

@@ -7,11 +7,10 @@
 #include <Eigen/Cholesky>
 
 #include "elastocal/math/bspline.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 /// Integral of products of the splines' derivatives, control points x control points.
 Eigen::MatrixXd VelocityMetric(int control_points) {

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/motion/sampled_motion.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 void Least(Worst& worst, double value, Eigen::Index sample, int index) {
   if (worst.sample >= 0 && !(value < worst.value)) return;

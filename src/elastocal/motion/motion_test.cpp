@@ -20,7 +20,7 @@ void GiveMass(RobotTree& tree, int link, double mass, const Eigen::Vector3d& com
 }
 
 /// A leg with the lengths of TALOS; returns the sole.
-int AddLeg(RobotTree& tree, const std::string& name, double side) {
+int AddWalkingLeg(RobotTree& tree, const std::string& name, double side) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
   int link = AddJoint(tree, name + "_1", 0, Offset(-0.02, side * 0.085, -0.27), {0, 0, 1});
   link = AddJoint(tree, name + "_2", link, Transform::Identity(), x);
@@ -59,7 +59,7 @@ Walker MakeWalker() {
   GiveMass(tree, walker.hand, 4.0, {0.3, 0.0, 0.0});
   for (std::size_t k = 0; k < 3; ++k) tree.joints[k].limits = {-1.2, 1.2, 5.0, 150.0};
   for (const double side : {1.0, -1.0}) {
-    const int sole = AddLeg(tree, side > 0 ? "left" : "right", side);
+    const int sole = AddWalkingLeg(tree, side > 0 ? "left" : "right", side);
     walker.soles.push_back({sole, {-0.1, -0.06}, {0.1, 0.06}});
   }
   return walker;

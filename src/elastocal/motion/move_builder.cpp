@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/smooth_step.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 /// Of rows that rest at both ends and move between: 0 to 1 as they go.
 Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index after) {

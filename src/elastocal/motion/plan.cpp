@@ -7,13 +7,12 @@
 #include <numeric>
 #include <thread>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/motion/move_builder.hpp"
 #include "elastocal/motion/order.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 /// Rows of stretches, one behind the other.
 class Rows {

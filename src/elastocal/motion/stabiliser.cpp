@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/smooth_step.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 Eigen::Vector3d Level(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0.0}; }
 

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(int i) { return static_cast<std::size_t>(i); }
 
 /// Bends a leg from straight, the knee one way or the other, until the sole is in place.
 bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_sole,

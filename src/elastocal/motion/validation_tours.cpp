@@ -4,12 +4,11 @@
 #include <optional>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/motion/move_builder.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(int i) { return static_cast<std::size_t>(i); }
 
 bool InWorkspace(const ChainSetup& chain, const Transform& T_rest, const Transform& T_tip) {
   const Eigen::Vector3d p = T_tip.translation();

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kRidge = 1e-12;  // as in Linearise
+constexpr double kEliminationRidge = 1e-12;  // as in Linearise
 constexpr int kMostActiveSets = 20;
 
 /// Of a residual block's sum of squares, half the loss and the weight.
@@ -122,7 +122,7 @@ class NormalEquations::Builder {
 
   void Eliminate(int nuisance, int main) {
     const Eigen::Index size = B_.rows();
-    Eigen::MatrixXd D = kRidge * Eigen::MatrixXd::Identity(size, size);
+    Eigen::MatrixXd D = kEliminationRidge * Eigen::MatrixXd::Identity(size, size);
     for (const OwnColumns& own : own_) D.noalias() += own.E.transpose() * own.E;
     const Eigen::LLT<Eigen::MatrixXd> cholesky(D);
     Eliminated eliminated;

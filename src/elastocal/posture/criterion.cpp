@@ -12,14 +12,14 @@ namespace elastocal {
 namespace {
 
 constexpr double kMinusInfinity = -std::numeric_limits<double>::infinity();
-constexpr double kSingular = 1e-13;  // of a pivot relative to its diagonal entry
+constexpr double kSingularPivot = 1e-13;  // of a pivot relative to its diagonal entry
 
 using Factor = Eigen::LLT<Eigen::MatrixXd>;
 
 bool IsRegular(const Factor& factor, const Eigen::MatrixXd& matrix) {
   if (factor.info() != Eigen::Success) return false;
   const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();
-  return (pivots.array().square() > kSingular * matrix.diagonal().array()).all();
+  return (pivots.array().square() > kSingularPivot * matrix.diagonal().array()).all();
 }
 
 double LogDet(const Factor& factor) {

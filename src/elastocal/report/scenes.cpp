@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMostMoments = 150;  // of a motion
+constexpr int kMostPlayedMoments = 150;  // of a motion
 constexpr int kMostPostures = 300;
 
 /// A recording with what the models say of it.
@@ -107,7 +107,7 @@ Json MakeScene(const CalibrationView& view, const Predicted& predicted, const Tr
                const std::vector<int>& all, const Transform& T_view_ref) {
   const Recording& recording = predicted.recording;
   const bool motion = trial.kind == TrialKind::kSine;
-  const std::vector<int> postures = Thinned(all, motion ? kMostMoments : kMostPostures);
+  const std::vector<int> postures = Thinned(all, motion ? kMostPlayedMoments : kMostPostures);
   const std::vector<int> markers = MarkersSeen(recording, postures);
   const ModelKind best = view.comparison.best_kind();
   Json scene = {{"name", trial.name}, {"kind", KindText(trial.kind)}, {"total", all.size()}};

@@ -12,7 +12,7 @@ namespace elastocal {
 namespace {
 
 // Roundings along up to nine joints, some with common normals of 10 m.
-constexpr double kRounding = 1e-13;
+constexpr double kKinematicsRounding = 1e-13;
 
 /// Value of the error called `name`; zero where the model has none.
 double Error(const ErrorModel& model, const Eigen::VectorXd& delta, const std::string& name) {
@@ -79,7 +79,7 @@ TEST(Kinematics, PlanarArmByHand) {
   delta[FindParameter(model.parameters, "marker.M.y")] = 0.03;
   const Eigen::Matrix3Xd p =
       MarkerPositions(model, ApplyErrors(model, delta), Eigen::Vector2d::Zero());
-  EXPECT_LT((p.col(0) - Eigen::Vector3d(0.6 - 0.03, 0.3, 0.02)).norm(), kRounding);
+  EXPECT_LT((p.col(0) - Eigen::Vector3d(0.6 - 0.03, 0.3, 0.02)).norm(), kKinematicsRounding);
 }
 
 TEST(Kinematics, WaistErrorsAreSixIndependentDisplacements) {
@@ -112,7 +112,7 @@ TEST_P(KinematicsOfRandomRobots, NominalPositionsAreTheUrdfs) {
       const Marker& marker = m.model.markers[k];
       const Eigen::Vector3d expected =
           m.model.T_ref_waist * T_root_link[marker.link] * marker.p_link_marker;
-      EXPECT_LT((positions.col(k) - expected).norm(), kRounding) << marker.name;
+      EXPECT_LT((positions.col(k) - expected).norm(), kKinematicsRounding) << marker.name;
     }
   }
 }
@@ -124,13 +124,13 @@ TEST_P(KinematicsOfRandomRobots, ErrorsGoWhereTheFormulasPutThem) {
   const Eigen::Matrix3Xd positions = MarkerPositions(m.model, geometry, q);
   for (int k = 0; k < m.model.marker_count(); ++k) {
     const Eigen::Vector3d expected = MarkerByTheFormulas(m.model, m.delta, q, m.model.markers[k]);
-    EXPECT_LT((positions.col(k) - expected).norm(), kRounding) << m.model.markers[k].name;
+    EXPECT_LT((positions.col(k) - expected).norm(), kKinematicsRounding) << m.model.markers[k].name;
   }
   const std::vector<Transform> T_ref_body = BodyTransforms(m.model, geometry, q);
   ASSERT_EQ(static_cast<int>(T_ref_body.size()), m.model.tree.body_count());
   for (int body = 0; body < m.model.tree.body_count(); ++body) {
     const Transform expected = BodyByTheFormulas(m.model, m.delta, q, body);
-    EXPECT_LT((T_ref_body[body].matrix() - expected.matrix()).norm(), kRounding) << body;
+    EXPECT_LT((T_ref_body[body].matrix() - expected.matrix()).norm(), kKinematicsRounding) << body;
   }
 }
 
@@ -145,7 +145,7 @@ TEST_P(KinematicsOfRandomRobots, LinksOffTheChainsAreCarriedAtTheirPositions) {
   const auto expected = LinkTransforms(part.tree, q);
   ASSERT_EQ(T.size(), expected.size());
   for (std::size_t i = 0; i < T.size(); ++i) {
-    EXPECT_LT((T[i].matrix() - expected[i].matrix()).norm(), kRounding) << i;
+    EXPECT_LT((T[i].matrix() - expected[i].matrix()).norm(), kKinematicsRounding) << i;
   }
 }
 
@@ -170,7 +170,8 @@ TEST(Kinematics, MimicJointsMoveWithTheirLeader) {
   Random random(1);
   const Eigen::VectorXd q = RandomPosture(tree, random);
   const Transform expected = LinkTransforms(tree, q)[FindLink(tree, "finger_2_link")];
-  EXPECT_LT((MarkerPositions(model, nominal, q).col(0) - expected.translation()).norm(), kRounding);
+  EXPECT_LT((MarkerPositions(model, nominal, q).col(0) - expected.translation()).norm(),
+            kKinematicsRounding);
 }
 
 TEST(Kinematics, BodiesOffTheChainsAreIdentity) {

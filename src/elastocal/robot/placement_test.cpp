@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRightAngle = M_PI / 2.0;
 // Roundings of lengths of a metre. Common normals of axes that are nearly parallel are further out.
-constexpr double kRounding = 1e-14;
+constexpr double kPlacementRounding = 1e-14;
 
 std::vector<AxisRelation> AllRelations() {
   std::vector<AxisRelation> relations = kUsualRelations;
@@ -36,11 +36,11 @@ RobotTree TwoAxes(double angle, double distance = 0.4) {
 }
 
 void ExpectConstants(const JointPlacement& p, double alpha, double d, double theta, double r) {
-  EXPECT_NEAR(p.alpha, alpha, kRounding);
-  EXPECT_NEAR(p.d, d, kRounding);
-  EXPECT_NEAR(p.theta, theta, kRounding);
-  EXPECT_NEAR(p.r, r, kRounding);
-  EXPECT_NEAR(p.beta, 0.0, kRounding);
+  EXPECT_NEAR(p.alpha, alpha, kPlacementRounding);
+  EXPECT_NEAR(p.d, d, kPlacementRounding);
+  EXPECT_NEAR(p.theta, theta, kPlacementRounding);
+  EXPECT_NEAR(p.r, r, kPlacementRounding);
+  EXPECT_NEAR(p.beta, 0.0, kPlacementRounding);
   EXPECT_EQ(p.gamma, 0.0);
   EXPECT_EQ(p.b, 0.0);
 }
@@ -61,8 +61,8 @@ TEST(Placement, TalosLeg) {
   }
   // The general placement is on the hip's axis, with its own z across that.
   EXPECT_LT((leg[0].T_parent_pre.translation() - Eigen::Vector3d(-0.02, 0.085, -0.27105)).norm(),
-            kRounding);
-  EXPECT_NEAR(leg[0].T_parent_pre.linear().col(2).z(), 0.0, kRounding);
+            kPlacementRounding);
+  EXPECT_NEAR(leg[0].T_parent_pre.linear().col(2).z(), 0.0, kPlacementRounding);
 }
 
 TEST(Placement, SkewAxes) {
@@ -71,7 +71,8 @@ TEST(Placement, SkewAxes) {
     const std::vector<JointPlacement> arm = PlaceJoints(TwoAxes(angle), {});
     ExpectConstants(arm[1], angle, 0.4, 0, 0);
     // The first joint's frame is where the normal leaves its axis.
-    EXPECT_LT((arm[0].T_parent_pre.translation() - Eigen::Vector3d(0, 0, 0.1)).norm(), kRounding);
+    EXPECT_LT((arm[0].T_parent_pre.translation() - Eigen::Vector3d(0, 0, 0.1)).norm(),
+              kPlacementRounding);
   }
 }
 
@@ -117,7 +118,7 @@ TEST_P(RandomRobots, NominalPlacementsGiveTheUrdfsKinematics) {
           T_root_mdh[joint.parent_body] * Placed(placements[k], joint, JointPosition(joint, q));
       const Transform T_root_child = T_root_mdh[k + 1] * placements[k].T_joint_body;
       EXPECT_LT((T_root_child.matrix() - T_root_link[joint.child_link].matrix()).norm(),
-                10 * kRounding)
+                10 * kPlacementRounding)
           << joint.name;
     }
   }
@@ -132,7 +133,7 @@ TEST_P(RandomRobots, FramesFollowTheConvention) {
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     const JointPlacement& p = placements[k];
     const Eigen::Vector3d axis = p.T_joint_body.linear() * tree.joints[k].axis;
-    EXPECT_LT((axis - Eigen::Vector3d::UnitZ()).norm(), kRounding);
+    EXPECT_LT((axis - Eigen::Vector3d::UnitZ()).norm(), kPlacementRounding);
     if (p.general) {
       EXPECT_FALSE(p.parallel);
       ExpectConstants(p, kRightAngle, 0, 0, 0);

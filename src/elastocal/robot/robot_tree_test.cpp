@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 
 // A few roundings of lengths below a metre.
-constexpr double kRounding = 1e-15;
+constexpr double kTreeRounding = 1e-15;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(RobotTree, LinkTransformsOfThePlanarArm) {
@@ -23,10 +23,10 @@ TEST(RobotTree, LinkTransformsOfThePlanarArm) {
   const auto T = LinkTransforms(tree, Eigen::Vector2d(M_PI / 2, M_PI / 2));
   ASSERT_EQ(T.size(), 4u);
   EXPECT_EQ(T[0].matrix(), Transform::Identity().matrix());
-  EXPECT_LT(T[1].translation().norm(), kRounding);
-  EXPECT_LT((T[2].translation() - Vector3d(0, 0.5, 0)).norm(), kRounding);
-  EXPECT_LT((T[3].translation() - Vector3d(-0.3, 0.5, 0)).norm(), kRounding);
-  EXPECT_LT((T[3].linear().col(0) - Vector3d(-1, 0, 0)).norm(), kRounding);
+  EXPECT_LT(T[1].translation().norm(), kTreeRounding);
+  EXPECT_LT((T[2].translation() - Vector3d(0, 0.5, 0)).norm(), kTreeRounding);
+  EXPECT_LT((T[3].translation() - Vector3d(-0.3, 0.5, 0)).norm(), kTreeRounding);
+  EXPECT_LT((T[3].linear().col(0) - Vector3d(-1, 0, 0)).norm(), kTreeRounding);
 }
 
 TEST(RobotTree, LinkTransformsOfSlidingAndMimicJoints) {
@@ -39,13 +39,14 @@ TEST(RobotTree, LinkTransformsOfSlidingAndMimicJoints) {
   const auto T = LinkTransforms(tree, q);
   const int hand = FindLink(tree, "hand_link");
   const Vector3d rail = T[FindLink(tree, "mount")].linear() * Vector3d(1, 1, 0.2).normalized();
-  EXPECT_LT((T[hand].translation() - T_zero[hand].translation() - 0.5 * rail).norm(), kRounding);
+  EXPECT_LT((T[hand].translation() - T_zero[hand].translation() - 0.5 * rail).norm(),
+            kTreeRounding);
   // The leader at 0.03, the mimic at -0.03 + 0.01, in the hand's y.
   const auto in_hand = [&](const char* link) {
     return Vector3d(T[hand].inverse() * T[FindLink(tree, link)].translation());
   };
-  EXPECT_LT((in_hand("finger_1_link") - Vector3d(0.05, 0.05, 0)).norm(), kRounding);
-  EXPECT_LT((in_hand("finger_2_link") - Vector3d(0.05, -0.04, 0)).norm(), kRounding);
+  EXPECT_LT((in_hand("finger_1_link") - Vector3d(0.05, 0.05, 0)).norm(), kTreeRounding);
+  EXPECT_LT((in_hand("finger_2_link") - Vector3d(0.05, -0.04, 0)).norm(), kTreeRounding);
 }
 
 TEST(RobotTree, JointsToBodyFollowOneBranch) {

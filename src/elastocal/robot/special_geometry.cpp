@@ -10,28 +10,28 @@ using Eigen::Vector3d;
 
 constexpr double kExact = 1e-6;  // m and rad
 
-struct Axis {
+struct AxisLine {
   Vector3d point, direction;
 };
 
-Axis AxisAtZero(const RobotTree& tree, const std::vector<Transform>& T_root_link, int joint) {
+AxisLine AxisAtZero(const RobotTree& tree, const std::vector<Transform>& T_root_link, int joint) {
   const Transform& T = T_root_link[tree.joints[joint].child_link];
   return {T.translation(), T.linear() * tree.joints[joint].axis};
 }
 
 /// Point of axis `a` closest to axis `b`; only for axes that are not parallel.
-Vector3d ClosestPoint(const Axis& a, const Axis& b) {
+Vector3d ClosestPoint(const AxisLine& a, const AxisLine& b) {
   const Vector3d across = a.direction.cross(b.direction);
   const double s = (b.point - a.point).cross(b.direction).dot(across) / across.squaredNorm();
   return a.point + s * a.direction;
 }
 
-double AngleBetween(const Axis& a, const Axis& b) {
+double AngleBetween(const AxisLine& a, const AxisLine& b) {
   return std::atan2(a.direction.cross(b.direction).norm(), std::abs(a.direction.dot(b.direction)));
 }
 
 /// Diameter of the points where neighbouring axes come closest.
-double WristSpread(const Axis& a, const Axis& b, const Axis& c) {
+double WristSpread(const AxisLine& a, const AxisLine& b, const AxisLine& c) {
   const Vector3d points[] = {ClosestPoint(a, b), ClosestPoint(b, a), ClosestPoint(b, c),
                              ClosestPoint(c, b)};
   double spread = 0.0;

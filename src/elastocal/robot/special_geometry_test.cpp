@@ -11,7 +11,7 @@ using Kind = SpecialGeometry::Kind;
 using Joints = std::vector<int>;
 
 // Roundings of positions and directions of the order of 1.
-constexpr double kRounding = 1e-15;
+constexpr double kGeometryRounding = 1e-15;
 
 std::vector<Joints> Found(const RobotTree& tree, Kind kind) {
   std::vector<Joints> joints;
@@ -65,16 +65,16 @@ TEST(SpecialGeometry, DeviationOfACorrectedRobot) {
   corrected.joints[1].T_parent_child = Offset(0, 0.003, 0);
   corrected.joints[4].T_parent_child = Offset(0, 0, -0.325) * RotX(0.3) * RotZ(0.4);
   for (const SpecialGeometry& group : FindSpecialGeometry(nominal)) {
-    EXPECT_LT(Deviation(nominal, group), kRounding);
+    EXPECT_LT(Deviation(nominal, group), kGeometryRounding);
     const double deviation = Deviation(corrected, group);
     if (group.kind == Kind::kSphericalWrist) {
       // Axis 2 passes axis 1 at 3 mm; axis 3 along y meets both.
-      EXPECT_NEAR(deviation, 0.003, kRounding);
+      EXPECT_NEAR(deviation, 0.003, kGeometryRounding);
     } else if (group.joints[1] == 4) {
       // The ankle's y axis went to Rx Rz y = (-sin .4, cos .4 cos .3, cos .4 sin .3).
-      EXPECT_NEAR(deviation, std::acos(std::cos(0.4) * std::cos(0.3)), 4 * kRounding);
+      EXPECT_NEAR(deviation, std::acos(std::cos(0.4) * std::cos(0.3)), 4 * kGeometryRounding);
     } else {
-      EXPECT_LT(deviation, kRounding);
+      EXPECT_LT(deviation, kGeometryRounding);
     }
   }
 }

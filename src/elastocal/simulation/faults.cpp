@@ -5,11 +5,10 @@
 #include <limits>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string Millimetres(double metres) {
   return std::to_string(static_cast<int>(std::lround(1e3 * metres))) + " mm";

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <set>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/smooth_step.hpp"
 #include "elastocal/simulation/motion_writer.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
 namespace elastocal {
 namespace {
-
-std::size_t Size(int i) { return static_cast<std::size_t>(i); }
 
 /// Slope of the samples at one of them; one-sided at the ends.
 Eigen::VectorXd SlopeAt(const MotionSegment& segment, Eigen::Index i) {

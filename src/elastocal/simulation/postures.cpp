@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr double kDescribedHeight = 1.083;  // of the robot that EndWorkspace is given for, m
-
-std::size_t Size(int i) { return static_cast<std::size_t>(i); }
 
 /// Range of a coordinate without the margin; half a turn or 0.5 m where it is unlimited.
 std::pair<double, double> Range(const RobotTree& tree, int coordinate, double margin) {

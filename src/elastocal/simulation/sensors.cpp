@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/simulation/faults.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Calls `visit(first frame, last frame + 1)` for events that come at random, `per_minute` of them,
 /// of exponentially distributed length.

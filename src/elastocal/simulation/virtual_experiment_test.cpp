@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-DescribedRobot Described() {
+DescribedRobot DescribedBiped() {
   const Biped biped = MakeBiped();
   DescribedRobot robot{biped.tree, biped.chains, biped.markers, {{"WAIST", {0, 1, 2}}}, {}};
   for (int k = 0; k < static_cast<int>(biped.tree.joints.size()); ++k) {
@@ -27,8 +27,8 @@ VirtualExperimentOptions Short() {
 }
 
 TEST(VirtualExperiment, TheSameSeedGivesTheSameNumbers) {
-  const VirtualExperiment first = PrepareExperiment(Described(), Short());
-  const VirtualExperiment again = PrepareExperiment(Described(), Short());
+  const VirtualExperiment first = PrepareExperiment(DescribedBiped(), Short());
+  const VirtualExperiment again = PrepareExperiment(DescribedBiped(), Short());
   RunTrial(again, 0);  // the order of trials does not matter
   const SimulatedTrial a = RunTrial(first, 1);
   const SimulatedTrial b = RunTrial(again, 1);
@@ -43,14 +43,14 @@ TEST(VirtualExperiment, TheSameSeedGivesTheSameNumbers) {
                   .all());
   VirtualExperimentOptions options = Short();
   options.seed = 2;
-  const VirtualExperiment other = PrepareExperiment(Described(), options);
+  const VirtualExperiment other = PrepareExperiment(DescribedBiped(), options);
   EXPECT_NE(other.robot.offset, first.robot.offset);
 }
 
 TEST(VirtualExperiment, APerfectRobotFollowsTheForwardKinematics) {
   VirtualExperimentOptions options = Short();
   SwitchOffImperfections(options);
-  const DescribedRobot described = Described();
+  const DescribedRobot described = DescribedBiped();
   const VirtualExperiment experiment = PrepareExperiment(described, options);
   for (std::size_t trial : {std::size_t{0}, std::size_t{1}}) {
     const SimulatedTrial played = RunTrial(experiment, trial);
@@ -76,7 +76,7 @@ TEST(VirtualExperiment, APerfectRobotFollowsTheForwardKinematics) {
 TEST(VirtualExperiment, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
   VirtualExperimentOptions options = Short();
   options.truth.leg_geometry_scale = 0.0;
-  const VirtualExperiment experiment = PrepareExperiment(Described(), options);
+  const VirtualExperiment experiment = PrepareExperiment(DescribedBiped(), options);
   const SimulatedTrial played = RunTrial(experiment, 1);
   const auto found = LargestWaistDeflection(experiment, 1, played.motion);
   // The weight alone, on the stiffness in which it acts, is the least that the waist sinks.
@@ -87,7 +87,7 @@ TEST(VirtualExperiment, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
 }
 
 TEST(VirtualExperiment, TheCamerasSeeTheFloorLevel) {
-  const VirtualExperiment experiment = PrepareExperiment(Described(), Short());
+  const VirtualExperiment experiment = PrepareExperiment(DescribedBiped(), Short());
   for (const Transform& T : experiment.T_camera_world) {
     EXPECT_LT((T.linear().col(2) - Eigen::Vector3d::UnitZ()).norm(), 1e-15);
     EXPECT_EQ(T.translation().z(), 0.0);
@@ -97,7 +97,7 @@ TEST(VirtualExperiment, TheCamerasSeeTheFloorLevel) {
 TEST(VirtualExperiment, ARobotThatStandsFreeOnOneLegFalls) {
   VirtualExperimentOptions options = Short();
   options.physics.standing = Standing::kFree;
-  const VirtualExperiment experiment = PrepareExperiment(Described(), options);
+  const VirtualExperiment experiment = PrepareExperiment(DescribedBiped(), options);
   try {
     RunTrial(experiment, 1);
     FAIL() << "it should fall";
@@ -109,7 +109,7 @@ TEST(VirtualExperiment, ARobotThatStandsFreeOnOneLegFalls) {
 TEST(VirtualExperiment, RefusesAnUnevenTimeStep) {
   VirtualExperimentOptions options = Short();
   options.physics.time_step_s = 0.003;
-  EXPECT_THROW(PrepareExperiment(Described(), options), InputError);
+  EXPECT_THROW(PrepareExperiment(DescribedBiped(), options), InputError);
 }
 
 }  // namespace

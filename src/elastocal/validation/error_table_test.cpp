@@ -1,15 +1,15 @@
 #include "elastocal/validation/error_table.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
+
 namespace elastocal {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr auto kNone = ModelKind::kUncalibrated;
 constexpr auto kGeometric = ModelKind::kGeometric;
 

@@ -1,17 +1,16 @@
 #include "elastocal/validation/repeatability.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const std::vector<int> kWaist = {0, 1};
 const std::vector<int> kHand = {2, 3};
 
