@@ -52,17 +52,29 @@ function(elastocal_layer name)
   endif()
 endfunction()
 
-# elastocal_test(NAME SOURCES file... [LIBS library...])
+# Statistical and simulated tests, and those that run the program many times: minutes each.
+option(ELASTOCAL_SLOW_TESTS "Build the slow tests; they add nothing under the sanitizers" ON)
+
+# elastocal_test(NAME [SLOW] SOURCES file... [LIBS library...])
 #
-# A GoogleTest program; each of its cases is a test of ctest. It can find the repository's files and
-# the shared data by tests/test_files.hpp.
+# A GoogleTest program. Each of its cases is a test of ctest, so that two cores share them; in Debug
+# builds, where starting a program takes long, the whole program is one test. It can find the
+# repository's files and the shared data by tests/test_files.hpp.
 function(elastocal_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "SLOW" "" "SOURCES;LIBS" ${ARGN})
+  if(ARG_SLOW AND NOT ELASTOCAL_SLOW_TESTS)
+    return()
+  endif()
   add_executable(${name} ${ARG_SOURCES})
   elastocal_unity(${name})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} elastocal_test_support elastocal_warnings
     GTest::gtest_main)
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+  if(CMAKE_BUILD_TYPE STREQUAL Debug)
+    add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
+    set_tests_properties(${name} PROPERTIES TIMEOUT 1200)
+  else()
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+  endif()
 endfunction()
 
 # The test `layers`: no layer includes what it does not USE. Call it after the last layer.
