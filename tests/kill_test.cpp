@@ -1,0 +1,193 @@
+// A writing command that is killed at any moment leaves one run's files, all readable.
+//
+// Each command runs over a good folder of an earlier run and is killed after a random time. What it
+// leaves must be all of the earlier run or all of the new one. ELASTOCAL_KILLS sets how many times
+// (default 6; docs/accuracy.md: 100).
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/math/random.hpp"
+#include "tests/program_fixture.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+using Seconds = std::chrono::duration<double>;
+
+constexpr const char* kTalosPostures = R"(
+robot: talos
+chains:
+  - name: arm_left
+    support: [left_sole_link, right_sole_link]
+    postures:
+      - {arm_left_1_joint: -0.4, arm_left_2_joint: 0.6, arm_left_4_joint: -1.2}
+)";
+
+int Kills() {
+  const char* given = std::getenv("ELASTOCAL_KILLS");
+  return given != nullptr ? std::atoi(given) : 6;
+}
+
+pid_t Start(const std::string& arguments) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  const int nowhere = open("/dev/null", O_RDWR);
+  for (int descriptor = 0; descriptor < 3; ++descriptor) dup2(nowhere, descriptor);
+  std::istringstream stream(arguments);
+  std::vector<std::string> words = {ELASTOCAL_PROGRAM};
+  for (std::string word; stream >> word;) words.push_back(word);
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  execv(argv[0], argv.data());
+  _exit(127);
+}
+
+/// Every file below a folder, by its name.
+std::map<std::string, std::string> FilesOf(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    EXPECT_TRUE(entry.is_regular_file()) << entry.path();
+    files[entry.path().filename()] = ReadFile(entry.path());
+  }
+  return files;
+}
+
+/// Whose files these are, of two runs: by their bytes where these do not depend on how long a run
+/// took, else by the name of the run's input in them.
+class Owner {
+ public:
+  Owner(std::map<std::string, std::string> first, std::map<std::string, std::string> second)
+      : runs_{std::move(first), std::move(second)} {}
+
+  /// 0 or 1; -1 where they are of both or of none.
+  int Of(const std::map<std::string, std::string>& files, std::string* why) const {
+    for (int run = 0; run < 2; ++run) {
+      if (IsOf(files, run, why)) return run;
+    }
+    return -1;
+  }
+
+ private:
+  bool IsOf(const std::map<std::string, std::string>& files, int run, std::string* why) const {
+    if (files.size() != runs_[run].size()) {
+      *why += std::to_string(files.size()) + " files; ";
+      return false;
+    }
+    const char* other = run == 0 ? "second_input" : "first_input";
+    for (const auto& [name, text] : files) {
+      const auto expected = runs_[run].find(name);
+      const bool same = expected != runs_[run].end() && expected->second == text;
+      const bool named = text.find(other) == std::string::npos &&
+                         text.find(run == 0 ? "first_input" : "second_input") != std::string::npos;
+      if (!same && !named) {
+        *why += name + "; ";
+        return false;
+      }
+    }
+    return true;
+  }
+
+  std::map<std::string, std::string> runs_[2];
+};
+
+class Killed : public Program {
+ protected:
+  std::string Copy(const std::string& file, const std::string& name) {
+    fs::copy_file(file, scratch_.path() / name);
+    return (scratch_.path() / name).string();
+  }
+
+  /// Both commands write into FOLDER and differ in their input or seed.
+  void TryKills(const std::string& first, const std::string& second) {
+    const fs::path earlier = scratch_.path() / "earlier", later = scratch_.path() / "later";
+    const fs::path folder = scratch_.path() / "folder";
+    Finish(first, folder);
+    fs::copy(folder, earlier);
+    const auto begin = std::chrono::steady_clock::now();
+    Finish(second, folder);
+    const double duration = Seconds(std::chrono::steady_clock::now() - begin).count();
+    fs::copy(folder, later);
+    const Owner owner(FilesOf(earlier), FilesOf(later));
+    Random random(1);
+    int left_earlier = 0;
+    for (int i = 0; i < Kills(); ++i) {
+      fs::remove_all(folder);
+      fs::copy(earlier, folder);
+      const pid_t child = Start(With(second, folder));
+      usleep(static_cast<useconds_t>(1e6 * random.Uniform(0.0, 1.1 * duration)));
+      kill(child, SIGKILL);
+      waitpid(child, nullptr, 0);
+      RecoverOutputs(folder);
+      std::string why;
+      const int run = owner.Of(FilesOf(folder), &why);
+      ASSERT_GE(run, 0) << "kill " << i << ", files of two runs: " << why;
+      left_earlier += run == 0 ? 1 : 0;
+    }
+    EXPECT_GT(left_earlier, 0) << "no kill came in time";
+  }
+
+  static std::string With(std::string command, const fs::path& folder) {
+    for (std::size_t at; (at = command.find("FOLDER")) != std::string::npos;) {
+      command.replace(at, 6, folder.string());
+    }
+    return command;
+  }
+
+  static void Finish(const std::string& command, const fs::path& folder) {
+    const ProgramResult result = RunProgram(With(command, folder));
+    ASSERT_EQ(result.exit_code, 0) << command << "\n" << result.err;
+  }
+
+  const std::string talos_ = SourceFile("models/talos/project.yaml").string();
+};
+
+TEST_F(Killed, Calibrate) {
+  const std::string end = " -o FOLDER --kfold 5";
+  const std::string first = Copy(recording_, "first_input.csv");
+  const std::string second = Copy(recording_, "second_input.csv");
+  TryKills("calibrate " + project_ + " --recording " + first + end,
+           "calibrate " + project_ + " --recording " + second + end);
+}
+
+TEST_F(Killed, Validate) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const std::string begin = "validate " + project_ + " --calibration " + out_ +
+                            "/calibration.yaml -o FOLDER --recording ";
+  TryKills(begin + Copy(recording_, "first_input.csv"),
+           begin + Copy(recording_, "second_input.csv"));
+}
+
+TEST_F(Killed, Design) {
+  const std::string end = " --postures 4 --no-certificate -o FOLDER/postures.yaml";
+  TryKills("design " + talos_ + " --chain head_trunk --seed 1" + end,
+           "design " + talos_ + " --chain head_trunk --seed 2" + end);
+}
+
+TEST_F(Killed, Plan) {
+  const std::string end = " -o FOLDER/motion.csv --trajectory FOLDER/trajectory.yaml";
+  const std::string first = scratch_.Write("first_input.yaml", kTalosPostures);
+  const std::string second = scratch_.Write("second_input.yaml", kTalosPostures);
+  TryKills("plan " + talos_ + " --postures " + first + end,
+           "plan " + talos_ + " --hold-s 1.5 --postures " + second + end);
+}
+
+TEST_F(Killed, Simulate) {
+  const std::string end = " --arm-postures 2 --random-postures 1 -o FOLDER";
+  TryKills("simulate " + project_ + " --seed 1" + end, "simulate " + project_ + " --seed 2" + end);
+}
+
+}  // namespace
+}  // namespace elastocal
