@@ -69,7 +69,7 @@ void AddJointCompliances(const ErrorModel& model, int k, std::vector<Parameter>&
   }
 }
 
-/// A joint that two legs share has one sensor, hence one bias: the first leg's.
+/// A joint that two legs share has one sensor and hence one bias, which counts for the first leg.
 void AddLegParameters(const ErrorModel& model, int leg, std::set<int>& biased,
                       std::vector<Parameter>& parameters) {
   const std::string prefix = model.legs[leg].name + ".compliance_";
@@ -139,7 +139,8 @@ void CheckElasticity(const RobotTree& tree, const Elasticity& elasticity) {
   }
 }
 
-/// Gives the model its markers, and the parameters of these and of the joints that move them.
+/// Sets the markers of the model, and the parameters of the markers and of the joints that move
+/// them.
 void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
   CheckMarkers(model.tree, markers);
   model.active_joints = ActiveJoints(model.tree, markers, model.legs);

@@ -67,7 +67,7 @@ std::vector<MdhFrame> MdhFrames(const ErrorModel& model, const Geometry& geometr
   return frames;
 }
 
-/// Errors of a joint, which follow one another in `delta` from the index `i` on; moves `i` behind
+/// Placement of a joint with its errors, which are in `delta` from index `i` on. Moves `i` behind
 /// them.
 Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
                                          const Eigen::VectorXd& delta, int& i) {
@@ -86,7 +86,7 @@ Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
   return constants;
 }
 
-/// Errors of the legs, from the index `i` on; moves `i` behind them.
+/// Applies the errors of the legs, which are in `delta` from index `i` on. Moves `i` behind them.
 void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& i,
                     Geometry& geometry) {
   if (model.legs.empty()) return;

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// Torques of the leg's joints; by statics where there is no sensor.
+/// Torques of the leg's joints: measured, or by statics for a joint without sensor.
 Eigen::VectorXd LegTorques(const SupportLeg& leg, const Eigen::VectorXd& felt,
                            const JointLoads& gravity, std::vector<int>& without) {
   Eigen::VectorXd torques(static_cast<Eigen::Index>(leg.joints.size()));
