@@ -14,7 +14,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSingular = 1e-12;  // of eigenvalues, relative
 
-/// Standard deviations by eigenvalues: infinite for what the set says nothing of.
+/// Standard deviations by eigenvalues. They are infinite for parameters that the set does not
+/// determine.
 Eigen::VectorXd StandardDeviations(const Eigen::MatrixXd& information, double marker_sd) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
   const double floor = kSingular * eigen.eigenvalues().maxCoeff();

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// Draws `count` postures; says in `result` where there are none.
+/// Draws `count` postures. If there are none, `result` gets the reason.
 std::vector<Eigen::VectorXd> DrawPool(PostureProblem& problem, int count, std::uint64_t seed,
                                       DesignResult& result) {
   FeasibleSampler sampler(problem.feasible, seed);

@@ -30,7 +30,7 @@ bool Moves(const MovingChain& chain, const ErrorModel& model, const SupportLeg& 
   });
 }
 
-/// The parameter that displaces a marker as the joint's motion does.
+/// The parameter that moves markers in the same way as the joint.
 int MotionParameter(const ErrorModel& model, int joint) {
   const ParameterKind kind = model.tree.joints[joint].type == JointType::kRevolute
                                  ? ParameterKind::kTheta
@@ -148,7 +148,7 @@ void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weig
                                          Eigen::VectorXd& gradient) const {
   // A column v = a x p + m turns as a whole with the joints before its own, dv = z x v; the joints
   // from its own one on move the marker alone, dv = a x dp. Weighted by w these are z . (v x w) and
-  // dp . (w x a), so that sums over columns, kept along the path, serve for all joints.
+  // dp . (w x a), so that running sums over the columns along the chain serve for all joints.
   const Vector3d p = jacobian_.Position(marker);
   Vector3d turned = Vector3d::Zero();  // sum of v x w over the columns beyond the joint
   Vector3d moved = Vector3d::Zero();   // sum of w x a over the columns before it
@@ -199,7 +199,7 @@ void PostureRegressor::AddLoadGradient(MovingChain& chain, const Eigen::MatrixXd
       by_load(p.axis, p.joint) += block.col(c.source).dot(weight.block<3, 1>(3 * m, c.column));
     }
   }
-  // In the root link's axes, as the chain has everything.
+  // In the root link's axes, like everything in MovingChain.
   const Transform T_root_ref = jacobian_.WaistPose().inverse();
   std::vector<LoadComponent> components;
   const auto visit = [&](int k, const Geometry::JointConstants& constants, const MdhFrame&,
