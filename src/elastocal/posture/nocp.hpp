@@ -32,7 +32,7 @@ struct DesignResult {
   Status status = Status::kMaxPostures;
   std::string blame = {};
   std::vector<int> sizes = {};       ///< number of postures after each addition
-  std::vector<double> indices = {};  ///< after each addition
+  std::vector<double> indices = {};  ///< index after each addition
   SamplingCount sampling = {};       ///< of the random postures drawn
 };
 

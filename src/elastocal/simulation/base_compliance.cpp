@@ -6,7 +6,8 @@ namespace elastocal {
 
 BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
                                     const Eigen::VectorXd& posture, PhysicsOptions options) {
-  // Servos that give way ten thousand times less than in motion: the encoders are held.
+  // Servos are ten thousand times stiffer than in motion, so that the encoders keep their
+  // positions.
   constexpr double kHeld = 1e4;
   constexpr double kForce = 20.0;
   constexpr double kMoment = 4.0;
@@ -15,7 +16,7 @@ BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
   options.sliding_servo_stiffness *= kHeld;
   TrueRobot smooth = robot;
   smooth.friction.setZero();
-  // What the leg carries is as good rigid, and faster.
+  // What the leg carries may as well be rigid, which is faster.
   for (std::size_t k = 0; k < smooth.tree.joints.size(); ++k) {
     const bool carries =
         std::find(leg.joints.begin(), leg.joints.end(), static_cast<int>(k)) != leg.joints.end();

@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// Flat on the floor, where the experiment puts the robot down.
+/// Pose of a foot that lies flat on the floor where the experiment puts the robot down.
 Transform FootPose(const MatchedExperiment& experiment, std::size_t index, int foot_link) {
   Transform T_world_foot = Transform::Identity();
   for (const Leg& leg : experiment.plan.robot.legs) {
@@ -29,7 +29,7 @@ std::vector<int> TorqueSensors(const TrueRobot& robot) {
   return joints;
 }
 
-/// Names and room for the frames.
+/// A motion with names, and with room for the frames.
 TrueMotion EmptyMotion(const ErrorModel& model, const Motion& motion) {
   TrueMotion result;
   for (const Marker& marker : model.markers) result.marker_names.push_back(marker.name);
@@ -41,7 +41,7 @@ TrueMotion EmptyMotion(const ErrorModel& model, const Motion& motion) {
   return result;
 }
 
-/// One value of a parameter; `leg_joint`: of a joint that belongs to a leg.
+/// Draws the value of a parameter. `leg_joint` says whether it belongs to a joint of a leg.
 double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions& options,
                  Random& random) {
   constexpr double kLeastForce = 2e-6, kMostForce = 9e-6;    // m/N

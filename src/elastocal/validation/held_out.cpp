@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-/// Markers of the model that are seen in a trial.
+/// Markers that are seen in a trial.
 std::vector<int> MarkersOf(const ObservationMask& seen, const Recording& recording, int trial) {
   std::vector<int> markers;
   for (int m = 0; m < seen.cols(); ++m) {

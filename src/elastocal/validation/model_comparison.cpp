@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-/// Fold of each posture: a random permutation, cut into equal parts.
+/// The fold of each posture: a random permutation is cut into equal parts.
 std::vector<int> DealFolds(int postures, int folds, std::uint64_t seed) {
   std::vector<int> order(postures);
   std::iota(order.begin(), order.end(), 0);
@@ -86,7 +86,7 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
           Predict(result.model, result.delta, held_out_data, options, &result.placement).distances;
       if (progress) progress(++done, steps);
     }
-    // A marker that is in no other fold has no estimated position to predict it from.
+    // A marker that is in no other fold has no estimated position, so it cannot be predicted.
     for (int m = 0; m < recording.marker_count(); ++m) {
       if (selection.markers.col(m).any()) continue;
       for (int i : held_out) {
