@@ -22,7 +22,7 @@ LegChain::LegChain(const RobotTree& tree, int sole_link)
   }
   if (own) return;
   throw InputError("robot '" + tree.name + "': '" +
-                   tree.links[static_cast<std::size_t>(sole_link)].name + "' is at the end of  " +
+                   tree.links[static_cast<std::size_t>(sole_link)].name + "' is at the end of " +
                    std::to_string(joints_.size()) +
                    " joints; expected a leg of six revolute joints of its own to balance on");
 }
