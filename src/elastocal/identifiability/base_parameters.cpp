@@ -24,7 +24,7 @@ int PriorityClass(ParameterKind kind, ExternalPriority external) {
     case ParameterKind::kBeta:
     case ParameterKind::kGamma:
       return 2;
-    case ParameterKind::kBase:
+    case ParameterKind::kWaistPose:
       return external == ExternalPriority::kFirst ? -2 : 3;
     default:
       return external == ExternalPriority::kFirst ? -1 : 4;

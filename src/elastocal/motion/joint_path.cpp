@@ -57,7 +57,7 @@ class WayAround {
 
   /// Takes one step of the given length. Returns false if no parts are too near, or if way points
   /// cannot help.
-  bool Push(double length, Eigen::MatrixXd& control) const {
+  bool StepAway(double length, Eigen::MatrixXd& control) const {
     const Eigen::Index free = control.rows() - 6;
     Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(free, control.cols());
     for (Eigen::Index i = 0; i < basis_.rows(); ++i) {
@@ -132,7 +132,7 @@ double LeastDuration(const StandingRobot& robot, const Eigen::MatrixXd& control)
 JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances,
                         const Eigen::VectorXd& from, const Eigen::VectorXd& to,
                         const std::vector<int>& moving, const JointPathOptions& options) {
-  constexpr double kFirstPush =
+  constexpr double kFirstStep =
       0.15;  // length of the first step: rad, of the way point that moves most
   constexpr double kShrink = 0.96;
   const Eigen::MatrixXd metric = VelocityMetric(options.way_points + 6);
@@ -149,9 +149,9 @@ JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances
     const WayAround around(robot, clearances, moving, options, metric, at_ends);
     path.clearance = around.Clearance(path.control);
     Eigen::MatrixXd control = path.control;
-    double length = kFirstPush;
+    double length = kFirstStep;
     for (int i = 0; i < options.iterations && path.clearance < around.wanted(); ++i) {
-      if (!around.Push(length, control)) break;
+      if (!around.StepAway(length, control)) break;
       length *= kShrink;
       const double clearance = around.Clearance(control);
       if (clearance <= path.clearance) continue;

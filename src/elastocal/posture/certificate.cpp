@@ -157,7 +157,7 @@ Certificate CertifyBound(PostureProblem& problem, const PostureSet& set,
     const double ratio = most / problem.column_count();
     certificate.bound = std::min(certificate.bound, o1 * std::sqrt(std::max(1.0, ratio)));
     certificate.attained = o1;
-    certificate.support = weighted.size();
+    certificate.weighted_postures = weighted.size();
     if (certificate.bound < o1 * (1.0 + options.gap) || found.empty()) break;
     for (const Eigen::VectorXd& x : found) {
       pool.push_back(x);

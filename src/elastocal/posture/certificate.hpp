@@ -9,9 +9,9 @@ namespace elastocal {
 
 /// An upper bound on O1 over all sets of any number of feasible postures.
 struct Certificate {
-  double bound = 0.0;     ///< upper bound on O1
-  double attained = 0.0;  ///< O1 of the weighted set found, at most `bound`
-  int support = 0;        ///< number of postures in the weighted set
+  double bound = 0.0;         ///< upper bound on O1
+  double attained = 0.0;      ///< O1 of the weighted set found, at most `bound`
+  int weighted_postures = 0;  ///< number of postures in the weighted set
   int rounds = 0;
 };
 

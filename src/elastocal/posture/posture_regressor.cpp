@@ -12,14 +12,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kBaseColumn = -1, kMarkerColumn = -2;  // in place of a joint
+constexpr int kWaistColumn = -1, kMarkerColumn = -2;  // in place of a joint
 
 bool IsJointCompliance(ParameterKind kind) {
   return kind == ParameterKind::kTorsion || kind == ParameterKind::kBending;
 }
 
 bool IsLegCompliance(ParameterKind kind) {
-  return kind == ParameterKind::kBaseForce || kind == ParameterKind::kBaseMoment;
+  return kind == ParameterKind::kLegForce || kind == ParameterKind::kLegMoment;
 }
 
 /// Whether the chain moves a joint of the leg.
@@ -55,7 +55,7 @@ PostureRegressor::PostureRegressor(const ErrorModel& model, std::vector<int> bas
       elastic_ = true;
     } else if (IsLegCompliance(parameter.kind) &&
                !Moves(chain, model_, model_.legs[parameter.leg])) {
-      const int entry = parameter.axis + (parameter.kind == ParameterKind::kBaseMoment ? 3 : 0);
+      const int entry = parameter.axis + (parameter.kind == ParameterKind::kLegMoment ? 3 : 0);
       LegColumn& leg = legs_.emplace_back();
       leg.column = static_cast<int>(column);
       leg.leg = parameter.leg;
@@ -91,7 +91,7 @@ void PostureRegressor::LayOut(const MovingChain& chain) {
       const Parameter& parameter = model_.parameters[source[c]];
       const int joint = parameter.marker >= 0  ? kMarkerColumn
                         : parameter.joint >= 0 ? parameter.joint
-                                               : kBaseColumn;
+                                               : kWaistColumn;
       columns.push_back(
           {static_cast<int>(found - base_.begin()), static_cast<int>(c), source[c], joint});
     }
@@ -162,7 +162,7 @@ void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weig
   };
   const std::vector<MarkerColumn>& columns = columns_[marker];
   for (const MarkerColumn& c : columns) {
-    if (c.joint == kBaseColumn) {
+    if (c.joint == kWaistColumn) {
       moved += w_cross_a(c);
     } else {
       turned += v_cross_w(c);
@@ -173,7 +173,7 @@ void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weig
     moved += w.cross(leg.load * leg.axis);
   }
   auto next = std::find_if(columns.begin(), columns.end(),
-                           [](const MarkerColumn& c) { return c.joint != kBaseColumn; });
+                           [](const MarkerColumn& c) { return c.joint != kWaistColumn; });
   for (const PathJoint& joint : paths_[marker]) {
     for (; next != columns.end() && next->joint == joint.joint; ++next) {
       turned -= v_cross_w(*next);

@@ -37,7 +37,7 @@ class PostureRegressor {
     int column;     // of Psi_b
     int source;     // of GeneralizedJacobian::Block
     int parameter;  // of the model
-    int joint;      // of the tree; kBaseColumn, kMarkerColumn
+    int joint;      // of the tree; kWaistColumn, kMarkerColumn
   };
   struct PathJoint {
     int joint, motion;  // motion: the parameter whose screw is the joint's own motion

@@ -28,7 +28,7 @@ std::vector<int> ActiveJoints(const RobotTree& tree, const std::vector<Marker>& 
 void AddBaseParameters(std::vector<Parameter>& parameters) {
   for (const char* name : {"gamma", "b", "alpha", "d", "theta", "r"}) {
     const bool length = name[1] == '\0';
-    parameters.push_back({std::string("waist.T0.") + name, Kind::kBase,
+    parameters.push_back({std::string("waist.T0.") + name, Kind::kWaistPose,
                           length ? ParameterUnit::kMetre : ParameterUnit::kRadian});
   }
 }
@@ -76,10 +76,10 @@ void AddLegParameters(const ErrorModel& model, int leg, std::set<int>& biased,
   const char* const axes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
     parameters.push_back(
-        {prefix + axes[i], Kind::kBaseForce, ParameterUnit::kMetrePerNewton, -1, -1, leg, i});
+        {prefix + axes[i], Kind::kLegForce, ParameterUnit::kMetrePerNewton, -1, -1, leg, i});
   }
   for (int i = 0; i < 3; ++i) {
-    parameters.push_back({prefix + "r" + axes[i], Kind::kBaseMoment,
+    parameters.push_back({prefix + "r" + axes[i], Kind::kLegMoment,
                           ParameterUnit::kRadianPerNewtonMetre, -1, -1, leg, i});
   }
   if (!model.elasticity.torque_bias) return;

@@ -25,7 +25,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
       T_ref_foot_(model.legs.size(), Transform::Identity()) {
   const int screw_count = model.parameter_count() - 3 * model.marker_count();
   std::vector<int> parameter_count(model.tree.joints.size(), 0);
-  for (int i = screw_count - 1; i >= kBaseParameterCount; --i) {
+  for (int i = screw_count - 1; i >= kWaistParameterCount; --i) {
     const Parameter& parameter = model.parameters[i];
     if (parameter.leg >= 0) continue;
     first_parameter_[parameter.joint] = i;
@@ -51,7 +51,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
 
 GeneralizedJacobian::BodyLayout GeneralizedJacobian::LayOut(
     int body, const std::vector<int>& parameter_count) const {
-  BodyLayout layout{body, {{0, kBaseParameterCount}}, {}};
+  BodyLayout layout{body, {{0, kWaistParameterCount}}, {}};
   for (int joint : JointsToBody(model_.tree, body)) {
     Segment& last = layout.segments.back();
     if (last.begin + last.size == first_parameter_[joint]) {

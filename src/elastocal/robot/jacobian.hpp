@@ -54,7 +54,7 @@ class GeneralizedJacobian {
   /// LegScrews.
   Transform WaistPose() const;
   Eigen::Matrix<double, 6, 6> WaistScrews() const {
-    return screws_.topRows<kBaseParameterCount>().matrix().transpose();
+    return screws_.topRows<kWaistParameterCount>().matrix().transpose();
   }
 
   /// Pose of a leg's foot link in the reference frame.

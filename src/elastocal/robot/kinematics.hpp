@@ -37,7 +37,7 @@ struct Geometry {
   };
   std::vector<JointConstants>
       joints;               ///< one for each joint of the tree; only active ones are filled
-  JointConstants base;      ///< eq. 2, as if the waist were a joint at position 0
+  JointConstants waist;     ///< eq. 2, as if the waist were a joint at position 0
   Transform T_joint_waist;  ///< constant that ends eq. 2, see ApplyErrors
   /// For each leg, in the axes of its foot: along x, y, z in m/N, then about x, y, z in rad/(N.m).
   std::vector<Vector6d> leg_compliance;
@@ -47,8 +47,8 @@ struct Geometry {
   std::vector<Eigen::Matrix3d> R_joint_link;    ///< by marker: axes of its x, y, z
 };
 
-inline constexpr int kBaseParameterCount =
-    6;  ///< of eq. 2; they are the first parameters of a model
+/// Number of parameters of eq. 2. They are the first ones of a model.
+inline constexpr int kWaistParameterCount = 6;
 
 /// Applies the errors `delta` (one for each parameter of the model, SI).
 ///

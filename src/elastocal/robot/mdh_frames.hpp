@@ -66,7 +66,7 @@ inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
     frame.p = deflected->p + r * deflected->R.col(2);
   };
   const MdhFrame reference{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
-  place(kWaist, geometry.base, reference, true, 0.0, frames[0]);
+  place(kWaist, geometry.waist, reference, true, 0.0, frames[0]);
   frames[0].R = frames[0].R * geometry.T_joint_waist.linear();
   for (int k : model.active_joints) {
     const Joint& joint = model.tree.joints[k];

@@ -57,12 +57,12 @@ bool IsAngle(ParameterKind kind) {
 }
 
 bool IsExternal(ParameterKind kind) {
-  return kind == ParameterKind::kBase || kind == ParameterKind::kMarker;
+  return kind == ParameterKind::kWaistPose || kind == ParameterKind::kMarker;
 }
 
 bool IsCompliance(ParameterKind kind) {
   return kind == ParameterKind::kTorsion || kind == ParameterKind::kBending ||
-         kind == ParameterKind::kBaseForce || kind == ParameterKind::kBaseMoment;
+         kind == ParameterKind::kLegForce || kind == ParameterKind::kLegMoment;
 }
 
 bool IsElastic(ParameterKind kind) {

@@ -9,7 +9,7 @@ namespace elastocal {
 /// and, for the first joint after the waist and after a branch, `kGamma` and `kB` (see
 /// placement.hpp). Elastic kinds (eq. 5 to 7) are compliances (inverse stiffnesses) of joints about
 /// their axes (`kTorsion`) and across them (`kBending`), compliances of a leg between its foot and
-/// the waist by a force (`kBaseForce`) and by a moment (`kBaseMoment`), and the bias of a joint's
+/// the waist by a force (`kLegForce`) and by a moment (`kLegMoment`), and the bias of a joint's
 /// torque sensor.
 enum class ParameterKind {
   kTheta,
@@ -19,12 +19,12 @@ enum class ParameterKind {
   kAlpha,
   kBeta,
   kGamma,
-  kBase,
+  kWaistPose,
   kMarker,
   kTorsion,
   kBending,
-  kBaseForce,
-  kBaseMoment,
+  kLegForce,
+  kLegMoment,
   kTorqueBias
 };
 inline constexpr int kParameterKindCount = 14;

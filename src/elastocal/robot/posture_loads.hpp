@@ -24,7 +24,7 @@ struct LoadOptions {
 };
 
 /// Loads that the robot's sensors measured in one posture.
-struct Felt {
+struct MeasuredLoads {
   Eigen::VectorXd torques;  ///< by joint of the tree, N.m or N; NaN without sensor; empty: none
   int wrench_link = -1;     ///< of a force-torque sensor in the support leg; -1: none
   Vector6d wrench = Vector6d::Zero();  ///< see LoadFromWrench
@@ -52,7 +52,7 @@ struct PostureLoads {
 /// `leg` of the model or, for -1, has its waist held still. `gravity_ref` is in the reference
 /// frame, m/s^2.
 PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
-                         const Eigen::VectorXd& q, int leg, const Felt& felt,
+                         const Eigen::VectorXd& q, int leg, const MeasuredLoads& measured,
                          const Eigen::Vector3d& gravity_ref, const LoadOptions& options);
 
 }  // namespace elastocal

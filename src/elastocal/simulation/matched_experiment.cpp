@@ -48,7 +48,7 @@ double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions&
   constexpr double kLeastMoment = 2e-6, kMostMoment = 5e-5;  // rad/(N.m)
   const double scale = leg_joint ? options.leg_geometry_scale : options.upper_geometry_scale;
   switch (parameter.kind) {
-    case ParameterKind::kBase:
+    case ParameterKind::kWaistPose:
       return 0.0;
     case ParameterKind::kMarker:
       return random.Normal(options.marker_sd);
@@ -59,9 +59,9 @@ double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions&
       return (leg_joint ? options.leg_elasticity_scale : options.upper_elasticity_scale) /
              (least * std::pow(most / least, random.Uniform(0.0, 1.0)));
     }
-    case ParameterKind::kBaseForce:
+    case ParameterKind::kLegForce:
       return options.leg_elasticity_scale * random.Uniform(kLeastForce, kMostForce);
-    case ParameterKind::kBaseMoment:
+    case ParameterKind::kLegMoment:
       return options.leg_elasticity_scale * random.Uniform(kLeastMoment, kMostMoment);
     case ParameterKind::kTorqueBias:
       return random.Normal(options.torque_bias_sd);
@@ -101,8 +101,8 @@ MatchedExperiment MatchExperiment(VirtualExperiment plan, const ErrorModel& mode
   for (LegCompliance& leg : experiment.plan.legs) {
     const int own = SupportingLeg(model, {leg.foot_link});
     const Vector6d compliance = own < 0 ? Vector6d(Vector6d::Zero()) : geometry.leg_compliance[own];
-    leg.base.C_foot = compliance.asDiagonal();
-    leg.base.stiffness = compliance.cwiseInverse();
+    leg.compliance.C_foot = compliance.asDiagonal();
+    leg.compliance.stiffness = compliance.cwiseInverse();
   }
   return experiment;
 }

@@ -73,9 +73,9 @@ class FixedPoint {
       const double bias = geometry_.torque_bias.size() > 0 ? geometry_.torque_bias[joint] : 0.0;
       pose.torques[joint] = bias - load(2, joint);
     }
-    Felt felt;
-    felt.torques = pose.torques;
-    loads_ = LoadPosture(model_, geometry_, q_, leg, felt, gravity_ref_, {});
+    MeasuredLoads measured;
+    measured.torques = pose.torques;
+    loads_ = LoadPosture(model_, geometry_, q_, leg, measured, gravity_ref_, {});
     return at_rest;
   }
 

@@ -82,7 +82,7 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
   for (const Leg& leg : legs) {
     experiment.legs.push_back(
         {leg.chain, leg.foot_link, sampler.stand(),
-         LumpedBaseCompliance(experiment.robot, leg, sampler.stand(), options.physics)});
+         LumpedWaistCompliance(experiment.robot, leg, sampler.stand(), options.physics)});
   }
   return experiment;
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/simulation/base_compliance.hpp"
 #include "elastocal/simulation/sensors.hpp"
+#include "elastocal/simulation/waist_compliance.hpp"
 #include "elastocal/simulation/waist_give.hpp"
 
 namespace elastocal {
@@ -39,7 +39,7 @@ struct LegCompliance {
   std::string chain;
   int foot_link = 0;
   Eigen::VectorXd posture;  ///< by coordinate
-  BaseCompliance base;
+  WaistCompliance compliance;
 };
 
 /// A true robot and the trials that it will play.

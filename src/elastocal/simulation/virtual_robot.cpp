@@ -189,10 +189,10 @@ Eigen::VectorXd VirtualRobot::Torques() const {
     const Address& motor = simulation_->motors[k];
     const Address& spring = simulation_->springs[k];
     // The torque of the drive deflects its spring; in a rigid drive it is that of the servo.
-    const Address& felt = spring.position >= 0 ? spring : motor;
+    const Address& drive = spring.position >= 0 ? spring : motor;
     const double rest = spring.position >= 0 ? 0.0 : model.qpos_spring[motor.position];
-    torques[static_cast<Eigen::Index>(k)] =
-        felt.stiffness * (rest - data.qpos[felt.position]) - felt.damping * data.qvel[felt.speed];
+    torques[static_cast<Eigen::Index>(k)] = drive.stiffness * (rest - data.qpos[drive.position]) -
+                                            drive.damping * data.qvel[drive.speed];
   }
   return torques;
 }

@@ -24,8 +24,8 @@ struct ModelComparison {
   ByModel<ErrorMetrics> metrics_all;  ///< over all observations, outliers included
 
   /// The largest model, with the most parameters: full, or geometric if nothing is elastic.
-  ModelKind best_kind() const { return kinds.back(); }
-  const CalibrationResult& best() const { return results[static_cast<int>(best_kind())]; }
+  ModelKind largest_kind() const { return kinds.back(); }
+  const CalibrationResult& largest() const { return results[static_cast<int>(largest_kind())]; }
 };
 
 /// Called with the number of finished steps and of all steps; may be empty.

@@ -96,7 +96,7 @@ void JudgeOutliers(const CalibrationResult& result, const Recording& recording, 
 Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options) {
-  const CalibrationResult& result = comparison.best();
+  const CalibrationResult& result = comparison.largest();
   Verdict verdict;
   JudgeFit(result, options, verdict);
   if (!std::isfinite(excitation.condition_base)) {
@@ -106,7 +106,7 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   }
   JudgeOutliers(result, recording, verdict);
   if (validation.folds > 0) {
-    if (validation.metrics[static_cast<int>(comparison.best_kind())].rmse_3d >=
+    if (validation.metrics[static_cast<int>(comparison.largest_kind())].rmse_3d >=
         validation.metrics[0].rmse_3d) {
       verdict.objections.push_back(
           "on held-out postures the calibrated model is no better than the uncalibrated one");

@@ -1,11 +1,11 @@
-#include "elastocal/simulation/base_compliance.hpp"
+#include "elastocal/simulation/waist_compliance.hpp"
 
 #include <algorithm>
 
 namespace elastocal {
 
-BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
-                                    const Eigen::VectorXd& posture, PhysicsOptions options) {
+WaistCompliance LumpedWaistCompliance(const TrueRobot& robot, const Leg& leg,
+                                      const Eigen::VectorXd& posture, PhysicsOptions options) {
   // Servos are ten thousand times stiffer than in motion, so that the encoders keep their
   // positions.
   constexpr double kHeld = 1e4;
@@ -27,7 +27,7 @@ BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
   VirtualRobot body(smooth, {leg.foot_link}, posture, options);
   body.Settle();
 
-  BaseCompliance result;
+  WaistCompliance result;
   const Eigen::Matrix3d R_world_foot = body.SolePose(0).linear();
   for (int i = 0; i < 6; ++i) {
     Vector6d wrench = Vector6d::Zero();
