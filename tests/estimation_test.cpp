@@ -51,7 +51,7 @@ TEST_F(LegEstimation, OutliersAreNamedAndTheRestIsLeftAlone) {
   EXPECT_FALSE(result.used(4, 2));
   const CalibrationResult without = Estimate(clean);
   for (int i : base_.kept) {
-    if (model_.parameters[i].kind == Kind::kBase) continue;
+    if (model_.parameters[i].kind == Kind::kWaistPose) continue;
     EXPECT_LT(std::abs(result.delta[i] - without.delta[i]), 0.5 * without.sd[i])
         << model_.parameters[i].name;
   }

@@ -71,7 +71,8 @@ TEST_P(Recovery, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
   EXPECT_EQ(result.termination, Termination::kConverged);
   EXPECT_TRUE(result.outliers.empty());
   for (int i : chain_model.base.kept) {
-    if (chain_model.model.parameters[i].kind == Kind::kBase) continue;  // compared as a pose below
+    if (chain_model.model.parameters[i].kind == Kind::kWaistPose)
+      continue;  // compared as a pose below
     EXPECT_NEAR(result.delta[i], truth[i], 1e-8) << chain_model.model.parameters[i].name;
   }
   const Eigen::VectorXd q = Eigen::VectorXd::Zero(chain_model.model.tree.coordinate_count());
@@ -97,7 +98,7 @@ TEST_P(Recovery, DroppedParametersAreRegroupedAsReported) {
       truth(chain_model.base.kept) + chain_model.base.regrouping * truth(chain_model.base.dropped);
   for (std::size_t i = 0; i < chain_model.base.kept.size(); ++i) {
     const Parameter& parameter = chain_model.model.parameters[chain_model.base.kept[i]];
-    if (parameter.kind == Kind::kBase) continue;
+    if (parameter.kind == Kind::kWaistPose) continue;
     EXPECT_NEAR(result.delta[chain_model.base.kept[i]], combined[static_cast<Eigen::Index>(i)],
                 1e-8)
         << parameter.name;
@@ -158,7 +159,7 @@ TEST(Coverage, IntervalsHoldWhatTheyPromise) {
     mean_marker_sd += result.marker_sd / kSeeds;
     for (int i : chain_model.base.kept) {
       const Kind kind = chain_model.model.parameters[i].kind;
-      if (kind == Kind::kBase) continue;
+      if (kind == Kind::kWaistPose) continue;
       Count& count = kind == Kind::kMarker ? markers : joints;
       count.inside += std::abs(result.delta[i] - truth[i]) <= result.interval_factor * result.sd[i];
       ++count.all;

@@ -92,7 +92,7 @@ Eigen::VectorXd StandingRobot::DrawTruth(std::uint64_t seed) const {
   for (int i : base.kept) {
     const Parameter& parameter = model.parameters[i];
     switch (parameter.kind) {
-      case ParameterKind::kBase:
+      case ParameterKind::kWaistPose:
         break;
       case ParameterKind::kMarker:
         truth[i] = random.Normal(0.01);
@@ -100,10 +100,10 @@ Eigen::VectorXd StandingRobot::DrawTruth(std::uint64_t seed) const {
       case ParameterKind::kTorsion:
         truth[i] = random.Uniform(2e-6, 3e-5);
         break;
-      case ParameterKind::kBaseForce:
+      case ParameterKind::kLegForce:
         truth[i] = random.Uniform(2e-6, 9e-6);
         break;
-      case ParameterKind::kBaseMoment:
+      case ParameterKind::kLegMoment:
         truth[i] = random.Uniform(2e-6, 5e-5);
         break;
       case ParameterKind::kTorqueBias:

@@ -30,7 +30,7 @@ TEST(WholeBody, JacobianEqualsDifferences) {
                     Eigen::Vector3d::Constant(1e-3)};
   std::vector<int> free = robot.base.kept;
   std::erase_if(free,
-                [&](int i) { return robot.model.parameters[i].kind == ParameterKind::kBase; });
+                [&](int i) { return robot.model.parameters[i].kind == ParameterKind::kWaistPose; });
   BodyResiduals problem({robot.model, recording, group, used, tied, loads, prior, noise}, free,
                         truth, placement);
   Eigen::VectorXd x = problem.Start();
@@ -67,7 +67,7 @@ TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
   double largest = 0.0;
   for (int i : robot.base.kept) {
     const Parameter& parameter = robot.model.parameters[i];
-    if (parameter.kind == ParameterKind::kBase) continue;
+    if (parameter.kind == ParameterKind::kWaistPose) continue;
     const double scale = ParameterScale(parameter, CalibrationOptions().prior);
     largest = std::max(largest, std::abs(result.delta[i] - truth[i]) / scale);
     // Turning a foot about the vertical is all but what turning the robot is: the compliance about
@@ -96,7 +96,7 @@ TEST(WholeBody, OtherFormsOfTheSupportConstraintGiveBackTheTruth) {
     double largest = 0.0;
     for (int i : robot.base.kept) {
       const Parameter& parameter = robot.model.parameters[i];
-      if (parameter.kind == ParameterKind::kBase) continue;
+      if (parameter.kind == ParameterKind::kWaistPose) continue;
       if (parameter.name.ends_with(".compliance_rz")) continue;  // determined 100 times worse
       const double scale = ParameterScale(parameter, options.prior);
       largest = std::max(largest, std::abs(result.delta[i] - truth[i]) / scale);
@@ -182,8 +182,7 @@ TEST_F(StandingTest, StraightKneesAreReportedAndTheirLoadsTakenFromStatics) {
   EXPECT_EQ(result.loads.badly_conditioned.size(), 32u);  // all of both leg trials
   for (int i : robot_.base.kept) {
     const Parameter& parameter = robot_.model.parameters[i];
-    if (parameter.kind != ParameterKind::kBaseForce &&
-        parameter.kind != ParameterKind::kBaseMoment) {
+    if (parameter.kind != ParameterKind::kLegForce && parameter.kind != ParameterKind::kLegMoment) {
       continue;
     }
     if (result.status[i] == ParameterStatus::kUnsupported) {

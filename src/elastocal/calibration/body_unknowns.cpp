@@ -122,7 +122,7 @@ Matrix6d BodyUnknowns::FootingChart(const Eigen::VectorXd& x, int footing) const
 std::vector<BodyUnknowns::Columns> BodyUnknowns::MapColumns(const std::vector<int>& columns) const {
   std::vector<Columns> blocks;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    const bool waist = !placement_.empty() && columns[c] < kBaseParameterCount;
+    const bool waist = !placement_.empty() && columns[c] < kWaistParameterCount;
     const auto found = std::lower_bound(free_.begin(), free_.end(), columns[c]);
     if (!waist && (found == free_.end() || *found != columns[c])) continue;
     const auto unknown = found - free_.begin();

@@ -30,7 +30,7 @@ std::vector<int> OfKind(const ErrorModel& model, const BaseParameters& base, Mod
   std::vector<int> free;
   for (int i : base.kept) {
     const ParameterKind parameter = model.parameters[i].kind;
-    if (waist_moves && parameter == ParameterKind::kBase) continue;
+    if (waist_moves && parameter == ParameterKind::kWaistPose) continue;
     if (IsEstimated(parameter, kind)) free.push_back(i);
   }
   return free;

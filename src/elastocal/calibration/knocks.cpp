@@ -17,7 +17,7 @@ constexpr double kLeastScatters = 3.0;
 std::vector<int> Estimated(const ErrorModel& model, const BaseParameters& base) {
   std::vector<int> free;
   for (int i : base.kept) {
-    if (model.parameters[i].kind != ParameterKind::kBase) free.push_back(i);
+    if (model.parameters[i].kind != ParameterKind::kWaistPose) free.push_back(i);
   }
   return free;
 }

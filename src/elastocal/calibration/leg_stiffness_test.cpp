@@ -17,8 +17,8 @@ TEST(AssessLegs, TheStiffnessIsThatOfItsCompliancesInTheMeanPosture) {
   result.delta.setZero(robot.model.parameter_count());
   for (int i = 0; i < robot.model.parameter_count(); ++i) {
     const Parameter& parameter = robot.model.parameters[i];
-    if (parameter.kind == ParameterKind::kBaseForce) result.delta[i] = 1e-6 * (1 + parameter.axis);
-    if (parameter.kind == ParameterKind::kBaseMoment) result.delta[i] = 1e-5 * (1 + parameter.axis);
+    if (parameter.kind == ParameterKind::kLegForce) result.delta[i] = 1e-6 * (1 + parameter.axis);
+    if (parameter.kind == ParameterKind::kLegMoment) result.delta[i] = 1e-5 * (1 + parameter.axis);
   }
   result.placement.footings = {{0, 0, {0, 2}}};
   const std::vector<LegStiffness> legs = AssessLegs(result, recording);

@@ -4,20 +4,20 @@
 
 namespace elastocal {
 
-Felt FeltIn(const ErrorModel& model, const Recording& recording, int posture, int leg) {
-  Felt felt;
-  if (recording.torques.rows() > 0) felt.torques = recording.torques.row(posture).transpose();
-  if (leg < 0) return felt;
+MeasuredLoads FeltIn(const ErrorModel& model, const Recording& recording, int posture, int leg) {
+  MeasuredLoads measured;
+  if (recording.torques.rows() > 0) measured.torques = recording.torques.row(posture).transpose();
+  if (leg < 0) return measured;
   for (std::size_t s = 0; s < recording.wrench_links.size(); ++s) {
     const int body = model.tree.links[recording.wrench_links[s]].body;
     const std::vector<int>& joints = model.legs[leg].joints;
     const bool on_leg = std::find(joints.begin(), joints.end(), body - 1) != joints.end();
     const auto wrench = recording.wrenches.row(posture).segment<6>(6 * static_cast<int>(s));
     if (!on_leg || !wrench.allFinite()) continue;
-    felt.wrench_link = recording.wrench_links[s];
-    felt.wrench = wrench.transpose();
+    measured.wrench_link = recording.wrench_links[s];
+    measured.wrench = wrench.transpose();
   }
-  return felt;
+  return measured;
 }
 
 std::vector<PostureLoads> ComputeLoads(const ErrorModel& model, const Recording& recording,

@@ -17,8 +17,8 @@ Prior::Prior() {
   }
   (*this)[ParameterKind::kTorsion] = 5e-5;
   (*this)[ParameterKind::kBending] = 5e-5;
-  (*this)[ParameterKind::kBaseForce] = 1e-5;
-  (*this)[ParameterKind::kBaseMoment] = 5e-5;
+  (*this)[ParameterKind::kLegForce] = 1e-5;
+  (*this)[ParameterKind::kLegMoment] = 5e-5;
   (*this)[ParameterKind::kTorqueBias] = 2.0;
 }
 

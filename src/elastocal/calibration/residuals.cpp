@@ -235,7 +235,7 @@ void BodyResiduals::FillTieJacobian(int leg, const PostureLoads& load, const Vec
     const Parameter& parameter = in_.model.parameters[deflection.parameters[c]];
     Vector6d by = Vector6d::Zero();
     if (parameter.kind != ParameterKind::kTorqueBias) {
-      const int axis = parameter.axis + (parameter.kind == ParameterKind::kBaseMoment ? 3 : 0);
+      const int axis = parameter.axis + (parameter.kind == ParameterKind::kLegMoment ? 3 : 0);
       by[axis] = wrench[axis];
     } else if (load.waist_by_bias.cols() > 0) {
       by = geometry_.leg_compliance[leg].cwiseProduct(

@@ -64,10 +64,10 @@ CalibrationRun Calculate(const Session& session, const CalibrateOptions& options
     run.held_out = JudgeOnTrials(run.comparison, session.validation, settings);
   }
   AssessWaist(session, run);
-  run.excitation = ExcitationOf(session, run.comparison.best());
+  run.excitation = ExcitationOf(session, run.comparison.largest());
   run.verdict =
       Judge(run.comparison, run.cross_validation, run.excitation, run.recording, settings);
-  if (run.held_out) JudgeHeldOut(run.held_out->table, run.comparison.best_kind(), run.verdict);
+  if (run.held_out) JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.verdict);
   run.warnings.insert(run.warnings.end(), run.verdict.remarks.begin(), run.verdict.remarks.end());
   return run;
 }
@@ -87,7 +87,7 @@ Files DeployableFiles(const CalibrateOptions& options, const Session& session,
                       CalibrationRun& run) {
   const ZeroOffsets zero_offsets =
       options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin;
-  const CalibrationResult& result = run.comparison.best();
+  const CalibrationResult& result = run.comparison.largest();
   const CalibratedUrdf urdf = MakeCalibratedUrdf(
       ReadFile(session.project.urdf), session.project.urdf.string(), result, zero_offsets);
   run.warnings.insert(run.warnings.end(), urdf.warnings.begin(), urdf.warnings.end());

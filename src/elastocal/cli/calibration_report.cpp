@@ -29,7 +29,7 @@ std::vector<int> WithStatus(const CalibrationResult& result, ParameterStatus sta
 }
 
 std::string ParameterTable(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.best();
+  const CalibrationResult& result = run.comparison.largest();
   const std::vector<int> weak =
       HardlyExcited(result.model.parameters, run.base.kept, run.excitation);
   TextTable table({"parameter", "unit", "estimate", "sd", "95 % interval", ""});
@@ -53,7 +53,7 @@ std::string ParameterTable(const CalibrationRun& run) {
 
 std::string OutlierText(const CalibrationRun& run) {
   constexpr std::size_t kMost = 10;
-  const auto& outliers = run.comparison.best().outliers;
+  const auto& outliers = run.comparison.largest().outliers;
   if (outliers.empty()) return "Outliers: none\n";
   std::string text = fmt::format("Outliers (left out of the fit): {}\n", outliers.size());
   for (std::size_t i = 0; i < std::min(kMost, outliers.size()); ++i) {
@@ -90,13 +90,13 @@ std::string Conclusion(const CalibrationRun& run) {
     const auto& mean = run.held_out->table.mean_rmse_3d;
     return fmt::format("Verdict: deploy. Markers of held-out motions: from {} to {} mm.\n",
                        Millimetres(mean.at(ModelKind::kUncalibrated)),
-                       Millimetres(mean.at(run.comparison.best_kind())));
+                       Millimetres(mean.at(run.comparison.largest_kind())));
   }
   const bool held_out = run.cross_validation.folds > 0;
   const auto& metrics = held_out ? run.cross_validation.metrics : run.comparison.metrics;
   return fmt::format(
       "Verdict: from {} to {} mm {}. {}\n", Millimetres(metrics[0].rmse_3d),
-      Millimetres(metrics[static_cast<int>(run.comparison.best_kind())].rmse_3d),
+      Millimetres(metrics[static_cast<int>(run.comparison.largest_kind())].rmse_3d),
       held_out ? "on held-out postures" : "in the fit",
       held_out ? "Before deploying, validate on another recording."
                : "Cross-validate (--kfold 10) and validate on another recording before deploying.");
@@ -142,7 +142,7 @@ std::string ModelTable(const CalibrationRun& run) {
 }
 
 std::string DescribeRun(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.best();
+  const CalibrationResult& result = run.comparison.largest();
   const Excitation& excitation = run.excitation;
   std::string text = fmt::format(
       "{}: {} postures, {} markers, {} equations; {} of {} parameters identifiable (theory {})\n\n",

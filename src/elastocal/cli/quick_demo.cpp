@@ -103,7 +103,7 @@ int QuickDemo(const QuickDemoOptions& options) {
       "origin"};
   CalibrationRun run;
   const int exit_code = RunCalibration(calibrate, &run);
-  Print(options.common.Silent(), TruthTable(truth, run.comparison.best()));
+  Print(options.common.Silent(), TruthTable(truth, run.comparison.largest()));
   return exit_code;
 }
 

@@ -30,7 +30,7 @@ std::string StiffnessTable(const VirtualExperiment& experiment) {
   for (const LegCompliance& leg : experiment.legs) {
     std::vector<std::string> row = {leg.chain};
     for (int i = 0; i < 6; ++i) {
-      row.push_back(fmt::format("{:.3g}", leg.base.stiffness[i] * (i < 3 ? 1e-3 : 1.0)));
+      row.push_back(fmt::format("{:.3g}", leg.compliance.stiffness[i] * (i < 3 ? 1e-3 : 1.0)));
     }
     table.Add(row);
   }
@@ -62,7 +62,7 @@ std::string MakeSimulationJson(const std::vector<WrittenTrial>& written,
   }
   for (const LegCompliance& leg : experiment.legs) {
     json["stiffness"][leg.chain] =
-        std::vector<double>(leg.base.stiffness.begin(), leg.base.stiffness.end());
+        std::vector<double>(leg.compliance.stiffness.begin(), leg.compliance.stiffness.end());
   }
   return json.dump(2) + "\n";
 }

@@ -27,7 +27,7 @@ std::string StiffnessOf(const Parameter& parameter, double compliance) {
 /// Why the data say little about a compliance.
 std::string Reason(const CalibrationRun& run, const Parameter& parameter) {
   if (parameter.leg < 0) return "its load varies too little in this recording";
-  const std::vector<int>& bad = run.comparison.best().loads.badly_conditioned;
+  const std::vector<int>& bad = run.comparison.largest().loads.badly_conditioned;
   if (!bad.empty()) {
     return fmt::format("the knee was straight in {} postures: loads by statics there", bad.size());
   }
@@ -44,7 +44,7 @@ std::string DescribeTrials(const CalibrationRun& run) {
 }
 
 std::string DescribeElasticity(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.best();
+  const CalibrationResult& result = run.comparison.largest();
   if (result.kind != ModelKind::kFull) return "";
   TextTable table({"compliance", "unit", "estimate", "sd", "stiffness", "95 % interval"});
   std::string unsupported;
@@ -77,7 +77,7 @@ std::string DescribeElasticity(const CalibrationRun& run) {
 }
 
 std::string DescribeFeet(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.best();
+  const CalibrationResult& result = run.comparison.largest();
   std::string text;
   for (const Slip& slip : result.slips) {
     text += fmt::format("  foot of {} slipped by {:.1f} mm before {}\n",

@@ -24,14 +24,14 @@ int PriorityClass(ParameterKind kind, ExternalPriority external) {
     case ParameterKind::kBeta:
     case ParameterKind::kGamma:
       return 2;
-    case ParameterKind::kBase:
+    case ParameterKind::kWaistPose:
       return external == ExternalPriority::kFirst ? -2 : 3;
     default:
       return external == ExternalPriority::kFirst ? -1 : 4;
   }
 }
 
-/// Of the joints that move a marker; a leg that only carries shows nothing in the markers.
+/// Counts the joints that move a marker. A leg that only supports the robot moves none.
 int TheoreticalCount(const ErrorModel& model) {
   std::set<int> joints;
   for (const Marker& marker : model.markers) {
@@ -57,8 +57,8 @@ std::vector<int> SortingOrder(const std::vector<int>& values) {
   return order;
 }
 
-/// Geometry does not decide on elastic parameters: they are kept, and nothing is regrouped into
-/// them.
+/// Keeps all elastic parameters, with nothing regrouped into them: geometry does not decide on
+/// these.
 void KeepElastic(const ErrorModel& model, BaseParameters& base) {
   std::vector<int> kept = base.kept;
   for (int i = 0; i < model.parameter_count(); ++i) {

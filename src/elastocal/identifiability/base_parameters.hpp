@@ -12,9 +12,9 @@ namespace elastocal {
 
 /// Which of the redundant parameters stand for the others.
 enum class ExternalPriority {
-  /// T0 and marker positions come before the joints': what they can explain is not attributed to
-  /// the robot. For a chain it leaves out what the paper holds at zero by hand: the first joint and
-  /// the last joint's theta and r.
+  /// T0 and marker positions come before joint parameters: what they can explain is not attributed
+  /// to the robot. For a chain, this drops the parameters that the paper holds at zero by hand:
+  /// those of the first joint, and theta and r of the last one.
   kFirst,
   /// The order printed in section 2.1: T0 and marker positions last.
   kLast,
@@ -27,51 +27,52 @@ struct IdentifiabilityOptions {
   double tolerance = 1e-6;
   std::uint64_t seed = 1;
   ExternalPriority external = ExternalPriority::kFirst;
-  /// Name patterns of parameters held at nominal, `*` standing for anything.
+  /// Name patterns of parameters held at nominal; `*` stands for any run of characters.
   std::vector<std::string> hold = {};
 };
 
-/// The identifiable (base) parameters of an error model: decided at nominal geometry, then frozen.
+/// The base parameters of an error model (those that are identifiable): chosen at nominal geometry,
+/// then frozen.
 struct BaseParameters {
-  /// Indices into the model's parameters, ascending. Elastic ones are among them unless held: the
-  /// data decide on these (IsElastic).
+  /// Indices into the model's parameters, ascending. Elastic parameters are among them unless held:
+  /// the data decide on them (IsElastic).
   std::vector<int> kept;
-  int geometric_count = 0;   ///< of the kept ones, those that are not elastic
+  int geometric_count = 0;   ///< number of kept parameters that are not elastic
   std::vector<int> dropped;  ///< not identifiable beside the kept ones, ascending
   std::vector<int> held;     ///< held by the user's setting, ascending
-  /// kept x dropped: what the data determine is delta(kept) + regrouping * delta(dropped).
+  /// kept x dropped: the data determine delta(kept) + regrouping * delta(dropped).
   Eigen::MatrixXd regrouping;
   double smallest_kept = 1.0;    ///< smallest relative remainder among the kept columns
   double largest_dropped = 0.0;  ///< largest among the dropped ones
-  /// 4 R + 2 P + 3 N_M for R revolute and P prismatic joints that move one of the N_M markers,
-  /// nothing held and elastic ones not counted (see docs/algorithms.md): a lower count with nothing
-  /// held means special marker positions.
+  /// 4 R + 2 P + 3 N_M for R revolute and P prismatic joints that move one of the N_M markers (see
+  /// docs/algorithms.md). It holds if no parameter is held, and does not count elastic ones. A
+  /// lower count with no parameter held means special marker positions.
   int theoretical_count = 0;
 };
 
-/// What of an error of a dropped parameter shows up in a kept one.
+/// The part of an error of a dropped parameter that shows up in a kept one.
 struct Share {
   int parameter;       ///< index into the model's parameters
   double coefficient;  ///< units of the kept parameter per unit of the dropped one
 };
 
-/// Shares of the kept parameters in a dropped one, an index into `base.dropped`; ascending by
-/// parameter, without those that are rounding (below 1e-9 by absolute value).
+/// Shares of a dropped parameter in the kept ones, ascending by kept parameter; `dropped` is an
+/// index into `base.dropped`. Shares below 1e-9 by absolute value are rounding and left out.
 std::vector<Share> RegroupedInto(const BaseParameters& base, int dropped);
 
 /// Factor (see regressor.hpp) of the regressor over random postures at nominal geometry.
 Eigen::MatrixXd NominalFactor(const ErrorModel& model, const IdentifiabilityOptions& options);
 
-/// Finds the base parameters by QR without pivoting over random postures (section 2.1). The paper's
-/// priority among joint parameters: theta, then r, d and b, then alpha, beta and gamma.
+/// Finds the base parameters by QR without pivoting over random postures (section 2.1). Joint
+/// parameters have the paper's priority: theta, then r, d and b, then alpha, beta and gamma.
 BaseParameters FindBaseParameters(const ErrorModel& model, const IdentifiabilityOptions& options);
 
-/// The same from a factor that is there already: for other holds or another priority.
+/// The same from a factor that was computed before: for other holds or another priority.
 BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd& factor,
                                   const IdentifiabilityOptions& options);
 
 /// Parameters that would be identifiable with generic marker positions but are not with the given
-/// ones: found by repeating the decision with the markers moved. Empty when the count is the
+/// ones. They are found by a second choice with the markers moved. Empty if the count is the
 /// theoretical one.
 std::vector<int> LostBySpecialMarkers(const ErrorModel& model,
                                       const IdentifiabilityOptions& options);

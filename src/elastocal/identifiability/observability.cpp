@@ -13,12 +13,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Singular values up to this are zero but for rounding.
+/// Singular values up to this one are zero up to rounding.
 double SingularFloor(const Eigen::VectorXd& sigma) {
   return 1e-14 * sigma[0] * static_cast<double>(sigma.size());
 }
 
-/// Largest over smallest singular value; infinite below machine precision or where rows are short.
+/// Largest over smallest singular value; infinite if the smallest is below machine precision or
+/// there are fewer rows than columns.
 double ConditionNumber(const Eigen::MatrixXd& A) {
   if (A.cols() == 0 || A.rows() < A.cols()) return kInfinity;
   const Eigen::VectorXd sigma = Eigen::BDCSVD<Eigen::MatrixXd>(A).singularValues();
@@ -26,7 +27,8 @@ double ConditionNumber(const Eigen::MatrixXd& A) {
   return smallest > SingularFloor(sigma) ? sigma[0] / smallest : kInfinity;
 }
 
-/// Diagonal of (A^T A)^-1, by singular vectors; infinite for columns that depend on others.
+/// Diagonal of (A^T A)^-1, by singular vectors. Entries are infinite for columns that depend on
+/// others.
 Eigen::VectorXd InverseDiagonal(const Eigen::MatrixXd& A) {
   const Eigen::BDCSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinV);
   const Eigen::VectorXd& sigma = svd.singularValues();

@@ -9,8 +9,8 @@
 namespace elastocal {
 
 /// Observability indices of a set of postures from the singular values sigma_1 >= ... >= sigma_Nb
-/// of its regressor's identifiable columns. O1 is the paper's eq. 12; the others as numbered by Sun
-/// and Hollerbach (2008), without division by the number of postures.
+/// of its regressor's identifiable columns. O1 is the paper's eq. 12. The others are numbered as in
+/// Sun and Hollerbach (2008), without division by the number of postures.
 struct ObservabilityIndices {
   double o1 = 0.0;  ///< (sigma_1 ... sigma_Nb)^(1/Nb) / sqrt(postures)
   double o2 = 0.0;  ///< sigma_Nb / sigma_1
@@ -22,23 +22,23 @@ struct ObservabilityIndices {
 /// `singular_values` in any order, none negative; zero ones (rank lost) make all indices zero.
 ObservabilityIndices ComputeObservability(const Eigen::VectorXd& singular_values, int postures);
 
-/// How well a recording excites the parameters. In columns of unit norm: a condition number says
-/// how nearly dependent they are, not which units they are given in.
+/// How well a recording excites the parameters. Condition numbers are of columns of unit norm: they
+/// say how nearly dependent the columns are, whatever their units.
 struct Excitation {
   double condition_all = 0.0;    ///< of all columns; infinite where they are dependent
-  double condition_base = 0.0;   ///< of the identifiable ones
+  double condition_base = 0.0;   ///< of the identifiable columns
   ObservabilityIndices indices;  ///< of the identifiable columns as they are (m/rad, m/m)
   /// For each identifiable parameter the standard deviation that it would have from this recording
   /// alone if one marker coordinate had `marker_sd`: rad or m; infinite where it is not excited.
   Eigen::VectorXd parameter_sd;
 };
 
-/// Identifiable parameters that this recording alone leaves uncertain by more than a degree or 5
-/// mm. `excitation`: of the geometric ones among `base`, in their order.
+/// Identifiable parameters whose standard deviation from this recording alone is more than a degree
+/// or 5 mm. `excitation` is that of the geometric parameters in `base`, in their order.
 std::vector<int> HardlyExcited(const std::vector<Parameter>& parameters,
                                const std::vector<int>& base, const Excitation& excitation);
 
-/// `factor` as RegressorFactor returns it; `base` the identifiable columns.
+/// `factor` is what RegressorFactor returns; `base` lists the identifiable columns.
 Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int>& base,
                             int postures, double marker_sd);
 

@@ -11,10 +11,10 @@ namespace elastocal {
 
 /// Upper-triangular (or shorter) matrix R with R^T R = Psi^T Psi, where Psi stacks the generalized
 /// Jacobians (eq. 4) of all markers over the postures in the rows of `q`, for all parameters of the
-/// model. Linear relations between columns of Psi are those of R, at R's small size.
+/// model. R is small, and its columns have the same linear relations as those of Psi.
 ///
-/// By Householder QR, first marker by marker (each depends on few columns), then of what remains:
-/// the condition number is not squared.
+/// R is computed by Householder QR, first marker by marker (each depends on few columns), then over
+/// the results; so the condition number is not squared.
 ///
 /// `seen(i, m)` false leaves marker m out of posture i; an empty array means all are seen.
 Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometry,

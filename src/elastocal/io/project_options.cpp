@@ -43,8 +43,8 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
       {"marker_mm", ParameterKind::kMarker, kMetresPerMm},
       {"torsion_urad_per_Nm", ParameterKind::kTorsion, kMicro},
       {"bending_urad_per_Nm", ParameterKind::kBending, kMicro},
-      {"base_force_um_per_N", ParameterKind::kBaseForce, kMicro},
-      {"base_moment_urad_per_Nm", ParameterKind::kBaseMoment, kMicro},
+      {"base_force_um_per_N", ParameterKind::kLegForce, kMicro},
+      {"base_moment_urad_per_Nm", ParameterKind::kLegMoment, kMicro},
       {"torque_bias_Nm", ParameterKind::kTorqueBias, 1.0},
   };
   std::vector<std::string> keys;

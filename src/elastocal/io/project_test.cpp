@@ -158,8 +158,8 @@ TEST(Project, ReadsSettingsInTheirUnits) {
   EXPECT_EQ(calibration.prior[ParameterKind::kD], CalibrationOptions().prior[ParameterKind::kD]);
   EXPECT_NEAR(calibration.prior[ParameterKind::kTorsion], 20e-6, 1e-18);
   EXPECT_NEAR(calibration.prior[ParameterKind::kBending], 30e-6, 1e-18);
-  EXPECT_NEAR(calibration.prior[ParameterKind::kBaseForce], 4e-6, 1e-18);
-  EXPECT_EQ(calibration.prior[ParameterKind::kBaseMoment], std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(calibration.prior[ParameterKind::kLegForce], 4e-6, 1e-18);
+  EXPECT_EQ(calibration.prior[ParameterKind::kLegMoment], std::numeric_limits<double>::infinity());
   EXPECT_EQ(calibration.prior[ParameterKind::kTorqueBias], 0.5);
   EXPECT_FALSE(calibration.widen_prior);
   EXPECT_EQ(calibration.outlier_probability, 0.05);

@@ -26,7 +26,7 @@ Json FigureByModel(const std::vector<ModelKind>& kinds, const ByModel<ErrorMetri
 
 Json Outliers(const CalibrationRun& run) {
   Json json = Json::array();
-  for (const Outlier& outlier : run.comparison.best().outliers) {
+  for (const Outlier& outlier : run.comparison.largest().outliers) {
     Json item;
     item["posture"] = outlier.posture;
     if (!run.recording.line.empty()) item["line"] = run.recording.line[outlier.posture];
@@ -74,7 +74,7 @@ Json ExcitationJson(const CalibrationRun& run) {
   json["O3"] = excitation.indices.o3;
   json["O4"] = excitation.indices.o4;
   json["O5"] = excitation.indices.o5;
-  const auto& parameters = run.comparison.best().model.parameters;
+  const auto& parameters = run.comparison.largest().model.parameters;
   json["hardly_excited"] = Json::array();
   for (int i : HardlyExcited(parameters, run.base.kept, excitation)) {
     json["hardly_excited"].push_back(parameters[i].name);
@@ -125,7 +125,7 @@ void AddTrials(const CalibrationRun& run, Json& json) {
     const double error = run.waist_error[static_cast<int>(kind)];
     if (std::isfinite(error)) json["waist_error_mm"][ModelKindName(kind)] = 1e3 * error;
   }
-  const CalibrationResult& result = run.comparison.best();
+  const CalibrationResult& result = run.comparison.largest();
   for (std::size_t g = 0; g < static_cast<std::size_t>(result.noise.group_count()); ++g) {
     json["noise"].push_back({{"marker_sd_mm", 1e3 * result.noise.marker_sd[g]},
                              {"waist_position_sd_mm", 1e3 * result.noise.waist_position_sd[g]},
@@ -166,7 +166,7 @@ std::string DescribeObservation(const Recording& recording, int posture, int mar
 }
 
 std::string RunStatus(const CalibrationRun& run) {
-  const Termination termination = run.comparison.best().termination;
+  const Termination termination = run.comparison.largest().termination;
   const bool implausible =
       termination == Termination::kConverged && !run.verdict.objections.empty();
   return implausible ? "implausible" : TerminationName(termination);
@@ -198,7 +198,7 @@ std::string DescribePosture(const Recording& recording, int posture) {
 }
 
 std::string MakeSummaryJson(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.best();
+  const CalibrationResult& result = run.comparison.largest();
   Json json;
   json["status"] = RunStatus(run);
   json["message"] = result.message;

@@ -100,10 +100,10 @@ void WriteLegs(const VirtualExperiment& experiment, TruthWriter& writer) {
     writer.yaml << YAML::BeginMap;
     writer.Key("foot");
     writer.yaml << tree.links[static_cast<std::size_t>(leg.foot_link)].name;
-    writer.List("stiffness", leg.base.stiffness);
+    writer.List("stiffness", leg.compliance.stiffness);
     writer.Key("compliance");
     writer.yaml << YAML::BeginSeq;
-    for (int i = 0; i < 6; ++i) writer.List(Vector6d(leg.base.C_foot.row(i).transpose()));
+    for (int i = 0; i < 6; ++i) writer.List(Vector6d(leg.compliance.C_foot.row(i).transpose()));
     writer.yaml << YAML::EndSeq;
     writer.Key("posture_rad");
     writer.yaml << YAML::Flow << YAML::BeginMap;

@@ -111,7 +111,7 @@ TEST_F(SimulatedFolder, TruthTellsWhatWasDrawn) {
                 .maxCoeff(),
             1e-12);
   EXPECT_EQ(truth.Get("legs").Get("left_leg").Get("stiffness").Items()[2].Number(),
-            experiment.legs[0].base.stiffness[2]);
+            experiment.legs[0].compliance.stiffness[2]);
   const YamlValue head = truth.Get("trials").Get("head");
   EXPECT_EQ(head.Get("lag_s").Number(), trial.raw.truth.lag_s);
   ASSERT_EQ(head.Get("faults").Items().size(), 1u);

@@ -33,7 +33,7 @@ Eigen::VectorXd Basis(int degree, int spans, double place) {
   return values.head(intervals - degree);
 }
 
-/// Of the B-splines of `degree`, the derivative, from that of a degree less.
+/// Derivative of the B-splines of `degree`, from the splines of one degree less.
 Eigen::VectorXd Differentiate(const Eigen::VectorXd& lower, int degree, int spans) {
   Eigen::VectorXd values(lower.size() - 1);
   for (int i = 0; i < values.size(); ++i) {
@@ -48,8 +48,10 @@ Eigen::VectorXd Differentiate(const Eigen::VectorXd& lower, int degree, int span
 }  // namespace
 
 Eigen::VectorXd QuinticSplineBasis(int control_points, double place, int derivative) {
-  if (control_points <= kDegree) throw std::invalid_argument("a quintic needs six control points");
-  if (derivative < 0 || derivative > 2) throw std::invalid_argument("derivative of 0 to 2");
+  if (control_points <= kDegree)
+    throw std::invalid_argument("a quintic needs at least six control points");
+  if (derivative < 0 || derivative > 2)
+    throw std::invalid_argument("the derivative must be 0, 1 or 2");
   const int spans = control_points - kDegree;
   Eigen::VectorXd values = Basis(kDegree - derivative, spans, std::clamp(place, 0.0, 1.0));
   for (int degree = kDegree - derivative + 1; degree <= kDegree; ++degree) {
@@ -59,7 +61,7 @@ Eigen::VectorXd QuinticSplineBasis(int control_points, double place, int derivat
 }
 
 Eigen::MatrixXd QuinticSplineBasisRows(int control_points, int samples, int derivative) {
-  if (samples < 2) throw std::invalid_argument("a curve is sampled twice at least");
+  if (samples < 2) throw std::invalid_argument("a curve needs at least two samples");
   Eigen::MatrixXd rows(samples, control_points);
   for (int i = 0; i < samples; ++i) {
     const double place = i / static_cast<double>(samples - 1);

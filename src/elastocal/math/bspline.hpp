@@ -4,15 +4,18 @@
 
 namespace elastocal {
 
-/// Values of the clamped uniform B-splines of degree five (quintic) at a place in [0, 1], or of
-/// their derivatives by that place: `derivative` = 0, 1 or 2. One a control point, of which there
-/// are at least six; outside [0, 1] the place is moved to the nearest end.
+/// Values at `place` of the clamped uniform B-splines of degree five (quintic) on [0, 1], or of
+/// their derivatives by the place: `derivative` = 0, 1 or 2. The vector has one entry for each
+/// control point, of which there are at least six. A place outside [0, 1] is moved to the nearest
+/// end.
 ///
-/// The first and last spline are 1 at their ends, where a curve takes the value of the first and
-/// last control point. All sum to 1, so that a curve stays within the range of its control points.
+/// The first spline is 1 at place 0 and the last one at place 1, so that a curve begins at its
+/// first control point and ends at its last. All splines sum to 1, so that a curve stays within the
+/// range of its control points.
 Eigen::VectorXd QuinticSplineBasis(int control_points, double place, int derivative = 0);
 
-/// Rows: as QuinticSplineBasis, at `samples` places equally spaced from 0 to 1 (at least 2).
+/// One row of QuinticSplineBasis for each of `samples` places (at least 2), equally spaced from 0
+/// to 1.
 Eigen::MatrixXd QuinticSplineBasisRows(int control_points, int samples, int derivative = 0);
 
 /// Control points, (6 + way points) x coordinates, of a curve that begins at `from` and ends at

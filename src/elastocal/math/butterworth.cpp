@@ -30,8 +30,8 @@ SecondOrderSection SinglePole(double warped) {
   return section;
 }
 
-// Signals are filtered four at a time, one a row: each sample waits for the one before, so that a
-// single signal would leave the processor idle.
+// Four signals are filtered at a time, one in each row: a sample depends on the one before it, so
+// that a single signal would leave the processor idle.
 constexpr int kLanes = 4;
 using Lanes = Eigen::Array<double, kLanes, Eigen::Dynamic>;
 

@@ -15,8 +15,8 @@ struct SecondOrderSection {
   double a2 = 0.0;
 };
 
-/// A filter as a chain of sections: other than one quotient of high-order polynomials, it stays
-/// exact at any order and at cutoffs far below the rate.
+/// A filter as a chain of sections. Unlike one quotient of high-order polynomials, it stays exact
+/// at any order and at cutoffs far below the rate.
 using SecondOrderSections = std::vector<SecondOrderSection>;
 
 /// Butterworth low-pass of the given order (1 to 10) by the bilinear transform, prewarped so that
@@ -26,14 +26,15 @@ using SecondOrderSections = std::vector<SecondOrderSection>;
 /// Throws std::invalid_argument for any other order or cutoff.
 SecondOrderSections ButterworthLowPass(int order, double cutoff_hz, double rate_hz);
 
-/// Samples by which FiltFilt prolongs a signal at either end: three times the filter's length, as
-/// SciPy's sosfiltfilt does; 3 (N + 1) for a Butterworth low-pass of order N.
+/// Number of samples by which FiltFilt prolongs a signal at either end: three times the filter's
+/// length, as in SciPy's sosfiltfilt; 3 (N + 1) for a Butterworth low-pass of order N.
 int FiltFiltPadding(const SecondOrderSections& sections);
 
-/// Filters every column of `signals` (samples x signals, any unit) forwards and then backwards, in
-/// place: zero phase, and the filter's gain squared. Equal to SciPy's sosfiltfilt with its
-/// defaults: prolonged by odd reflection at both ends, each pass started in the steady state of its
-/// first sample. Linear in the number of samples.
+/// Filters every column of `signals` (samples x signals, any unit) in place, forwards and then
+/// backwards, which gives zero phase and the square of the filter's gain. The result equals that of
+/// SciPy's sosfiltfilt with its defaults: the signal is prolonged by odd reflection at both ends,
+/// and each pass starts in the steady state of its first sample. Time is linear in the number of
+/// samples.
 ///
 /// Throws std::invalid_argument unless there are more samples than FiltFiltPadding(sections). All
 /// samples must be finite: a NaN spoils its whole column.

@@ -5,10 +5,10 @@
 
 namespace elastocal {
 
-/// What a user gave is not usable: a file, a setting, a name.
+/// A file, setting or name that the user gave is not usable.
 ///
 /// The message names the place (file, and line or key where there is one), what was found and what
-/// was expected, so that it can be shown as it is. The command line ends with exit code 3 on it.
+/// was expected, so that it can be shown as it is. The program then ends with exit code 3.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -16,7 +16,7 @@ PriorityQrResult PriorityQr(const Eigen::MatrixXd& A, double tolerance) {
   if (!(tolerance > 0.0 && tolerance < 1.0)) {
     throw std::invalid_argument("PriorityQr: the tolerance must lie between 0 and 1");
   }
-  // Columns at unit norm make one tolerance fit all; R has the same column relations as A.
+  // With columns of unit norm, one tolerance fits all. R has the same column relations as A.
   const Eigen::VectorXd norms = A.colwise().norm();
   const Eigen::VectorXd inverse_norms = InverseColumnNorms(A);
   const Eigen::Index size = std::min(A.rows(), A.cols());

@@ -6,21 +6,22 @@
 
 namespace elastocal {
 
-/// Which columns of a matrix are linearly independent of those before them, and how the others
-/// follow from these.
+/// Which columns of a matrix are linearly independent of those before them, and how the other
+/// columns follow from these.
 struct PriorityQrResult {
   /// Kept and dropped columns, each in ascending order; together all columns.
   std::vector<int> kept, dropped;
-  /// kept x dropped: A(:, dropped) = A(:, kept) * regrouping, so that the combination
-  /// x(kept) + regrouping * x(dropped) is what the matrix determines of x.
+  /// kept x dropped: A(:, dropped) = A(:, kept) * regrouping. Of x, the matrix therefore determines
+  /// the combination x(kept) + regrouping * x(dropped).
   Eigen::MatrixXd regrouping;
   /// Norm of what is left of each column after projection on the kept columns before it, relative
-  /// to the column's own norm (0 for a column that is zero but for rounding).
+  /// to the column's own norm (0 for a column that is zero up to rounding).
   Eigen::VectorXd remainder;
 };
 
 /// 1 / norm of each column, to scale columns to unit norm; 0 for a column shorter than 1e-12 of the
-/// longest. Such a column is zero but for rounding, which must not be scaled up to look like one.
+/// longest. Such a column is zero up to rounding, and scaling would blow the rounding up to a
+/// column.
 Eigen::VectorXd InverseColumnNorms(const Eigen::MatrixXd& A);
 
 /// QR decomposition without pivoting, column by column (Gautier 1990; paper section 2.1): the

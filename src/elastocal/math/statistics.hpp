@@ -5,7 +5,7 @@
 namespace elastocal {
 
 /// Quantile of Student's t distribution with `degrees_of_freedom` > 0 at `probability` in (0, 1);
-/// infinite degrees of freedom: of the normal distribution.
+/// with infinite degrees of freedom, that of the normal distribution.
 double StudentQuantile(double probability, double degrees_of_freedom);
 
 /// Quantile of the chi-square distribution with `degrees_of_freedom` > 0.
@@ -14,11 +14,12 @@ double ChiSquareQuantile(double probability, double degrees_of_freedom);
 /// Quantile of Fisher's F distribution with both degrees of freedom > 0.
 double FisherQuantile(double probability, double numerator, double denominator);
 
-/// Chance that Student's t is further from zero than `value`, to either side; infinite degrees of
-/// freedom: the normal distribution.
+/// Probability that Student's t is further from zero than `value`, to either side; with infinite
+/// degrees of freedom, of the normal distribution.
 double StudentTwoSidedTail(double value, double degrees_of_freedom);
 
-/// Chance that Fisher's F exceeds `value` >= 0; infinite `denominator`: chi-square / `numerator`.
+/// Probability that Fisher's F exceeds `value` >= 0; with infinite `denominator`, that chi-square /
+/// `numerator` does.
 double FisherUpperTail(double value, double numerator, double denominator);
 
 /// Degrees of freedom with which Student's t has the quantile `quantile` at `probability` in

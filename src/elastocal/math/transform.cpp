@@ -40,8 +40,9 @@ Eigen::Vector3d NearestTurns(const Eigen::Vector3d& rpy, const Eigen::Vector3d& 
 Eigen::Vector3d ToRpy(const Eigen::Matrix3d& R, const Eigen::Vector3d& near) {
   const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
   const double pitch = std::atan2(-R(2, 0), cos_pitch);
-  // At pitch = +-90 degrees any roll does, as long as yaw is what is left; within the limit that
-  // stands for it here, to 2e-12 rad. Outside, roll is good to 1e-4 rad and yaw makes up for it.
+  // At pitch = +-90 degrees any roll will do, because yaw then takes the rest; within the limit
+  // used here this holds to 2e-12 rad. Outside the limit, roll is exact to 1e-4 rad, and yaw
+  // compensates its error.
   const double roll = cos_pitch < 1e-12 ? near.x() : std::atan2(R(2, 1), R(2, 2));
   const Eigen::Matrix3d R_yaw = R * (RotY(pitch) * RotX(roll)).linear().transpose();
   const double yaw = std::atan2(R_yaw(1, 0), R_yaw(0, 0));

@@ -20,9 +20,9 @@ Transform RotAxis(const Eigen::Vector3d& axis, double angle);
 /// URDF origin: translation `xyz` [m] and fixed-axis roll, pitch, yaw `rpy` [rad], R = Rz Ry Rx.
 Transform FromXyzRpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy);
 
-/// Roll, pitch, yaw of a rotation matrix. Of the two (at pitch = +-90 degrees: infinitely many)
-/// representations, and their multiples of a turn, the one nearest to `near` component by
-/// component.
+/// Roll, pitch, yaw of a rotation matrix. There are two representations (at pitch = +-90 degrees
+/// infinitely many) and their multiples of a turn; the result is the one nearest to `near`,
+/// component by component.
 Eigen::Vector3d ToRpy(const Eigen::Matrix3d& R, const Eigen::Vector3d& near);
 
 /// Angle of the rotation R, in [0, pi]; exact near zero, where acos of the trace is not.

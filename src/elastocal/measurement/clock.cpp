@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kLeastWindows = 3;  // two give a line without a residual
 constexpr double kMostWindows = 200.0;    // keeps the cost of all pairs of windows bounded
-constexpr double kLeastUsed = 2.0 / 3.0;  // of the windows, on the line
+constexpr double kLeastUsed = 2.0 / 3.0;  // least share of the windows that must be on the line
 
 void CheckArguments(const MeasuredSpeed& measured, const PredictedSpeed& predicted,
                     const ClockOptions& options) {
@@ -32,7 +32,7 @@ void CheckArguments(const MeasuredSpeed& measured, const PredictedSpeed& predict
           "a longest lag and window above 0");
 }
 
-// The windows with motion and their lags, or one window of everything if those are too few.
+// The windows with motion and their lags, or one window of the whole trial if these are too few.
 std::vector<WindowLag> FitWindows(const UniformSpeed& measured, const UniformSpeed& predicted,
                                   double window_s, double coarse_lag_s) {
   const int frames = static_cast<int>(measured.values.size());
@@ -47,7 +47,7 @@ std::vector<WindowLag> FitWindows(const UniformSpeed& measured, const UniformSpe
   }
   if (windows.size() >= kLeastWindows) return windows;
 
-  // Only the frames that the log covers, as a window must be known for the most part.
+  // Takes only the frames that the log covers, because most of a window must be known.
   const auto frame_at = [&](double robot_time) {
     const double frame = (robot_time + coarse_lag_s) * measured.rate_hz;
     return static_cast<int>(std::clamp<double>(frame, 0.0, frames));
@@ -61,7 +61,7 @@ std::vector<WindowLag> FitWindows(const UniformSpeed& measured, const UniformSpe
   return windows;
 }
 
-// Counts what is known of both, and its first and last camera time.
+// Number of frames in which both are known, and the first and last camera time of these.
 struct Overlap {
   int count = 0;
   double begin_s = 0.0;

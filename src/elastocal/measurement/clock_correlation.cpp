@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kLongestHole_s = 0.1;
 constexpr double kCoarseRate_hz = 20.0;  // four times the cutoff of the marker filter
-constexpr double kLeastShare = 0.5;      // of the shorter signal, that must be in common
+constexpr double kLeastShare = 0.5;      // share of the shorter signal that must be in common
 constexpr int kLeastCount = 50;          // coarse samples in common
-constexpr double kDip = 0.03;            // share of the highest peak that parts it from another one
+constexpr double kDip = 0.03;  // depth of a dip between two peaks, as a share of the highest
 
-// Means of blocks; NaN where less than half of a block is known.
+// Means of blocks of values. NaN if less than half of a block is known.
 UniformSpeed Decimate(const UniformSpeed& fine, int factor) {
   UniformSpeed coarse;
   coarse.start_s = fine.start_s + 0.5 * (factor - 1) / fine.rate_hz;
@@ -33,10 +33,10 @@ UniformSpeed Decimate(const UniformSpeed& fine, int factor) {
   return coarse;
 }
 
-// A signal ready for correlation with unknown samples: all zero where unknown.
+// A signal with unknown samples, ready for correlation: unknown samples are zero.
 struct Masked {
   Eigen::VectorXd known;  // 1 or 0
-  Eigen::VectorXd value;  // less the mean
+  Eigen::VectorXd value;  // with the mean taken off
   Eigen::VectorXd square;
 
   explicit Masked(const Eigen::VectorXd& raw)
@@ -47,7 +47,8 @@ struct Masked {
   }
 };
 
-// Correlation of x[k] with y[k + shift] over all k for which both are known; NaN for too few.
+// Correlation of x[k] with y[k + shift] over all k for which both are known; NaN if these are too
+// few.
 double CorrelationAt(const Masked& x, const Masked& y, Eigen::Index shift, double least_count) {
   const Eigen::Index begin = std::max<Eigen::Index>(0, -shift);
   const Eigen::Index size = std::min(x.value.size(), y.value.size() - shift) - begin;
@@ -64,7 +65,7 @@ double CorrelationAt(const Masked& x, const Masked& y, Eigen::Index shift, doubl
   return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
 }
 
-// The highest value that a dip parts from the best one.
+// The highest value that a dip separates from the highest one of all.
 double SecondPeak(const Eigen::VectorXd& correlations, Eigen::Index best) {
   const double dip = kDip * correlations[best];
   double second = 0.0;
@@ -91,7 +92,7 @@ UniformSpeed Resample(const PredictedSpeed& predicted, double rate_hz) {
   const Eigen::VectorXd& time = predicted.time_s;
   UniformSpeed result{time[0], rate_hz, {}};
   const double duration = time[time.size() - 1] - time[0];
-  // With slack, for the last sample must not be lost to rounding.
+  // The slack keeps rounding from losing the last sample.
   result.values.resize(1 + static_cast<Eigen::Index>(duration * rate_hz + 1e-6));
   Eigen::Index next = 1;  // the first log sample after the time of interest
   for (Eigen::Index k = 0; k < result.values.size(); ++k) {
@@ -117,7 +118,7 @@ CorrelationPeaks Correlate(const UniformSpeed& measured, const UniformSpeed& pre
   const double least_count =
       std::max<double>(kLeastCount, kLeastShare * std::min(x.known.sum(), y.known.sum()));
 
-  // Measured sample k at its time t stands against predicted sample k + shift at t - lag.
+  // Measured sample k, at its time t, is compared with predicted sample k + shift, at t - lag.
   const double offset = coarse_measured.start_s - coarse_predicted.start_s;
   const double rate = coarse_measured.rate_hz;
   const auto shift_of = [&](double lag) { return (offset - lag) * rate; };

@@ -13,17 +13,18 @@ struct UniformSpeed {
   Eigen::VectorXd values;
 };
 
-/// The predicted speed at a constant rate, by linear interpolation; NaN within holes of the log of
-/// more than 0.1 s.
+/// The predicted speed at a constant rate, by linear interpolation. NaN in holes of the log that
+/// are longer than 0.1 s.
 UniformSpeed Resample(const PredictedSpeed& predicted, double rate_hz);
 
-/// Where the correlation of the two speeds over all lags in range has its peaks.
+/// Peaks of the correlation of the two speeds, over all lags in range.
 struct CorrelationPeaks {
-  bool overlap = false;  ///< any lag with enough in common; else the rest has no meaning
-  double lag_s = 0.0;    ///< refined by a parabola
+  bool overlap =
+      false;  ///< whether any lag has enough data in common; otherwise the rest has no meaning
+  double lag_s = 0.0;  ///< refined by a parabola
   double peak = 0.0;
   double second_peak = 0.0;  ///< 0 if there is none
-  bool at_the_rim = false;   ///< the best lag is the first or the last
+  bool at_the_rim = false;   ///< the highest peak is at the first or the last lag
 };
 
 /// Normalised correlation at about 20 Hz. Both speeds must have the same rate.

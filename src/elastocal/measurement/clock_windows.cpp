@@ -15,10 +15,11 @@ constexpr int kIterations = 20;
 constexpr double kConverged_s = 1e-7;
 constexpr double kFarthest_s = 0.5;
 constexpr double kLeastCorrelation = 0.5;
-constexpr double kLeastKnownShare = 0.5;  // of a window's frames known in both signals
-constexpr double kBiweight = 4.685;       // 95 % efficient for normal errors
+constexpr double kLeastKnownShare =
+    0.5;  // share of a window's frames that must be known in both signals
+constexpr double kBiweight = 4.685;  // 95 % efficient for normal errors
 
-// Value and derivative (a second) of the cubic through a signal's samples, at a time.
+// Value and time derivative, at a given time, of the cubic through a signal's samples.
 struct Interpolated {
   double value = 0.0;
   double derivative = 0.0;
@@ -39,7 +40,8 @@ std::optional<Interpolated> Interpolate(const UniformSpeed& signal, double time_
   return result;
 }
 
-// Least squares of a window at one lag: measured = gain p + offset - step p', lag step / gain.
+// Least squares in a window at one lag: measured = gain p + offset - step p', which gives a lag of
+// step / gain.
 struct WindowSystem {
   int count = 0;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -69,8 +71,8 @@ struct WindowSystem {
   }
 };
 
-// How many times the variance of an estimate grows because residuals are correlated from frame to
-// frame: (1 + r) / (1 - r), of a first-order process.
+// Factor by which the variance of an estimate grows because residuals are correlated from frame to
+// frame: (1 + r) / (1 - r), for a first-order process.
 double VarianceInflation(const UniformSpeed& measured, const UniformSpeed& predicted,
                          const FrameInterval& frames, double lag_s, const Eigen::Vector3d& fit) {
   double square = 0.0;
@@ -89,7 +91,7 @@ double VarianceInflation(const UniformSpeed& measured, const UniformSpeed& predi
   return (1.0 + r) / (1.0 - r);
 }
 
-// Slopes of all pairs of windows, then their median and that of the remainders.
+// Line by the median of the slopes of all pairs of windows, and the median of the remainders.
 LagLine TheilSen(const std::vector<WindowLag>& windows) {
   std::vector<double> slopes;
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -109,9 +111,9 @@ LagLine TheilSen(const std::vector<WindowLag>& windows) {
   return line;
 }
 
-// The windows' variances and one that they have in common, as far as their scatter about a line
-// asks for it: errors of the robot's model shift each window by more than its noise, and a window
-// with little noise must not rule the line.
+// Adds to the windows' variances one that they have in common, as large as their scatter about a
+// line requires. Errors of the robot's model shift each window by more than its noise, and a window
+// with little noise must not determine the line alone.
 Eigen::VectorXd AddCommonVariance(const std::vector<WindowLag>& windows,
                                   const Eigen::VectorXd& residuals) {
   Eigen::VectorXd variances(residuals.size());
@@ -120,9 +122,9 @@ Eigen::VectorXd AddCommonVariance(const std::vector<WindowLag>& windows,
   return variances.array() + std::max(0.0, scatter * scatter - Median(variances));
 }
 
-// By which the windows' variances are multiplied: up to what the scatter about the line is, down to
-// what it is surely (95 %) below. A window's own residuals also contain what the model of the speed
-// does not explain, which need not shift its lag.
+// Factor on the windows' variances. It raises them to the scatter about the line, or lowers them to
+// the value that the scatter is surely (95 %) below: a window's own residuals also contain what the
+// model of the speed does not explain, which need not shift its lag.
 double VarianceScale(double chi_square, double degrees_of_freedom) {
   if (degrees_of_freedom < 1.0) return std::max(1.0, chi_square);
   const double mean = chi_square / degrees_of_freedom;
@@ -130,7 +132,8 @@ double VarianceScale(double chi_square, double degrees_of_freedom) {
   return std::min(1.0, chi_square / ChiSquareQuantile(0.05, degrees_of_freedom));
 }
 
-// Weighted least squares; standard deviations from the weights and the scatter.
+// Fits a line by weighted least squares. Standard deviations follow from the weights and the
+// scatter.
 LagLine FitWeighted(const std::vector<WindowLag>& windows, const Eigen::VectorXd& weights) {
   LagLine line;
   const double total = weights.sum();
@@ -151,7 +154,7 @@ LagLine FitWeighted(const std::vector<WindowLag>& windows, const Eigen::VectorXd
     chi_square += weights[i] * std::pow(windows[i].lag_s - line.Lag(windows[i].time_s), 2);
   }
   const double used = static_cast<double>((weights.array() > 0.0).count());
-  // Never nothing: with three windows the scatter is zero now and then.
+  // The scale must not vanish: with three windows the scatter is sometimes zero.
   const double scale = std::max(0.01, VarianceScale(chi_square, used - 2.0));
   line.level_sd_s = std::sqrt(scale / total);
   line.slope_sd = std::sqrt(scale / spread);
@@ -186,7 +189,7 @@ std::optional<WindowLag> FitWindowLag(const UniformSpeed& measured, const Unifor
     const double variance = residual / (system.count - 3) *
                             VarianceInflation(measured, predicted, frames, lag, fit) *
                             lu.inverse()(2, 2);
-    // Rounding is all that is left of noiseless signals; a weight must stay finite.
+    // Without noise only rounding is left; the floor keeps the weight finite.
     const double sd = std::max(1e-6, std::sqrt(variance) / fit[0]);
     return WindowLag{system.motion_moment / system.motion, lag, sd, true};
   }

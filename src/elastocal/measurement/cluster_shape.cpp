@@ -36,9 +36,9 @@ double MedianOf(const std::vector<double>& values) {
   return Median(Eigen::VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size())));
 }
 
-// Median of the values that the interval of the given width with the most of them holds: unlike the
-// median of all, not halfway between two values of a distance that changed in the middle of a
-// trial.
+// Median of the values in the interval of the given width that contains the most of them. If a
+// distance changed in the middle of a trial, the median of all values could lie between the two
+// distances; this one does not.
 double DensestMedian(std::vector<double> values, double width) {
   std::sort(values.begin(), values.end());
   std::size_t best_begin = 0;
@@ -54,7 +54,7 @@ double DensestMedian(std::vector<double> values, double width) {
                    values.begin() + static_cast<std::ptrdiff_t>(best_end)});
 }
 
-// The least over all orders but the identity of the largest change of a distance, in tolerances.
+// Minimum, over all orders except the identity, of the largest change of a distance, in tolerances.
 double Separation(const ClusterShape& shape) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t p = 1; p < shape.permutations.size(); ++p) {

@@ -8,41 +8,44 @@
 
 namespace elastocal {
 
-/// Which raw label each label of a cluster gets its position from: label i is on raw marker p[i].
+/// For each label of a cluster, the raw label from which it gets its position: label i is on raw
+/// marker p[i].
 using Permutation = std::vector<int>;
 
-/// Distances between the markers of a cluster, m: one row a frame, one column a pair (0,1), (0,2),
-/// ..., (1,2), ...; NaN where one of the two is not seen.
+/// Distances between the markers of a cluster, m, with one row for each frame and one column for
+/// each pair (0,1), (0,2), ..., (1,2), ...; NaN if one of the two markers is not seen.
 using DistanceTable = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Column of the pair (i, j), i != j, in the table of a cluster of `size` markers.
+/// Column of the pair (i, j), i != j, in the distance table of a cluster of `size` markers.
 int PairColumn(int i, int j, int size);
 
 DistanceTable MeasureDistances(const MarkerTrajectories& trajectories,
                                const std::vector<int>& markers);
 
-/// A cluster's rigid shape, as found from its own data.
+/// The rigid shape of a cluster, estimated from its own data.
 struct ClusterShape {
   int size = 0;
-  Eigen::VectorXd distances;   ///< a pair, m, as they mostly are; NaN if never seen together
-  Eigen::VectorXd tolerances;  ///< a pair, m
-  /// The orders of labels that are looked for, the identity first: all of them up to five markers,
-  /// exchanges of two labels beyond.
+  Eigen::VectorXd
+      distances;  ///< most frequent distance of each pair, m; NaN if never seen together
+  Eigen::VectorXd tolerances;  ///< of each pair, m
+
+  /// The orders of labels that are tried, the identity first: with up to five markers all orders,
+  /// with more only exchanges of two labels.
   std::vector<Permutation> permutations;
-  /// The least that any order but the identity changes some distance, in tolerances.
+  /// Every order except the identity changes some distance by at least this many tolerances.
   double separation = 0.0;
 
-  /// Whether all known distances of a frame fit under `permutation`, leaving out raw marker
-  /// `without` (none, if negative).
+  /// Whether all known distances of a frame fit under `permutation`. Raw marker `without` is left
+  /// out (none, if negative).
   bool Fits(const Eigen::Ref<const Eigen::RowVectorXd>& frame, const Permutation& permutation,
             int without = -1) const;
 };
 
-/// Over some thousands of frames spread over the trial: medians of the most frequent distances
-/// (which are those of the longer part, where a marker was knocked within the trial); tolerances of
-/// `tolerance_sd` standard deviations, but at least `least_tolerance_m`. The deviation is found
-/// from the differences of successive frames (median absolute difference), which neither a swap nor
-/// a shifted marker affects.
+/// Measures the shape over some thousands of frames spread over the trial. Distances are medians of
+/// the most frequent values (if a marker was displaced within the trial, those of the longer part).
+/// Tolerances are `tolerance_sd` standard deviations, but at least `least_tolerance_m`. The
+/// standard deviation is estimated from the differences of successive frames (median absolute
+/// difference), which neither a swap nor a displaced marker affects.
 ClusterShape MeasureShape(const DistanceTable& table, int size, double tolerance_sd,
                           double least_tolerance_m);
 

@@ -23,7 +23,8 @@ Eigen::Vector4d Basis(double t) {
   return {1.0, t, 0.5 * (3.0 * t * t - 1.0), 0.5 * t * (5.0 * t * t - 3.0)};
 }
 
-// A gap with the frames around it from which it is filled; time runs from -1 to 1 over all of them.
+// A gap with the frames around it from which it is closed. Time runs from -1 to 1 over all of these
+// frames.
 struct GapFit {
   FrameInterval gap;
   int neighbourhood;
@@ -81,7 +82,7 @@ MarkerSmoothing FillMarker(int longest_fill, int neighbourhood,
 }  // namespace
 
 std::vector<MarkerSmoothing> FillGaps(double longest_fill_s, MarkerTrajectories& trajectories) {
-  // With slack: 0.2 s at 100 Hz are 20 frames, whatever the product rounds to.
+  // The slack makes 0.2 s at 100 Hz 20 frames, whatever the product rounds to.
   const int longest_fill =
       static_cast<int>(std::floor(longest_fill_s * trajectories.rate_hz + 1e-6));
   const int neighbourhood = std::max(

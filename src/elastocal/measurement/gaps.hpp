@@ -8,34 +8,36 @@
 
 namespace elastocal {
 
-/// What becomes of raw marker positions before anything is computed from them (paper, section 5.1).
+/// How raw marker positions are treated before anything is computed from them (paper, section 5.1).
 struct SmoothingOptions {
-  double longest_fill_s = 0.2;  ///< longer gaps stay open; 0 fills none
+  double longest_fill_s = 0.2;  ///< longer gaps stay open; 0 closes none
   int filter_order = 5;
   double cutoff_hz = 5.0;
 };
 
-/// What was done to one marker; the intervals of a kind are in order and never touch.
+/// What was done to one marker. The intervals of each kind are in order and do not touch.
 struct MarkerSmoothing {
   int frames_seen = 0;                ///< in the raw trajectory
   std::vector<FrameInterval> filled;  ///< gaps closed by a cubic
-  std::vector<FrameInterval> open;    ///< gaps left, also before the first and after the last frame
+  std::vector<FrameInterval>
+      open;  ///< gaps that stayed open, also at the beginning and end of the trial
   std::vector<FrameInterval> dropped;  ///< seen or filled, but too short to be filtered: now NaN
 };
 
-/// Closes gaps, in place, of at most `longest_fill_s` by the cubic polynomial that fits best, by
-/// least squares, to the frames seen within 0.1 s on either side (or four frames where the rate is
-/// low): the noise of a single neighbour is not carried into the gap. A gap with fewer than two
-/// frames seen there on a side stays open. Gives one entry a marker, with `dropped` empty.
+/// Closes gaps of at most `longest_fill_s` in place, by the least-squares cubic polynomial through
+/// the frames seen within 0.1 s on either side (or within four frames at a low rate), so that the
+/// noise of a single neighbour does not get into the gap. A gap with fewer than two such frames on
+/// a side stays open. Returns one entry for each marker, with `dropped` empty.
 std::vector<MarkerSmoothing> FillGaps(double longest_fill_s, MarkerTrajectories& trajectories);
 
-/// Filters, in place, each unbroken piece of each marker's trajectory forwards and backwards, and
-/// sets pieces that are too short for it (FiltFiltPadding) to NaN. Gives these, one list a marker.
-/// No sample is mixed with samples on the other side of an open gap.
+/// Filters each unbroken piece of each marker's trajectory in place, forwards and backwards. Sets
+/// pieces that are too short for the filter (FiltFiltPadding) to NaN and returns them, one list for
+/// each marker. No sample is mixed with samples on the other side of an open gap.
 std::vector<std::vector<FrameInterval>> FilterPieces(const SecondOrderSections& sections,
                                                      MarkerTrajectories& trajectories);
 
-/// FillGaps and then FilterPieces with a Butterworth low-pass. Linear in the number of frames.
+/// Calls FillGaps and then FilterPieces with a Butterworth low-pass. Time is linear in the number
+/// of frames.
 ///
 /// Throws std::invalid_argument for an order or a cutoff that ButterworthLowPass refuses.
 std::vector<MarkerSmoothing> SmoothTrajectories(const SmoothingOptions& options,

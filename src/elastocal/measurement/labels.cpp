@@ -11,17 +11,17 @@ namespace {
 
 constexpr int kOpen = -1;  // the order of labels is not known from the frame itself
 
-// What is to be done with a cluster, frame by frame.
+// What to do with a cluster, frame by frame.
 struct Plan {
   std::vector<int> order;                  // index into the shape's permutations, or kOpen
-  std::vector<std::vector<bool>> removed;  // raw marker, frame
+  std::vector<std::vector<bool>> removed;  // by raw marker and frame
   std::vector<bool> undecided;             // frame
 
   Plan(int frames, int size)
       : order(frames, kOpen), removed(size, std::vector<bool>(frames)), undecided(frames) {}
 };
 
-// Decides on the frames of one cluster by its distances.
+// Decides on each frame of one cluster by its distances.
 class LabelFinder {
  public:
   LabelFinder(const std::vector<int>& markers, const LabelOptions& options,
@@ -39,7 +39,7 @@ class LabelFinder {
   Plan Find() const {
     Plan plan(trajectories_.frame_count(), shape_.size);
     DecideWholeFrames(plan);
-    // The nearest decided orders, for the frames that are not.
+    // For undecided frames, the orders of the nearest decided frames.
     std::vector<int> after(plan.order.size(), kOpen);
     for (std::size_t i = plan.order.size(); i-- > 0;) {
       const bool last = i + 1 == plan.order.size();
@@ -59,7 +59,7 @@ class LabelFinder {
   }
 
  private:
-  // Frames in which all markers are seen and fit in one order.
+  // Decides on the frames in which all markers are seen and fit in one order.
   void DecideWholeFrames(Plan& plan) const {
     int last = 0;
     for (int frame = 0; frame < trajectories_.frame_count(); ++frame) {
@@ -75,7 +75,8 @@ class LabelFinder {
     }
   }
 
-  // Frames with hidden or outlying markers: the orders of the frames around, and the given one.
+  // Decides on a frame with hidden or outlying markers, by the orders of the frames around it and
+  // by the order as recorded.
   void DecideByNeighbours(int frame, int before, int after, Plan& plan) const {
     if (before == kOpen) before = after == kOpen ? 0 : after;
     if (after == kOpen) after = before;
@@ -87,8 +88,8 @@ class LabelFinder {
     RemoveAll(frame, plan);
   }
 
-  // Takes the first order that fits, if the others that fit do the same; failing that, the first
-  // that fits without one marker.
+  // Takes the first order that fits, if the others that fit give the same positions. Otherwise
+  // takes the first order that fits without one marker.
   bool Try(int frame, const std::vector<int>& orders, Plan& plan) const {
     std::vector<int> fitting;
     for (const int order : orders) {
@@ -119,7 +120,7 @@ class LabelFinder {
     return true;
   }
 
-  // Raw markers without each of which at least two others are left that fit.
+  // Raw markers without which at least two others are left, and these fit.
   std::vector<int> OutlyingMarkers(int frame, int order) const {
     std::vector<int> outlying;
     int seen = 0;
@@ -181,7 +182,7 @@ bool IsRemoved(const Plan& plan, const ClusterShape& shape, int frame, int i) {
   return plan.removed[shape.permutations[plan.order[frame]][i]][frame];
 }
 
-// Carries a plan out.
+// Carries out a plan.
 void Apply(const Plan& plan, const ClusterShape& shape, const std::vector<int>& markers,
            Eigen::MatrixXd& positions) {
   std::vector<Eigen::RowVector3d> raw(markers.size());

@@ -9,17 +9,18 @@
 
 namespace elastocal {
 
-/// Markers fixed to one rigid plate or cover, whose labels the cameras' software may exchange.
+/// Markers on one rigid part, whose labels the cameras' software may exchange.
 struct LabelCluster {
   std::string name;
   std::vector<int> markers;  ///< of the trajectories' names
 };
 
 struct LabelOptions {
-  double tolerance_sd = 6.0;          ///< a distance is off beyond this many standard deviations
-  double least_tolerance_m = 0.0015;  ///< ... and this: cameras err differently across their space
-  /// Labels are only put right if every other order changes some distance by this many tolerances:
-  /// above 2, no frame can fit two orders.
+  double tolerance_sd = 6.0;  ///< a distance is wrong if it is off by more standard deviations
+  double least_tolerance_m =
+      0.0015;  ///< ... and by more than this: errors of cameras vary in space
+  /// Labels are corrected only if every other order changes some distance by this many tolerances.
+  /// Above 2, no frame can fit two orders.
   double least_separation = 2.5;
 };
 
@@ -29,7 +30,7 @@ struct SwappedLabels {
   Permutation permutation;  ///< label i of the cluster is now where label permutation[i] was
 };
 
-/// Frames in which a marker was set to NaN, as its distances to the others were off.
+/// Frames in which a marker was set to NaN because its distances to the others were wrong.
 struct OutlyingMarker {
   FrameInterval frames;
   int marker = 0;  ///< of the trajectories' names
@@ -37,11 +38,12 @@ struct OutlyingMarker {
 
 struct ClusterLabels {
   std::string name;
-  std::vector<int> markers;  ///< of the trajectories' names, as the cluster's
-  /// Exchanged labels cannot be put right for certain: one or two markers, or distances much alike.
-  /// Positions that look exchanged are then removed, as outliers are.
+  std::vector<int> markers;  ///< of the trajectories' names, in the order of the cluster
+  /// Exchanged labels cannot be corrected with certainty, because the cluster has only one or two
+  /// markers or its distances are too much alike. Positions that look exchanged are then removed
+  /// like outliers.
   bool ambiguous = false;
-  Eigen::VectorXd distances;   ///< a pair of markers, m, as ClusterShape
+  Eigen::VectorXd distances;   ///< of each pair of markers, m, as in ClusterShape
   Eigen::VectorXd tolerances;  ///< m
   std::vector<SwappedLabels> swaps;
   std::vector<OutlyingMarker> outliers;
@@ -49,15 +51,15 @@ struct ClusterLabels {
       undecided;  ///< frames of an ambiguous cluster that look exchanged; removed
 };
 
-/// Finds and corrects exchanged labels within clusters, and removes outlying markers, in place, by
-/// the distances between the markers of a cluster, which are constant. To be run on raw positions,
-/// before gaps are filled.
+/// Finds and corrects exchanged labels within clusters and removes outlying markers, in place. It
+/// uses that the distances between the markers of a cluster are constant. Run it on raw positions,
+/// before gaps are closed.
 ///
-/// A frame whose distances are off is given the one order of labels under which all fit. Where a
-/// marker is hidden, the order of the nearest frames before and after decides, if it fits. Where no
-/// order fits, the one marker without which the others fit is removed; where several would do, all
-/// of these; where none does, or two orders do, all of the cluster. Clusters of one marker are not
-/// looked at. Linear in the number of frames.
+/// A frame whose distances are wrong gets the one order of labels under which all distances fit. If
+/// a marker is hidden, the order of the nearest frames before and after is taken, if it fits. If no
+/// order fits, the one marker without which the others fit is removed. If there are several such
+/// markers, all of these are removed; if there is none, or if two orders fit, the whole cluster is.
+/// Clusters of one marker are skipped. Time is linear in the number of frames.
 ///
 /// Throws std::invalid_argument for a marker out of range or listed twice in a cluster.
 std::vector<ClusterLabels> CorrectLabels(const std::vector<LabelCluster>& clusters,

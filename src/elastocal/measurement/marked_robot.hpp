@@ -11,18 +11,19 @@
 
 namespace elastocal {
 
-/// What measurements have to know of a robot: all of a project's markers stand here, in its order,
-/// and "marker m" below is the m-th of them.
+/// What the processing of measurements needs to know of a robot. It has all markers of the project,
+/// in the project's order; in this layer, "marker m" is the m-th of them.
 struct MarkedRobot {
   RobotTree tree;
   std::vector<Marker> markers;         ///< at their nominal positions
   std::vector<LabelCluster> clusters;  ///< of `markers`
   std::vector<int> torque_sensors;     ///< joints whose logged torques are measured
-  Eigen::VectorXd q_not_logged;        ///< coordinates, rad or m: where joints not logged stood
+  Eigen::VectorXd
+      q_not_logged;  ///< by coordinate, rad or m: positions of joints that are not logged
 };
 
-/// Coordinate of the robot tree of each joint of a log. Throws InputError for a joint that the
-/// robot does not have.
+/// For each joint of a log, its coordinate of the robot tree. Throws InputError for a joint that
+/// the robot does not have.
 std::vector<int> LoggedCoordinates(const RobotTree& tree, const JointLog& log);
 
 }  // namespace elastocal

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-// One matrix of all trials, below each other.
+// Stacks a matrix of all trials, one below the other.
 template <typename Member>
 Eigen::MatrixXd Stack(const std::vector<TrialSamples>& trials, Eigen::Index columns,
                       Member member) {
@@ -36,7 +36,7 @@ void KeepSeenMarkers(const MarkedRobot& robot, Recording& recording) {
   recording.markers = recording.markers(Eigen::all, columns).eval();
 }
 
-// Sensors of different trials side by side, by their links.
+// Puts the sensors of different trials side by side, by their links.
 void StackWrenches(const std::vector<TrialSamples>& trials, Recording& recording) {
   std::set<int> links;
   for (const TrialSamples& trial : trials) {

@@ -8,10 +8,10 @@
 
 namespace elastocal {
 
-/// The samples of several trials as one recording, trials and postures in the given order, with
-/// those of the robot's markers that are seen in any posture, in the robot's order. Trials that
-/// were refused stay in the list of trials, without postures. Wrenches are NaN where a trial's log
-/// has none; without any torque or wrench at all the recording has none (no rows).
+/// Joins the samples of several trials to one recording, with trials and postures in the given
+/// order. Its markers are those of the robot that are seen in any posture, in the robot's order.
+/// Refused trials stay in the list of trials, without postures. Wrenches are NaN if a trial's log
+/// has none. If no trial has any torque (wrench), the recording has no rows of these.
 Recording MergeTrials(const MarkedRobot& robot, const std::vector<TrialSamples>& trials,
                       const std::string& source);
 

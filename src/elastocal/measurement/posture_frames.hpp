@@ -9,7 +9,7 @@
 
 namespace elastocal {
 
-/// Markers and log of a trial, both filtered, with their clocks.
+/// Markers and log of a trial, both filtered, with the relation of their clocks.
 struct TimedTrial {
   const MarkerTrajectories& trajectories;
   const SmoothedLog& log;
@@ -19,16 +19,16 @@ struct TimedTrial {
   double RobotTime(int frame) const { return clock.RobotTime(CameraTime(frame)); }
 };
 
-/// The frames of which each posture is the mean, rising.
+/// For each posture, the frames whose mean it is, ascending.
 using PostureFrames = std::vector<std::vector<int>>;
 
-/// One posture a rest. A marker with a noisy speed can break a rest in two runs; of the runs
-/// between which no joint moved (by more than 2 mrad or 2 mm), the one in which most markers are
-/// seen stands for all. The log must cover the runs.
+/// One posture for each rest. A marker with a noisy speed can break a rest into two runs. Of runs
+/// between which no joint moved (by more than 2 mrad or 2 mm), only the one in which most markers
+/// are seen is used. The log must cover the runs.
 PostureFrames RestPostures(const TimedTrial& trial, const StableSamples& rests);
 
-/// One frame a posture, about `rate_hz` times a second, from the first frame in motion to the last;
-/// only where the log covers it.
+/// One frame for each posture, about `rate_hz` times a second, from the first frame in motion to
+/// the last. Frames that the log does not cover are left out.
 PostureFrames MotionPostures(const TimedTrial& trial, const StableSamples& rests, double rate_hz);
 
 }  // namespace elastocal

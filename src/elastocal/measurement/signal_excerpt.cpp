@@ -11,7 +11,7 @@ std::vector<double> Column(const Eigen::MatrixXd& positions, Eigen::Index column
   return {values.begin(), values.end()};
 }
 
-/// Largest less smallest of the numbers that are there.
+/// Range of a column: its largest less its smallest number; NaN is skipped.
 double Range(const Eigen::MatrixXd& positions, Eigen::Index column) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;

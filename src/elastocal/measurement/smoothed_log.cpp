@@ -13,8 +13,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kLongestLogHole_s = 0.1;
-constexpr double kHoleSteps = 2.5;  // of a slow log: two samples lost are a hole
-constexpr double kRegular = 1e-4;   // of a step: times closer than this need no interpolation
+constexpr double kHoleSteps = 2.5;  // in a slow log, two lost samples are a hole
+constexpr double kRegular = 1e-4;   // share of a step: times this regular need no interpolation
 
 std::vector<FrameInterval> SplitAtHoles(const Eigen::VectorXd& time_s) {
   const Eigen::Index steps = time_s.size() - 1;
@@ -31,7 +31,7 @@ std::vector<FrameInterval> SplitAtHoles(const Eigen::VectorXd& time_s) {
   return pieces;
 }
 
-// Column `column` of `piece` becomes the signal, at the piece's constant rate.
+// Writes the signal to column `column` of `piece`, at the piece's constant rate.
 void Regularise(const Eigen::Ref<const Eigen::VectorXd>& time_s,
                 const Eigen::Ref<const Eigen::VectorXd>& signal, int column, LogPiece& piece) {
   Eigen::Index i = 0;
@@ -72,7 +72,7 @@ LogPiece MakePiece(const JointLog& log, const FrameInterval& samples) {
   return piece;
 }
 
-// Signals next to each other are filtered together; those with NaN are left out.
+// Filters neighbouring signals together. Signals with NaN are left out.
 void FilterKnown(const SecondOrderSections& sections, Eigen::MatrixXd& values) {
   const auto is_known = [&](int column) { return values.col(column).allFinite(); };
   for (const FrameInterval& run : RunsWhere(static_cast<int>(values.cols()), is_known)) {
@@ -121,7 +121,7 @@ std::optional<Eigen::VectorXd> SmoothedLog::At(double robot_time_s) const {
   const double sample = (robot_time_s - piece->start_s) * piece->rate_hz;
   const auto first =
       std::clamp<Eigen::Index>(static_cast<Eigen::Index>(sample) - 1, 0, piece->values.rows() - 4);
-  const double u = sample - static_cast<double>(first);  // 1 to 2, but at the ends
+  const double u = sample - static_cast<double>(first);  // from 1 to 2, except at the ends
   const Eigen::Vector4d weights(-(u - 1.0) * (u - 2.0) * (u - 3.0) / 6.0,
                                 u * (u - 2.0) * (u - 3.0) / 2.0, -u * (u - 1.0) * (u - 3.0) / 2.0,
                                 u * (u - 1.0) * (u - 2.0) / 6.0);

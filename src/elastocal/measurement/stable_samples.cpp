@@ -10,9 +10,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kRestingShare = 0.05;  // of the windows that are surely at rest
+constexpr double kRestingShare = 0.05;  // share of the windows that are surely at rest
 
-// What the samples are chosen by, of one frame.
+// What is known of one frame for the choice of samples.
 struct FrameSpeed {
   double largest = 0.0;
   int fastest = -1;  // column of the speeds
@@ -72,14 +72,14 @@ void ChooseThreshold(const Eigen::MatrixXd& speeds, const std::vector<int>& mark
   result.resting_speed_m_per_s = resting;
   const double threshold =
       std::max(options.threshold_factor * resting, options.least_threshold_m_per_s);
-  // Also where no speed is known and the resting speed NaN.
+  // True also if no speed is known, when the resting speed is NaN.
   result.threshold_limited = !(threshold <= options.threshold_limit_m_per_s);
   result.threshold_m_per_s = result.threshold_limited ? options.threshold_limit_m_per_s : threshold;
 }
 
 enum class State { kUnseen, kMoving, kResting };
 
-// Neighbouring frames in the same state.
+// Consecutive frames in the same state.
 struct Stretch {
   FrameInterval frames;
   State state = State::kUnseen;
@@ -108,7 +108,7 @@ std::vector<Stretch> SplitByState(const std::vector<FrameSpeed>& frames, double 
   return stretches;
 }
 
-// Equally spaced frames of a run, among those in which most markers are seen.
+// Chooses equally spaced frames of a run, among those in which most markers are seen.
 std::vector<int> ChooseFrames(const std::vector<FrameSpeed>& frames, const FrameInterval& run,
                               int count) {
   int most = 0;
@@ -125,7 +125,7 @@ std::vector<int> ChooseFrames(const std::vector<FrameSpeed>& frames, const Frame
   return chosen;
 }
 
-// Appends the frames between samples of a run that are left over.
+// Appends the frames of a run that are not samples.
 void AppendSpare(const FrameInterval& run, const std::vector<int>& chosen,
                  std::vector<UnusedFrames>& unused) {
   int begin = run.begin;
@@ -156,7 +156,7 @@ Eigen::MatrixXd MarkerSpeeds(const MarkerTrajectories& trajectories) {
     speed.setZero();
     for (int k = 0; k < 3; ++k) {
       const auto x = track.col(k);
-      // The frame itself enters only so that its absence counts.
+      // The frame itself is added only to make the result NaN if the marker is not seen in it.
       speed.array() +=
           (x.tail(inner) - x.head(inner)).array().square() + 0.0 * x.segment(1, inner).array();
     }

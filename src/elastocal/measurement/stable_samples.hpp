@@ -11,13 +11,13 @@
 
 namespace elastocal {
 
-/// Which frames of a trial count as measured at rest (paper, section 5.1).
+/// When the robot counts as at rest in a frame (paper, section 5.1).
 struct StableSampleOptions {
-  /// All markers must be slower, m/s; 0 stands for `threshold_factor` times the resting speed that
-  /// EstimateRestingSpeed finds, but within the two limits below.
+  /// At rest, all markers are slower than this, m/s. 0 stands for `threshold_factor` times the
+  /// speed that EstimateRestingSpeed returns, within the two limits below.
   double threshold_m_per_s = 0.0;
-  /// With normal noise of equal size, 63 resting markers all stay below 4 times the median speed
-  /// for hours; below 3.5 times, for ten minutes.
+  /// With normal noise of equal size, the speeds of 63 resting markers all stay below 4 times their
+  /// median for hours, and below 3.5 times for ten minutes.
   double threshold_factor = 4.0;
   double least_threshold_m_per_s = 0.001;  ///< for data without noise
   double threshold_limit_m_per_s = 0.02;   ///< for trials that never rest
@@ -28,10 +28,10 @@ struct StableSampleOptions {
 
 /// Why a frame is not among the samples.
 enum class UnusedReason {
-  kMoving,         ///< a marker at the threshold or above
-  kTooFewVisible,  ///< fewer markers with a speed than asked for
-  kTooShort,       ///< at rest, for less than the hold time
-  kSpare,          ///< at rest for long enough, but other frames stand for this run
+  kMoving,         ///< the speed of a marker is at the threshold or above
+  kTooFewVisible,  ///< too few markers have a speed
+  kTooShort,       ///< at rest, but for less than `hold_s`
+  kSpare,          ///< at rest for long enough, but other frames of this run are the samples
 };
 
 /// Frames that are not used, all for the same reason.
@@ -43,44 +43,47 @@ struct UnusedFrames {
 
 struct StableSamples {
   double threshold_m_per_s = 0.0;               ///< as used
-  std::optional<double> resting_speed_m_per_s;  ///< where the threshold was estimated
+  std::optional<double> resting_speed_m_per_s;  ///< if the threshold was estimated
   bool threshold_limited = false;               ///< the estimate was above the limit
-  std::vector<FrameInterval> runs;              ///< at rest for at least the hold time, in order
-  std::vector<int> frames;                      ///< the samples, run by run, rising
-  std::vector<int> run_of_frame;                ///< as `frames`: index into `runs`
-  std::vector<int> samples_of_marker;  ///< as the given markers: samples in which it is seen
-  std::vector<UnusedFrames> unused;    ///< in order; with `frames` covers the trial
+  std::vector<FrameInterval> runs;              ///< runs at rest of at least `hold_s`, in order
+  std::vector<int> frames;                      ///< the samples, run by run, ascending
+  std::vector<int> run_of_frame;                ///< for each of `frames`, index into `runs`
+  std::vector<int>
+      samples_of_marker;  ///< for each given marker, number of samples in which it is seen
+  std::vector<UnusedFrames> unused;  ///< in order; together with `frames` they cover the trial
 
   /// Number of frames not used for `reason`.
   int UnusedCount(UnusedReason reason) const;
 };
 
-/// frames x markers, m/s: length of the central difference of each marker's positions (which should
-/// be filtered); NaN where the marker or one of its two neighbours in time is not seen.
+/// Speeds of all markers, frames x markers, m/s: length of the central difference of the positions
+/// (which should be filtered). NaN where the marker is not seen in the frame or in one of the two
+/// frames beside it.
 Eigen::MatrixXd MarkerSpeeds(const MarkerTrajectories& trajectories);
 
-/// Sets the speeds of each marker to NaN within `margin_s` of the ends of its unbroken pieces, and
-/// of the trial: there a filter knows only one side and lets more noise pass, which at rest would
+/// Sets the speeds of each marker to NaN within `margin_s` of the ends of its unbroken pieces and
+/// of the trial. There the filter knows only one side and lets more noise pass, which at rest would
 /// look like motion.
 void ForgetEdges(const MarkerTrajectories& trajectories, double margin_s, Eigen::MatrixXd& speeds);
 
-/// Speed that noise and vibration leave to a marker at rest, m/s: over windows of `window_s`, the
-/// median speed of all given markers and frames, and of these medians the one that 5 % of the
-/// windows stay below. Valid if the robot rests for a tenth of the time or so, or if most markers
-/// stand still throughout; too large for a trial without any rest. NaN where no speed is known.
+/// Speed of a marker at rest, which is due to noise and vibration, m/s. It is the 5 % quantile,
+/// over windows of `window_s`, of the median speed of all given markers and frames in a window.
+/// Valid if the robot rests for about a tenth of the time, or if most markers stand still
+/// throughout; too large for a trial without any rest. NaN if no speed is known.
 ///
-/// `speeds` as of MarkerSpeeds; `markers` are columns of it.
+/// `speeds` is what MarkerSpeeds returns; `markers` are columns of it.
 double EstimateRestingSpeed(const Eigen::MatrixXd& speeds, const std::vector<int>& markers,
                             double rate_hz, double window_s);
 
-/// Runs of frames in which all visible ones of `markers` are slower than a threshold for at least
-/// the hold time, and of each run `samples_per_run` equally spaced frames (the middle one, for 1;
-/// all, of a run that has fewer), the same for all markers so that no marker weighs more than
-/// another. They are taken among the frames of the run in which most of the markers are seen.
+/// Finds runs of frames in which all visible ones of `markers` are slower than a threshold for at
+/// least `hold_s`. Of each run it takes as samples `samples_per_run` equally spaced frames (one:
+/// the middle frame; more than the run has: all frames), among the frames of the run in which most
+/// of the markers are seen. The samples are the same for all markers, so that no marker weighs more
+/// than another.
 ///
-/// `speeds` (m/s, frames x all markers) as of MarkerSpeeds, at `rate_hz`. Throws
-/// std::invalid_argument for a marker that is no column of `speeds`, an empty list, or options out
-/// of range.
+/// `speeds` (m/s, frames x all markers) is what MarkerSpeeds returns, at `rate_hz`. Throws
+/// std::invalid_argument for a marker that is not a column of `speeds`, for an empty list, and for
+/// options out of range.
 StableSamples FindStableSamples(const Eigen::MatrixXd& speeds, const std::vector<int>& markers,
                                 double rate_hz, const StableSampleOptions& options);
 

@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-// A value that a sensor keeps coming back to and stays at.
+// A value to which a sensor returns and at which it stays.
 struct Stays {
   double seconds = 0.0;
   double longest_s = 0.0;
@@ -25,7 +25,7 @@ bool RobotMoves(const JointLog& log, const FrameInterval& samples, double moved_
   return false;
 }
 
-// By the value that a sensor stays at, exactly.
+// The stays of a sensor, by the exact value at which it stays.
 std::map<double, Stays> FindStays(const JointLog& log, int column,
                                   const TorqueCheckOptions& options) {
   std::map<double, Stays> stays;
@@ -57,7 +57,8 @@ std::optional<TorqueFinding> CheckSensor(const JointLog& log, int column,
   std::optional<TorqueFinding> saturated;
   for (const auto& [value, here] : FindStays(log, column, options)) {
     const bool extreme = value == lowest || value == highest;
-    // A sensor that died reads its last value once and for all; a limit is reached again and again.
+    // A stuck sensor keeps its last value forever, whereas a saturated one reaches its limit again
+    // and again.
     if (here.longest_s >= options.stuck_s && !(extreme && here.count > 1)) {
       return finding(TorqueFault::kStuck, value, here.begin_s);
     }

@@ -17,21 +17,22 @@ enum class TorqueFault {
 struct TorqueFinding {
   int column = 0;  ///< of the log's torques
   TorqueFault fault = TorqueFault::kDead;
-  double value = 0.0;    ///< at which it stays, N.m or N
-  double share = 0.0;    ///< of the log's samples that are exactly this value
+  double value = 0.0;    ///< value at which the sensor stays, N.m or N
+  double share = 0.0;    ///< share of the log's samples with exactly this value
   double begin_s = 0.0;  ///< robot time at which it begins to stay there
 };
 
 struct TorqueCheckOptions {
-  double moved_rad = 0.02;        ///< a joint (prismatic: m) that moves this much moves the robot
-  double shortest_stay_s = 0.25;  ///< stays count from here on; data held between updates do not
-  double saturated_s = 0.5;       ///< time in stays at an extreme that is no chance
-  double stuck_s = 5.0;           ///< the same for a value between the extremes
+  double moved_rad = 0.02;  ///< the robot moves if a joint moves by this much (prismatic: m)
+  double shortest_stay_s =
+      0.25;  ///< shorter stays do not count: they may be values held between updates
+  double saturated_s = 0.5;  ///< time at an extreme value that cannot be chance
+  double stuck_s = 5.0;      ///< the same for a value between the extremes
 };
 
-/// Torque sensors that cannot be trusted, by their own raw values: what a working sensor reads is
-/// never exactly the same for long while the robot moves. At most one finding a sensor, the first
-/// that applies in the order of TorqueFault. Joints without torques are passed over.
+/// Finds torque sensors that cannot be trusted, by their raw values: a working sensor never reads
+/// exactly the same value for long while the robot moves. Returns at most one finding for each
+/// sensor, the first that applies in the order of TorqueFault. Joints without torques are skipped.
 std::vector<TorqueFinding> CheckTorqueSensors(const JointLog& log,
                                               const TorqueCheckOptions& options);
 

@@ -7,7 +7,7 @@
 
 namespace elastocal {
 
-/// What the cameras saw: positions of labelled markers at a constant rate.
+/// What the cameras recorded: positions of labelled markers at a constant rate.
 struct MarkerTrajectories {
   std::string source;              ///< the file, for messages
   std::vector<std::string> names;  ///< of the markers, in the order of `positions`
@@ -26,7 +26,7 @@ struct ForceTorqueSensor {
   int link = 0;  ///< of the robot tree
 };
 
-/// What the robot logged, on its own clock.
+/// What the robot recorded, on its own clock.
 struct JointLog {
   std::string source;
   std::vector<std::string> names;  ///< of the joints, in the order of the columns
@@ -34,7 +34,8 @@ struct JointLog {
   Eigen::MatrixXd positions;       ///< samples x joints, rad or m
   Eigen::MatrixXd torques;         ///< samples x joints, N.m or N; NaN for joints without sensor
   std::vector<ForceTorqueSensor> wrench_sensors = {};
-  Eigen::MatrixXd wrenches = {};  ///< samples x 6 a sensor: force [N], moment [N.m], as Recording
+  Eigen::MatrixXd wrenches =
+      {};  ///< samples x 6 for each sensor: force [N], moment [N.m], as in Recording
 
   int sample_count() const { return static_cast<int>(time_s.size()); }
 };

@@ -11,16 +11,18 @@
 namespace elastocal {
 namespace {
 
-constexpr double kWidest_s = 600.0;  // keeps the search linear
+constexpr double kWidest_s = 600.0;  // bounds the cost of the search
 constexpr double kMostSamples = 1e8;
 constexpr double kRestWindow_s = 0.3;
-constexpr double kJump = 0.02;        // of the mean speed's standard deviation
-constexpr double kJumpReach_s = 0.1;  // to either side of a jump
+constexpr double kJump = 0.02;  // size of a jump, as a share of the mean speed's standard deviation
+constexpr double kJumpReach_s = 0.1;  // what is left out to either side of a jump
 constexpr int kMostPasses = 3;
-constexpr double kSettled_s = 5e-3;  // well within a jump's reach
-constexpr double kLeastSeen = 0.5;   // of the trial, for a marker to count without being seen
+constexpr double kSettled_s =
+    5e-3;  // change of the lag that counts as none; well within a jump's reach
+constexpr double kLeastSeen =
+    0.5;  // least share of the trial in which a marker must be seen to count
 
-// Nominal positions of markers in the frame of the link that stands still.
+// Nominal marker positions in the frame of the link that stands still.
 class StandingKinematics {
  public:
   StandingKinematics(const MarkedRobot& robot, const std::vector<int>& markers, int standing)
@@ -32,7 +34,7 @@ class StandingKinematics {
       bodies_.push_back(link.body);
       p_body_marker_.push_back(link.T_body_link * marker.p_link_marker);
     }
-    // Also the joints of the standing link have to be moved, whether or not it has markers.
+    // The joints that carry the standing link must move in the model, even if it has no markers.
     carried.push_back({.name = "standing link", .link = standing});
     model_ = MakeErrorModel(robot.tree, std::move(carried));
     geometry_ = ApplyErrors(model_, Eigen::VectorXd::Zero(model_.parameter_count()));
@@ -58,7 +60,7 @@ class StandingKinematics {
   Geometry geometry_;
 };
 
-// Mean of each row's known values; NaN where fewer than `least` are known.
+// Mean of the known values of each row; NaN if fewer than `least` are known.
 Eigen::VectorXd MeanKnown(const Eigen::MatrixXd& values, const std::vector<bool>& columns,
                           double least) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(values.rows());
@@ -74,13 +76,13 @@ Eigen::VectorXd MeanKnown(const Eigen::MatrixXd& values, const std::vector<bool>
   return (count.array() >= least).select(sum.array() / count.array(), kNaN);
 }
 
-// The two mean speeds, over the same markers in each moment.
+// The two mean speeds, over the same markers at each moment.
 struct MeansOfSeen {
   Eigen::VectorXd measured;  // by frame
   Eigen::VectorXd logged;    // by logged time
 };
 
-// The logged mean at a time, over the markers that are seen in a frame.
+// Mean of the logged speeds at one time, over the markers that are seen in a frame.
 double MeanOfSeen(const Eigen::MatrixXd& logged, Eigen::Index row, const Eigen::MatrixXd& measured,
                   Eigen::Index frame) {
   double sum = 0.0;
@@ -93,9 +95,9 @@ double MeanOfSeen(const Eigen::MatrixXd& logged, Eigen::Index row, const Eigen::
   return count > 0 ? sum / count : logged.row(row).mean();
 }
 
-// Which frame is at which logged time is known by `clock`. Where markers come or go and the mean
-// jumps, it would jump in both signals just as this clock has it, whatever is true: frames around
-// such jumps are left out.
+// `clock` tells which frame belongs to which logged time. When markers come or go, the mean jumps
+// in both signals at the same time by this clock, even if the clock is wrong; frames around such
+// jumps are therefore left out.
 MeansOfSeen TakeMeansOfSeen(const Eigen::MatrixXd& measured, const Eigen::VectorXd& measured_mean,
                             double rate_hz, const LoggedSpeeds& logged, const ClockFit& clock) {
   MeansOfSeen means{measured_mean, logged.speeds.rowwise().mean()};
@@ -170,13 +172,13 @@ ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, Log
                             const std::optional<double>& expected_lag_s, ClockOptions options) {
   if (logged.time_s.size() < 2 || measured.rows() == 0) return {};
   const double span_s = logged.time_s[logged.time_s.size() - 1] - logged.time_s[0];
-  if (!(span_s * rate_hz < kMostSamples)) return {};  // a log of years, with one hole
+  if (!(span_s * rate_hz < kMostSamples)) return {};  // e.g. a log of years with one hole
   options.expected_lag_s = expected_lag_s.value_or(0.0);
   if (!expected_lag_s) {
     ChooseRange(static_cast<double>(measured.rows()) / rate_hz, logged.time_s, options);
   }
-  // The length of a noisy velocity is never zero. Without this the two speeds differ at each rest,
-  // which hides how well they agree.
+  // The length of a noisy velocity is never zero. Without this correction the two speeds would
+  // differ at each rest, which would hide how well they agree.
   std::vector<int> columns(static_cast<std::size_t>(measured.cols()));
   std::iota(columns.begin(), columns.end(), 0);
   const double resting = EstimateRestingSpeed(measured, columns, rate_hz, kRestWindow_s);

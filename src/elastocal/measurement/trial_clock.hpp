@@ -11,7 +11,7 @@
 
 namespace elastocal {
 
-/// Speeds of markers as the robot's log has them.
+/// Speeds of markers by the robot's log.
 struct LoggedSpeeds {
   Eigen::VectorXd time_s;  ///< robot time, strictly increasing
   Eigen::MatrixXd speeds;  ///< times x markers, m/s
@@ -19,21 +19,21 @@ struct LoggedSpeeds {
 
 /// Speeds of the markers `markers` relative to the link `standing`, by nominal forward kinematics
 /// of the logged joint positions `log` (whose columns are the coordinates `coordinates`), about
-/// `rate_hz` times a second. With `standing` at rest in the laboratory these are the speeds that
-/// cameras see, wherever they stand: no frame of theirs enters.
+/// `rate_hz` times a second. If `standing` is at rest in the laboratory, cameras see the same
+/// speeds, whatever their frame.
 LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& markers, int standing,
                            const SmoothedLog& log, const std::vector<int>& coordinates,
                            double rate_hz);
 
-/// Lag and drift of the robot's clock from the mean speed of all markers (section 5.1; the sum over
-/// markers of one robot has no periods of its own and no frame). `measured` (frames x markers, m/s,
-/// NaN where unknown; markers as in `logged`) was filtered as the log was.
+/// Estimates lag and drift of the robot's clock from the mean speed of all markers (section 5.1).
+/// `measured` (frames x markers, m/s, NaN where unknown; markers as in `logged`) must have passed
+/// the same filter as the log.
 ///
-/// Markers come and go, and with them the mean. So the clock is estimated again, in each moment
-/// with those markers that the cameras saw then.
+/// The mean changes when markers come and go. The clock is therefore estimated a second time, with
+/// both means over the markers that the cameras saw at each moment.
 ///
-/// Without `expected_lag_s`, the lags searched are those between both beginning together and both
-/// ending together (ten minutes at most), and ClockOptions::longest_lag_s further to either side.
+/// Without `expected_lag_s`, the search covers the lags from both beginning together to both ending
+/// together (at most ten minutes), and ClockOptions::longest_lag_s further to either side.
 ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, LoggedSpeeds logged,
                             const std::optional<double>& expected_lag_s, ClockOptions options);
 

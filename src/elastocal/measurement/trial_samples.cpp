@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-// One trial on its way through the steps of SampleTrial.
+// State of one trial during the steps of SampleTrial.
 class TrialSampler {
  public:
   TrialSampler(const MarkedRobot& robot, const Trial& trial, const JointLog& log,
@@ -44,7 +44,7 @@ class TrialSampler {
 
   void Refuse(const std::string& reason) { summary().refused = reason; }
 
-  // Keeps the columns of the markers that take part; `markers_` are those, of the robot.
+  // Keeps the columns of the markers that take part. `markers_` are their numbers in the robot.
   void TakeMarkers(const std::vector<int>& markers, MarkerTrajectories all) {
     summary().markers_source = all.source;
     summary().rate_hz = all.rate_hz;
@@ -72,7 +72,7 @@ class TrialSampler {
     trajectories_.positions = all.positions(Eigen::all, columns);
   }
 
-  // Which columns of the log have torques to be used.
+  // Finds the columns of the log whose torques can be used.
   void CheckTorques() {
     torques_used_.assign(log_.names.size(), false);
     for (const int joint : robot_.torque_sensors) {
@@ -92,7 +92,7 @@ class TrialSampler {
     }
   }
 
-  // The robot's clusters, as far as they take part, by columns of the trajectories.
+  // The robot's clusters with the markers that take part, as columns of the trajectories.
   std::vector<LabelCluster> TakeClusters() const {
     std::vector<LabelCluster> clusters;
     for (const LabelCluster& cluster : robot_.clusters) {
@@ -137,7 +137,7 @@ class TrialSampler {
   double CameraTime(int frame) const { return frame / trajectories_.rate_hz; }
   double RobotTime(int frame) const { return result_.summary.clock.RobotTime(CameraTime(frame)); }
 
-  // Frames without joint positions are of no use, however still the robot is.
+  // Frames without joint positions cannot be used, even if the robot is at rest.
   void LeaveOutUnlogged(Eigen::MatrixXd& speeds) {
     summary().log_begin_s = summary().clock.CameraTime(log_.time_s[0]);
     summary().log_end_s = summary().clock.CameraTime(log_.time_s[log_.time_s.size() - 1]);
@@ -183,7 +183,7 @@ class TrialSampler {
   void AverageMarkers(const std::vector<int>& frames, Eigen::Index posture) {
     for (std::size_t m = 0; m < markers_.size(); ++m) {
       Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-      // NaN in one frame is NaN in the mean.
+      // A NaN in one frame makes the mean NaN.
       for (const int frame : frames)
         sum += trajectories_.positions.block<1, 3>(frame, 3 * static_cast<Eigen::Index>(m));
       result_.markers.block<1, 3>(posture, 3 * markers_[m]) =
@@ -226,7 +226,7 @@ class TrialSampler {
   const MeasurementOptions& options_;
   TrialSamples& result_;
   std::vector<int> coordinates_;    // of the log's joints
-  std::vector<bool> torques_used_;  // as the log's joints
+  std::vector<bool> torques_used_;  // by joint of the log
   std::vector<int> markers_;        // of the robot: the columns of the trajectories
   MarkerTrajectories trajectories_;
   SmoothedLog smoothed_log_;

@@ -7,7 +7,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLostLong = 0.1;  // of a trial, for a marker to be worth a sentence
+constexpr double kLostLong = 0.1;  // share of a trial from which on a lost marker is reported
 constexpr double kOffLong = 0.01;  // the same, for outliers
 constexpr double kUnlogged = 0.1;  // the same, for a log to be too short
 
@@ -44,7 +44,7 @@ class Finder {
           "; its torques are not used");
     }
     if (!summary_.torques_missing.empty()) {
-      Add("no torques were logged of " + Join(summary_.torques_missing));
+      Add("no torques were logged for " + Join(summary_.torques_missing));
     }
     for (const ClusterLabels& labels : summary_.labels) AddLabels(labels);
     AddOutliers();
@@ -77,12 +77,12 @@ class Finder {
     if (!labels.undecided.empty()) {
       Add(
           Format("labels of cluster %s look exchanged in %d frames, but its distances are too much "
-                 "alike to put them right; removed there",
+                 "alike to correct them; removed there",
                  labels.name.c_str(), FrameCount(labels.undecided)));
     }
   }
 
-  // A few here and there are as cameras are; a marker that is off for long was touched.
+  // Single outliers are normal for cameras; a marker that is off for long was touched.
   void AddOutliers() {
     std::vector<int> frames(summary_.markers.size(), 0);
     std::vector<int> first(summary_.markers.size(), 0);
@@ -150,7 +150,8 @@ std::string DescribeUnused(const TrialSummary& summary) {
   if (!summary.rests) return "";
   const auto count = [&](UnusedReason reason) { return summary.rests->UnusedCount(reason); };
   return Format(
-      "not used: %d frames in motion (above %.1f mm/s), %d at rest too shortly, %d outside the "
+      "not used: %d frames in motion (above %.1f mm/s), %d at rest for too short a time, %d "
+      "outside the "
       "joint log, %d with too few markers, %d spare",
       count(UnusedReason::kMoving), 1e3 * summary.rests->threshold_m_per_s,
       count(UnusedReason::kTooShort), summary.outside_log,

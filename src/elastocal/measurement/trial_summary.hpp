@@ -20,7 +20,7 @@ struct BadTorqueSensor {
   TorqueFinding finding;
 };
 
-/// What of a trial was used, and why the rest was not.
+/// Which part of a trial was used, and why the rest was not.
 struct TrialSummary {
   Trial trial;
   std::string markers_source, joints_source;  ///< files, for messages
@@ -29,31 +29,34 @@ struct TrialSummary {
   int frame_count = 0;
   ClockFit clock;
 
-  int postures = 0;                           ///< rests or, of a sine trial, moments
-  int samples = 0;                            ///< frames in them, as the paper counts (section 5.1)
-  int outside_log = 0;                        ///< frames at which the robot's log has nothing
-  double log_begin_s = 0.0, log_end_s = 0.0;  ///< of the log, in camera time
-  std::optional<StableSamples> rests;         ///< not of refused trials
+  int postures = 0;     ///< number of rests or, in a sine trial, of moments
+  int samples = 0;      ///< frames in them, as the paper counts (section 5.1)
+  int outside_log = 0;  ///< number of frames that the robot's log does not cover
+  double log_begin_s = 0.0, log_end_s = 0.0;  ///< begin and end of the log, in camera time
+  std::optional<StableSamples> rests;         ///< empty for refused trials
   SignalExcerpt signal;                       ///< without samples in refused trials
 
-  std::vector<std::string> markers;        ///< that take part in the trial and are in the file
-  std::vector<MarkerSmoothing> smoothing;  ///< as `markers`
-  std::vector<int> postures_seen;          ///< as `markers`: postures with the marker
-  std::vector<ClusterLabels> labels;       ///< a cluster; their markers are indices into `markers`
-  std::vector<std::string> markers_missing;  ///< take part, but are not in the file or never seen
-  std::vector<std::string> markers_unknown;  ///< in the file, but not of the project
+  std::vector<std::string> markers;  ///< markers that take part in the trial and are in the file
+  std::vector<MarkerSmoothing> smoothing;  ///< one for each of `markers`
+  std::vector<int>
+      postures_seen;  ///< for each of `markers`, number of postures in which it is seen
+  std::vector<ClusterLabels>
+      labels;  ///< one for each cluster; its markers are indices into `markers`
+  std::vector<std::string>
+      markers_missing;  ///< markers that take part, but are not in the file or never seen
+  std::vector<std::string> markers_unknown;  ///< markers in the file that the project does not have
   std::vector<BadTorqueSensor> bad_torque_sensors;
   std::vector<std::string> torques_missing;  ///< joints that have a sensor, but no logged torques
 };
 
-/// One line: what was taken from the trial, and how its clock stands.
+/// One line: what was taken from the trial, and the state of its clock.
 std::string Describe(const TrialSummary& summary);
 
-/// What a user should know of, one sentence each, the gravest first: why the trial was refused, bad
-/// torque sensors, exchanged labels, markers lost, outliers, a log that is too short.
+/// What a user should know, one sentence each, the gravest first: why the trial was refused, bad
+/// torque sensors, exchanged labels, lost markers, outliers, a log that is too short.
 std::vector<std::string> Findings(const TrialSummary& summary);
 
-/// The frames that are not used, by reason, in one line.
+/// One line with the number of frames that are not used, by reason.
 std::string DescribeUnused(const TrialSummary& summary);
 
 }  // namespace elastocal

@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// The root link's way from begin to end without regard to dynamics.
+/// The root link's way from `begin` to `end`, without regard to dynamics.
 std::vector<Transform> RootWay(const Stretch& stretch) {
   const Transform& from = stretch.begin.T_world_root;
   const Transform& to = stretch.end.T_world_root;
@@ -26,7 +26,7 @@ std::vector<Transform> RootWay(const Stretch& stretch) {
   return way;
 }
 
-/// Places the legs at every sample, each from the one before.
+/// Places the legs at every sample, starting from the sample before.
 bool PlaceLegs(const StandingRobot& robot, const Stretch& stretch,
                const std::vector<Transform>& T_world_root, Eigen::MatrixXd& q) {
   PlacedPosture pose = stretch.begin;
@@ -61,7 +61,7 @@ Eigen::Vector2d FollowingShare(const StandingRobot& robot, const Stretch& stretc
   return Eigen::Vector2d((com({kStep, 0}) - here).x(), (com({0, kStep}) - here).y()) / kStep;
 }
 
-/// Joint speeds of the standing legs (norm) by the root link's speed, squared, 1/m^2.
+/// Square of the ratio of the standing legs' joint speeds (norm) to the root link's speed, 1/m^2.
 double SpeedGain(const StandingRobot& robot, const Stretch& stretch) {
   constexpr double kStep = 1e-3;
   PlacedPosture pose = stretch.begin;
@@ -72,8 +72,8 @@ double SpeedGain(const StandingRobot& robot, const Stretch& stretch) {
   return ((pose.q - stretch.begin.q) / kStep).squaredNorm();
 }
 
-/// What a displacement of the root does to the zero-moment point and to joint speeds, as a band
-/// matrix to be solved for corrections.
+/// Effect of a displacement of the root on the zero-moment point and on joint speeds, as a band
+/// matrix that is solved for corrections.
 class CartOnTable {
  public:
   CartOnTable(int samples, double step, double share, double height_over_g, double speed_weight)
@@ -97,7 +97,7 @@ class CartOnTable {
     solver_.compute(normal.block(kAtRest, kAtRest, inner, inner));
   }
 
-  /// The correction of the way of the root that makes up for errors of the zero-moment point.
+  /// The correction of the root's way that compensates errors of the zero-moment point.
   Eigen::VectorXd Correct(const Eigen::VectorXd& error, const Eigen::VectorXd& way) const {
     const Eigen::VectorXd slope = -(zmp_.transpose() * error + speed_.transpose() * (speed_ * way));
     const Eigen::Index inner = slope.size() - 2 * kAtRest;

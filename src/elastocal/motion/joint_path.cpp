@@ -19,7 +19,7 @@ Eigen::MatrixXd VelocityMetric(int control_points) {
   return slope.transpose() * slope / (kSamples - 1);
 }
 
-/// Of a way from 0 to 1 with least velocity, the way points.
+/// Way points of the way from 0 to 1 with the least velocity.
 Eigen::VectorXd WayFractions(const Eigen::MatrixXd& metric) {
   const Eigen::Index free = metric.rows() - 6;
   return -metric.block(3, 3, free, free)
@@ -31,7 +31,7 @@ double Least(const Eigen::VectorXd& distances) {
   return distances.size() > 0 ? distances.minCoeff() : std::numeric_limits<double>::infinity();
 }
 
-/// Moves way points away from where parts of the robot are too near.
+/// Moves way points so that parts of the robot are further from each other.
 class WayAround {
  public:
   WayAround(const StandingRobot& robot, const Clearances& clearances,
@@ -45,18 +45,19 @@ class WayAround {
                                       static_cast<int>(std::lround(1.0 / options.check_step)) + 1)),
         solver_(metric.block(3, 3, metric.rows() - 6, metric.rows() - 6)) {}
 
-  /// Least distance on the way.
+  /// Least distance between parts on the way, m.
   double Clearance(const Eigen::MatrixXd& control) const {
     double least = std::numeric_limits<double>::infinity();
     for (Eigen::Index i = 0; i < basis_.rows(); ++i) least = std::min(least, Least(At(control, i)));
     return least;
   }
 
-  /// What the way should keep: its ends may be nearer.
+  /// Least distance that the way should keep, except at its ends.
   double wanted() const { return clearance_; }
 
-  /// One step; false where nothing is too near that way points could help.
-  bool Push(double length, Eigen::MatrixXd& control) const {
+  /// Takes one step of the given length. Returns false if no parts are too near, or if way points
+  /// cannot help.
+  bool StepAway(double length, Eigen::MatrixXd& control) const {
     const Eigen::Index free = control.rows() - 6;
     Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(free, control.cols());
     for (Eigen::Index i = 0; i < basis_.rows(); ++i) {
@@ -90,7 +91,7 @@ class WayAround {
     return (clearance_ - distances.array()).max(0.0).square().sum();
   }
 
-  /// Direction in which the lack of distance becomes less.
+  /// Direction in which the lack of distance decreases.
   Eigen::VectorXd Away(Eigen::VectorXd q, const Eigen::VectorXd& distances) const {
     constexpr double kStep = 1e-4;
     Eigen::VectorXd away = Eigen::VectorXd::Zero(q.size());
@@ -112,7 +113,7 @@ class WayAround {
   Eigen::LDLT<Eigen::MatrixXd> solver_;
 };
 
-/// Seconds that a way needs for all joints to stay below their velocity limits.
+/// Shortest duration of a way for which all joints stay below their velocity limits, s.
 double LeastDuration(const StandingRobot& robot, const Eigen::MatrixXd& control) {
   constexpr int kSamples = 101;
   const Eigen::MatrixXd slope =
@@ -131,7 +132,8 @@ double LeastDuration(const StandingRobot& robot, const Eigen::MatrixXd& control)
 JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances,
                         const Eigen::VectorXd& from, const Eigen::VectorXd& to,
                         const std::vector<int>& moving, const JointPathOptions& options) {
-  constexpr double kFirstPush = 0.15;  // rad, of the way point that moves most
+  constexpr double kFirstStep =
+      0.15;  // length of the first step: rad, of the way point that moves most
   constexpr double kShrink = 0.96;
   const Eigen::MatrixXd metric = VelocityMetric(options.way_points + 6);
   const Eigen::VectorXd fractions = WayFractions(metric);
@@ -147,9 +149,9 @@ JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances
     const WayAround around(robot, clearances, moving, options, metric, at_ends);
     path.clearance = around.Clearance(path.control);
     Eigen::MatrixXd control = path.control;
-    double length = kFirstPush;
+    double length = kFirstStep;
     for (int i = 0; i < options.iterations && path.clearance < around.wanted(); ++i) {
-      if (!around.Push(length, control)) break;
+      if (!around.StepAway(length, control)) break;
       length *= kShrink;
       const double clearance = around.Clearance(control);
       if (clearance <= path.clearance) continue;

@@ -22,13 +22,13 @@ LegChain::LegChain(const RobotTree& tree, int sole_link)
   }
   if (own) return;
   throw InputError("robot '" + tree.name + "': '" +
-                   tree.links[static_cast<std::size_t>(sole_link)].name + "' hangs on " +
+                   tree.links[static_cast<std::size_t>(sole_link)].name + "' is at the end of " +
                    std::to_string(joints_.size()) +
                    " joints; expected a leg of six revolute joints of its own to balance on");
 }
 
 Transform LegChain::Evaluate(const Eigen::VectorXd& q, Eigen::Matrix<double, 6, 6>& screws) const {
-  // Columns: rotation, and velocity of the point at the root's origin.
+  // Each column is a rotation and the velocity of the point at the root's origin.
   Transform T = Transform::Identity();
   for (int i = 0; i < 6; ++i) {
     const int k = joints_[static_cast<std::size_t>(i)];

@@ -8,10 +8,11 @@
 
 namespace elastocal {
 
-/// A leg: the joints from the root link to a sole, which must be six of their own (no mimics).
+/// A leg: the joints from the root link to a sole. They must be six, and none may be a mimic joint
+/// or drive one.
 class LegChain {
  public:
-  /// Keeps a reference. Throws InputError for another number of joints, or one that follows others.
+  /// Keeps a reference. Throws InputError for another number of joints, and for mimic joints.
   LegChain(const RobotTree& tree, int sole_link);
 
   int sole_link() const { return sole_link_; }
@@ -20,9 +21,9 @@ class LegChain {
   /// Pose of the sole in the root link's frame.
   Transform SolePose(const Eigen::VectorXd& q) const;
 
-  /// Moves the leg's joints by Newton's method, from where they are, until the sole has the given
-  /// pose in the root link's frame (1e-11 m and rad). Limits are not looked at. False, with the
-  /// joints somewhere, where that fails: out of reach, or a straight knee.
+  /// Moves the leg's joints in `q` by Newton's method until the sole has the given pose in the root
+  /// link's frame (1e-11 m and rad). Limits are not checked. Returns false, with the joints
+  /// anywhere, if the pose is out of reach or the knee gets straight.
   bool Place(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
  private:

@@ -68,7 +68,7 @@ void CheckFeet(const StandingRobot& robot, const std::vector<int>& standing,
 void CheckKnees(const StandingRobot& robot, const std::vector<int>& standing,
                 const Eigen::VectorXd& q, Eigen::Index sample, MotionMargins& margins) {
   for (const int foot : standing) {
-    // The most bent joint of a bent leg is the knee.
+    // The knee is the most bent joint of a bent leg.
     double bend = 0.0;
     for (const int c : robot.legs[Size(foot)].coordinates()) bend = std::max(bend, std::abs(q[c]));
     Least(margins.knee, bend, sample, foot);
@@ -83,7 +83,7 @@ const char* ConstraintName(Constraint constraint) {
                                  "joint velocity limit",
                                  "joint torque limit",
                                  "clearance of the robot's own parts",
-                                 "zero-moment point inside the support",
+                                 "zero-moment point inside the support polygon",
                                  "friction of the feet",
                                  "bent knee of a standing leg",
                                  "feet that stand still",

@@ -10,29 +10,29 @@
 
 namespace elastocal {
 
-/// The worst value of a quantity over a motion, and where.
+/// The worst value of a quantity over a motion, and where it occurs.
 struct Worst {
   double value = 0.0;
   int sample = -1;
-  int index = -1;  ///< of a joint, foot or pair of parts; -1: of none
+  int index = -1;  ///< of a joint, foot or pair of parts; -1 without
 };
 
-/// How a motion keeps to what it should, over all samples.
+/// Worst values of a motion over all samples.
 struct MotionMargins {
   Worst position;      ///< least distance of a joint to the end of its range, rad or m
   Worst velocity;      ///< largest share of a joint's velocity limit
   Worst torque;        ///< largest share of a joint's effort limit, see CheckMotion
   Worst acceleration;  ///< largest of a joint, rad/s^2 or m/s^2
-  Worst clearance;     ///< least distance between parts that may meet, m; infinite without parts
-  Worst zmp;           ///< least distance of the zero-moment point to the edge of the support, m
-  Worst friction;      ///< largest horizontal over vertical force of a foot
-  Worst knee;          ///< least bend of a standing leg: of its most bent joint, rad
-  Worst foot_moved;    ///< largest displacement of a standing foot, m
-  Worst foot_turned;   ///< and rotation, rad
-  Worst floor;         ///< least height of a corner of a foot that does not stand, m
+  Worst clearance;     ///< least distance between parts that can touch, m; infinite without parts
+  Worst zmp;  ///< least distance of the zero-moment point to the edge of the support polygon, m
+  Worst friction;     ///< largest ratio of horizontal to vertical force at a foot
+  Worst knee;         ///< least bend of the knee (the most bent joint) of a standing leg, rad
+  Worst foot_moved;   ///< largest displacement of a standing foot, m
+  Worst foot_turned;  ///< largest rotation of a standing foot, rad
+  Worst floor;        ///< least height of a corner of a swinging foot, m
 };
 
-/// What a motion breaks.
+/// A limit that a motion can break.
 enum class Constraint {
   kReach,
   kPosition,
@@ -49,29 +49,28 @@ enum class Constraint {
 /// "torque limit" and the like, for messages.
 const char* ConstraintName(Constraint constraint);
 
-/// A motion as it will be played, whatever planned it.
+/// A motion as it will be played, whoever planned it.
 struct SampledMotion {
   double rate_hz = 100.0;
   Eigen::MatrixXd q;                       ///< samples x coordinates
-  std::vector<std::vector<int>> standing;  ///< by sample: feet on the floor, indices of soles
+  std::vector<std::vector<int>> standing;  ///< feet on the floor, indices of soles, by sample
 };
 
-/// What goes with it.
+/// Zero-moment points and torques of a motion.
 struct MotionForces {
   std::vector<Transform> T_world_root;
   Eigen::MatrixX2d zmp;     ///< samples x 2, m
   Eigen::MatrixXd torques;  ///< samples x coordinates, N.m or N
 };
 
-/// Goes through a motion anew, from its joint positions alone: the root link's pose follows from
-/// the first foot that stands (by the URDF's own kinematics; it stands where
-/// robot.T_world_sole says), speeds and accelerations are differences, the floor's wrench is that
-/// of inverse dynamics and two feet share it as ShareWrench says. At rest before and after.
-/// `forces`, if given, is filled.
+/// Computes the margins of a motion from its joint positions alone. The first foot that stands
+/// gives the root link's pose (by the URDF's own kinematics; the foot is at robot.T_world_sole).
+/// Speeds and accelerations are differences, with rest before and after the motion. Inverse
+/// dynamics give the floor's wrench, which two feet share by ShareWrench. Fills `forces`, if given.
 MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motion,
                           MotionForces* forces = nullptr);
 
-/// What is broken, the first in the order of Constraint; a foot may move by 1e-6 m and rad.
+/// The first limit, in the order of Constraint, that is broken. A foot may move by 1e-6 m and rad.
 std::optional<Constraint> Broken(const MotionMargins& margins, const MotionLimits& limits);
 
 }  // namespace elastocal

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-/// Of rows that rest at both ends and move between: 0 to 1 as they go.
+/// Progress of a way, from 0 to 1, for rows that rest at both ends and move in between.
 Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index after) {
   Eigen::VectorXd progress(samples);
   const auto moving = static_cast<double>(samples - 1 - before - after);
@@ -20,7 +20,7 @@ Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index
   return progress;
 }
 
-/// Distances of the robot's own parts, then heights of the corners of feet that do not stand.
+/// Distances of the robot's own parts, then heights of the corners of swinging feet.
 Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vector<int>& standing,
                                     const Eigen::VectorXd& q) {
   const Eigen::VectorXd apart = robot.clearances ? robot.clearances(q) : Eigen::VectorXd();
@@ -43,8 +43,8 @@ Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vecto
   return all;
 }
 
-constexpr double kLeastHeight = 0.02;  // m, of a swinging foot in a posture at rest
-constexpr double kEnds = 0.5;  // s, held at either end while the root link sets out and arrives
+constexpr double kLeastHeight = 0.02;  // m, least height of a swinging foot in a posture
+constexpr double kEnds = 0.5;  // s, hold at either end, in which the root link starts and stops
 
 }  // namespace
 
@@ -85,10 +85,11 @@ std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
 std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
                                                  const std::vector<int>& standing,
                                                  const PlacedPosture& near, Refusal& why) const {
-  // Leaning or turning the waist moves the standing leg away from a swinging one.
+  // Leaning or turning the waist moves the support leg away from a swinging one.
   constexpr std::array<double, 5> kTilts = {0.0, 0.06, -0.06, 0.12, -0.12};  // rad, about x
   constexpr std::array<double, 5> kTurns = {0.0, 0.12, -0.12, 0.24, -0.24};  // rad, about z
-  constexpr double kSpare = 0.006;  // m, so that there is a way as well, if it can be had
+  constexpr double kSpare =
+      0.006;  // m, additional distance, if possible, so that there is a way too
   if (standing.size() == robot_.soles.size()) {
     return AtHeights(q, standing, near, {robot_.T_world_root.linear(), 0.0}, why);
   }
@@ -142,7 +143,8 @@ std::optional<PlacedPosture> MoveBuilder::AtRestWithFoot(const std::vector<int>&
                                                          const Transform& T_world_sole,
                                                          const PlacedPosture& near,
                                                          Refusal& why) const {
-  // The foot stays where it is while the root link moves, which moves the centre of mass again.
+  // The foot is kept in place while the root link moves, which moves the centre of mass again:
+  // hence rounds.
   constexpr int kRounds = 40;
   constexpr double kReached = 1e-12;
   PlacedPosture pose = near;
@@ -231,7 +233,7 @@ Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, d
   const double omega = 2.0 * M_PI * sine.frequency_hz;
   const double amplitude = std::min(0.5 * share * (limits.upper - limits.lower),
                                     0.8 * robot_.limits.velocity_share * limits.velocity / omega);
-  // Towards the posture as the sine shrinks, since that is feasible.
+  // As the sine shrinks, its middle moves to the posture, which is feasible.
   const double middle = 0.5 * (limits.lower + limits.upper);
   const double centre = q[coordinate] + share / sine.share * (middle - q[coordinate]);
   const double ramp = 1.0 / sine.frequency_hz;
@@ -269,8 +271,8 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, cons
   stretch.rate_hz = options_.rate_hz;
   stretch.standing = standing;
   stretch.q = WithEnds(from.q.transpose().replicate(SamplesOf(options_.lift_s) + 1, 1));
-  // The foot a little, then the rest of the weight, then the foot: should the robot tip towards the
-  // foot, that is still near the floor.
+  // First the foot rises a little, then the rest of the weight is shifted, then the foot rises
+  // further. If the robot tips towards the foot, that foot is still near the floor.
   const Eigen::Index ends = SamplesOf(kEnds);
   const auto part = [&](double first, double last) {
     return Progress(stretch.q.rows(), ends + SamplesOf(first * options_.lift_s),

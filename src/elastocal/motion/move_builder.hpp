@@ -8,47 +8,49 @@
 
 namespace elastocal {
 
-/// Makes motions from rest to rest on given feet, and checks each. All of them hold still for
-/// a moment at both ends, in which the root link begins and ends to move: a part of the hold.
+/// Makes motions from rest to rest on given feet, and checks each of them. All motions hold for a
+/// moment at both ends, which is part of the hold of the posture; the root link starts and stops
+/// moving in it.
 class MoveBuilder {
  public:
   /// Keeps references.
   MoveBuilder(const StandingRobot& robot, const PlanOptions& options)
       : robot_(robot), options_(options) {}
 
-  /// Where the zero-moment point is when the foot that is not `onto` leaves the floor, m.
+  /// Where the zero-moment point is when the other foot than `onto` leaves the floor, m.
   Eigen::Vector2d HandOver(int onto) const;
 
-  /// The posture, balanced at rest on the feet. Joints of standing legs are found, from those of
-  /// `near`; the root link is as high as in the posture of rest, or higher where a swinging foot
-  /// would touch the floor, or lower where a leg does not reach; on one foot it leans or turns
-  /// where the legs would touch. Nothing where it cannot be kept, and then why.
+  /// The posture, balanced at rest on the feet. The joints of standing legs are solved for,
+  /// starting from those of `near`. The root link is as high as in the posture of rest, higher if a
+  /// swinging foot would touch the floor, lower if a leg does not reach; on one foot it leans or
+  /// turns if the legs would touch. Nothing if the posture cannot be held; `why` then has the
+  /// reason.
   std::optional<PlacedPosture> AtRest(const Eigen::VectorXd& q, const std::vector<int>& standing,
                                       const PlacedPosture& near, Refusal& why) const;
 
-  /// With a foot held at a pose in the world by its leg.
+  /// The same with one foot held by its leg at a pose in the world.
   std::optional<PlacedPosture> AtRestWithFoot(const std::vector<int>& standing, int foot,
                                               const Transform& T_world_sole,
                                               const PlacedPosture& near, Refusal& why) const;
 
-  /// From pose to pose by a way of the joints.
+  /// Motion from one posture to another on a way of the joints.
   std::optional<Eigen::MatrixXd> Move(const PlacedPosture& from, const PlacedPosture& to,
                                       const std::vector<int>& standing, Refusal& why) const;
 
-  /// The given way of the joints (samples x coordinates, from rest to rest), balanced.
+  /// Motion on the given way of the joints (samples x coordinates, from rest to rest), balanced.
   std::optional<Eigen::MatrixXd> Follow(const PlacedPosture& from, const PlacedPosture& to,
                                         const std::vector<int>& standing,
                                         const Eigen::MatrixXd& way, Refusal& why) const;
 
-  /// A sine of one coordinate around the middle of its range, from `q` and back to it; at most the
-  /// given share of the range, and of the velocity limit's share.
+  /// A sine of one coordinate around the middle of its range, from `q` and back to it. Its
+  /// amplitude is at most the given share of the range and keeps the velocity limit.
   Eigen::MatrixXd SineWay(const Eigen::VectorXd& q, int coordinate, double share) const;
 
-  /// Weight from all feet over one of them.
+  /// Motion that shifts the weight from all feet to one of them.
   std::optional<Eigen::MatrixXd> Shift(const PlacedPosture& from, const PlacedPosture& to, int onto,
                                        Refusal& why) const;
 
-  /// A foot straight up by options.lift_m while the others stand.
+  /// Motion that lifts a foot straight up by options.lift_m while the others stand.
   std::optional<Eigen::MatrixXd> Lift(const PlacedPosture& from, const PlacedPosture& to,
                                       const std::vector<int>& standing, int foot,
                                       Refusal& why) const;
@@ -57,9 +59,9 @@ class MoveBuilder {
 
  private:
   std::optional<Eigen::MatrixXd> BalanceAndCheck(const Stretch& stretch, Refusal& why) const;
-  /// Holds the first and the last row for a moment more.
+  /// The way with its first and last row held for a moment.
   Eigen::MatrixXd WithEnds(const Eigen::MatrixXd& way) const;
-  /// Attitude of the root link, and what parts shall keep beyond the limit, m.
+  /// Attitude of the root link, and the distance that parts keep in addition to the limit, m.
   struct Manner {
     Eigen::Matrix3d attitude;
     double spare;

@@ -7,7 +7,8 @@
 namespace elastocal {
 namespace {
 
-/// Stops of a closed tour; the first stays first. Stop 0 is the start, i + 1 posture i.
+/// The stops of a closed tour, in order; the first one stays first. Stop 0 is the start, stop i + 1
+/// is posture i.
 using Tour = std::vector<int>;
 
 double Length(const Eigen::MatrixXd& distance, const Tour& tour) {
@@ -18,7 +19,8 @@ double Length(const Eigen::MatrixXd& distance, const Tour& tour) {
   return length;
 }
 
-/// Walks to the nearest stop not yet visited, beginning anywhere, then turned to begin at stop 0.
+/// The tour from `first` to the nearest stop not yet visited, and so on; then rotated to begin at
+/// stop 0.
 Tour NearestNeighbours(const Eigen::MatrixXd& distance, int first) {
   Tour tour(static_cast<std::size_t>(distance.rows()));
   std::iota(tour.begin(), tour.end(), 0);
@@ -33,10 +35,10 @@ Tour NearestNeighbours(const Eigen::MatrixXd& distance, int first) {
   return tour;
 }
 
-/// A stretch [first, last] of a tour that is turned round, or moved behind the stop `behind`.
+/// A change of a tour: its stretch [first, last] is reversed, or moved behind the stop `behind`.
 struct Change {
   double gain = 0.0;
-  std::ptrdiff_t first = 0, last = 0, behind = -1;  // behind: -1: turned where it is
+  std::ptrdiff_t first = 0, last = 0, behind = -1;  // behind: -1: reversed where it is
   bool turned = true;
 };
 

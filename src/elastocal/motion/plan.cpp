@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-/// Rows of stretches, one behind the other.
+/// Joins the rows of stretches, one behind the other.
 class Rows {
  public:
   int count = 0;
@@ -44,7 +44,7 @@ class Rows {
   std::vector<std::vector<int>> standing_;
 };
 
-/// Goes through the postures of a set.
+/// Plans the tour through the postures of a set.
 class TourPlanner {
  public:
   TourPlanner(const StandingRobot& robot, const PostureTour& set, const PlanOptions& options)
@@ -77,12 +77,12 @@ class TourPlanner {
   bool OneFoot() const { return set_.standing.size() < robot_.soles.size(); }
 
   void Hold() {
-    // What moves hold at their ends is part of it.
+    // The holds at the ends of moves are part of `hold_s`.
     const Eigen::Index samples = build_.SamplesOf(std::max(0.0, options_.hold_s - 1.0));
     rows_.Add(here_.q.transpose().replicate(samples, 1), set_.standing);
   }
 
-  /// Shifts the weight and lifts the other foot; nothing to do where the set stands on all feet.
+  /// Shifts the weight and lifts the other foot. Does nothing if the set stands on all feet.
   bool StepOntoFeet(Refusal& why) {
     if (!OneFoot()) return true;
     const int stands = set_.standing.front();
@@ -146,7 +146,7 @@ class TourPlanner {
     return order;
   }
 
-  /// The largest sine of a coordinate that keeps to the limits.
+  /// Adds the largest sine of a coordinate that keeps the limits.
   void Sine(int coordinate) {
     constexpr double kSmaller = 0.8;
     Refusal why;
@@ -161,7 +161,8 @@ class TourPlanner {
     result_.left_out.push_back({-1, coordinate, why.constraint, why.value, why.index, false});
   }
 
-  /// The postures with the joints of standing legs as in the hub: they do not decide the order.
+  /// The postures with the joints of standing legs as in the hub, so that these do not affect the
+  /// order.
   std::vector<Eigen::VectorXd> Targets() const {
     std::vector<Eigen::VectorXd> targets = set_.postures;
     for (Eigen::VectorXd& q : targets) {
@@ -187,7 +188,7 @@ class TourPlanner {
     return here_.q != hub_.q && GoTo(hub_, why) && GoTo(to, why);
   }
 
-  /// To the hub; where there is no way, back as it came until there is one.
+  /// Moves to the hub. If there is no way, goes back on the moves made so far until there is one.
   void GoBack() {
     Refusal why;
     while (!GoTo(hub_, why) && !moves_.empty()) {
@@ -206,8 +207,8 @@ class TourPlanner {
   PlacedPosture here_, hub_;
   Eigen::MatrixXd shifted_, lifted_;
   Rows rows_;
-  std::vector<Eigen::MatrixXd> moves_;  // from the hub on
-  std::vector<PlacedPosture> before_;   // where each began
+  std::vector<Eigen::MatrixXd> moves_;  // since the hub
+  std::vector<PlacedPosture> before_;   // the posture in which each began
   PlannedTour result_;
 };
 

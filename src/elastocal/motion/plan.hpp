@@ -11,19 +11,21 @@
 
 namespace elastocal {
 
-/// Postures that are gone through while the same feet stand.
+/// Postures that a robot goes through while the same feet stand.
 struct PostureTour {
   std::string name;
   std::vector<int> standing;  ///< feet, indices of soles: all of them, or one
-  /// By coordinate, of the whole robot; joints of standing legs are found by balancing.
+  /// Postures of the whole robot, by coordinate. Balancing finds the joints of standing legs.
   std::vector<Eigen::VectorXd> postures;
-  bool in_order = false;  ///< visited as given, by the posture of rest each time (repeatability)
-  /// Coordinates that swing to and fro one after the other, all else at rest (section 6.1.4).
+  bool in_order =
+      false;  ///< visited in the given order, each time from the posture of rest (repeatability)
+  /// Coordinates that oscillate one after the other while all else is at rest (section 6.1.4).
   std::vector<int> sines = {};
 };
 
-/// Sinusoidal motions: of a joint around the middle of its range, at most `share` of it, with a
-/// period to swing in and one to come back. Smaller where speed, space or balance want it.
+/// Sinusoidal motions of a joint around the middle of its range. The amplitude is at most `share`
+/// of the range, and smaller if speed, clearance or balance require it. One more period is used to
+/// swing in and one to come back.
 struct SineOptions {
   double frequency_hz = 0.5;
   double periods = 2.0;
@@ -35,25 +37,24 @@ struct PlanOptions {
   JointPathOptions path;
   BalanceOptions balance;
   SineOptions sine;
-  bool balanced =
-      true;  ///< false: the root link stays where it is at rest, to see what comes of it
+  bool balanced = true;  ///< false: the root link stays where it is at rest; only for comparison
   double rate_hz = 100.0;
-  double hold_s = 1.5;   ///< at rest in each posture
-  double shift_s = 4.0;  ///< of the weight, from two feet to one
-  double lift_s = 5.0;   ///< of a foot, and of the rest of the shift
-  /// When a foot leaves or meets the floor, the zero-moment point is this much off the middle of
-  /// the other, towards the one that moves, m: where legs are not quite as long as they are thought
-  /// to be, the one that comes first pushes the robot away.
+  double hold_s = 1.5;   ///< time at rest in each posture
+  double shift_s = 4.0;  ///< time to shift the weight from two feet to one
+  double lift_s = 5.0;   ///< time to lift a foot and shift the rest of the weight
+  /// When a foot leaves or meets the floor, the zero-moment point is this far from the middle of
+  /// the other foot, towards the one that moves, m. If legs are longer than the model says, the
+  /// foot that touches the floor first pushes the robot away from it.
   double inset = 0.035;
-  double lift_m = 0.10;  ///< how high it is lifted before the joints of its leg move by themselves
-  double first_lift_m = 0.010;  ///< of it, before the rest of the weight is shifted
-  int slower = 2;  ///< times that a move is tried half as slow again before it is given up
+  double lift_m = 0.10;         ///< height to which a foot is lifted before its leg moves freely
+  double first_lift_m = 0.010;  ///< part of it before the rest of the weight is shifted
+  int slower = 2;  ///< how often a move is tried again, 1.5 times as slow, before it is given up
 };
 
 /// A posture at rest in a planned motion.
 struct Visit {
   int posture = 0;         ///< of the set
-  int begin = 0, end = 0;  ///< samples of the hold, end excluded
+  int begin = 0, end = 0;  ///< samples of the hold, without `end`
 };
 
 /// A posture (or sinusoidal motion) that is not part of the motion, and why.
@@ -61,30 +62,30 @@ struct LeftOut {
   int posture = 0;  ///< of the set; -1: a sine
   int sine = -1;    ///< coordinate of the sine
   Constraint constraint = Constraint::kReach;
-  double value = 0.0;   ///< of what the constraint is about, see MotionMargins; NaN: out of reach
-  int index = -1;       ///< of the joint, foot or pair
-  bool at_rest = true;  ///< the posture itself breaks it; else every way there
+  double value = 0.0;   ///< value that breaks the constraint, see MotionMargins; NaN: out of reach
+  int index = -1;       ///< of the joint, foot or pair of parts
+  bool at_rest = true;  ///< whether the posture itself breaks it; otherwise every way there does
 };
 
-/// Motion through a set of postures, from the posture of rest on all feet and back to it.
+/// Motion from the posture of rest on all feet through a set of postures and back to it.
 struct PlannedTour {
   std::string name;
   SampledMotion motion;
-  int begin = 0, end = 0;  ///< samples between which only the set's feet stand, end excluded
+  int begin = 0, end = 0;  ///< samples between which only the set's feet stand, without `end`
   std::vector<Visit> visits;
   std::vector<LeftOut> left_out;
 };
 
-/// Plans the motion through one set (paper, section 3.6). The order is that of OrderPostures, ways
-/// those of PlanJointPath, balanced by Balance; each is checked by CheckMotion and made slower, or
-/// led by the posture of rest, where limits are broken. A posture that cannot be kept or reached is
-/// left out. On one foot: first the weight is shifted, then the other foot is lifted straight up,
-/// and at the end the same backwards, so that the foot stands where it stood.
+/// Plans the motion through one set (paper, section 3.6). OrderPostures gives the order,
+/// PlanJointPath the ways, and Balance balances them. CheckMotion checks each way; if it breaks
+/// limits, it is made slower or led by the posture of rest. A posture that cannot be held or
+/// reached is left out. For a set on one foot, the weight is first shifted and the other foot
+/// lifted straight up; at the end the same is done backwards, so that the foot lands where it
+/// stood.
 PlannedTour PlanTour(const StandingRobot& robot, const PostureTour& set,
                      const PlanOptions& options);
 
-/// Plans sets, several at a time, and joins them to one motion. The result does not depend on the
-/// number of threads.
+/// Plans several sets, on several threads. The result does not depend on the number of threads.
 std::vector<PlannedTour> PlanTours(const StandingRobot& robot, const std::vector<PostureTour>& sets,
                                    const PlanOptions& options, int threads);
 

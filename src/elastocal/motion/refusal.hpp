@@ -6,17 +6,17 @@
 
 namespace elastocal {
 
-/// Why a stretch of motion is not taken.
+/// Why a stretch of motion is refused.
 struct Refusal {
   Constraint constraint = Constraint::kReach;
   double value = 0.0;
   int index = -1;
 };
 
-/// What the margins say of the constraint that they break, if any.
+/// The constraint that the margins break, if any, with its value.
 std::optional<Refusal> Refuse(const MotionMargins& margins, const MotionLimits& limits);
 
-/// That a foot is out of reach.
+/// The refusal because a foot is out of reach.
 Refusal OutOfReach();
 
 }  // namespace elastocal

@@ -8,8 +8,8 @@
 
 namespace elastocal {
 
-/// State at a sample of a motion that rests before its first and after its last sample; speeds and
-/// accelerations are central differences over `step` seconds.
+/// State of the robot at a sample of a motion that rests before its first and after its last
+/// sample. Speeds and accelerations are central differences over `step` seconds.
 RobotState StateAt(const Eigen::MatrixXd& q, const std::vector<Transform>& T_world_root,
                    double step, Eigen::Index sample);
 

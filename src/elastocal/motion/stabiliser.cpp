@@ -44,7 +44,7 @@ Eigen::VectorXd Stabiliser::Correct(const Eigen::VectorXd& planned, const std::v
   return planned + correction_;
 }
 
-/// Expresses what was learned in the axes of another sole.
+/// Expresses the corrections in the axes of another sole.
 void Stabiliser::StandOn(int reference) {
   if (reference == reference_) return;
   const Eigen::Matrix3d R =
@@ -54,7 +54,7 @@ void Stabiliser::StandOn(int reference) {
 }
 
 void Stabiliser::LearnTurn(const StandingSense& sense, double interval_s) {
-  // Upwards, as the inertial unit has it, is the sole's z axis where nothing leans.
+  // If nothing leans, the upward direction by the inertial unit is the sole's z axis.
   const Eigen::Vector3d up =
       T_root_sole_[Size(reference_)].linear().transpose() * sense.R_world_root.row(2).transpose();
   const Eigen::Vector2d lean = up.cross(Eigen::Vector3d::UnitZ()).head<2>();
@@ -67,7 +67,7 @@ void Stabiliser::LearnFeet(const StandingSense& sense, double interval_s) {
     return ZeroMomentPoint(sense.wrenches.col(i).head<3>(), sense.wrenches.col(i).tail<3>());
   };
   const Eigen::Vector2d apart = pressed(0) - pressed(1);
-  const Eigen::Vector2d turn(apart.y(), -apart.x());  // lifts the edge that is pressed more
+  const Eigen::Vector2d turn(apart.y(), -apart.x());  // lifts the edge that is loaded more
   foot_ = Within(foot_ + options_.foot_rate * interval_s * turn, options_.largest_turn);
 }
 

@@ -9,49 +9,52 @@
 
 namespace elastocal {
 
-/// What a robot that stands feels.
+/// Measurements of the balance sensors of a standing robot.
 struct StandingSense {
-  /// Of the inertial unit in the root link; what it says of the heading is not used.
+  /// Orientation by the inertial unit in the root link; its heading is not used.
   Eigen::Matrix3d R_world_root = Eigen::Matrix3d::Identity();
-  /// Of the force sensors in the feet, a column a sole: what the floor exerts on it, force [N] and
-  /// moment about the sole's origin [N.m], in the sole's axes.
+  /// Wrenches by the force sensors in the feet, one column for each sole: the force [N] that the
+  /// floor exerts on it, and the moment about the sole's origin [N.m], in the sole's axes.
   Eigen::Matrix<double, 6, Eigen::Dynamic> wrenches;
 };
 
-/// How fast a stabiliser learns. Slower than a robot on its feet sways (some 3 rad/s), else it
-/// rocks from foot to foot.
+/// How fast a stabiliser corrects. It must be slower than the sway of the robot on its feet (about
+/// 3 rad/s), or the robot rocks from foot to foot.
 struct StabiliserOptions {
-  double turn_rate = 0.8;       ///< of the root link against its inclination's error, 1/s
-  double shift_rate = 0.3;      ///< of the root link against the pressed point's error, 1/s
-  double foot_rate = 0.2;       ///< of two feet against each other's pressed points, rad/s per m
-  double filter_s = 0.5;        ///< time constant of the low-pass on the pressed point
+  double turn_rate = 0.8;   ///< turn of the root link by the error of its inclination, 1/s
+  double shift_rate = 0.3;  ///< shift of the root link by the error of the zero-moment point, 1/s
+  double foot_rate =
+      0.2;  ///< turn of two feet by the difference of their centres of pressure, rad/s per m
+  double filter_s = 0.5;        ///< time constant of the low-pass on the zero-moment point
   double largest_shift = 0.10;  ///< m, in either direction
   double largest_turn = 0.15;   ///< rad, about either axis, of root link and feet
-  double largest_speed = 0.3;   ///< of a joint's correction, rad/s
-  /// Planned heights of a lifted sole over the floor up to which its leg is corrected as if it
-  /// stood, and from which it goes as planned, m.
+  double largest_speed = 0.3;   ///< largest speed of a joint's correction, rad/s
+  /// The correction of a lifted leg fades out between these planned heights of its sole over the
+  /// floor, m: below the first, the leg is corrected as if it stood; above the second, it goes as
+  /// planned.
   double low_m = 0.02, high_m = 0.07;
-  double least_pressure = 100.0;  ///< N: what is pressed less tells nothing of where
+  double least_pressure = 100.0;  ///< least vertical force that gives a centre of pressure, N
 };
 
-/// What keeps a robot with unknown errors over its feet. Slowly, by integrating what it feels, it
+/// Keeps a robot with unknown errors over its feet. By slow integration of its measurements it
 /// - turns the root link until that is as upright as planned,
-/// - turns two standing feet against each other until both are flat on the floor, pressed at like
-///   points (a foot on its edge lets the robot rock, and the pressed point no longer tells where
-///   the weight is),
-/// - shifts the root link until the floor presses where the planned centre of mass is.
-/// It knows of the robot what its description says, errors and elasticity not included, and takes
-/// the planned positions to be those of a robot at rest. The paper's robot has one of its own
-/// (section 3.6 plans for it).
+/// - turns two standing feet against each other until both are flat on the floor, with their
+///   centres of pressure at like points (a foot on its edge lets the robot rock, and its centre of
+///   pressure no longer tells where the weight is),
+/// - shifts the root link until the zero-moment point is where the planned centre of mass is.
+/// It knows the robot by its description, without errors and elasticity, and takes planned
+/// positions for those of a robot at rest. The paper's robot has its own stabiliser, for which
+/// section 3.6 plans.
 class Stabiliser {
  public:
-  /// Keeps a reference to the tree. Throws InputError where a sole hangs on no leg of six joints.
+  /// Keeps a reference to the tree. Throws InputError if a sole is not at the end of a leg of six
+  /// joints.
   Stabiliser(const RobotTree& tree, const std::vector<Sole>& soles,
              const StabiliserOptions& options = {});
 
-  /// The planned posture, by coordinate, with the legs moved by what was learned until now and in
-  /// the `interval_s` before; `support`: links of the soles that are planned to stand. A leg that
-  /// cannot reach keeps the correction that it had.
+  /// Updates the correction by the measurements of the last `interval_s` and returns the planned
+  /// posture, by coordinate, with the legs corrected. `support` has the links of the soles that are
+  /// planned to stand. A leg that cannot reach its target keeps the correction that it had.
   Eigen::VectorXd Correct(const Eigen::VectorXd& planned, const std::vector<int>& support,
                           const StandingSense& sense, double interval_s);
 
@@ -70,9 +73,9 @@ class Stabiliser {
   std::vector<BodyInertia> inertias_;
   std::vector<LegChain> legs_;          ///< by sole
   std::vector<Transform> T_root_sole_;  ///< as planned
-  int reference_ = 0;                   ///< the sole in whose axes turn and shift are
+  int reference_ = 0;                   ///< the sole in whose axes turn and shift are expressed
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero(), turn_ = Eigen::Vector2d::Zero();
-  Eigen::Vector2d off_ = Eigen::Vector2d::Zero();   ///< filtered error of the pressed point, m
+  Eigen::Vector2d off_ = Eigen::Vector2d::Zero();   ///< filtered error of the zero-moment point, m
   Eigen::Vector2d foot_ = Eigen::Vector2d::Zero();  ///< turn of the first of two soles, rad
   Eigen::VectorXd correction_;                      ///< of the joints
 };

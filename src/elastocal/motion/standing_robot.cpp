@@ -9,10 +9,11 @@
 namespace elastocal {
 namespace {
 
-/// Bends a leg from straight, the knee one way or the other, until the sole is in place.
+/// Bends a straight leg, the knee one way or the other, until the sole is in place.
 bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_sole,
           double position_margin, Eigen::VectorXd& q) {
-  // Any of the middle joints may be the knee; the Newton steps follow the bend they begin with.
+  // Any of the middle joints may be the knee. Newton's steps keep the direction of bend with which
+  // they begin.
   const std::vector<int>& joints = leg.coordinates();
   for (const double bend : {0.5, -0.5}) {
     for (std::size_t knee = 1; knee + 1 < joints.size(); ++knee) {
@@ -33,8 +34,8 @@ bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_so
   return false;
 }
 
-/// Height of the root link above the soles in a posture with bent knees, or of one with straight
-/// ones less the drop.
+/// Height of the root link above the soles: of the posture, if its knees are bent, and otherwise
+/// that of straight legs less the drop.
 double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
                   const StandOptions& options) {
   double bend = 0.0;
@@ -126,7 +127,7 @@ bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
     }
     const Eigen::Vector3d found =
         pose.T_world_root * CentreOfMass(robot.tree, robot.inertias, pose.q);
-    // Most of the robot moves with the root link, and nothing moves more.
+    // Most of the robot moves with the root link, and no part moves further.
     Eigen::Vector2d move = com - found.head<2>();
     if (move.norm() < kReached) return true;
     move *= std::min(1.0, kLargestMove / move.norm());

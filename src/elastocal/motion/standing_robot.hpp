@@ -11,18 +11,19 @@
 
 namespace elastocal {
 
-/// Distances between the surfaces of parts that may meet, m, for a whole posture q; negative where
-/// they overlap. Always of the same size; empty: nothing can meet.
+/// Distances between the surfaces of parts that can touch, m, for a whole posture q; negative if
+/// they overlap. The vector always has the same size; it is empty if no parts can touch.
 using Clearances = std::function<Eigen::VectorXd(const Eigen::VectorXd& q)>;
 
-/// What motions keep to, of each sample. Shares are of the limits in the URDF.
+/// Limits for each sample of a motion. Shares are of the limits in the URDF.
 struct MotionLimits {
-  double position_margin = 0.01;  ///< kept from either end of a joint's range, rad or m
+  double position_margin = 0.01;  ///< distance to either end of a joint's range, rad or m
   double velocity_share = 0.9, torque_share = 0.9;
-  double clearance = 0.005;   ///< least distance between parts that may meet, m
-  double zmp_margin = 0.020;  ///< of the zero-moment point to the edge of the support polygon, m
-  double friction = 0.5;      ///< largest horizontal over vertical force of a foot
-  double least_knee = 0.3;    ///< of a leg that stands, rad: how far its middle joints bend
+  double clearance = 0.005;  ///< least distance between parts that can touch, m
+  double zmp_margin =
+      0.020;  ///< least distance of the zero-moment point to the edge of the support polygon, m
+  double friction = 0.5;    ///< largest ratio of horizontal to vertical force at a foot
+  double least_knee = 0.3;  ///< least bend of the knee of a standing leg, rad
 };
 
 /// A robot with its feet on a level floor, z = 0 of the world.
@@ -30,13 +31,13 @@ struct StandingRobot {
   RobotTree tree;
   std::vector<BodyInertia> inertias;
   std::vector<Sole> soles;     ///< of the feet, one or two
-  std::vector<LegChain> legs;  ///< of these
-  Clearances clearances;       ///< of its own parts; may be empty
+  std::vector<LegChain> legs;  ///< one for each sole
+  Clearances clearances;       ///< between its own parts; may be empty
   MotionLimits limits;
-  /// The posture of rest, on all feet, balanced.
+  /// The posture of rest: balanced on all feet.
   Eigen::VectorXd rest;
   Transform T_world_root = Transform::Identity();  ///< in the posture of rest
-  std::vector<Transform> T_world_sole;             ///< where the feet stand, by sole
+  std::vector<Transform> T_world_sole;             ///< where the soles stand
 
   StandingRobot(const StandingRobot&) = delete;  // legs refer to the tree
   StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept);
@@ -45,32 +46,31 @@ struct StandingRobot {
 };
 
 struct StandOptions {
-  /// How much lower the waist is than over straight legs, as a share of its height, where the given
-  /// posture has them straight.
+  /// If the given posture has straight legs, the waist is lowered by this share of its height.
   double drop = 0.07;
 };
 
-/// Stands the robot up in a posture (by coordinate): on the feet, which are flat, where they are
-/// under the root link in the zero posture; the root link upright, as high above them as the
-/// posture has it, or lower by the drop where its knees are less bent than the limits ask; and the
-/// centre of mass over the middle of the support. Throws InputError where the legs cannot.
+/// Stands the robot up in a posture (by coordinate). The feet are flat and where they are under the
+/// root link in the zero posture. The root link is upright and as high above the feet as in the
+/// posture, or lower by the drop if its knees are less bent than the limits require. The centre of
+/// mass is over the middle of the support. Throws InputError if the legs cannot do this.
 void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOptions& options);
 
 /// The zero posture, moved inside the joints' limits by the position margin.
 Eigen::VectorXd NeutralPosture(const RobotTree& tree, double position_margin);
 
-/// Middle of what the given feet (indices of soles) stand on, m.
+/// Middle of the support of the given feet (indices of soles), m.
 Eigen::Vector2d SupportCentre(const StandingRobot& robot, const std::vector<int>& feet);
 
-/// A posture at rest with the root link where it is in the world.
+/// A posture at rest, with the pose of the root link in the world.
 struct PlacedPosture {
   Eigen::VectorXd q;
   Transform T_world_root = Transform::Identity();
 };
 
-/// Places the legs of `feet` so that their soles stand where they stand, with the root link moved
-/// horizontally until the centre of mass is over `com`. Begins at `pose`. False, with the pose
-/// changed, where a foot is out of reach.
+/// Starting from `pose`, moves the root link horizontally until the centre of mass is over `com`,
+/// and places the legs of `feet` so that their soles keep their place. Returns false, with the pose
+/// changed, if a foot is out of reach.
 bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
                    const Eigen::Vector2d& com, PlacedPosture& pose);
 

@@ -18,7 +18,7 @@ bool InWorkspace(const ChainSetup& chain, const Transform& T_rest, const Transfo
          RotationAngle(T_rest.linear().transpose() * T_tip.linear()) <= chain.largest_turn;
 }
 
-/// A posture of a chain that can be kept; nothing after all tries.
+/// Draws a posture of a chain that can be held; nothing if all tries fail.
 std::optional<Eigen::VectorXd> Draw(const StandingRobot& robot, const MotionSetup& setup,
                                     const ChainSetup& chain, const std::vector<int>& standing,
                                     int tries, Random& random) {

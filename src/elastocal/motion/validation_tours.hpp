@@ -8,28 +8,28 @@
 
 namespace elastocal {
 
-/// The motions on which a calibration is tried (paper, section 6.1.4).
+/// The motions on which a calibration is validated (paper, section 6.1.4).
 enum class ValidationKind {
-  kSine,           ///< every joint of a chain to and fro, one after the other
+  kSine,           ///< sinusoidal motions of every joint of a chain, one after the other
   kRandom,         ///< random postures in the workspaces of the calibration postures
-  kRepeatability,  ///< one random posture, several times from the posture of rest
+  kRepeatability,  ///< one random posture several times, each time from the posture of rest
 };
 
 struct ValidationOptions {
   int random_postures = 20;
   int repetitions = 5;
-  int tries = 2000;  ///< draws for a posture before fewer are taken
+  int tries = 2000;  ///< draws for a posture before the set gets fewer
 };
 
-/// One set a chain. Random postures are drawn uniformly within the limits of `setup`, with the tip
-/// in the chain's box and cone; those that cannot be kept at rest are drawn anew. A joint of a leg
-/// that stands has no sine. Throws InputError for a chain that stands on what is no sole.
+/// One set for each chain. Random postures are drawn uniformly within the limits of `setup`, with
+/// the tip in the chain's box and cone; postures that cannot be held at rest are drawn anew. Joints
+/// of standing legs have no sine. Throws InputError if a support foot of a chain is not a sole.
 std::vector<PostureTour> ValidationTours(const StandingRobot& robot, const MotionSetup& setup,
                                          const std::vector<ChainSetup>& chains, ValidationKind kind,
                                          const ValidationOptions& options, Random& random);
 
-/// Feet of a support (links), as indices of soles. Throws InputError for links that are none, and
-/// for other than one or all of the soles.
+/// Indices of the soles of support feet (links). Throws InputError for links that are not soles,
+/// and unless they are one or all of the soles.
 std::vector<int> FeetOf(const StandingRobot& robot, const std::vector<int>& links);
 
 }  // namespace elastocal

@@ -96,7 +96,8 @@ class IpoptProgram : public Ipopt::TNLP {
       return true;
     }
     if (!Update(n, x, fresh)) return false;
-    // Of the restoration of feasibility the objective is no part, and nothing is to be learned.
+    // While Ipopt restores feasibility, the objective plays no part and teaches nothing about its
+    // curvature.
     if (objective_factor > 0.0) {
       LearnCurvature(objective_factor, Eigen::Map<const Eigen::VectorXd>(x, n),
                      Eigen::Map<const Eigen::VectorXd>(multipliers, m));
@@ -186,9 +187,9 @@ void Configure(Ipopt::IpoptApplication& ipopt, const NonlinearProgramOptions& op
   list.SetIntegerValue("max_iter", options.max_iterations);
   list.SetNumericValue("tol", options.tolerance);
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
-  list.SetNumericValue("bound_relax_factor", 0.0);  // bounds are kept, not nearly kept
+  list.SetNumericValue("bound_relax_factor", 0.0);  // bounds hold exactly
   list.SetNumericValue("mu_init", options.first_barrier);
-  // Programmes of this size are assembled in no time: nothing is to be gained from reordering.
+  // Programmes of this size are assembled so fast that reordering gains nothing.
   list.SetIntegerValue("mumps_permuting_scaling", 0);
   list.SetIntegerValue("mumps_pivot_order", 0);
 }
@@ -203,7 +204,7 @@ NonlinearProgramResult Solve(NonlinearProgram& program, const Eigen::VectorXd& x
   result.x = x0;
   result.objective = NAN;
   if (ipopt->Initialize("") != Ipopt::Solve_Succeeded) {  // reads no ipopt.opt
-    result.message = "Ipopt does not start";
+    result.message = "Ipopt did not start";
     return result;
   }
   Ipopt::SmartPtr<IpoptProgram> view = new IpoptProgram(program, x0);
@@ -212,7 +213,7 @@ NonlinearProgramResult Solve(NonlinearProgram& program, const Eigen::VectorXd& x
   result.x = view->x();
   result.objective = view->objective();
   result.termination = view->termination();
-  result.message = "Ipopt's status " + std::to_string(status);
+  result.message = "Ipopt ended with status " + std::to_string(status);
   if (IsValid(ipopt->Statistics())) result.iterations = ipopt->Statistics()->IterationCount();
   return result;
 }

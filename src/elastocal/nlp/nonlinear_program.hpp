@@ -30,14 +30,14 @@ class NonlinearProgram {
   virtual double Objective() const = 0;
   virtual Eigen::VectorXd Gradient() = 0;
   virtual const Eigen::VectorXd& Constraints() const = 0;
-  /// Derivatives, one matrix a block.
+  /// Derivatives, one matrix for each block.
   virtual const std::vector<Eigen::MatrixXd>& Jacobian() const = 0;
 };
 
 struct NonlinearProgramOptions {
   int max_iterations = 100;
   double tolerance = 1e-6;             ///< of optimality, scaled (Ipopt's `tol`)
-  double first_barrier = 0.1;          ///< Ipopt's `mu_init`; less where x0 is good already
+  double first_barrier = 0.1;          ///< Ipopt's `mu_init`; smaller if x0 is good already
   double constraint_tolerance = 1e-8;  ///< largest violation of g, in its own units
 };
 
@@ -49,10 +49,10 @@ struct NonlinearProgramResult {
   std::string message;  ///< the solver's own words
 };
 
-/// Interior-point method (Ipopt, Wachter and Biegler 2006) with a dense quasi-Newton Hessian, for
-/// programmes of up to some hundred variables, from `x0`.
-/// On one thread, and not from several at once (MUMPS, its linear solver, is not thread-safe); same
-/// input, same bits out.
+/// Solves the programme from `x0` by an interior-point method (Ipopt, Wachter and Biegler 2006)
+/// with a dense quasi-Newton Hessian. Made for up to some hundred variables. Runs on one thread and
+/// must not be called from several at once (MUMPS, its linear solver, is not thread-safe). The same
+/// input gives the same bits.
 NonlinearProgramResult Solve(NonlinearProgram& program, const Eigen::VectorXd& x0,
                              const NonlinearProgramOptions& options);
 

@@ -4,15 +4,15 @@
 
 namespace elastocal {
 
-/// A positive definite approximation of a Lagrangian's Hessian from its gradients (BFGS with
-/// Powell's damping: Nocedal and Wright, Numerical Optimization, procedure 18.2), dense. For
-/// programmes of some ten variables.
+/// A dense, positive definite approximation of a Lagrangian's Hessian from its gradients (BFGS with
+/// Powell's damping: Nocedal and Wright, Numerical Optimization, procedure 18.2). Made for some ten
+/// variables.
 class QuasiNewtonHessian {
  public:
   explicit QuasiNewtonHessian(Eigen::Index size)
       : hessian_(Eigen::MatrixXd::Identity(size, size)) {}
 
-  /// Learns from a step and from how the gradient changed along it.
+  /// Updates the approximation by a step and by the change of the gradient along it.
   void Update(const Eigen::VectorXd& step, const Eigen::VectorXd& change);
 
   const Eigen::MatrixXd& hessian() const { return hessian_; }

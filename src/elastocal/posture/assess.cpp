@@ -14,7 +14,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSingular = 1e-12;  // of eigenvalues, relative
 
-/// Standard deviations by eigenvalues: infinite for what the set says nothing of.
+/// Standard deviations by eigenvalues. They are infinite for parameters that the set does not
+/// determine.
 Eigen::VectorXd StandardDeviations(const Eigen::MatrixXd& information, double marker_sd) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
   const double floor = kSingular * eigen.eigenvalues().maxCoeff();
@@ -32,8 +33,8 @@ Eigen::VectorXd StandardDeviations(const Eigen::MatrixXd& information, double ma
   return marker_sd * variance.cwiseSqrt();
 }
 
-void FindBestAddition(PostureProblem& problem, const PostureSet& set, const AssessOptions& options,
-                      Assessment& assessment) {
+void SearchAddition(PostureProblem& problem, const PostureSet& set, const AssessOptions& options,
+                    Assessment& assessment) {
   FeasibleSampler sampler(problem.feasible, options.seed);
   for (int start = 0; start < options.starts; ++start) {
     const auto drawn = sampler.Draw();
@@ -76,7 +77,7 @@ Assessment AssessPostures(PostureProblem& problem, const PostureSet& set,
     assessment.certificate = CertifyBound(problem, set, options.certificate);
     assessment.efficiency = assessment.indices.o1 / assessment.certificate.bound;
   }
-  FindBestAddition(problem, set, options, assessment);
+  SearchAddition(problem, set, options, assessment);
   return assessment;
 }
 

@@ -11,9 +11,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeastWeight = 1e-6;  // postures with less leave the weighted set
+constexpr double kLeastWeight = 1e-6;  // a posture with less weight leaves the set
 constexpr int kWeightIterations = 300;
-constexpr double kWeightTolerance = 1e-3;  // of phi over the support, relative
+constexpr double kWeightTolerance = 1e-3;  // of phi over the weighted postures, relative
 
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& M) {
   return M.llt().solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));
@@ -53,7 +53,7 @@ class VarianceProgram : public NonlinearProgram {
   std::vector<Eigen::MatrixXd> jacobian_;
 };
 
-/// Postures, by their information Psi^T Psi, with weights that sum to one.
+/// A weighted set: postures, by their information Psi^T Psi, with weights that sum to one.
 class WeightedSet {
  public:
   explicit WeightedSet(const PostureSet& set)
@@ -76,8 +76,8 @@ class WeightedSet {
     return M;
   }
 
-  /// The multiplicative algorithm (Silvey, Titterington and Torsney 1978): weights times phi / N_b,
-  /// which never lowers the determinant.
+  /// The multiplicative algorithm (Silvey, Titterington and Torsney 1978) multiplies weights by phi
+  /// / N_b, which never lowers the determinant.
   void OptimiseWeights() {
     for (int i = 0; i < kWeightIterations; ++i) {
       const Eigen::MatrixXd inverse = Inverse(Information());
@@ -157,7 +157,7 @@ Certificate CertifyBound(PostureProblem& problem, const PostureSet& set,
     const double ratio = most / problem.column_count();
     certificate.bound = std::min(certificate.bound, o1 * std::sqrt(std::max(1.0, ratio)));
     certificate.attained = o1;
-    certificate.support = weighted.size();
+    certificate.weighted_postures = weighted.size();
     if (certificate.bound < o1 * (1.0 + options.gap) || found.empty()) break;
     for (const Eigen::VectorXd& x : found) {
       pool.push_back(x);

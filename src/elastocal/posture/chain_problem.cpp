@@ -33,7 +33,7 @@ std::vector<CollisionSphere> MovedSpheres(const RobotTree& tree, const MotionSet
   return moved;
 }
 
-/// Whether the line from a to b meets the sphere.
+/// Whether the line from a to b intersects the sphere.
 bool Hides(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& centre,
            double radius) {
   const Eigen::Vector3d line = b - a;
@@ -51,7 +51,7 @@ MarkerVisibility MakeVisibility(const ErrorModel& model, const MotionSetup& moti
       const auto seen_by = [&](const Eigen::Vector3d& camera) {
         for (std::size_t s = 0; s < motion.spheres.size(); ++s) {
           const CollisionSphere& sphere = motion.spheres[s];
-          // A marker stands on its link's cover, which the sphere only approximates.
+          // A marker is on its link's surface, which the link's spheres only approximate.
           if (model.tree.links[sphere.link].body == model.tree.links[marker.link].body) continue;
           if (Hides(p, camera, centres.col(static_cast<Eigen::Index>(s)), sphere.radius)) {
             return false;
@@ -65,12 +65,12 @@ MarkerVisibility MakeVisibility(const ErrorModel& model, const MotionSetup& moti
   };
 }
 
-/// Leaves only those compliances that gravity excites in these postures (rows of q) so that they
-/// can be told from the other parameters.
+/// Keeps only the compliances that gravity excites in these postures (rows of q), and that can be
+/// told from the other parameters.
 void KeepExcited(const ErrorModel& model, const MotionSetup& motion, const ChainSetup& chain,
                  const Eigen::MatrixXd& q, BaseParameters& base) {
   constexpr Eigen::Index kPostures = 100;
-  constexpr double kTolerance = 1e-3;  // of a column: less is hardly to be told from the others
+  constexpr double kTolerance = 1e-3;  // least part of a column that is independent of the others
   std::vector<int> order;              // geometry has priority
   for (int elastic : {0, 1}) {
     for (std::size_t i = 0; i < base.kept.size(); ++i) {
@@ -199,7 +199,7 @@ std::optional<ChainSetup> MirrorSetup(const RobotTree& tree, const MotionSetup& 
       *sphere = image;
     }
   }
-  // A foot that carries is exchanged for the one on the other side.
+  // A support foot is exchanged for the one on the other side.
   for (int& foot : other.support) {
     if (foot == other_tip) foot = chain.tip_link;
   }

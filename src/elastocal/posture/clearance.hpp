@@ -7,7 +7,7 @@
 
 namespace elastocal {
 
-/// Eq. 11: distances between the surfaces of pairs of spheres, at least `margin` [m].
+/// Eq. 11: distances between the surfaces of pairs of spheres are at least `margin` [m].
 class SphereClearance : public PostureConstraint {
  public:
   SphereClearance(std::vector<CollisionSphere> spheres, std::vector<SpherePair> pairs,
@@ -22,10 +22,10 @@ class SphereClearance : public PostureConstraint {
 };
 
 /// The chain's own spheres stay above a level floor at height `floor_z` in the root link's frame,
-/// m: for a leg that swings while the other one stands.
+/// m. For a leg that swings while the other one stands.
 class FloorClearance : public PostureConstraint {
  public:
-  /// Spheres on links that do not move with the chain are to be left out by the caller.
+  /// The caller must leave out spheres on links that do not move with the chain.
   FloorClearance(std::vector<CollisionSphere> spheres, double floor_z);
   std::string Name(int row) const override;
   void Evaluate(const MovingChain& chain, Eigen::Ref<Eigen::VectorXd> value,

@@ -20,8 +20,8 @@ int FindWorst(const PostureSet& set, Criterion criterion, WorstIndex reading,
 
 namespace {
 
-/// The most informative of `count` random postures in place of posture k, optimised; kept where the
-/// set is better with it.
+/// Puts the most informative of `count` random postures in place of posture k and optimises it.
+/// Keeps it if the set gets better.
 void TryAnew(PostureProblem& problem, int k, int count, FeasibleSampler& sampler,
              const PartialOptimOptions& options, PostureSet& set) {
   const Eigen::LLT<Eigen::MatrixXd> others(set.InformationWithout({k}));

@@ -7,29 +7,30 @@ namespace elastocal {
 
 /// Which posture Algorithm 1 improves next.
 enum class WorstIndex {
-  kLeastLoss,  ///< the one whose removal costs least: what the text means, and what works
-  kAsPrinted,  ///< argmin of O1 without it: the most valuable one
+  kLeastLoss,  ///< the one whose removal costs least, as the text means; this works
+  kAsPrinted,  ///< argmin of O1 without it, as printed: the most valuable one
 };
 
-/// Index of that posture, those in `passed_over` aside; -1 where none is left.
+/// Index of that posture, skipping those in `passed_over`; -1 if none is left.
 int FindWorst(const PostureSet& set, Criterion criterion, WorstIndex reading,
               const std::vector<int>& passed_over = {});
 
 struct CocpOptions {
   WorstIndex reading = WorstIndex::kLeastLoss;
   int max_rounds = 200;
-  /// Ends when so many postures in turn, each the worst of those left, could not be improved. One
-  /// is Algorithm 1 as printed: it stops where the worst posture is the same one twice.
+  /// The search ends after this many postures in turn, each the worst of those left, could not be
+  /// improved. With 1 it is Algorithm 1 as printed, which stops when the worst posture is the same
+  /// one twice.
   int patience = 1;
-  double least_gain = 1e-5;  ///< of the index, relative: less is no improvement
-  /// Before a posture counts as not to be improved, so many random feasible ones are looked at, and
-  /// the best of them is optimised in its place: a way out of local maxima. 0: as printed.
+  double least_gain = 1e-5;  ///< a smaller relative rise of the index is no improvement
+  /// If a posture cannot be improved, this many random feasible postures are drawn, and the most
+  /// informative of them is optimised in its place. This leads out of local maxima. 0: as printed.
   int candidates = 0;
   PartialOptimOptions partial = {};
 };
 
-/// Algorithm 1, COCP: improves the worst posture of a set, again and again.
-/// `sampler` is needed where the options ask for candidates.
+/// Algorithm 1, COCP: improves the worst posture of a set, again and again. Options with candidates
+/// need a `sampler`.
 void Cocp(PostureProblem& problem, PostureSet& set, const CocpOptions& options = {},
           FeasibleSampler* sampler = nullptr);
 

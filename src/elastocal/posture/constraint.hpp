@@ -8,8 +8,8 @@
 
 namespace elastocal {
 
-/// Part of what makes a posture feasible (paper section 3.1): lower() <= value <= upper(), row by
-/// row. Values are of the order of one: metres, cosines, shares of the largest torque.
+/// A constraint that feasible postures fulfil (paper section 3.1): lower() <= value <= upper(), row
+/// by row. Values are of the order of one: metres, cosines, shares of the largest torque.
 class PostureConstraint {
  public:
   virtual ~PostureConstraint() = default;
@@ -20,7 +20,7 @@ class PostureConstraint {
   const Eigen::VectorXd& upper() const { return upper_; }
   int size() const { return static_cast<int>(lower_.size()); }
 
-  /// Values, size(), and derivatives, size() x chain.size(), in the posture of `chain`.
+  /// Computes values, size(), and derivatives, size() x chain.size(), in the posture of `chain`.
   virtual void Evaluate(const MovingChain& chain, Eigen::Ref<Eigen::VectorXd> value,
                         Eigen::Ref<Eigen::MatrixXd> jacobian) const = 0;
 

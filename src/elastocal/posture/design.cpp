@@ -23,7 +23,7 @@ void Certify(PostureProblem& problem, const PostureSet& set, const DesignOptions
   design.certificate = CertifyBound(problem, set, certificate);
 }
 
-/// Seeds of what shall not see the same random numbers.
+/// Derives seeds for streams that must not use the same random numbers.
 std::uint64_t Derived(std::uint64_t seed, int stream) {
   return seed * 1000003u + static_cast<std::uint64_t>(stream);
 }
@@ -90,7 +90,7 @@ ChainDesign MirrorDesign(const ChainDesign& design, const MirrorMap& mirror,
         continue;
       }
       mirrored.notes.push_back("posture " + std::to_string(set.size() + 1) +
-                               " was found anew: mirrored, it breaks the " + violation.what);
+                               " was replaced: its mirror image breaks the " + violation.what);
       replaced.push_back(set.size());
       x = *drawn;
     }
@@ -104,7 +104,8 @@ ChainDesign MirrorDesign(const ChainDesign& design, const MirrorMap& mirror,
   mirrored.parameter_count = problem.column_count();
   mirrored.index = set.Index(options.criterion);
   mirrored.mirrored_from = design.setup.name;
-  // The feasible set is the mirror image as far as the robot is one.
+  // The feasible set is a mirror image as far as the robot is symmetric, so the certificate is
+  // taken over.
   mirrored.certificate = design.certificate;
   SetPostures(problem, set, mirrored);
   return mirrored;

@@ -11,15 +11,15 @@
 
 namespace elastocal {
 
-/// How postures are chosen. All but NOCP take a number of postures, and all but random sets and
-/// NOCP start from random feasible ones.
+/// How postures are chosen. All except NOCP take the number of postures; COCP, IOOPS and exchange
+/// start from random feasible ones.
 enum class DesignAlgorithm { kNocp, kCocp, kIoops, kExchange, kRandom };
 
 const char* AlgorithmName(DesignAlgorithm algorithm);  ///< nocp, cocp, ioops, exchange, random
 
 struct DesignOptions {
   DesignAlgorithm algorithm = DesignAlgorithm::kNocp;
-  int postures = 24;  ///< of algorithms other than NOCP
+  int postures = 24;  ///< number of postures, for algorithms other than NOCP
   NocpOptions nocp = {};
   Criterion criterion = Criterion::kO1;
   bool certify = true;
@@ -30,12 +30,12 @@ struct DesignOptions {
 /// Calibration postures of one chain.
 struct ChainDesign {
   ChainSetup setup;
-  std::vector<Eigen::VectorXd> postures;  ///< of the whole robot, by coordinate of q
+  std::vector<Eigen::VectorXd> postures;  ///< postures of the whole robot, by coordinate of q
   DesignResult::Status status = DesignResult::Status::kMaxPostures;
   std::string blame = {};  ///< the limit that leaves no feasible posture
   int parameter_count = 0;
   double index = 0.0;                ///< of the set
-  std::vector<int> sizes = {};       ///< of the set after each addition ...
+  std::vector<int> sizes = {};       ///< number of postures after each addition ...
   std::vector<double> indices = {};  ///< ... and its index
   Certificate certificate = {};
   SamplingCount sampling = {};          ///< of the random postures drawn
@@ -45,28 +45,28 @@ struct ChainDesign {
   double Efficiency() const { return certificate.bound > 0.0 ? index / certificate.bound : 0.0; }
 };
 
-/// The smallest set of postures for a chain (or what the algorithm gives), with a certificate of
-/// how far it is from the best there is.
+/// Finds the smallest set of postures for a chain (or the set that the algorithm gives), with a
+/// certificate of how far its index is from the maximum.
 ChainDesign DesignChain(const ErrorModel& model, const std::vector<int>& base,
                         const MotionSetup& motion, const ChainSetup& chain,
                         const DesignOptions& options);
 
-/// The same postures mirrored for the chain on the other side, whose model and set-up these are.
-/// They are checked anew: one that is not feasible there (limits and loads need not be symmetric)
-/// is replaced by a random one and optimised; notes say so. The index is that of the other side.
+/// Mirrors the postures for the chain on the other side, to which model and set-up belong. They are
+/// checked anew: a posture that is not feasible there (limits and loads need not be symmetric) is
+/// replaced by a random one and optimised, and notes say so. The index is that of the other side.
 ChainDesign MirrorDesign(const ChainDesign& design, const MirrorMap& mirror,
                          const ErrorModel& model, const std::vector<int>& base,
                          const MotionSetup& motion, const ChainSetup& other,
                          const DesignOptions& options);
 
-/// O1 against the number of postures (paper Fig. 6).
+/// A point of the curve of O1 against the number of postures (paper Fig. 6).
 struct CurvePoint {
   DesignAlgorithm algorithm;
   std::string chain;
   int postures = 0;
   double index = 0.0;
 };
-/// What the other algorithms reach with sets of these sizes, each from random postures.
+/// The index that the other algorithms reach with sets of these sizes, each from random postures.
 std::vector<CurvePoint> CompareAlgorithms(const ErrorModel& model, const std::vector<int>& base,
                                           const MotionSetup& motion, const ChainSetup& chain,
                                           const std::vector<int>& sizes,

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// Draws `count` postures; says in `result` where there are none.
+/// Draws `count` postures. If there are none, `result` gets the reason.
 std::vector<Eigen::VectorXd> DrawPool(PostureProblem& problem, int count, std::uint64_t seed,
                                       DesignResult& result) {
   FeasibleSampler sampler(problem.feasible, seed);
@@ -27,7 +27,8 @@ std::vector<Eigen::VectorXd> DrawPool(PostureProblem& problem, int count, std::u
 }
 
 /// Index of the candidate that raises log det of the information most.
-int FindBestAddition(const Eigen::MatrixXd& information, const std::vector<Eigen::MatrixXd>& psi) {
+int FindMostInformative(const Eigen::MatrixXd& information,
+                        const std::vector<Eigen::MatrixXd>& psi) {
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   int best = 0;
   double most = -1.0;
@@ -57,7 +58,7 @@ DesignResult ExchangeDesign(PostureProblem& problem, int postures, std::uint64_t
   for (int k = 0; k < postures; ++k) set.Add(problem, pool[k]);
   for (int round = 0; round < options.max_rounds && set.Index(Criterion::kO1) > 0.0; ++round) {
     PostureSet exchanged = set;
-    exchanged.Add(problem, pool[FindBestAddition(set.information(), psi)]);
+    exchanged.Add(problem, pool[FindMostInformative(set.information(), psi)]);
     exchanged.Remove(FindWorst(exchanged, Criterion::kO1, WorstIndex::kLeastLoss));
     if (!(exchanged.Index(Criterion::kO1) > set.Index(Criterion::kO1))) break;
     set = std::move(exchanged);

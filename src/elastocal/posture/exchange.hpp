@@ -11,14 +11,14 @@ struct ExchangeOptions {
   int max_rounds = 100;
 };
 
-/// What most tools offer, as a baseline: the best `postures` of a pool of random feasible ones by
-/// exchange (Mitchell's DETMAX): add the candidate that gains most, drop the posture that costs
-/// least, until that is the same. Candidates may come more than once. O1 only
-/// (std::invalid_argument otherwise).
+/// A baseline, which most tools offer: chooses `postures` postures of a pool of random feasible
+/// ones by exchange (Mitchell's DETMAX). It adds the candidate that raises O1 most and drops the
+/// posture that costs least, until these are the same. A candidate may be chosen more than once.
+/// For O1 only (std::invalid_argument otherwise).
 DesignResult ExchangeDesign(PostureProblem& problem, int postures, std::uint64_t seed,
                             const ExchangeOptions& options = {});
 
-/// The other baseline: random feasible postures as they come.
+/// The other baseline: random feasible postures, as drawn.
 DesignResult RandomDesign(PostureProblem& problem, int postures, std::uint64_t seed);
 
 }  // namespace elastocal

@@ -12,16 +12,16 @@
 
 namespace elastocal {
 
-/// The postures that a chain may take (paper section 3.1, eq. 8-11): limits of the coordinates and
-/// constraints of any sort. A posture x stands for the chain's coordinates, rad or m.
+/// The postures that a chain may take (paper section 3.1, eq. 8-11): limits of the coordinates, and
+/// constraints. A posture x consists of the chain's coordinates, rad or m.
 struct FeasibleSet {
   MovingChain chain;
   Eigen::VectorXd lower, upper;  ///< eq. 8
   std::vector<std::unique_ptr<PostureConstraint>> constraints;
-  int end_link = 0;  ///< whose pose the random postures are drawn by
+  int end_link = 0;  ///< link by whose pose random postures are drawn
   bool has_workspace = false;
   Workspace workspace = {};
-  int repair_joints = 3;  ///< coordinates, the first ones, that make room where spheres meet
+  int repair_joints = 3;  ///< number of first coordinates that move to separate spheres
 
   int variable_count() const { return chain.size(); }
   int constraint_count() const;
@@ -33,14 +33,14 @@ struct FeasibleSet {
 void EvaluateConstraints(FeasibleSet& set, const Eigen::VectorXd& x, Eigen::VectorXd& values,
                          Eigen::MatrixXd& jacobian);
 
-/// By how much a posture is beyond the limit that it breaks most, 0 where it is feasible, and which
-/// limit that is.
+/// The limit that a posture breaks most, and by how much; 0 if it is feasible.
 struct Violation {
-  double amount = 0.0;  ///< rad or m for limits of coordinates, else as PostureConstraint has it
+  double amount =
+      0.0;  ///< rad or m for limits of coordinates, otherwise in units of the PostureConstraint
   std::string what;
 };
 Violation WorstViolation(FeasibleSet& set, const Eigen::VectorXd& x);
 
-inline constexpr double kFeasible = 1e-6;  ///< largest violation of a posture that is called so
+inline constexpr double kFeasible = 1e-6;  ///< largest violation of a feasible posture
 
 }  // namespace elastocal

@@ -7,16 +7,17 @@
 namespace elastocal {
 
 struct IoopsOptions {
-  int tabu_length = 4;  ///< postures improved last that may not be chosen (less than the set)
-  int patience = 12;    ///< rounds without a better set after which it ends
+  int tabu_length = 4;  ///< number of postures improved last that are tabu (fewer than the set has)
+  int patience = 12;    ///< the search ends after this many rounds without a better set
   int max_rounds = 200;
   WorstIndex reading = WorstIndex::kLeastLoss;
   PartialOptimOptions partial = {};
 };
 
-/// IOOPS (Joubair, Tahan and Bonev 2016, as the paper's section 3.4.2 has it): as COCP, but the
-/// search is not allowed to stop: postures improved lately are tabu, and one that cannot be
-/// improved where it is starts again from a random feasible posture. Gives the best set seen.
+/// IOOPS (Joubair, Tahan and Bonev 2016, as in the paper's section 3.4.2). It works like COCP but
+/// does not stop there: postures improved lately are tabu, and one that cannot be improved where it
+/// is starts again from a random feasible posture. The result is the set with the highest index of
+/// all rounds.
 void Ioops(PostureProblem& problem, PostureSet& set, std::uint64_t seed,
            const IoopsOptions& options = {});
 

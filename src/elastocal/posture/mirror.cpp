@@ -19,19 +19,19 @@ std::optional<MirrorMap> FindMirror(const RobotTree& tree, const std::vector<int
     const Joint& here = tree.joints[tree.coordinate_joint[coordinates[i]]];
     const Joint& there = tree.joints[tree.coordinate_joint[other[i]]];
     const std::string pair = here.name + " and " + there.name;
-    if (here.type != there.type) return fail(pair + " are not of one type");
+    if (here.type != there.type) return fail(pair + " are of different types");
     const bool revolute = here.type == JointType::kRevolute;
     const Eigen::Vector3d wanted =
         (revolute ? -1.0 : 1.0) * reflect.cwiseProduct(poses[here.child_link].linear() * here.axis);
     const Eigen::Vector3d found = poses[there.child_link].linear() * there.axis;
     if (wanted.cross(found).norm() > std::sin(angle)) {
-      return fail("the axes of " + pair + " are no mirror images");
+      return fail("the axes of " + pair + " are not mirror images");
     }
-    // Where along its axis a joint sits does not matter to a revolute one.
+    // The place of a revolute joint along its axis does not matter.
     const Eigen::Vector3d offset = poses[there.child_link].translation() -
                                    reflect.cwiseProduct(poses[here.child_link].translation());
     if (revolute && offset.cross(found).norm() > distance) {
-      return fail("the axes of " + pair + " are not where their mirror images would be");
+      return fail("the axes of " + pair + " are parallel to their mirror images, but elsewhere");
     }
     map.sign[static_cast<Eigen::Index>(i)] = wanted.dot(found) > 0.0 ? 1.0 : -1.0;
   }

@@ -10,18 +10,19 @@
 
 namespace elastocal {
 
-/// How the coordinates of a chain on one side follow from those of its mirror image on the other:
+/// Relation of the coordinates of a chain on one side to those of its mirror image on the other:
 /// x_other = sign .* x, in the order of the chains.
 struct MirrorMap {
   Eigen::VectorXd sign;
 };
 
 /// Compares two chains (coordinates from the root outwards) in the zero posture, reflected at the
-/// root link's x-z plane: axes must agree within `angle` [rad] and origins, along the axis, within
-/// `distance` [m]. Nothing, and why in `reason`, where they are no mirror images.
+/// root link's x-z plane: axes must agree within `angle` [rad] and origins within `distance` [m]
+/// (the place along a revolute axis does not matter). If the chains are not mirror images, the
+/// result is empty, and `reason` says why.
 ///
-/// A rotation by q about an axis a through o becomes, reflected by S = diag(1, -1, 1), one by q
-/// about -S a through S o.
+/// Reflected by S = diag(1, -1, 1), a rotation by q about an axis a through o becomes a rotation by
+/// q about -S a through S o.
 std::optional<MirrorMap> FindMirror(const RobotTree& tree, const std::vector<int>& coordinates,
                                     const std::vector<int>& other, std::string* reason = nullptr,
                                     double angle = 1e-2, double distance = 2e-3);

@@ -48,7 +48,7 @@ TEST(FindMirror, SaysWhyThereIsNone) {
   tree.joints[4].axis = {0, 1, 0};
   std::string reason;
   EXPECT_FALSE(FindMirror(tree, {0, 1, 2}, {3, 4, 5}, &reason));
-  EXPECT_EQ(reason, "the axes of l2 and r2 are no mirror images");
+  EXPECT_EQ(reason, "the axes of l2 and r2 are not mirror images");
   EXPECT_FALSE(FindMirror(tree, {0, 1, 2}, {3, 4}, &reason));
 }
 

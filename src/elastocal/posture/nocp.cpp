@@ -18,9 +18,9 @@ int FindPlateau(const std::vector<double>& indices, double tolerance) {
 
 namespace {
 
-constexpr int kPolishing = 4;  // postures in turn that cannot be improved
+constexpr int kPolishing = 4;  // number of postures in turn that cannot be improved
 
-/// Goes on with the worst postures of the final set for longer than between additions.
+/// Improves the worst postures of the final set, for longer than between additions.
 void Polish(PostureProblem& problem, const CocpOptions& usual, FeasibleSampler& sampler,
             PostureSet& set) {
   CocpOptions options = usual;

@@ -8,43 +8,44 @@
 
 namespace elastocal {
 
-/// When a set is large enough: when two additions in turn raise the index by less than `tolerance`
-/// of what it was before them; these two are then not needed. (O1 is the root of the information of
-/// an average posture: it rests, and is not monotone.)
+/// A set is large enough if two additions in turn raise the index by less than `tolerance`,
+/// relative to the index before them; these two additions are then dropped. (O1 is the root of the
+/// information of an average posture: it reaches a plateau and is not monotone.)
 struct PlateauRule {
-  double tolerance = 3e-3;  ///< negative: goes on to max_postures
-  int max_postures = 48;    ///< where the addition ends in any case
+  double tolerance = 3e-3;  ///< if negative, the set grows to max_postures
+  int max_postures = 48;    ///< the set grows no further in any case
 };
 
 /// Index of the entry after which two additions in turn raised the index by less than `tolerance`,
 /// or -1.
 int FindPlateau(const std::vector<double>& indices, double tolerance);
 
-/// A set with the way to it.
+/// A set, and the sizes and indices on the way to it.
 struct DesignResult {
   enum class Status {
-    kPlateau,       ///< the index has come to rest
-    kMaxPostures,   ///< it had not at the largest number allowed
+    kPlateau,       ///< the index has reached its plateau
+    kMaxPostures,   ///< no plateau was reached with the largest number allowed
     kNoPosture,     ///< no feasible posture was found; `blame` names the limit
     kRankDeficient  ///< the chain's postures cannot determine the parameters
   };
   PostureSet set;
   Status status = Status::kMaxPostures;
   std::string blame = {};
-  std::vector<int> sizes = {};       ///< of the set after each addition
-  std::vector<double> indices = {};  ///< after each addition
+  std::vector<int> sizes = {};       ///< number of postures after each addition
+  std::vector<double> indices = {};  ///< index after each addition
   SamplingCount sampling = {};       ///< of the random postures drawn
 };
 
 struct NocpOptions {
-  int block = 4;  ///< N_p: postures that are added at a time
+  int block = 4;  ///< N_p: number of postures that are added at a time
   PlateauRule plateau = {};
   CocpOptions cocp = {.patience = 2, .candidates = 30};
 };
 
-/// Algorithm 2, NOCP: adds blocks of random feasible postures, optimises each block beside the
-/// others as they are, then the worst postures of all, until the index comes to rest. The set from
-/// which on it rests is gone through once more, every posture.
+/// Algorithm 2, NOCP. It adds a block of random feasible postures, optimises the block while the
+/// other postures are fixed, then improves the worst postures of all, and repeats this until the
+/// index reaches its plateau. In the set where the plateau begins, every posture is then improved
+/// once more.
 DesignResult Nocp(PostureProblem& problem, std::uint64_t seed, const NocpOptions& options = {});
 
 }  // namespace elastocal

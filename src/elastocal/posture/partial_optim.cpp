@@ -7,7 +7,7 @@
 namespace elastocal {
 namespace {
 
-/// log of the index over some postures, side by side in x.
+/// The log of the index as a function of some postures, which stand one behind the other in x.
 class IndexProgram : public NonlinearProgram {
  public:
   IndexProgram(PostureProblem& problem, const std::vector<int>& which, const PostureSet& set)
@@ -54,7 +54,7 @@ class IndexProgram : public NonlinearProgram {
     const Eigen::Index variables = problem_.variable_count();
     for (std::size_t i = 0; i < psi_.size(); ++i) {
       const Eigen::MatrixXd weight =
-          -scale_ * psi_[i] * value_.weight;  // zero where nothing is shown
+          -scale_ * psi_[i] * value_.weight;  // zero if no marker is seen
       Regressor(i);
       gradient.segment(static_cast<Eigen::Index>(i) * variables, variables) =
           problem_.regressor.Gradient(problem_.feasible.chain, weight);
@@ -79,8 +79,8 @@ class IndexProgram : public NonlinearProgram {
   PostureProblem& problem_;
   Eigen::MatrixXd others_;
   int postures_;
-  double scale_;  // of one posture among many the index says little: log det is of order one
-  std::vector<Eigen::ArrayXd> shown_;  // by posture: 1 for rows of markers that are seen
+  double scale_;  // the index changes little by one posture among many; log det is of order one
+  std::vector<Eigen::ArrayXd> shown_;  // for each posture, 1 for rows of markers that are seen
   Eigen::VectorXd x_, values_, constraints_;
   std::vector<Eigen::MatrixXd> psi_, jacobian_;
   CriterionValue value_;

@@ -11,13 +11,14 @@ struct PartialOptimOptions {
   double tolerance = 1e-4;  ///< of log O1, by the scaled optimality of the interior-point method
 };
 
-/// The paper's partialOptim(I, q0), section 3.4.1: maximises the index over the postures `which` of
-/// the set, all others held, under the constraints of the feasible set, from where they are, by an
-/// interior-point method. The set never becomes worse: where the method finds nothing better that
-/// is feasible to kFeasible, postures stay. Gives whether anything changed.
+/// The paper's partialOptim(I, q0), section 3.4.1: an interior-point method maximises the index
+/// over the postures `which` of the set, starting from where they are, under the constraints of the
+/// feasible set, while all other postures are fixed. The set never becomes worse: if the method
+/// finds no better postures that are feasible to kFeasible, nothing changes. Returns whether
+/// anything changed.
 ///
-/// Where markers can be hidden, the optimisation takes them as they are seen at the start; whether
-/// the outcome is better is judged with them as they are seen there.
+/// If markers can be hidden, the optimisation uses those that are seen at the start; the result is
+/// judged with those that are seen in the new postures.
 bool PartialOptim(PostureProblem& problem, const std::vector<int>& which, PostureSet& set,
                   const PartialOptimOptions& options = {});
 

@@ -11,11 +11,11 @@
 
 namespace elastocal {
 
-/// Which markers count in a posture (one a marker): those that some camera sees.
+/// For each marker, whether it counts in a posture, because some camera sees it.
 using MarkerVisibility = std::function<std::vector<char>(const MovingChain&)>;
 
-/// What calibration postures are sought for: a chain, what is to be identified with it, and which
-/// postures it may take. Holds scratch space: one for each thread.
+/// The problem for which calibration postures are sought: a chain, the parameters to be identified
+/// with it, and the postures that it may take. It holds scratch space: use one for each thread.
 struct PostureProblem {
   FeasibleSet feasible;
   PostureRegressor regressor;
@@ -39,14 +39,14 @@ class PostureSet {
   const Eigen::VectorXd& posture(int k) const { return postures_[k]; }
   const Eigen::MatrixXd& psi(int k) const { return psi_[k]; }
   const Eigen::MatrixXd& information() const { return information_; }
-  /// Information of all postures but some.
+  /// Information of all postures except some.
   Eigen::MatrixXd InformationWithout(const std::vector<int>& left_out) const;
 
   void Add(PostureProblem& problem, const Eigen::VectorXd& x);
   void Replace(PostureProblem& problem, int k, const Eigen::VectorXd& x);
   void Remove(int k);
 
-  /// The problem's index of the set; 0 where the set does not determine all parameters.
+  /// Index of the set; 0 if the set does not determine all parameters.
   double Index(Criterion criterion) const;
 
  private:
@@ -57,8 +57,8 @@ class PostureSet {
 
 PostureSet MakePostureSet(PostureProblem& problem, const std::vector<Eigen::VectorXd>& postures);
 
-/// By posture, the index of the set without it. O1 by the matrix determinant lemma, with one
-/// factorisation for all.
+/// For each posture, the index of the set without it. O1 uses the matrix determinant lemma, with
+/// one factorisation for all postures.
 Eigen::VectorXd IndicesWithoutEach(const PostureSet& set, Criterion criterion);
 
 }  // namespace elastocal

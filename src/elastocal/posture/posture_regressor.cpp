@@ -12,14 +12,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kBaseColumn = -1, kMarkerColumn = -2;  // in place of a joint
+constexpr int kWaistColumn = -1, kMarkerColumn = -2;  // in place of a joint
 
 bool IsJointCompliance(ParameterKind kind) {
   return kind == ParameterKind::kTorsion || kind == ParameterKind::kBending;
 }
 
 bool IsLegCompliance(ParameterKind kind) {
-  return kind == ParameterKind::kBaseForce || kind == ParameterKind::kBaseMoment;
+  return kind == ParameterKind::kLegForce || kind == ParameterKind::kLegMoment;
 }
 
 /// Whether the chain moves a joint of the leg.
@@ -30,7 +30,7 @@ bool Moves(const MovingChain& chain, const ErrorModel& model, const SupportLeg& 
   });
 }
 
-/// The parameter that displaces a marker as the joint's motion does.
+/// The parameter that moves markers in the same way as the joint.
 int MotionParameter(const ErrorModel& model, int joint) {
   const ParameterKind kind = model.tree.joints[joint].type == JointType::kRevolute
                                  ? ParameterKind::kTheta
@@ -55,7 +55,7 @@ PostureRegressor::PostureRegressor(const ErrorModel& model, std::vector<int> bas
       elastic_ = true;
     } else if (IsLegCompliance(parameter.kind) &&
                !Moves(chain, model_, model_.legs[parameter.leg])) {
-      const int entry = parameter.axis + (parameter.kind == ParameterKind::kBaseMoment ? 3 : 0);
+      const int entry = parameter.axis + (parameter.kind == ParameterKind::kLegMoment ? 3 : 0);
       LegColumn& leg = legs_.emplace_back();
       leg.column = static_cast<int>(column);
       leg.leg = parameter.leg;
@@ -91,7 +91,7 @@ void PostureRegressor::LayOut(const MovingChain& chain) {
       const Parameter& parameter = model_.parameters[source[c]];
       const int joint = parameter.marker >= 0  ? kMarkerColumn
                         : parameter.joint >= 0 ? parameter.joint
-                                               : kBaseColumn;
+                                               : kWaistColumn;
       columns.push_back(
           {static_cast<int>(found - base_.begin()), static_cast<int>(c), source[c], joint});
     }
@@ -148,7 +148,7 @@ void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weig
                                          Eigen::VectorXd& gradient) const {
   // A column v = a x p + m turns as a whole with the joints before its own, dv = z x v; the joints
   // from its own one on move the marker alone, dv = a x dp. Weighted by w these are z . (v x w) and
-  // dp . (w x a), so that sums over columns, kept along the path, serve for all joints.
+  // dp . (w x a), so that running sums over the columns along the chain serve for all joints.
   const Vector3d p = jacobian_.Position(marker);
   Vector3d turned = Vector3d::Zero();  // sum of v x w over the columns beyond the joint
   Vector3d moved = Vector3d::Zero();   // sum of w x a over the columns before it
@@ -162,7 +162,7 @@ void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weig
   };
   const std::vector<MarkerColumn>& columns = columns_[marker];
   for (const MarkerColumn& c : columns) {
-    if (c.joint == kBaseColumn) {
+    if (c.joint == kWaistColumn) {
       moved += w_cross_a(c);
     } else {
       turned += v_cross_w(c);
@@ -173,7 +173,7 @@ void PostureRegressor::AddMarkerGradient(int marker, const Eigen::MatrixXd& weig
     moved += w.cross(leg.load * leg.axis);
   }
   auto next = std::find_if(columns.begin(), columns.end(),
-                           [](const MarkerColumn& c) { return c.joint != kBaseColumn; });
+                           [](const MarkerColumn& c) { return c.joint != kWaistColumn; });
   for (const PathJoint& joint : paths_[marker]) {
     for (; next != columns.end() && next->joint == joint.joint; ++next) {
       turned -= v_cross_w(*next);
@@ -199,7 +199,7 @@ void PostureRegressor::AddLoadGradient(MovingChain& chain, const Eigen::MatrixXd
       by_load(p.axis, p.joint) += block.col(c.source).dot(weight.block<3, 1>(3 * m, c.column));
     }
   }
-  // In the root link's axes, as the chain has everything.
+  // In the root link's axes, like everything in MovingChain.
   const Transform T_root_ref = jacobian_.WaistPose().inverse();
   std::vector<LoadComponent> components;
   const auto visit = [&](int k, const Geometry::JointConstants& constants, const MdhFrame&,

@@ -10,14 +10,13 @@
 
 namespace elastocal {
 
-/// The base generalized Jacobian Psi_b of one posture (eq. 4): markers by identifiable parameters,
-/// at nominal geometry, and how it changes with the posture. Compliances may be among the
-/// parameters: those of joints (eq. 5) act under the weight of what they carry; those of a leg (eq.
-/// 6) move the root link with all markers, by its lumped compliance under the whole robot's weight,
-/// the robot standing on that leg alone.
+/// The generalized Jacobian Psi_b of the base parameters in one posture (eq. 4), at nominal
+/// geometry, and its derivative by the posture. Compliances may be among the parameters. Those of
+/// joints (eq. 5) act under the weight of what the joints carry. Those of a leg (eq. 6) move the
+/// root link and all markers, under the weight of the whole robot, which stands on that leg alone.
 class PostureRegressor {
  public:
-  /// `base`: columns, indices into the model's parameters, ascending; torque biases, and
+  /// `base` lists the columns: indices into the model's parameters, ascending. Torque biases, and
   /// compliances of a leg that the chain moves, may not be among them (std::invalid_argument).
   /// Keeps a reference to the model.
   PostureRegressor(const ErrorModel& model, std::vector<int> base, const MovingChain& chain);
@@ -28,9 +27,9 @@ class PostureRegressor {
   /// Psi_b in the posture x of `chain`, rows() x columns(): m/rad, m/m, m/(rad/(N.m)).
   const Eigen::MatrixXd& Evaluate(MovingChain& chain, const Eigen::VectorXd& x);
 
-  /// Derivatives by x of the sum of `weight` .* Psi_b, the weight (rows() x columns()) being
-  /// constant; in the posture of the last evaluation. With weight = 2 Psi_b M^-1 it is the gradient
-  /// of log det M.
+  /// Derivatives by x of the sum of `weight` .* Psi_b with a constant weight (rows() x columns()),
+  /// in the posture of the last evaluation. With weight = 2 Psi_b M^-1 it is the gradient of log
+  /// det M.
   Eigen::VectorXd Gradient(MovingChain& chain, const Eigen::MatrixXd& weight);
 
  private:
@@ -38,18 +37,18 @@ class PostureRegressor {
     int column;     // of Psi_b
     int source;     // of GeneralizedJacobian::Block
     int parameter;  // of the model
-    int joint;      // of the tree; kBaseColumn, kMarkerColumn
+    int joint;      // of the tree; kWaistColumn, kMarkerColumn
   };
   struct PathJoint {
     int joint, motion;  // motion: the parameter whose screw is the joint's own motion
     int variable;       // entry of x; -1: it rests
     double multiplier;
   };
-  /// A compliance of a standing leg: how it moves the root link, and the load that it bears.
+  /// A compliance of a support leg: how it moves the root link, and the load that it bears.
   struct LegColumn {
     int column = 0, leg = 0;
     int entry = 0;  // of the leg's six compliances and of its load
-    // Of unit load: a marker at p moves by axis x p + translation.
+    // By a unit load, a marker at p moves by axis x p + translation.
     Eigen::Vector3d axis = Eigen::Vector3d::Zero(), translation = Eigen::Vector3d::Zero();
     double load = 0.0;
 

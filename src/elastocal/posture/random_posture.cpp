@@ -12,8 +12,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kDamping = 1e-4;
-constexpr double kTurnWeight = 0.3;  // m/rad: how much an error of orientation counts
-constexpr double kClearly = 1e-3;    // repaired postures are within limits by as much
+constexpr double kTurnWeight = 0.3;  // m/rad: weight of an error of orientation
+constexpr double kClearly = 1e-3;    // margin of repaired postures to their limits
 constexpr int kPlaceIterations = 20;
 constexpr int kRepairIterations = 10;
 
@@ -25,7 +25,7 @@ Eigen::Matrix3d RandomTurn(double largest, Random& random) {
   return Eigen::AngleAxisd(random.Uniform(0.0, largest), axis.normalized()).toRotationMatrix();
 }
 
-/// Damped least-squares step that makes J step = wanted, nearly.
+/// Damped least-squares step, for which J step is nearly `wanted`.
 Eigen::VectorXd DampedStep(const Eigen::MatrixXd& J, const Eigen::VectorXd& wanted) {
   Eigen::MatrixXd normal = J.transpose() * J;
   normal.diagonal().array() += kDamping;

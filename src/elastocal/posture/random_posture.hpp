@@ -12,7 +12,7 @@
 
 namespace elastocal {
 
-/// How the random postures came about.
+/// How many draws the random postures took.
 struct SamplingCount {
   long tries = 0;
   long feasible_at_once = 0;  ///< without repair
@@ -20,22 +20,22 @@ struct SamplingCount {
   double Yield() const { return tries > 0 ? static_cast<double>(found) / tries : 0.0; }
 };
 
-/// Random feasible postures (paper section 3.5.2): a random pose of the chain's end in its
-/// workspace, brought about by the joints as well as they can (bounded least squares from a random
-/// start); where something else is broken then, the first joints (shoulder or hip) are moved until
-/// it is not, or another pose is drawn. A chain without workspace: joints drawn within their
-/// limits.
+/// Draws random feasible postures (paper section 3.5.2). It draws a random pose of the chain's end
+/// in its workspace, which the joints reach as well as they can (bounded least squares from a
+/// random start). If another constraint is then broken, the first joints (shoulder or hip) move
+/// until it holds, or another pose is drawn. For a chain without workspace, joint positions are
+/// drawn within their limits.
 class FeasibleSampler {
  public:
   /// Keeps a reference.
   FeasibleSampler(FeasibleSet& set, std::uint64_t seed) : set_(set), random_(seed) {}
 
-  /// Nothing where `most_tries` end poses gave no feasible posture: the workspace is empty, or next
-  /// to.
+  /// Returns nothing if `most_tries` end poses gave no feasible posture: the workspace is empty, or
+  /// nearly so.
   std::optional<Eigen::VectorXd> Draw(int most_tries = 2000);
 
   const SamplingCount& count() const { return count_; }
-  /// Where the last draw failed: the limit that kept most of the tries from being feasible.
+  /// After a failed draw: the limit that most of the tries broke.
   std::string Blame() const;
 
  private:

@@ -6,8 +6,8 @@
 
 namespace elastocal {
 
-/// Eq. 9: torques that balance gravity while the root link is held, as shares of the largest torque
-/// (the URDF's effort) of each coordinate; at most `share` either way.
+/// Eq. 9: the torques that balance gravity while the root link is held still are at most `share` of
+/// the largest torque (the URDF's effort) of each coordinate, in either direction.
 class TorqueLimit : public PostureConstraint {
  public:
   /// Coordinates without a finite effort are left out.

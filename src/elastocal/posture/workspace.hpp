@@ -11,7 +11,7 @@ struct Workspace {
   Eigen::Vector3d lower = Eigen::Vector3d::Constant(-1e3);  ///< of the end link's origin, m
   Eigen::Vector3d upper = Eigen::Vector3d::Constant(1e3);
   Eigen::Matrix3d R_root_end = Eigen::Matrix3d::Identity();  ///< nominal orientation
-  double largest_turn = M_PI;                                ///< from it, rad
+  double largest_turn = M_PI;                                ///< largest angle from it, rad
 };
 
 /// Eq. 10, position: the origin of `link` stays in a box.
@@ -26,8 +26,8 @@ class EndBox : public PostureConstraint {
   int link_;
 };
 
-/// Eq. 10, orientation: the angle by which `link` is turned from nominal, as its cosine, which is
-/// smooth everywhere.
+/// Eq. 10, orientation: limits the angle by which `link` is turned from nominal. The value is its
+/// cosine, which is smooth everywhere.
 class OrientationCone : public PostureConstraint {
  public:
   OrientationCone(int link, const Workspace& workspace);

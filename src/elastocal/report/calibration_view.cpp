@@ -31,7 +31,7 @@ Json RobotJson(const RobotView& view) {
 }
 
 Json MarkersJson(const CalibrationView& view) {
-  const ErrorModel& model = view.comparison.best().model;
+  const ErrorModel& model = view.comparison.largest().model;
   Json json = Json::array();
   for (const Marker& marker : model.markers) {
     Json item = {{"name", marker.name}, {"link", model.tree.links[marker.link].name}};

@@ -29,7 +29,7 @@ struct Distances {
 Distances Counted(const CalibrationView& view, const Recording& recording,
                   const ByModel<Prediction>& predictions, bool calibration) {
   Mask counts = Mask::Constant(recording.posture_count(), recording.marker_count(), true);
-  if (calibration) counts = view.comparison.best().used;
+  if (calibration) counts = view.comparison.largest().used;
   for (const ModelKind kind : view.comparison.kinds) {
     counts = counts && predictions[static_cast<int>(kind)].distances.array().isFinite();
   }
@@ -145,7 +145,7 @@ Json Trace(const CalibrationView& view, const Distances& distances, int trial) {
                {"rms_mm", Json::object()}};
   for (std::size_t k = 0; k < rows.size(); k += step) {
     json["time_s"].push_back(Rounded(recording.time_s[rows[k]], 7));
-    for (const ModelKind kind : {ModelKind::kUncalibrated, view.comparison.best_kind()}) {
+    for (const ModelKind kind : {ModelKind::kUncalibrated, view.comparison.largest_kind()}) {
       json["rms_mm"][ModelKindName(kind)].push_back(RowRms(
           distances.predictions[static_cast<int>(kind)].distances, distances.counts, rows[k]));
     }

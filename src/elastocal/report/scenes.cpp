@@ -52,7 +52,7 @@ std::vector<int> MarkersSeen(const Recording& recording, const std::vector<int>&
 /// From the frame of the recording to one with z up: of trials by gravity, of a table of postures
 /// that of the waist.
 Transform ToView(const CalibrationView& view) {
-  const CalibrationResult& best = view.comparison.best();
+  const CalibrationResult& best = view.comparison.largest();
   if (view.recording.trials.empty()) {
     return WaistPose(ApplyErrors(best.model, best.delta)).inverse();
   }
@@ -109,11 +109,11 @@ Json MakeScene(const CalibrationView& view, const Predicted& predicted, const Tr
   const bool motion = trial.kind == TrialKind::kSine;
   const std::vector<int> postures = Thinned(all, motion ? kMostPlayedMoments : kMostPostures);
   const std::vector<int> markers = MarkersSeen(recording, postures);
-  const ModelKind best = view.comparison.best_kind();
+  const ModelKind best = view.comparison.largest_kind();
   Json scene = {{"name", trial.name}, {"kind", KindText(trial.kind)}, {"total", all.size()}};
   scene["support"] = Json::array();
   for (const int link : trial.support) {
-    scene["support"].push_back(view.comparison.best().model.tree.links[link].name);
+    scene["support"].push_back(view.comparison.largest().model.tree.links[link].name);
   }
   scene["time_s"] = Json::array();
   for (const int i : postures) {

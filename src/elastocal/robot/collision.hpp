@@ -18,10 +18,10 @@ struct CollisionSphere {
   double radius = 0.0;                                      ///< m
 };
 
-/// Two spheres that may meet: indices.
+/// Indices of two spheres that can touch.
 using SpherePair = std::pair<int, int>;
 
-/// Centres in the frame of `T_ref_link` (poses of all links), 3 x spheres, m.
+/// Centres of the spheres in the frame ref of `T_ref_link` (poses of all links), 3 x spheres, m.
 Eigen::Matrix3Xd SphereCentres(const std::vector<CollisionSphere>& spheres,
                                const std::vector<Transform>& T_ref_link);
 

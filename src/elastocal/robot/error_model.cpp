@@ -28,7 +28,7 @@ std::vector<int> ActiveJoints(const RobotTree& tree, const std::vector<Marker>& 
 void AddBaseParameters(std::vector<Parameter>& parameters) {
   for (const char* name : {"gamma", "b", "alpha", "d", "theta", "r"}) {
     const bool length = name[1] == '\0';
-    parameters.push_back({std::string("waist.T0.") + name, Kind::kBase,
+    parameters.push_back({std::string("waist.T0.") + name, Kind::kWaistPose,
                           length ? ParameterUnit::kMetre : ParameterUnit::kRadian});
   }
 }
@@ -69,17 +69,17 @@ void AddJointCompliances(const ErrorModel& model, int k, std::vector<Parameter>&
   }
 }
 
-/// A joint that two legs share has one sensor, hence one bias: the first leg's.
+/// A joint that two legs share has one sensor and hence one bias, which counts for the first leg.
 void AddLegParameters(const ErrorModel& model, int leg, std::set<int>& biased,
                       std::vector<Parameter>& parameters) {
   const std::string prefix = model.legs[leg].name + ".compliance_";
   const char* const axes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
     parameters.push_back(
-        {prefix + axes[i], Kind::kBaseForce, ParameterUnit::kMetrePerNewton, -1, -1, leg, i});
+        {prefix + axes[i], Kind::kLegForce, ParameterUnit::kMetrePerNewton, -1, -1, leg, i});
   }
   for (int i = 0; i < 3; ++i) {
-    parameters.push_back({prefix + "r" + axes[i], Kind::kBaseMoment,
+    parameters.push_back({prefix + "r" + axes[i], Kind::kLegMoment,
                           ParameterUnit::kRadianPerNewtonMetre, -1, -1, leg, i});
   }
   if (!model.elasticity.torque_bias) return;
@@ -139,7 +139,8 @@ void CheckElasticity(const RobotTree& tree, const Elasticity& elasticity) {
   }
 }
 
-/// Gives the model its markers, and the parameters of these and of the joints that move them.
+/// Sets the markers of the model, and the parameters of the markers and of the joints that move
+/// them.
 void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
   CheckMarkers(model.tree, markers);
   model.active_joints = ActiveJoints(model.tree, markers, model.legs);

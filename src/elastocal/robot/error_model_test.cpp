@@ -39,7 +39,7 @@ TEST(ErrorModel, KindsUnitsAndOwnersFollowTheName) {
       if (p.kind == ParameterKind::kMarker) {
         EXPECT_EQ(p.name, "marker." + model.markers.at(p.marker).name + "." + last);
         EXPECT_EQ(p.joint, -1);
-      } else if (p.kind == ParameterKind::kBase) {
+      } else if (p.kind == ParameterKind::kWaistPose) {
         EXPECT_EQ(p.name, "waist.T0." + last);
         EXPECT_EQ(p.joint, -1);
         EXPECT_EQ(p.marker, -1);
@@ -123,8 +123,8 @@ TEST(ErrorModel, ElasticParametersKnowWhatTheyAre) {
   expect("shoulder.compliance_z", ParameterKind::kTorsion, "rad/(N.m)", 0, -1, 2);
   expect("elbow.compliance_x", ParameterKind::kBending, "rad/(N.m)", 1, -1, 0);
   expect("elbow.compliance_y", ParameterKind::kBending, "rad/(N.m)", 1, -1, 1);
-  expect("leg.compliance_y", ParameterKind::kBaseForce, "m/N", -1, 0, 1);
-  expect("leg.compliance_rz", ParameterKind::kBaseMoment, "rad/(N.m)", -1, 0, 2);
+  expect("leg.compliance_y", ParameterKind::kLegForce, "m/N", -1, 0, 1);
+  expect("leg.compliance_rz", ParameterKind::kLegMoment, "rad/(N.m)", -1, 0, 2);
   expect("elbow.torque_bias", ParameterKind::kTorqueBias, "N.m", 1, 0, -1);
 }
 

@@ -60,7 +60,8 @@ InverseDynamicsResult InverseDynamics(const RobotTree& tree,
                                       const std::vector<BodyInertia>& inertias,
                                       const RobotState& state, const Vector3d& gravity,
                                       const std::vector<LinkWrench>& wrenches) {
-  // Outwards: how bodies move. Then what moves each, about the world's origin, summed inwards.
+  // First pass, outwards: how the bodies move. Second pass, inwards: sum of the wrenches that move
+  // them, about the world's origin.
   std::vector<BodyMotion> motion(tree.body_count());
   std::vector<Vector3d> axes(tree.joints.size());
   motion[0] = {state.T_world_root, state.root_turn, state.root_turn_rate, state.root_acceleration};

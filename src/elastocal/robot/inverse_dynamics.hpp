@@ -9,17 +9,17 @@
 
 namespace elastocal {
 
-/// Mass properties of a body: of all links that it consists of, in the body's frame.
+/// Mass properties of a body (of all its links together), in the body's frame.
 struct BodyInertia {
   double mass = 0.0;                                  ///< kg
   Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< m
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass, kg.m^2
 };
 
-/// One a body of the tree.
+/// Mass properties of each body of the tree.
 std::vector<BodyInertia> BodyInertias(const RobotTree& tree);
 
-/// A robot in motion. The root link floats in the world; all vectors in the world's axes.
+/// A robot in motion. The root link floats in the world. All vectors are in the world's axes.
 struct RobotState {
   Transform T_world_root = Transform::Identity();
   Eigen::Vector3d root_velocity = Eigen::Vector3d::Zero();      ///< of the root's origin, m/s
@@ -29,7 +29,7 @@ struct RobotState {
   Eigen::VectorXd q, velocity, acceleration;  ///< by coordinate; rad or m, per s, per s^2
 };
 
-/// Force and moment on a link, in the world's axes; the moment about the world's origin.
+/// Force and moment on a link, in the world's axes; the moment is about the world's origin.
 struct LinkWrench {
   int link = 0;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< N
@@ -37,18 +37,19 @@ struct LinkWrench {
 };
 
 struct InverseDynamicsResult {
-  /// By coordinate, N.m or N: what the motors supply. That of a mimic joint counts for the
+  /// What the motors supply, by coordinate, N.m or N. The torque of a mimic joint is added to the
   /// coordinate that drives it, times its multiplier.
   Eigen::VectorXd torques;
-  /// On the robot, beside gravity and the given wrenches, for it to move as it does: without given
-  /// wrenches what the floor exerts. In the world's axes, the moment about the world's origin.
+  /// The force and moment on the robot, besides gravity and the given wrenches, that its motion
+  /// needs; without given wrenches, this is what the floor exerts. In the world's axes, the moment
+  /// about the world's origin.
   Eigen::Vector3d force, moment;
   Eigen::Vector3d com;  ///< of the whole robot in the world, m
 };
 
-/// Inverse dynamics of the floating tree (recursive Newton-Euler): torques and floor's wrench of a
-/// given motion. `inertias` as of BodyInertias; `gravity` in the world, m/s^2; `wrenches` on links,
-/// of feet on the floor for instance.
+/// Inverse dynamics of the floating tree (recursive Newton-Euler): torques and floor's wrench for a
+/// given motion. `inertias` is what BodyInertias returns; `gravity` is in the world, m/s^2;
+/// `wrenches` act on links, for instance on feet on the floor.
 InverseDynamicsResult InverseDynamics(const RobotTree& tree,
                                       const std::vector<BodyInertia>& inertias,
                                       const RobotState& state, const Eigen::Vector3d& gravity,

@@ -25,7 +25,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
       T_ref_foot_(model.legs.size(), Transform::Identity()) {
   const int screw_count = model.parameter_count() - 3 * model.marker_count();
   std::vector<int> parameter_count(model.tree.joints.size(), 0);
-  for (int i = screw_count - 1; i >= kBaseParameterCount; --i) {
+  for (int i = screw_count - 1; i >= kWaistParameterCount; --i) {
     const Parameter& parameter = model.parameters[i];
     if (parameter.leg >= 0) continue;
     first_parameter_[parameter.joint] = i;
@@ -51,7 +51,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
 
 GeneralizedJacobian::BodyLayout GeneralizedJacobian::LayOut(
     int body, const std::vector<int>& parameter_count) const {
-  BodyLayout layout{body, {{0, kBaseParameterCount}}, {}};
+  BodyLayout layout{body, {{0, kWaistParameterCount}}, {}};
   for (int joint : JointsToBody(model_.tree, body)) {
     Segment& last = layout.segments.back();
     if (last.begin + last.size == first_parameter_[joint]) {
@@ -87,7 +87,7 @@ void GeneralizedJacobian::SetCompliances(int joint, int row,
 
 void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q,
                                          const JointLoads& loads) {
-  // In the order of the parameters of one joint, or of the waist.
+  // Sets the screws in the order of the parameters of one joint, or of the waist.
   const auto visit = [&](int joint, const Geometry::JointConstants& constants,
                          const MdhFrame& parent, const MdhFrame& twisted,
                          const MdhFrame& deflected) {
@@ -105,7 +105,7 @@ void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::
     SetRotation(screws_, row++, twisted.R.col(0), twisted.p);
     SetTranslation(screws_, row++, twisted.R.col(0));
     SetRotation(screws_, row++, deflected.R.col(2), deflected.p);
-    // An error of r moves the physical centre along: the axis before deflection.
+    // An error of r also moves the physical centre, so its direction is the axis before deflection.
     SetTranslation(screws_, row++, twisted.R.col(2));
     if (!waist && compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, loads);
   };

@@ -13,12 +13,12 @@ namespace elastocal {
 /// every error parameter, for all chains at once. A marker depends on T0, on the joints between the
 /// waist and itself and on its own position; only these columns are computed.
 ///
-/// A displacement of any parameter moves the bodies beyond it as a screw, so that every column is
-/// a x p + m: for a rotation, a is its axis and m = o x a with o on the axis; for a translation a
-/// is zero and m its direction. Loads, where given, are taken as they are: the columns of
-/// compliances are derivatives under these loads. They have no column of a torque bias, which
-/// through a joint's torsion would be the same as an error of theta. The structure is laid out
-/// once; Evaluate allocates nothing.
+/// A displacement of any parameter moves the bodies beyond it as a screw, so that every column is a
+/// x p + m: for a rotation, a is its axis and m = o x a with o on the axis; for a translation a is
+/// zero and m its direction. Loads, if given, are constants: the columns of compliances are
+/// derivatives under these loads. A torque bias has no column here, because through a joint's
+/// torsion it would be the same as an error of theta. The structure is laid out once; Evaluate
+/// allocates nothing.
 class GeneralizedJacobian {
  public:
   /// Keeps a reference: the model must outlive it.
@@ -27,7 +27,8 @@ class GeneralizedJacobian {
   /// Positions and derivatives for one posture.
   void Evaluate(const Geometry& geometry, const Eigen::VectorXd& q, const JointLoads& loads = {});
 
-  /// Position of a marker in the reference frame, m; of the last evaluation, as all below.
+  /// Position of a marker in the reference frame, m. Like everything below, it is that of the last
+  /// evaluation.
   auto Position(int marker) const { return positions_.col(marker); }
 
   /// Indices of the parameters a marker depends on, ascending.
@@ -40,19 +41,20 @@ class GeneralizedJacobian {
     return {values_.data() + layout.offset, 3, static_cast<Eigen::Index>(layout.columns.size())};
   }
 
-  /// The motion [a; m] that a parameter other than a marker's gives to all beyond it: its column
-  /// for a marker at p is a x p + m. See LegScrews.
+  /// The screw [a; m] by which a parameter (other than a marker's) moves everything beyond it: its
+  /// column for a marker at p is a x p + m. See LegScrews.
   Eigen::Matrix<double, 6, 1> Screw(int parameter) const {
     return screws_.row(parameter).matrix().transpose();
   }
 
-  /// The whole matrix, 3 N_M x parameters, zeros included.
+  /// The whole matrix with its zeros, 3 N_M x parameters.
   Eigen::MatrixXd Dense() const;
 
-  /// Pose of the root link in the reference frame, and its motion by T0: 6 x 6, as LegScrews.
+  /// Pose of the root link in the reference frame, and its motion by T0: 6 x 6, screws as in
+  /// LegScrews.
   Transform WaistPose() const;
   Eigen::Matrix<double, 6, 6> WaistScrews() const {
-    return screws_.topRows<kBaseParameterCount>().matrix().transpose();
+    return screws_.topRows<kWaistParameterCount>().matrix().transpose();
   }
 
   /// Pose of a leg's foot link in the reference frame.
@@ -63,8 +65,8 @@ class GeneralizedJacobian {
   const std::vector<int>& LegColumns(int leg) const { return legs_[leg].columns; }
 
   /// 6 x LegColumns(leg).size(): the motion of the foot by each parameter, as a screw [a; m] in the
-  /// reference frame: the rotation a, and the velocity m of the point that is at the reference
-  /// origin. Any point p of the foot moves by a x p + m.
+  /// reference frame. a is the rotation, m the velocity of the point of the foot that is at the
+  /// reference origin. Any point p of the foot moves by a x p + m.
   const Eigen::Matrix<double, 6, Eigen::Dynamic>& LegScrews(int leg) const {
     return leg_screws_[leg];
   }

@@ -79,7 +79,7 @@ TEST_P(JacobianOfRandomRobots, BlocksColumnsAndDenseAreOne) {
     for (int i = 0; i < model.parameter_count(); ++i) {
       const Parameter& p = model.parameters[i];
       const bool moves =
-          p.kind == ParameterKind::kBase || p.marker == m || carriers.contains(p.joint);
+          p.kind == ParameterKind::kWaistPose || p.marker == m || carriers.contains(p.joint);
       if (moves) {
         columns.push_back(i);
       } else {

@@ -7,20 +7,19 @@
 
 namespace elastocal {
 
-/// Joint positions that a robot shall go through: a trajectory or a list of postures. What is
-/// planned, and what is played, pass it on.
+/// Joint positions that a robot is to go through: a trajectory or a list of postures. The planner
+/// makes it, and the simulator plays it.
 struct JointMotion {
   std::string source;  ///< the file, for messages
-  /// Of each sample, strictly increasing; empty: postures one after the other, and whoever plays
-  /// them decides when.
+  /// Time of each sample, strictly increasing. Empty for a list of postures: whoever plays them
+  /// decides when.
   Eigen::VectorXd time_s;
-  /// samples x coordinates of the robot tree, rad or m. A column of NaN: nothing is said of that
-  /// joint.
+  /// samples x coordinates of the robot tree, rad or m. A column of NaN leaves that joint open.
   Eigen::MatrixXd q;
-  /// By sample, the links that stand on the floor, of the tree; none of them: the root link is
-  /// held. Empty: nothing is said of it.
+  /// For each sample, the links of the tree that stand on the floor; if there are none, the root
+  /// link is held still. Empty if the support is left open.
   std::vector<std::vector<int>> support = {};
-  std::vector<int> line = {};  ///< of each sample in the file; empty where there is no file
+  std::vector<int> line = {};  ///< of the file, for each sample; empty if there is no file
 
   int sample_count() const { return static_cast<int>(q.rows()); }
 };

@@ -48,16 +48,16 @@ double& Constant(JointPlacement& placement, Kind kind) {
   }
 }
 
-JointPlacement BasePlacement(const Transform& T_ref_waist, const Vector6d& delta) {
-  JointPlacement base;
-  base.T_parent_pre = T_ref_waist;
-  base.gamma = delta[0];
-  base.b = delta[1];
-  base.alpha = 0.5 * M_PI + delta[2];
-  base.d = delta[3];
-  base.theta = delta[4];
-  base.r = delta[5];
-  return base;
+JointPlacement WaistPlacement(const Transform& T_ref_waist, const Vector6d& delta) {
+  JointPlacement waist;
+  waist.T_parent_pre = T_ref_waist;
+  waist.gamma = delta[0];
+  waist.b = delta[1];
+  waist.alpha = 0.5 * M_PI + delta[2];
+  waist.d = delta[3];
+  waist.theta = delta[4];
+  waist.r = delta[5];
+  return waist;
 }
 
 std::vector<MdhFrame> MdhFrames(const ErrorModel& model, const Geometry& geometry,
@@ -67,7 +67,7 @@ std::vector<MdhFrame> MdhFrames(const ErrorModel& model, const Geometry& geometr
   return frames;
 }
 
-/// Errors of a joint, which follow one another in `delta` from the index `i` on; moves `i` behind
+/// Placement of a joint with its errors, which are in `delta` from index `i` on. Moves `i` behind
 /// them.
 Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
                                          const Eigen::VectorXd& delta, int& i) {
@@ -86,7 +86,7 @@ Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
   return constants;
 }
 
-/// Errors of the legs, from the index `i` on; moves `i` behind them.
+/// Applies the errors of the legs, which are in `delta` from index `i` on. Moves `i` behind them.
 void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& i,
                     Geometry& geometry) {
   if (model.legs.empty()) return;
@@ -97,7 +97,7 @@ void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& 
     if (parameter.kind == Kind::kTorqueBias) {
       geometry.torque_bias[parameter.joint] = delta[i];
     } else {
-      const int first = parameter.kind == Kind::kBaseForce ? 0 : 3;
+      const int first = parameter.kind == Kind::kLegForce ? 0 : 3;
       geometry.leg_compliance[parameter.leg][first + parameter.axis] = delta[i];
     }
   }
@@ -107,10 +107,10 @@ void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& 
 
 Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
   Geometry geometry;
-  PlaceWaist(model.T_ref_waist, delta.head<kBaseParameterCount>(), geometry);
+  PlaceWaist(model.T_ref_waist, delta.head<kWaistParameterCount>(), geometry);
   geometry.T_joint_waist = RotX(-0.5 * M_PI);
   geometry.joints.resize(model.tree.joints.size());
-  int i = kBaseParameterCount;
+  int i = kWaistParameterCount;
   for (int k : model.active_joints) geometry.joints[k] = JointWithErrors(model, k, delta, i);
   ApplyLegErrors(model, delta, i, geometry);
   geometry.p_joint_marker.reserve(model.markers.size());
@@ -128,14 +128,15 @@ Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
 }
 
 void PlaceWaist(const Transform& T_ref_waist, const Vector6d& t0_errors, Geometry& geometry) {
-  geometry.base = MakeConstants(BasePlacement(T_ref_waist, t0_errors));
+  geometry.waist = MakeConstants(WaistPlacement(T_ref_waist, t0_errors));
 }
 
 Transform WaistPose(const Geometry& geometry) {
   Transform T_ref_twisted = Transform::Identity();
-  T_ref_twisted.linear() = geometry.base.R_parent_twisted;
-  T_ref_twisted.translation() = geometry.base.p_parent_twisted;
-  return T_ref_twisted * RotZ(geometry.base.theta) * TrZ(geometry.base.r) * geometry.T_joint_waist;
+  T_ref_twisted.linear() = geometry.waist.R_parent_twisted;
+  T_ref_twisted.translation() = geometry.waist.p_parent_twisted;
+  return T_ref_twisted * RotZ(geometry.waist.theta) * TrZ(geometry.waist.r) *
+         geometry.T_joint_waist;
 }
 
 Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geometry,

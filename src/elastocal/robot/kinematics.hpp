@@ -10,18 +10,19 @@ namespace elastocal {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// What loads the joints, 3 x joints of the tree: the moment of the load about the joint's physical
-/// centre (the URDF's joint origin), in the axes of its twisted frame (mdh_frames.hpp), N.m. Of a
-/// prismatic joint only z counts: the force along its axis, N. Empty: no load. The load is what
-/// bends the joint, so that m_z is the opposite of the torque that the motor supplies. See
+/// The loads of the joints, 3 x joints of the tree: the moment of the load about the joint's
+/// physical centre (the URDF's joint origin), in the axes of its twisted frame (mdh_frames.hpp),
+/// N.m. For a prismatic joint only z counts: the force along its axis, N. Empty means no load. The
+/// load deflects the joint, so m_z is the opposite of the torque that the motor supplies. See
 /// statics.hpp.
 using JointLoads = Eigen::Matrix3Xd;
 
-/// The error model with a vector of errors applied: all of eq. 1-3 that does not depend on posture.
-/// Cheap to make (a few trigonometric functions a joint), cheaper to use many times.
+/// The error model with a vector of errors applied: everything in eq. 1-3 that does not depend on
+/// the posture. It is cheap to make (a few trigonometric functions for each joint), and can be used
+/// for many postures.
 struct Geometry {
-  /// A joint between its parent's MDH frame (the root link's frame for joints on the waist) and its
-  /// own; directions and points in the parent frame.
+  /// The constants of a joint between its parent's MDH frame (the root link's frame for joints on
+  /// the waist) and its own. Directions and points are in the parent frame.
   struct JointConstants {
     Eigen::Matrix3d
         R_parent_twisted;  ///< T_parent_pre Rotz(gamma) Trz(b) Roty(beta) Rotx(alpha) Trx(d)
@@ -30,30 +31,35 @@ struct Geometry {
     Eigen::Vector3d y_beta, p_beta;  ///< axis of beta
     double theta, r;                 ///< without the joint's position
     double centre;                   ///< z of the physical centre in the twisted frame, m
-    /// About x, y, z of the twisted frame, rad/(N.m); prismatic: z only, m/N.
+    /// Compliance about x, y, z of the twisted frame, rad/(N.m); of a prismatic joint, along z
+    /// only, m/N.
     Eigen::Vector3d compliance;
   };
-  std::vector<JointConstants> joints;  ///< one a joint of the tree; only active ones are filled
-  JointConstants base;                 ///< eq. 2 as if it were a joint at position 0
-  Transform T_joint_waist;             ///< constant that ends eq. 2, see ApplyErrors
-  /// By leg, in the axes of its foot: x, y, z in m/N, then about x, y, z in rad/(N.m).
+  std::vector<JointConstants>
+      joints;               ///< one for each joint of the tree; only active ones are filled
+  JointConstants waist;     ///< eq. 2, as if the waist were a joint at position 0
+  Transform T_joint_waist;  ///< constant that ends eq. 2, see ApplyErrors
+  /// For each leg, in the axes of its foot: along x, y, z in m/N, then about x, y, z in rad/(N.m).
   std::vector<Vector6d> leg_compliance;
-  /// By joint, N.m (N): measured minus true torque. Empty where the model has no legs.
+  /// For each joint, measured minus true torque, N.m (N). Empty if the model has no legs.
   Eigen::VectorXd torque_bias;
   std::vector<Eigen::Vector3d> p_joint_marker;  ///< by marker, in its body's MDH frame
   std::vector<Eigen::Matrix3d> R_joint_link;    ///< by marker: axes of its x, y, z
 };
 
-inline constexpr int kBaseParameterCount = 6;  ///< of eq. 2; the first of the model's parameters
+/// Number of parameters of eq. 2. They are the first ones of a model.
+inline constexpr int kWaistParameterCount = 6;
 
-/// Applies errors `delta` (one a parameter of the model, SI).
+/// Applies the errors `delta` (one for each parameter of the model, SI).
 ///
-/// The waist (eq. 2): T_ref_waist Rotz(gamma) Trz(b) Rotx(pi/2 + alpha) Trx(d) Rotz(theta) Trz(r)
-/// Rotx(-pi/2): the intermediate frame makes nominal alpha 90 degrees, where eq. 2 is regular.
+/// The pose of the waist (eq. 2) is T_ref_waist Rotz(gamma) Trz(b) Rotx(pi/2 + alpha) Trx(d)
+/// Rotz(theta) Trz(r) Rotx(-pi/2). The intermediate frame makes nominal alpha 90 degrees, where eq.
+/// 2 is regular.
 Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta);
 
-/// Replaces the waist's pose alone: `T_ref_waist` displaced by the six errors of eq. 2, as
-/// ApplyErrors does with the model's own. Cheap: for a waist that is elsewhere in each posture.
+/// Replaces only the waist's pose, by `T_ref_waist` displaced by the six errors of eq. 2.
+/// ApplyErrors does the same with the model's own T_ref_waist. Cheap, for a waist that is elsewhere
+/// in each posture.
 void PlaceWaist(const Transform& T_ref_waist, const Vector6d& t0_errors, Geometry& geometry);
 
 /// Pose of the root link in the reference frame (eq. 2).
@@ -65,20 +71,20 @@ Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geomet
                                  const Eigen::VectorXd& q, const JointLoads& loads = {});
 
 /// Position of a marker in the frame of a link of its own body, m, and the axes of its coordinates
-/// there (columns): constant, whatever the posture.
+/// there (columns). Both are the same in all postures.
 struct MarkerInLink {
   Eigen::Vector3d position;
   Eigen::Matrix3d axes;
 };
 MarkerInLink PlaceMarker(const ErrorModel& model, const Geometry& geometry, int marker, int link);
 
-/// Poses of the bodies in the reference frame: the root's, then those that active joints move
-/// (others are identity). Body frames, as in RobotTree.
+/// Poses of the bodies in the reference frame: that of the root, then those of the bodies that
+/// active joints move (others are identity). Body frames are those of RobotTree.
 std::vector<Transform> BodyTransforms(const ErrorModel& model, const Geometry& geometry,
                                       const Eigen::VectorXd& q, const JointLoads& loads = {});
 
-/// Poses of all links in the reference frame; those that no active joint moves are carried as the
-/// URDF has them, their joints at `q`.
+/// Poses of all links in the reference frame. Links that no active joint moves are placed by the
+/// nominal URDF, with their joints at `q`.
 std::vector<Transform> CalibratedLinkTransforms(const ErrorModel& model, const Geometry& geometry,
                                                 const Eigen::VectorXd& q,
                                                 const JointLoads& loads = {});

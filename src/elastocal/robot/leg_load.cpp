@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kSingular = 1e-12;  // of the largest singular value
 
-/// By body: whether it is `body` or beyond it.
+/// For each body, whether it is `body` or beyond it.
 std::vector<bool> BodiesBeyond(const RobotTree& tree, int body) {
   std::vector<bool> beyond(tree.body_count(), false);
   beyond[body] = true;
@@ -33,7 +33,8 @@ Eigen::Matrix3d FootAxes(const ErrorModel& model, const LegPosture& posture) {
   return posture.T_ref_link[model.legs[posture.leg].link].linear().transpose();
 }
 
-/// Weight of the links for whose body `counts(body)`, at the waist's origin in foot axes.
+/// Weight of all links whose body fulfils `counts(body)`, as a wrench at the waist's origin in the
+/// axes of the foot.
 template <typename Counts>
 Vector6d Weight(const ErrorModel& model, const LegPosture& posture, const Vector3d& gravity_ref,
                 const Counts& counts) {
@@ -65,7 +66,7 @@ LegPosture PlaceLeg(const ErrorModel& model, const Geometry& geometry, const Eig
   posture.T_foot_waist = T_ref_foot.inverse() * T_ref_waist;
   posture.J_waist_q.resize(6, static_cast<Eigen::Index>(support.joints.size()));
   for (std::size_t i = 0; i < support.joints.size(); ++i) {
-    // With the foot fixed, the joint moves the waist's side, and backwards.
+    // With the foot fixed, the joint moves the waist's side, in the opposite direction.
     const Joint& joint = model.tree.joints[support.joints[i]];
     const Transform& T_ref_child = posture.T_ref_link[joint.child_link];
     const Vector3d axis = T_ref_child.linear() * joint.axis;

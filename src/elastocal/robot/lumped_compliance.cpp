@@ -23,8 +23,8 @@ Matrix6d LumpedCompliance(const ErrorModel& model, const Geometry& geometry,
     const Eigen::Matrix3d axes = T_foot_ref.linear() * twisted.R;
     const Eigen::Vector3d centre =
         T_foot_ref * Eigen::Vector3d(twisted.p + constants.centre * twisted.R.col(2));
-    // Motion of the waist by a unit rotation (translation) of the joint about each of its axes; the
-    // load that a wrench on the waist puts on the joint is the transpose.
+    // Motion of the waist by a unit rotation (translation) of the joint about each of its axes. The
+    // transpose gives the load of the joint by a wrench on the waist.
     for (int axis = revolute ? 0 : 2; axis < 3; ++axis) {
       Vector6d motion = Vector6d::Zero();
       if (revolute) {

@@ -16,10 +16,10 @@ struct MdhFrame {
   Eigen::Vector3d p;
 };
 
-inline constexpr int kWaist = -1;  ///< stands for eq. 2 where otherwise a joint's index is
+inline constexpr int kWaist = -1;  ///< in place of a joint's index: the waist (eq. 2)
 
-/// The twisted frame of a joint after its elastic rotation phi = compliance .* load: rotated by
-/// Exp(phi), about its physical centre. A prismatic joint gives way along z instead.
+/// The twisted frame of a joint after its elastic rotation phi = compliance .* load, which is
+/// Exp(phi) about its physical centre. A prismatic joint moves along z instead.
 inline MdhFrame Deflected(const Geometry::JointConstants& constants, bool revolute,
                           const Eigen::Vector3d& load, const MdhFrame& twisted) {
   const Eigen::Vector3d phi = constants.compliance.cwiseProduct(load);
@@ -30,9 +30,9 @@ inline MdhFrame Deflected(const Geometry::JointConstants& constants, bool revolu
   return deflected;
 }
 
-/// Walks along the tree from the reference frame outwards (eq. 3) and fills `frames` (one a body):
-/// the root link's frame and the MDH frames that active joints move. At the waist and at each joint
-/// it calls
+/// Walks along the tree from the reference frame outwards (eq. 3) and fills `frames` (one for each
+/// body): the root link's frame and the MDH frames that active joints move. At the waist and at
+/// each joint it calls
 ///
 ///   visit(joint or kWaist, its constants, parent frame, twisted frame, deflected frame)
 ///
@@ -66,7 +66,7 @@ inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
     frame.p = deflected->p + r * deflected->R.col(2);
   };
   const MdhFrame reference{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
-  place(kWaist, geometry.base, reference, true, 0.0, frames[0]);
+  place(kWaist, geometry.waist, reference, true, 0.0, frames[0]);
   frames[0].R = frames[0].R * geometry.T_joint_waist.linear();
   for (int k : model.active_joints) {
     const Joint& joint = model.tree.joints[k];

@@ -77,7 +77,7 @@ Eigen::Matrix3Xd MovingChain::RotationJacobian(int link) const {
   return J;
 }
 
-/// How the first moment of all masses moves with a joint, kg.m/rad or kg.
+/// Derivative of the first moment of all masses by a joint, kg.m/rad or kg.
 Vector3d MovingChain::MomentGradient(int joint) const {
   const CarriedLoad& load = carried_[joint];
   if (tree_.joints[joint].type == JointType::kPrismatic) return load.mass * Axis(joint);
@@ -85,7 +85,7 @@ Vector3d MovingChain::MomentGradient(int joint) const {
 }
 
 /// Second derivative of the potential energy by two joints, of which `inner` carries `outer`: it
-/// turns what the other one moves.
+/// turns what `outer` moves.
 double MovingChain::PotentialCurvature(int inner, int outer) const {
   if (tree_.joints[inner].type == JointType::kPrismatic) return 0.0;
   return -Axis(inner).cross(MomentGradient(outer)).dot(kGravity);
@@ -127,7 +127,7 @@ Eigen::VectorXd MovingChain::LoadGradient(const std::vector<LoadComponent>& comp
     for (const LoadComponent& c : components) {
       const bool slides = c.joint >= 0 && tree_.joints[c.joint].type == JointType::kPrismatic;
       if (c.joint >= 0 && c.joint != d.joint && carries_[d.joint][c.joint]) {
-        // The whole turns: against gravity as if that turned the other way.
+        // The whole robot turns, which is as if gravity turned the other way.
         if (!turns) continue;
         const CarriedLoad& carried = carried_[c.joint];
         const Vector3d back = gravity.cross(Axis(d.joint));

@@ -9,38 +9,39 @@
 
 namespace elastocal {
 
-/// Coordinates that move `tip_link` against `from_link`, from there outwards; those of joints that
-/// follow others stand for both, once.
+/// Coordinates that move `tip_link` against `from_link`, from there outwards. A coordinate that
+/// drives several joints occurs once.
 std::vector<int> ChainCoordinates(const RobotTree& tree, int from_link, int tip_link);
 
-/// A component of what gravity does to a joint: of the moment, about a point and along a direction,
-/// of all that the joint carries (N.m), or along a prismatic joint of the force (N). Point and
+/// A component of the load of gravity on a joint: the moment of everything that the joint carries,
+/// about a point and along a direction (N.m), or the force along a prismatic joint (N). Point and
 /// direction are fixed to the body that carries the joint.
 struct LoadComponent {
   int joint = -1;  ///< -1: the moment of the whole robot
   Eigen::Vector3d point = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
 };
 
-/// A nominal robot of which some coordinates x move while all others rest: poses, gravity torques
-/// and their derivatives by x. Everything is in the root link's frame. Holds the last posture.
+/// A nominal robot of which some coordinates x move while all others rest. It gives poses, gravity
+/// torques and their derivatives by x, all in the root link's frame and for the last posture.
 class MovingChain {
  public:
-  /// `coordinates`: entries of q that x stands for; `rest`: the whole q at rest. Keeps a reference.
+  /// `coordinates` are the entries of q that make up x; `rest` is the whole q in the posture of
+  /// rest. Keeps a reference to the tree.
   MovingChain(const RobotTree& tree, std::vector<int> coordinates, Eigen::VectorXd rest);
 
   const RobotTree& tree() const { return tree_; }
   const std::vector<int>& coordinates() const { return coordinates_; }
   int size() const { return static_cast<int>(coordinates_.size()); }
 
-  /// Goes to posture x, rad or m, of size().
+  /// Moves to posture x, of size(), rad or m.
   void Move(const Eigen::VectorXd& x);
   Eigen::VectorXd FullPosture(const Eigen::VectorXd& x) const;  ///< the whole q
 
-  /// Of the posture moved to, as all below.
+  /// Poses of the links. Like everything below, they are those of the posture moved to.
   const std::vector<Transform>& link_poses() const { return T_root_link_; }
-  /// Derivatives of a point of a link, given where it is now, 3 x size().
+  /// Derivatives by x of a point of a link, 3 x size(); the point is given by its present position.
   Eigen::Matrix3Xd PointJacobian(int link, const Eigen::Vector3d& p_root_point) const;
-  /// Rotation vectors of a link's turning, 3 x size().
+  /// Derivatives by x of a link's rotation, as rotation vectors, 3 x size().
   Eigen::Matrix3Xd RotationJacobian(int link) const;
 
   /// Torque that the motor of a coordinate of q supplies to balance gravity while the root link is
@@ -48,7 +49,7 @@ class MovingChain {
   double GravityTorque(int coordinate) const;
   Eigen::RowVectorXd GravityTorqueGradient(int coordinate) const;
 
-  /// Derivatives by x of a sum of components of loads, `gravity` in m/s^2.
+  /// Derivatives by x of a sum of load components; `gravity` in m/s^2.
   Eigen::VectorXd LoadGradient(const std::vector<LoadComponent>& components,
                                const Eigen::Vector3d& gravity) const;
 

@@ -15,7 +15,7 @@ std::vector<std::string> Names(const std::vector<Parameter>& parameters) {
   return names;
 }
 
-/// Whether `name` is `pattern` with some run of characters for each `*`.
+/// Whether `name` matches `pattern`, in which `*` stands for any run of characters.
 bool Matches(std::string_view pattern, std::string_view name) {
   const std::size_t first = pattern.find('*');
   if (first == std::string_view::npos) return pattern == name;
@@ -25,7 +25,7 @@ bool Matches(std::string_view pattern, std::string_view name) {
   if (name.size() < head.size() + tail.size()) return false;
   if (!name.starts_with(head) || !name.ends_with(tail)) return false;
 
-  // What stands between two stars is taken where it occurs first: that leaves most for the rest.
+  // Text between two stars is matched where it occurs first, which leaves most for the rest.
   std::string_view rest = name.substr(head.size(), name.size() - head.size() - tail.size());
   for (std::size_t at = first + 1; at <= last; at = pattern.find('*', at) + 1) {
     const std::string_view piece = pattern.substr(at, pattern.find('*', at) - at);
@@ -57,12 +57,12 @@ bool IsAngle(ParameterKind kind) {
 }
 
 bool IsExternal(ParameterKind kind) {
-  return kind == ParameterKind::kBase || kind == ParameterKind::kMarker;
+  return kind == ParameterKind::kWaistPose || kind == ParameterKind::kMarker;
 }
 
 bool IsCompliance(ParameterKind kind) {
   return kind == ParameterKind::kTorsion || kind == ParameterKind::kBending ||
-         kind == ParameterKind::kBaseForce || kind == ParameterKind::kBaseMoment;
+         kind == ParameterKind::kLegForce || kind == ParameterKind::kLegMoment;
 }
 
 bool IsElastic(ParameterKind kind) {

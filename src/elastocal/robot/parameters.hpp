@@ -5,11 +5,12 @@
 
 namespace elastocal {
 
-/// What an error parameter is. Angles in rad, lengths in m; the kinds of eq. 1 and, for the first
-/// joint after the waist and after a branch, `kGamma` and `kB` (see placement.hpp). Then the
-/// elastic ones of eq. 5 to 7, as compliances (inverse stiffnesses): of joints about their axes
-/// (`kTorsion`) and across them (`kBending`), of a leg between its foot and the waist
-/// (`kBaseForce`, `kBaseMoment`), and the bias of a joint's torque sensor.
+/// What an error parameter is. Geometric kinds (angles in rad, lengths in m) are those of eq. 1
+/// and, for the first joint after the waist and after a branch, `kGamma` and `kB` (see
+/// placement.hpp). Elastic kinds (eq. 5 to 7) are compliances (inverse stiffnesses) of joints about
+/// their axes (`kTorsion`) and across them (`kBending`), compliances of a leg between its foot and
+/// the waist by a force (`kLegForce`) and by a moment (`kLegMoment`), and the bias of a joint's
+/// torque sensor.
 enum class ParameterKind {
   kTheta,
   kR,
@@ -18,12 +19,12 @@ enum class ParameterKind {
   kAlpha,
   kBeta,
   kGamma,
-  kBase,
+  kWaistPose,
   kMarker,
   kTorsion,
   kBending,
-  kBaseForce,
-  kBaseMoment,
+  kLegForce,
+  kLegMoment,
   kTorqueBias
 };
 inline constexpr int kParameterKindCount = 14;
@@ -53,8 +54,8 @@ struct Parameter {
   int axis = -1;    ///< of a compliance: 0, 1, 2 for x, y, z (rx, ry, rz)
 };
 
-/// Name of a kind as it appears in names and settings: theta, r, d, b, alpha, beta, gamma, T0,
-/// marker, torsion, bending, base_force, base_moment, torque_bias.
+/// Name of a kind in parameter names and settings: theta, r, d, b, alpha, beta, gamma, T0, marker,
+/// torsion, bending, base_force, base_moment, torque_bias.
 const char* KindName(ParameterKind kind);
 
 /// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N.
@@ -63,15 +64,15 @@ const char* UnitName(ParameterUnit unit);
 /// Whether a kind of joint parameter is an angle: theta, alpha, beta, gamma.
 bool IsAngle(ParameterKind kind);
 
-/// Whether the parameter belongs to the experiment (where the waist and the markers are), not to
-/// the robot: fitted anew for every recording, never deployed.
+/// Whether the parameter belongs to the experiment (pose of the waist, marker positions) and not to
+/// the robot. Such parameters are fitted anew for every recording and never deployed.
 bool IsExternal(ParameterKind kind);
 
-/// Whether the kind is a compliance: zero for a rigid robot, and never less.
+/// Whether the kind is a compliance, which is zero for a rigid robot and never negative.
 bool IsCompliance(ParameterKind kind);
 
 /// Whether the parameter acts through loads (a compliance or a torque bias). Geometry alone says
-/// nothing of it: whether it is identifiable is judged by the data, not by QR.
+/// nothing about it: the data, not QR, decide whether it is identifiable.
 bool IsElastic(ParameterKind kind);
 
 /// Index of the parameter called `name`. Throws InputError with the nearest known name.

@@ -31,7 +31,8 @@ TEST(Parameters, NamesOfKinds) {
   EXPECT_STREQ(KindName(ParameterKind::kTorqueBias), "torque_bias");
   for (int i = 0; i < kParameterKindCount; ++i) {
     const auto kind = static_cast<ParameterKind>(i);
-    EXPECT_EQ(IsExternal(kind), kind == ParameterKind::kBase || kind == ParameterKind::kMarker);
+    EXPECT_EQ(IsExternal(kind),
+              kind == ParameterKind::kWaistPose || kind == ParameterKind::kMarker);
   }
 }
 

@@ -12,8 +12,8 @@ struct Axis {
   Vector3d point, direction;
 };
 
-/// Where the common normal (or, for parallel axes, a perpendicular) from one axis to the next
-/// leaves and arrives, and its direction.
+/// The common normal (for parallel axes, a perpendicular) from one axis to the next: its two ends
+/// and its direction.
 struct Normal {
   Vector3d start, end, x;
 };
@@ -40,7 +40,7 @@ bool Coaxial(const Axis& a, const Axis& b, double tolerance_rad) {
 }
 
 /// Hayati: the perpendicular from `start`, a point of the first axis, to the second axis. `x_in` is
-/// the direction where the two axes are one.
+/// its direction if the two axes coincide.
 Normal PerpendicularFrom(const Vector3d& start, const Axis& to, const Vector3d& x_in) {
   const Vector3d end = ClosestPoint(to, start);
   const Vector3d offset = end - start;
@@ -72,7 +72,7 @@ Transform Frame(const Vector3d& origin, const Vector3d& z, const Vector3d& x) {
   return T;
 }
 
-/// All that placing a joint needs to know of the tree at zero joint positions.
+/// What is needed of the tree to place its joints, at zero joint positions.
 struct ZeroPose {
   std::vector<Transform> T_root_body;
   std::vector<Axis> axes;       // by joint
@@ -95,7 +95,7 @@ ZeroPose MakeZeroPose(const RobotTree& tree) {
   return zero;
 }
 
-/// Constants of eq. 1 between two MDH frames, given where the normal between their axes arrives.
+/// Constants of eq. 1 between two MDH frames, given the far end of the normal between their axes.
 void MeasureConstants(const Transform& T_root_parent, const Transform& T_root_joint,
                       const Normal& normal, JointPlacement& placement) {
   const Eigen::Matrix3d R = T_root_parent.linear().transpose();
@@ -127,7 +127,7 @@ std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOp
     placement.parallel =
         !placement.general && Parallel(zero.axes[parent - 1], axis, options.parallel_tolerance_rad);
 
-    // Where the chain arrives on this axis, and where it leaves it again.
+    // The normals by which the chain arrives on this axis and leaves it again.
     const Normal incoming = placement.general
                                 ? Normal{axis.point, axis.point,
                                          AnyPerpendicular(axis.direction, zero.T_root_body[k + 1])}

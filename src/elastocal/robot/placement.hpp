@@ -8,12 +8,12 @@
 namespace elastocal {
 
 struct PlacementOptions {
-  /// Consecutive axes closer to parallel than this need `beta` (Hayati), rad.
+  /// Consecutive axes whose angle is smaller than this need `beta` (Hayati), rad.
   double parallel_tolerance_rad = 0.02;
 };
 
-/// Nominal placement of a joint in the modified Denavit-Hartenberg convention with beta and, where
-/// `general`, with the two more constants of Khalil and Kleinfinger (paper eq. 1):
+/// Nominal placement of a joint in the modified Denavit-Hartenberg convention with beta and, if
+/// `general`, with the two additional constants of Khalil and Kleinfinger (paper eq. 1):
 ///
 ///   T_parent_joint = T_parent_pre Rotz(gamma) Trz(b)
 ///                    Roty(beta) Rotx(alpha) Trx(d) Rotz(theta + position) Trz(r)
@@ -24,11 +24,11 @@ struct PlacementOptions {
 /// nominal kinematics equal the URDF's.
 ///
 /// Eq. 1 alone has no displacement along y, so it cannot place the first joint after the waist or
-/// after a branch, nor one whose axis is the same as the one before it (within 1 mm): there d has
-/// only one of the two directions in which the axes can part. Such a joint is `general`:
-/// T_parent_pre is a constant frame on its axis with z across it, nominal alpha is 90 degrees and
-/// the other constants are zero. There the six displacements are along and about three orthogonal
-/// axes: never singular.
+/// after a branch. It cannot place a joint either whose axis coincides with the one before it
+/// (within 1 mm): d covers only one of the two directions in which the axes can part. Such a joint
+/// is `general`: T_parent_pre is a constant frame on its axis with z at right angles to it, nominal
+/// alpha is 90 degrees and the other constants are zero. The six displacements are then along and
+/// about three orthogonal axes and never singular.
 struct JointPlacement {
   bool general = false;
   bool parallel = false;  ///< the axis is parallel to the one before it: beta is in use
@@ -38,7 +38,7 @@ struct JointPlacement {
 };
 
 /// Placement of every joint of the tree, in its order. At a branch the first joint in the file
-/// continues the chain and the others are general; it is decided on the whole tree, so that a
+/// continues the chain and the others are general. This is decided on the whole tree, so that a
 /// parameter means the same whichever markers are recorded.
 std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOptions& options);
 

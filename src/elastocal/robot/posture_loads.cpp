@@ -8,32 +8,34 @@
 namespace elastocal {
 namespace {
 
-/// Torques of the leg's joints; by statics where there is no sensor.
-Eigen::VectorXd LegTorques(const SupportLeg& leg, const Eigen::VectorXd& felt,
+/// Torques of the leg's joints: measured, or by statics for a joint without sensor.
+Eigen::VectorXd LegTorques(const SupportLeg& leg, const Eigen::VectorXd& measured,
                            const JointLoads& gravity, std::vector<int>& without) {
   Eigen::VectorXd torques(static_cast<Eigen::Index>(leg.joints.size()));
   for (Eigen::Index i = 0; i < torques.size(); ++i) {
     const int joint = leg.joints[static_cast<std::size_t>(i)];
-    const bool sensed = felt.size() > 0 && std::isfinite(felt[joint]);
-    torques[i] = sensed ? felt[joint] : -gravity(2, joint);
+    const bool sensed = measured.size() > 0 && std::isfinite(measured[joint]);
+    torques[i] = sensed ? measured[joint] : -gravity(2, joint);
     if (!sensed) without.push_back(joint);
   }
   return torques;
 }
 
-void LoadWaist(const ErrorModel& model, const LegPosture& posture, const Felt& felt,
+void LoadWaist(const ErrorModel& model, const LegPosture& posture, const MeasuredLoads& measured,
                const JointLoads& gravity, const Eigen::Vector3d& gravity_ref,
                const LoadOptions& options, PostureLoads& loads) {
   const SupportLeg& leg = model.legs[posture.leg];
   loads.waist_by_bias.setZero(6, static_cast<Eigen::Index>(leg.joints.size()));
-  if (options.source == LoadSource::kWrench && felt.wrench_link >= 0) {
-    loads.waist = LoadFromWrench(model, posture, felt.wrench_link, felt.wrench, gravity_ref);
+  if (options.source == LoadSource::kWrench && measured.wrench_link >= 0) {
+    loads.waist =
+        LoadFromWrench(model, posture, measured.wrench_link, measured.wrench, gravity_ref);
     return;
   }
   loads.waist = LoadFromStatics(model, posture, gravity_ref);
   if (options.source == LoadSource::kStatics) return;
-  const Eigen::VectorXd torques = LegTorques(leg, felt.torques, gravity, loads.without_torques) -
-                                  LegWeightTorques(model, posture, gravity_ref);
+  const Eigen::VectorXd torques =
+      LegTorques(leg, measured.torques, gravity, loads.without_torques) -
+      LegWeightTorques(model, posture, gravity_ref);
   const LegLoad load =
       LoadFromTorques(posture, torques, {.max_condition = options.largest_condition});
   loads.badly_conditioned = load.status != LegLoadStatus::kReliable;
@@ -50,15 +52,15 @@ Vector6d PostureLoads::WaistLoad(const ErrorModel& model, const Geometry& geomet
 }
 
 PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
-                         const Eigen::VectorXd& q, int leg, const Felt& felt,
+                         const Eigen::VectorXd& q, int leg, const MeasuredLoads& measured,
                          const Eigen::Vector3d& gravity_ref, const LoadOptions& options) {
   PostureLoads loads;
   const JointLoads gravity =
       GravityLoads(model, geometry, q, gravity_ref, leg < 0 ? 0 : model.legs[leg].link);
   loads.joints = gravity;
-  if (felt.torques.size() > 0) UseMeasuredTorques(felt.torques, loads.joints);
+  if (measured.torques.size() > 0) UseMeasuredTorques(measured.torques, loads.joints);
   if (leg < 0) return loads;
-  LoadWaist(model, PlaceLeg(model, geometry, q, leg, loads.joints), felt, gravity, gravity_ref,
+  LoadWaist(model, PlaceLeg(model, geometry, q, leg, loads.joints), measured, gravity, gravity_ref,
             options, loads);
   return loads;
 }

@@ -11,7 +11,7 @@ namespace elastocal {
 
 class Random;
 
-/// Limits of a joint: rad and rad/s and N.m, or m, m/s and N for a prismatic joint. Infinite where
+/// Limits of a joint in rad, rad/s and N.m, or in m, m/s and N for a prismatic joint. Infinite if
 /// the URDF gives none.
 struct JointLimits {
   double lower, upper, velocity, effort;
@@ -48,8 +48,8 @@ struct Link {
 };
 
 /// A robot as a tree of bodies joined by revolute and prismatic joints, as a URDF describes it.
-/// Body 0 is the root (the waist of a humanoid). Joints stand in an order in which every joint
-/// comes after those that carry it, and otherwise in the order of the file.
+/// Body 0 is the root (the waist of a humanoid). Every joint comes after those that carry it;
+/// otherwise joints are in the order of the file.
 struct RobotTree {
   std::string name;
   std::vector<Link> links;  ///< links[0] is the root link
@@ -60,7 +60,8 @@ struct RobotTree {
   int coordinate_count() const { return static_cast<int>(coordinate_joint.size()); }
 };
 
-/// Index of a link or joint. Throws InputError with the nearest known name where there is none.
+/// Index of a link or joint. Throws InputError with the nearest known name if there is none of that
+/// name.
 int FindLink(const RobotTree& tree, const std::string& name);
 int FindJoint(const RobotTree& tree, const std::string& name);
 
@@ -71,18 +72,18 @@ double JointPosition(const Joint& joint, const Eigen::VectorXd& q);
 /// from the URDF's origin and axis.
 Transform ParentBodyToChild(const RobotTree& tree, int joint, const Eigen::VectorXd& q);
 
-/// Poses of the links from those of the bodies.
+/// Poses of all links, from those of the bodies.
 std::vector<Transform> LinkTransforms(const RobotTree& tree,
                                       const std::vector<Transform>& T_ref_body);
 
 /// Pose of every link in the root link's frame, straight from the URDF's own origins and axes.
 std::vector<Transform> LinkTransforms(const RobotTree& tree, const Eigen::VectorXd& q);
 
-/// Joints from the root to a body, the first at the root.
+/// Joints from the root to a body, in this order.
 std::vector<int> JointsToBody(const RobotTree& tree, int body);
 
-/// A length that no two points of the robot exceed by much: twice the sum of the offsets along its
-/// longest branch, m.
+/// Size of the robot: twice the sum of the offsets along its longest branch, m. No two points of
+/// the robot are much further apart.
 double RobotSize(const RobotTree& tree);
 
 /// A posture drawn uniformly within the position limits (infinite limits: half a turn or 0.5 m to

@@ -19,7 +19,7 @@ AxisLine AxisAtZero(const RobotTree& tree, const std::vector<Transform>& T_root_
   return {T.translation(), T.linear() * tree.joints[joint].axis};
 }
 
-/// Point of axis `a` closest to axis `b`; only for axes that are not parallel.
+/// Point of axis `a` closest to axis `b`. The axes must not be parallel.
 Vector3d ClosestPoint(const AxisLine& a, const AxisLine& b) {
   const Vector3d across = a.direction.cross(b.direction);
   const double s = (b.point - a.point).cross(b.direction).dot(across) / across.squaredNorm();
@@ -41,7 +41,7 @@ double WristSpread(const AxisLine& a, const AxisLine& b, const AxisLine& c) {
   return spread;
 }
 
-/// The joint before on the way from the root, or -1.
+/// The previous joint on the way from the root, or -1.
 int Previous(const RobotTree& tree, int joint) { return tree.joints[joint].parent_body - 1; }
 
 }  // namespace

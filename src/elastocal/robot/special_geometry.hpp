@@ -7,19 +7,20 @@
 
 namespace elastocal {
 
-/// Consecutive revolute joints whose axes stand in a relation that closed-form inverse kinematics
-/// relies on.
+/// Consecutive revolute joints whose axes have a relation on which inverse kinematics in closed
+/// form relies.
 struct SpecialGeometry {
   enum class Kind { kSphericalWrist, kParallelAxes };
   Kind kind;
   std::vector<int> joints;  ///< three for a wrist, two for parallel axes
 };
 
-/// Groups that hold exactly (1 micrometre, 1 microradian) in this description.
+/// Groups of joints in this description whose relation holds exactly (1 micrometre, 1 microradian).
 std::vector<SpecialGeometry> FindSpecialGeometry(const RobotTree& tree);
 
-/// How far a group of `tree` (the same joints, other origins) is from the relation: m between the
-/// points where a wrist's axes should meet, or rad between axes that should be parallel.
+/// Deviation of a group of joints in `tree` (the same joints, with other origins) from the
+/// relation: the distance of the points where the axes of a wrist should meet, m, or the angle
+/// between axes that should be parallel, rad.
 double Deviation(const RobotTree& tree, const SpecialGeometry& group);
 
 }  // namespace elastocal

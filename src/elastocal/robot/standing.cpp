@@ -79,7 +79,8 @@ std::vector<LinkWrench> ShareWrench(const std::vector<Sole>& soles,
                                     const std::vector<Transform>& T_world_sole,
                                     const Vector3d& force, const Vector3d& moment) {
   if (soles.size() == 1) return {{soles[0].link, force, moment}};
-  if (soles.size() != 2) throw std::invalid_argument("a wrench is shared by one or two soles");
+  if (soles.size() != 2)
+    throw std::invalid_argument("a wrench can be shared by one or two soles only");
   const Vector2d zmp = ZeroMomentPoint(force, moment);
   const Vector2d first = CentreOnFloor(soles[0], T_world_sole[0]);
   const Vector2d second = CentreOnFloor(soles[1], T_world_sole[1]);

@@ -20,28 +20,28 @@ struct Sole {
 /// A convex polygon on the floor, corners counter-clockwise, 2 x corners, m.
 using Polygon = Eigen::Matrix2Xd;
 
-/// The smallest convex polygon around points, 2 x points (monotone chain). Points on an edge are no
-/// corners.
+/// The smallest convex polygon around `points`, 2 x points (monotone chain). Points on an edge do
+/// not become corners.
 Polygon ConvexHull(const Eigen::Matrix2Xd& points);
 
-/// Where the robot can stand: the hull of soles at the given poses of their links.
+/// Support polygon: the convex hull of soles at the given poses of their links.
 Polygon SupportPolygon(const std::vector<Sole>& soles, const std::vector<Transform>& T_world_sole);
 
-/// How far a point is inside a polygon: distance to the nearest edge's line, m; negative outside.
+/// Distance of a point inside a polygon to the line of the nearest edge, m; negative outside.
 double InsideMargin(const Polygon& polygon, const Eigen::Vector2d& point);
 
-/// The point of the floor (z = 0 of the world) about which the floor's wrench has no horizontal
-/// moment: the zero-moment point. `moment` about the world's origin. The force must press down on
-/// the floor (force.z() > 0), else the result is not finite.
+/// Zero-moment point: the point of the floor (z = 0 of the world) about which the floor's wrench
+/// has no horizontal moment. `moment` is about the world's origin. The result is finite only if the
+/// robot presses on the floor (force.z() > 0).
 Eigen::Vector2d ZeroMomentPoint(const Eigen::Vector3d& force, const Eigen::Vector3d& moment);
 
-/// What one or two soles exert together, by foot. Of two, the first gets the share w of force and
-/// vertical moment, w = 1 where the zero-moment point is at its centre and 0 at the other's, in
-/// between by the projection on the line of the centres; both press at the same distance from
-/// their centres, so that together they press at the zero-moment point. So both forces have the
-/// friction ratio of the sum, and the wrenches add up to the given one exactly. What a real pair of
-/// legs does depends on its stiffness and on errors of its geometry.
-/// Throws std::invalid_argument for no or more than two soles.
+/// Shares the floor's wrench among one or two soles; one wrench for each sole. Of two soles, the
+/// first gets the share w of force and vertical moment: w = 1 if the zero-moment point is at its
+/// centre, 0 at the centre of the other, and in between by the projection on the line of the
+/// centres. Both press at the same offset from their centres, so that together they press at the
+/// zero-moment point. Both forces then have the friction ratio of the sum, and the wrenches add up
+/// to the given one exactly. The shares of two real legs depend on their stiffness and on errors of
+/// their geometry. Throws std::invalid_argument unless there are one or two soles.
 std::vector<LinkWrench> ShareWrench(const std::vector<Sole>& soles,
                                     const std::vector<Transform>& T_world_sole,
                                     const Eigen::Vector3d& force, const Eigen::Vector3d& moment);

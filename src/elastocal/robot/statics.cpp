@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Moment of what a joint carries about `point`, as it turns the child, N.m.
+/// Moment about `point` of the weight that a joint carries, by which it turns the child, N.m.
 Vector3d TurningMoment(const CarriedLoad& carried, const Vector3d& point, const Vector3d& gravity) {
   return carried.side * (carried.moment - carried.mass * point).cross(gravity);
 }
@@ -18,7 +18,7 @@ Vector3d TurningMoment(const CarriedLoad& carried, const Vector3d& point, const 
 
 std::vector<CarriedLoad> CarriedLoads(const RobotTree& tree,
                                       const std::vector<Transform>& T_ref_link, int fixed_link) {
-  // Of each body, then of all beyond it as well.
+  // The load of each body, and then of all bodies beyond it too.
   std::vector<CarriedLoad> beyond(tree.body_count());
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     const Link& link = tree.links[i];

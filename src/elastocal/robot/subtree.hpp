@@ -6,11 +6,12 @@
 
 namespace elastocal {
 
-/// The part of a robot that a link carries, as a robot of its own: the link's body becomes the root
-/// body, and its joints are beyond it. Names stay; coordinates are numbered anew.
+/// The part of a robot from a link outwards, as a robot of its own: the link's body becomes the
+/// root body. Names stay; coordinates are numbered anew.
 RobotTree Subtree(const RobotTree& tree, int link);
 
-/// Markers whose links are in the subtree, on its own link numbers; others are left out.
+/// Markers whose links are in the subtree, with the link numbers of the subtree. Others are left
+/// out.
 std::vector<Marker> SubtreeMarkers(const RobotTree& tree, const RobotTree& subtree,
                                    const std::vector<Marker>& markers);
 

@@ -28,7 +28,7 @@ Eigen::Index Find(const std::vector<std::string>& names, const std::string& name
   return std::find(names.begin(), names.end(), name) - names.begin();
 }
 
-/// Axes that move with three markers.
+/// Axes fixed to three markers.
 Eigen::Matrix3d ClusterAxes(const Eigen::MatrixXd& positions, Eigen::Index frame,
                             const std::vector<int>& markers) {
   const auto at = [&](std::size_t i) -> Eigen::Vector3d {
@@ -41,7 +41,7 @@ Eigen::Matrix3d ClusterAxes(const Eigen::MatrixXd& positions, Eigen::Index frame
   return R;
 }
 
-/// First frame of a knock in trial `index`; past the end: none.
+/// First frame of a knock in trial `index`; past the end if there is none.
 Eigen::Index KnockFrame(const Faults& faults, const std::vector<PlannedTrial>& trials,
                         std::size_t index, Eigen::Index frames) {
   if (faults.trial.empty() || faults.trial == trials[index].name) return frames / 2;
@@ -59,7 +59,7 @@ void Knock(const Faults& faults, const std::vector<NamedCluster>& clusters,
     const Eigen::Index first = KnockFrame(faults, trials, index, positions.rows());
     if (first == positions.rows()) continue;
     for (Eigen::Index i = first; i < positions.rows(); ++i) {
-      // In the direction of the cluster's first side.
+      // The push is along the first side of the cluster.
       const Eigen::Vector3d push =
           faults.knock * ClusterAxes(motion.markers, i, cluster.markers).col(0);
       for (int m : cluster.markers) positions.row(i).segment<3>(3 * m) += push.transpose();
@@ -69,7 +69,7 @@ void Knock(const Faults& faults, const std::vector<NamedCluster>& clusters,
   }
 }
 
-/// Time at which the n-th move of a motion (from 1) ends; infinite where there is none.
+/// Time at which the n-th move of a motion (from 1) ends; infinite if there is no such move.
 double MoveEnd(const Motion& motion, int n) {
   double time_s = 0.0;
   for (const MotionSegment& segment : motion.segments) {
@@ -80,10 +80,11 @@ double MoveEnd(const Motion& motion, int n) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// The whole robot aside, from a move's end to that of the next, with the next move's... ends.
+/// Moves the whole robot aside, from shortly before the end of one move until shortly before the
+/// end of the next.
 void Slip(const Faults& faults, const PlannedTrial& trial, const TrueMotion& motion,
           Eigen::MatrixXd& positions, std::vector<std::string>& said) {
-  constexpr double kBefore = 1.0;  // s before the move ends: when the foot slides
+  constexpr double kBefore = 1.0;  // s before the end of the move, when the foot slides
   if (faults.slipped_posture < 1 || !InTrial(faults, trial)) return;
   const double from = MoveEnd(trial.motion, faults.slipped_posture) - kBefore;
   const double to = MoveEnd(trial.motion, faults.slipped_posture + 1) - kBefore;

@@ -4,9 +4,9 @@
 
 namespace elastocal {
 
-/// Puts the faults of marker data into what the cameras see of trial `index`: positions, frames x
-/// 3 N_M, before noise for what moves markers (`PushMarkers`) and after it for what the cameras
-/// lose or confuse (`LoseMarkers`). Both add a sentence for each fault to `said`.
+/// Adds the faults of marker data to the positions that the cameras see in trial `index`, frames x
+/// 3 N_M. `PushMarkers` moves markers and is called before noise is added; `LoseMarkers` loses or
+/// exchanges markers and is called after it. Both add a sentence for each fault to `said`.
 void PushMarkers(const Faults& faults, const std::vector<NamedCluster>& clusters,
                  const std::vector<PlannedTrial>& trials, std::size_t index,
                  const TrueMotion& motion, Eigen::MatrixXd& positions,
@@ -15,11 +15,11 @@ void LoseMarkers(const Faults& faults, const std::vector<PlannedTrial>& trials, 
                  const std::vector<std::string>& names, double rate_hz, Random& random,
                  Eigen::MatrixXd& positions, std::vector<std::string>& said);
 
-/// The same for the torques of a log and its end.
+/// Adds the faults of a log: in its torques and at its end.
 void SpoilLog(const Faults& faults, const std::vector<PlannedTrial>& trials, std::size_t index,
               JointLog& log, std::vector<std::string>& said);
 
-/// Throws InputError where a fault names what does not exist, or can be seen in no trial.
+/// Throws InputError if a fault names something that does not exist, or shows in no trial.
 void CheckFaults(const Faults& faults, const TrueRobot& robot,
                  const std::vector<NamedCluster>& clusters,
                  const std::vector<PlannedTrial>& trials);

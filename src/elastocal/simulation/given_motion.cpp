@@ -11,9 +11,9 @@ namespace elastocal {
 namespace {
 
 constexpr double kStill = 1e-9;      // rad or m between samples
-constexpr double kMoves = 1e-3;      // rad or m over a stretch: less is rounding, no exercise
-constexpr double kLeastRest = 0.3;   // s: shorter ones are turning points
-constexpr double kFeetApart = 2e-3;  // m: what the floor and the soles take up ...
+constexpr double kMoves = 1e-3;      // rad or m over a stretch: a smaller change is rounding
+constexpr double kLeastRest = 0.3;   // s: shorter rests are turning points
+constexpr double kFeetApart = 2e-3;  // m: tolerance of the floor and the soles ...
 constexpr double kFeetTurn = 0.01;   // ... and rad
 
 std::string PlaceOf(const JointMotion& motion, int sample) {
@@ -21,7 +21,7 @@ std::string PlaceOf(const JointMotion& motion, int sample) {
                              : motion.source + ":" + std::to_string(motion.line[sample]) + ": ";
 }
 
-/// Samples [first, last] on the same feet.
+/// Samples [first, last] during which the same feet stand.
 struct Stretch {
   int first = 0, last = 0;
   std::vector<int> support;
@@ -55,7 +55,7 @@ class GivenMotionPlanner {
       if (stretches.size() > 1) trial.name += "_" + std::to_string(trials.size() + 1);
       trial.support = stretch.support;
       trial.chains = given_.chains.empty() ? MovingChains(stretch) : given_.chains;
-      if (trial.chains.empty()) continue;  // only what stands moves: a shift of weight
+      if (trial.chains.empty()) continue;  // only standing legs move: the weight is shifted
       if (motion_.time_s.size() == 0) {
         VisitPostures(stretch, trial);
       } else {
@@ -143,7 +143,7 @@ class GivenMotionPlanner {
     trial.postures = stretch.last - stretch.first + 1;
   }
 
-  /// Runs of the same posture are rests, what is between them is a segment of samples.
+  /// Runs of the same posture become rests, and what is between them becomes a segment of samples.
   void FollowSamples(const Stretch& stretch, PlannedTrial& trial) const {
     if (stretch.first == stretch.last) {
       throw InputError(PlaceOf(motion_, stretch.first) +

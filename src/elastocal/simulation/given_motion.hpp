@@ -9,25 +9,25 @@
 
 namespace elastocal {
 
-/// How a motion that a user gives becomes trials.
+/// How a user's own motion is played as trials.
 struct GivenMotionOptions {
-  std::string name = "motion";  ///< of the trial; of several with their number behind it
-  /// Without one: for estimation where the robot comes to rest, else a sinusoidal motion.
+  std::string name = "motion";  ///< name of the trial; several trials have their number added
+  /// By default kCalibration if the robot comes to rest in the trial, and otherwise kSine.
   std::optional<TrialKind> kind = {};
-  /// What the trials exercise, of the chains; without any, those from the root link on which a
-  /// trial does not stand and of which a joint moves in it.
+  /// The chains that the trials exercise. By default those from the root link of which a joint
+  /// moves in the trial, except the legs on which the robot stands.
   std::vector<int> chains = {};
 };
 
-/// Trials that play a user's own trajectory or postures: one for each stretch of samples with the
-/// same support (all feet where nothing is said of it). Each begins with MotionOptions::lead_in_s
-/// at rest and ends at rest; postures are MotionOptions::move_s + rest_s apart. Joints of which
-/// nothing is said stay as the robot stands when its own trials begin.
+/// Makes trials that play a user's own trajectory or postures: one for each stretch of samples with
+/// the same support (by default all feet). Each trial begins with MotionOptions::lead_in_s at rest
+/// and ends at rest; postures are MotionOptions::move_s + rest_s apart. Joints that the motion
+/// leaves open keep the position that they have at the beginning of the robot's own trials.
 ///
-/// Stretches in which nothing moves but what stands (the weight is shifted) are passed over.
+/// Stretches in which only standing legs move (the weight is shifted) are skipped.
 ///
-/// Throws InputError, naming the line, where the feet on the floor move against each other, where
-/// nothing is left to play, and for a stretch of one sample of a trajectory.
+/// Throws InputError, naming the line, if feet on the floor move against each other, if nothing is
+/// left to play, and for a stretch of a trajectory that has only one sample.
 std::vector<PlannedTrial> PlanGivenMotion(const RobotTree& tree,
                                           const std::vector<NamedChain>& chains,
                                           const JointMotion& motion, const MotionOptions& options,

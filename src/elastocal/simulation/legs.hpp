@@ -7,7 +7,7 @@
 
 namespace elastocal {
 
-/// A chain of the robot by its links, as a project names it.
+/// A chain of the robot between two links, with its name in the project.
 struct NamedChain {
   std::string name;
   int from_link = 0, tip_link = 0;
@@ -18,12 +18,14 @@ struct Leg {
   std::string chain;
   int foot_link = 0;        ///< the link that stands on the floor (the sole)
   std::vector<int> joints;  ///< from the waist to the foot
-  Eigen::Matrix3d R_floor_foot = Eigen::Matrix3d::Identity();  ///< flat on a level floor, z up
+  Eigen::Matrix3d R_floor_foot =
+      Eigen::Matrix3d::Identity();  ///< attitude of the foot flat on a level floor, z up
 };
 
-/// The legs of a robot: chains from the root whose tips are, at the zero posture and with the root
-/// link upright, within 2 % of the robot's size of the lowest tip of all, and below the root. A
-/// foot that ends several chains counts once. A robot on a table (an arm) may have none.
+/// Finds the legs of a robot: the chains from the root whose tips are below the root and, in the
+/// zero posture with the root link upright, not more than 2 % of the robot's size above the lowest
+/// tip. A foot at the end of several chains counts once. A robot on a table (an arm) may have no
+/// legs.
 std::vector<Leg> FindLegs(const RobotTree& tree, const std::vector<NamedChain>& chains);
 
 /// Height of the root link above the soles at the zero posture, m; 0 without legs.

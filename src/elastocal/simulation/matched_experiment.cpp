@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// Flat on the floor, where the experiment puts the robot down.
+/// Pose of a foot that lies flat on the floor where the experiment puts the robot down.
 Transform FootPose(const MatchedExperiment& experiment, std::size_t index, int foot_link) {
   Transform T_world_foot = Transform::Identity();
   for (const Leg& leg : experiment.plan.robot.legs) {
@@ -29,7 +29,7 @@ std::vector<int> TorqueSensors(const TrueRobot& robot) {
   return joints;
 }
 
-/// Names and room for the frames.
+/// A motion with names, and with room for the frames.
 TrueMotion EmptyMotion(const ErrorModel& model, const Motion& motion) {
   TrueMotion result;
   for (const Marker& marker : model.markers) result.marker_names.push_back(marker.name);
@@ -41,14 +41,14 @@ TrueMotion EmptyMotion(const ErrorModel& model, const Motion& motion) {
   return result;
 }
 
-/// One value of a parameter; `leg_joint`: of a joint that belongs to a leg.
+/// Draws the value of a parameter. `leg_joint` says whether it belongs to a joint of a leg.
 double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions& options,
                  Random& random) {
   constexpr double kLeastForce = 2e-6, kMostForce = 9e-6;    // m/N
   constexpr double kLeastMoment = 2e-6, kMostMoment = 5e-5;  // rad/(N.m)
   const double scale = leg_joint ? options.leg_geometry_scale : options.upper_geometry_scale;
   switch (parameter.kind) {
-    case ParameterKind::kBase:
+    case ParameterKind::kWaistPose:
       return 0.0;
     case ParameterKind::kMarker:
       return random.Normal(options.marker_sd);
@@ -59,9 +59,9 @@ double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions&
       return (leg_joint ? options.leg_elasticity_scale : options.upper_elasticity_scale) /
              (least * std::pow(most / least, random.Uniform(0.0, 1.0)));
     }
-    case ParameterKind::kBaseForce:
+    case ParameterKind::kLegForce:
       return options.leg_elasticity_scale * random.Uniform(kLeastForce, kMostForce);
-    case ParameterKind::kBaseMoment:
+    case ParameterKind::kLegMoment:
       return options.leg_elasticity_scale * random.Uniform(kLeastMoment, kMostMoment);
     case ParameterKind::kTorqueBias:
       return random.Normal(options.torque_bias_sd);
@@ -101,8 +101,8 @@ MatchedExperiment MatchExperiment(VirtualExperiment plan, const ErrorModel& mode
   for (LegCompliance& leg : experiment.plan.legs) {
     const int own = SupportingLeg(model, {leg.foot_link});
     const Vector6d compliance = own < 0 ? Vector6d(Vector6d::Zero()) : geometry.leg_compliance[own];
-    leg.base.C_foot = compliance.asDiagonal();
-    leg.base.stiffness = compliance.cwiseInverse();
+    leg.compliance.C_foot = compliance.asDiagonal();
+    leg.compliance.stiffness = compliance.cwiseInverse();
   }
   return experiment;
 }

@@ -105,7 +105,7 @@ TEST(MatchedExperiment, DrawsWhatIsIdentifiableAndNothingElse) {
   const Eigen::VectorXd truth = DrawMatchedTruth(model, All(model), legs, {});
   for (int i = 0; i < model.parameter_count(); ++i) {
     const Parameter& parameter = model.parameters[i];
-    EXPECT_EQ(truth[i] == 0.0, parameter.kind == ParameterKind::kBase) << parameter.name;
+    EXPECT_EQ(truth[i] == 0.0, parameter.kind == ParameterKind::kWaistPose) << parameter.name;
     if (!IsCompliance(parameter.kind)) continue;
     EXPECT_GT(truth[i], 0.0) << parameter.name;
   }

@@ -31,7 +31,7 @@ std::string PoseAttributes(const Transform& T) {
          Attribute("quat", Numbers(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
 }
 
-/// Writes the bodies, walking over the tree from the one that is held.
+/// Writes the bodies, walking over the tree from the body that is fixed or floats.
 class MjcfWriter {
  public:
   MjcfWriter(const TrueRobot& robot, const std::vector<int>& support, const PhysicsOptions& options)
@@ -43,7 +43,7 @@ class MjcfWriter {
     return Attribute("friction", Number(options_.floor_friction) + " 0.01 0.001");
   }
 
-  /// A sole fixed to the world, and all that it carries.
+  /// Writes a sole that is fixed to the world, and everything that it carries.
   void WriteFromSole(int sole, const Transform& T_world_sole) {
     const Link& link = FootLink(sole);
     text += "<body" + Attribute("name", "s" + std::to_string(sole)) + PoseAttributes(T_world_sole) +
@@ -54,7 +54,7 @@ class MjcfWriter {
     text += "</body>\n";
   }
 
-  /// The waist in the world, fixed or floating.
+  /// Writes the waist, which is fixed to the world or floats, and everything beyond it.
   void WriteFromWaist(const Transform& T_world_waist, bool floating) {
     OpenBody(0, T_world_waist);
     if (floating) text += "<freejoint name=\"float\"/>\n";
@@ -79,15 +79,16 @@ class MjcfWriter {
             ">\n";
   }
 
-  /// The far half of a link that gives way, on the side of joint k: a body of its own, since MuJoCo
-  /// allows six degrees of freedom between two bodies. The link's weight stays with the near half.
+  /// Opens the far half of an elastic link, on the side of joint k. It is a body of its own,
+  /// because MuJoCo allows at most six degrees of freedom between two bodies. The near half has the
+  /// link's weight.
   void OpenHalf(int k, const Transform& T_from_half) {
     text += "<body" + Attribute("name", "h" + std::to_string(k)) + PoseAttributes(T_from_half) +
             "><inertial pos=\"0 0 0\" mass=\"1e-6\" diaginertia=\"1e-7 1e-7 1e-7\"/>\n";
   }
 
-  /// Inertia of a body, then all that hangs on it but where the walk comes from: the joint
-  /// `from_joint` or the sole `from_sole`. Closes the body.
+  /// Writes the inertia of a body, then everything that is connected to it, except the joint
+  /// `from_joint` or the sole `from_sole` from which the walk comes. Closes the body.
   void Contents(int body, int from_joint, int from_sole) {
     Inertial(body);
     for (std::size_t s = 0; s < support_.size(); ++s) {
@@ -102,7 +103,7 @@ class MjcfWriter {
     text += "</body>\n";
   }
 
-  /// From the body that carries joint k to the one that it moves.
+  /// Walks from the body that carries joint k to the one that it moves.
   void Outwards(int k) {
     const Joint& joint = JointAt(k);
     const Transform T_parent_child = JointPlacement(k);
@@ -118,8 +119,8 @@ class MjcfWriter {
     if (halved) text += "</body>\n";
   }
 
-  /// From the body that joint k moves to the one that carries it: the same joint seen from the
-  /// other side, so that the axis is reversed.
+  /// Walks from the body that joint k moves to the one that carries it. Seen from this side, the
+  /// joint's axis is reversed.
   void Inwards(int k) {
     const Joint& joint = JointAt(k);
     const Transform T_parent_child = JointPlacement(k);
@@ -140,7 +141,7 @@ class MjcfWriter {
     if (halved) text += "</body>\n";
   }
 
-  /// A further foot on the floor.
+  /// Writes a further foot on the floor.
   void Sole(int sole) {
     const Link& link = FootLink(sole);
     text += "<body" + Attribute("name", "s" + std::to_string(sole)) +
@@ -166,7 +167,7 @@ class MjcfWriter {
       moment += link.mass * (link.T_body_link * link.com);
     }
     const Eigen::Vector3d com = mass > 0.0 ? Eigen::Vector3d(moment / mass) : moment;
-    // MuJoCo wants moving bodies to have some inertia.
+    // MuJoCo requires moving bodies to have some inertia.
     Eigen::Matrix3d inertia = 1e-7 * Eigen::Matrix3d::Identity();
     for (const Link& link : tree_.links) {
       if (link.body != body) continue;
@@ -227,8 +228,8 @@ class MjcfWriter {
     return {"y" + std::to_string(sole), robot_.foot_compliance[leg]};
   }
 
-  /// Springs of a body's link, half way to `p_body_next`, in the frame of the body being written,
-  /// to which T_here_body leads.
+  /// Writes the springs of a body's link, half way to `p_body_next`. T_here_body maps to the frame
+  /// of the body being written.
   void LinkSprings(const NamedSprings& springs, const Eigen::Vector3d& p_body_next,
                    const Transform& T_here_body) {
     const Eigen::Vector3d anchor = T_here_body * Eigen::Vector3d(0.5 * p_body_next);
@@ -244,7 +245,7 @@ class MjcfWriter {
   const PhysicsOptions& options_;
 };
 
-/// The leg that ends in a foot.
+/// The leg that has this foot.
 const Leg& LegOf(const TrueRobot& robot, int foot) {
   for (const Leg& leg : robot.legs) {
     if (leg.foot_link == foot) return leg;
@@ -252,7 +253,7 @@ const Leg& LegOf(const TrueRobot& robot, int foot) {
   throw std::invalid_argument("a robot can stand on the feet of its legs only");
 }
 
-/// A sole held where it was put down.
+/// Constraint that holds a sole where it was put down.
 std::string Weld(std::size_t sole, const Transform& T_world_sole) {
   const Transform T_sole_world = T_world_sole.inverse();
   const Eigen::Quaterniond q(T_sole_world.linear());
@@ -277,7 +278,7 @@ std::string Header(const PhysicsOptions& options) {
 MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
                     const Eigen::VectorXd& encoders, const PhysicsOptions& options) {
   if (options.standing == Standing::kFree && support.empty()) {
-    throw std::invalid_argument("a robot that stands free needs feet");
+    throw std::invalid_argument("a robot that stands freely needs feet");
   }
   MjcfModel model;
   MjcfWriter writer(robot, support, options);

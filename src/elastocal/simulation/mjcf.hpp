@@ -17,49 +17,50 @@ enum class Standing {
 struct PhysicsOptions {
   Standing standing = Standing::kWelded;
   double time_step_s = 0.005;
-  double servo_stiffness = 5e4;          ///< N.m/rad; how far the encoder gives way to the load
+  double servo_stiffness = 5e4;  ///< stiffness of the encoder's side against the load, N.m/rad
   double sliding_servo_stiffness = 1e6;  ///< N/m
-  double servo_frequency = 100.0;        ///< of rotor on servo, rad/s; it is critically damped
-  /// Own inertia and damping of springs as times, s; see BuildMjcf.
+  double servo_frequency = 100.0;        ///< of the rotor on its servo, rad/s; critically damped
+  /// Inertia and damping of the springs, as times, s; see MjcfModel.
   double spring_inertia_time_s = 0.010;
   double spring_damping_time_s = 0.020;
-  double foot_length = 0.20, foot_width = 0.12;  ///< of soles that stand free, m
+  double foot_length = 0.20, foot_width = 0.12;  ///< of soles that stand freely, m
   double floor_friction = 0.8;
   double gravity = 9.81;  ///< m/s^2, downwards
 };
 
 /// MuJoCo's description (MJCF) of the true robot, z up, floor at z = 0.
 ///
-/// - Each joint of the tree is a motor hinge `m<k>` (k: index of the joint) whose passive spring is
-///   the servo: its rest position is what is commanded, and it is the encoder's side; in series
-///   with it, about the same axis, the elastic hinge `e<k>` of the joint's compliance. Sliding
-///   joints likewise. A joint of compliance 0 has no `e<k>`.
-/// - A link with compliance has three slides and three hinges half way to the joint k that it
-///   carries, `x<k>_0..5`, or to the sole, `y<i>_0..5`.
-/// - Bodies are `b<index>`, far halves of links that give way `h<k>` (towards joint k), soles on
-/// which the robot stands `s<i>` (i: index into `support`).
-/// - Welded, the tree is rooted at the first sole, which is fixed to the world exactly, and
-/// reversed
-///   up to the waist; a second sole is held by a weld constraint. Free, the root is the waist with
-///   a floating joint, and the soles are boxes on the floor. Without support the waist is fixed.
+/// - Each joint k of the tree has a motor hinge `m<k>`. Its passive spring is the servo: its rest
+///   position is the command, and its position is what the encoder measures. In series with it,
+///   about the same axis, is the elastic hinge `e<k>` with the joint's compliance. Prismatic joints
+///   have slides instead of hinges. A joint of compliance 0 has no `e<k>`.
+/// - An elastic link has three slides and three hinges half way to the joint k that it carries,
+///   `x<k>_0..5`, or to the sole, `y<i>_0..5`.
+/// - Bodies are called `b<index>`, far halves of elastic links `h<k>` (towards joint k), and soles
+/// on
+///   which the robot stands `s<i>` (i: index into `support`).
+/// - With Standing::kWelded, the tree is rooted at the first sole, which is fixed to the world
+///   exactly, and reversed up to the waist; a weld constraint holds a second sole. With kFree, the
+///   root is the waist with a floating joint, and the soles are boxes on the floor. Without
+///   support, the waist is fixed.
 ///
-/// Springs are stiff (1e5 N.m/rad) against the small bodies that they carry. MuJoCo integrates
-/// damping implicitly but stiffness explicitly, so each elastic joint of stiffness k is given an
-/// inertia of its own (an "inerter", MuJoCo's armature: it resists relative acceleration, has no
-/// weight, and does not move the equilibrium) of k t_i^2 and a damping of k t_d. With t_i = 10 ms
-/// and t_d = 20 ms every spring alone is critically damped, steps up to t_i are stable whatever the
-/// stiffness, and deflections follow the load within some tens of milliseconds.
+/// Springs are stiff (1e5 N.m/rad) for the small bodies that they carry. MuJoCo integrates damping
+/// implicitly but stiffness explicitly. An elastic joint of stiffness k therefore has an additional
+/// inertia of k t_i^2 (an "inerter", MuJoCo's armature: it resists relative acceleration, has no
+/// weight, and does not move the equilibrium) and a damping of k t_d. With t_i = 10 ms and t_d = 20
+/// ms every spring alone is critically damped, steps up to t_i are stable whatever the stiffness,
+/// and deflections follow the load within some tens of milliseconds.
 struct MjcfModel {
   std::string xml;
   std::vector<Transform> T_world_foot;              ///< where the soles of `support` stand
   Transform T_world_waist = Transform::Identity();  ///< as the robot is put down
 };
 
-/// `encoders`: the posture (by coordinate) in which the robot is put on the floor; it decides where
-/// a second sole stands, without stress, up to the errors of the legs. The first sole lies under
-/// the origin of the world's frame with the attitude that it has when the root link is upright in
-/// the zero posture of the description. Throws std::invalid_argument for a support that is no foot
-/// of a leg, or free standing without.
+/// `encoders` is the posture (by coordinate) in which the robot is put on the floor. It decides
+/// where a second sole stands, so that the legs are not under stress except by their errors. The
+/// first sole lies under the origin of the world's frame, with the attitude that it has when the
+/// root link is upright in the zero posture of the description. Throws std::invalid_argument for a
+/// support that is not the foot of a leg, and for kFree without support.
 MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
                     const Eigen::VectorXd& encoders, const PhysicsOptions& options);
 

@@ -6,7 +6,8 @@
 
 namespace elastocal {
 
-/// Writes motions segment after segment, beginning with the lead-in at rest in the posture `start`.
+/// Writes a motion segment after segment, beginning with the lead-in at rest in the posture
+/// `start`.
 class MotionWriter {
  public:
   MotionWriter(const Eigen::VectorXd& start, const MotionOptions& options)
@@ -36,7 +37,7 @@ class MotionWriter {
         {duration, here_, here_, coordinate, centre, amplitude, options_.sine_hz});
   }
 
-  /// Along samples (MotionSegment::samples), the first of which is where the robot is.
+  /// Follows samples (MotionSegment::samples), the first of which is the present posture.
   void Follow(const Eigen::VectorXd& time_s, const Eigen::MatrixXd& samples) {
     MotionSegment segment =
         Quintic(time_s[time_s.size() - 1] - time_s[0], samples.bottomRows<1>().transpose());

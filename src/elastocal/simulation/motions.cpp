@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// Slope of the samples at one of them; one-sided at the ends.
+/// Slope of the samples at sample i; one-sided at the ends.
 Eigen::VectorXd SlopeAt(const MotionSegment& segment, Eigen::Index i) {
   const Eigen::Index before = std::max<Eigen::Index>(0, i - 1);
   const Eigen::Index after = std::min<Eigen::Index>(segment.sample_s.size() - 1, i + 1);
@@ -38,7 +38,7 @@ Eigen::VectorXd Evaluate(const MotionSegment& segment, double time_s) {
   if (segment.coordinate < 0) {
     return segment.from + SmoothStep(time_s / segment.duration_s) * (segment.to - segment.from);
   }
-  // One period to swing in from the posture, one to come back.
+  // One period is used to swing in from the posture, and one to come back.
   const double ramp = 1.0 / segment.frequency_hz;
   const double share = SmoothStep(time_s / ramp) * SmoothStep((segment.duration_s - time_s) / ramp);
   Eigen::VectorXd q = segment.from;
@@ -47,7 +47,7 @@ Eigen::VectorXd Evaluate(const MotionSegment& segment, double time_s) {
   return q;
 }
 
-/// Visits postures in the order of a walk to the nearest one not yet visited (section 3.6).
+/// Orders postures by going to the nearest one not yet visited (section 3.6).
 std::vector<Eigen::VectorXd> Sorted(const Eigen::VectorXd& start,
                                     std::vector<Eigen::VectorXd> postures) {
   const Eigen::VectorXd* here = &start;
@@ -213,7 +213,7 @@ class Planner {
     constexpr int kChecks = 20;
     auto [centre, amplitude] = SineRange(coordinate);
     for (double share = 1.0; share > 0.05; share -= 0.05) {
-      // Towards the posture as the sine shrinks, since that is feasible.
+      // As the sine shrinks, its middle moves to the posture, which is feasible.
       const double middle = q[coordinate] + share * (centre - q[coordinate]);
       bool feasible = true;
       for (int n = -kChecks; n <= kChecks && feasible; ++n) {
@@ -241,8 +241,8 @@ class Planner {
         writer.motion, 2 * options_.repetitions);
   }
 
-  /// Each joint of the swinging leg in turn; between two of them the other leg carries in another
-  /// posture.
+  /// Writes a sine of each joint of the swinging leg in turn. Between two of them the support leg
+  /// takes another posture.
   void LegSineTrial(std::size_t i, const std::string& name) {
     constexpr int kTries = 100;
     PostureSampler sampler = Sampler(name);

@@ -9,9 +9,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kDescribedHeight = 1.083;  // of the robot that EndWorkspace is given for, m
+constexpr double kDescribedHeight = 1.083;  // of the robot for which EndWorkspace is given, m
 
-/// Range of a coordinate without the margin; half a turn or 0.5 m where it is unlimited.
+/// Range of a coordinate without the margin; half a turn or 0.5 m if it is unlimited.
 std::pair<double, double> Range(const RobotTree& tree, int coordinate, double margin) {
   const Joint& joint = tree.joints[Size(tree.coordinate_joint[Size(coordinate)])];
   const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
@@ -21,7 +21,7 @@ std::pair<double, double> Range(const RobotTree& tree, int coordinate, double ma
   return {lower + kept, upper - kept};
 }
 
-/// Coordinates of joints, without those that follow others.
+/// Coordinates of joints, without mimic joints.
 std::vector<int> CoordinatesOf(const RobotTree& tree, const std::vector<int>& joints) {
   std::vector<int> coordinates;
   for (int k : joints) {
@@ -30,14 +30,15 @@ std::vector<int> CoordinatesOf(const RobotTree& tree, const std::vector<int>& jo
   return coordinates;
 }
 
-/// A leg that shares joints or has less than six comes only near to a pose, m and rad.
+/// Tolerance of a leg's pose, m and rad: a leg that shares joints or has fewer than six cannot
+/// reach all poses.
 double PlacementTolerance(const RobotTree& tree, const Leg& leg) {
   return CoordinatesOf(tree, leg.joints).size() < 6 ? 0.1 : 1e-8;
 }
 
 using Twist = Eigen::Matrix<double, 6, 1>;
 
-/// Displacement [m, rad] that leads from `found` to `wanted`.
+/// Displacement [m, rad] from `found` to `wanted`.
 Twist PoseError(const Transform& wanted, const Transform& found) {
   Twist error;
   error.head<3>() = wanted.translation() - found.translation();
@@ -117,7 +118,8 @@ std::optional<Eigen::VectorXd> PostureSampler::Bend(const Leg& leg, Eigen::Vecto
   constexpr int kTries = 200;
   Transform T_waist_foot = T_root_link_zero_[Size(leg.foot_link)];
   T_waist_foot.translation().z() += drop * height_;
-  // A straight leg is singular, and a bent one can bend several ways: begin anywhere near straight.
+  // A straight leg is singular, and a leg can bend in several ways; so the search begins at random
+  // near straight.
   for (int i = 0; i < kTries; ++i) {
     for (int coordinate : CoordinatesOf(tree_, leg.joints)) {
       const auto [lower, upper] = Range(tree_, coordinate, options_.limit_margin);
@@ -148,7 +150,7 @@ bool PostureSampler::InWorkspace(const EndWorkspace& workspace, int tip,
 }
 
 bool PostureSampler::ArmApart(const NamedChain& chain, const Eigen::VectorXd& q) const {
-  // Elbow, wrist and hand keep away from the axis of the trunk.
+  // Elbow, wrist and hand must be this far from the axis of the trunk, m.
   constexpr double kTrunkRadius = 0.18;
   const std::vector<Transform> T_root_link = LinkTransforms(tree_, q);
   const std::vector<int> joints = JointsToBody(tree_, tree_.links[Size(chain.tip_link)].body);
@@ -181,7 +183,7 @@ bool PostureSampler::SwingFeasible(const Eigen::VectorXd& q, const Leg& swing,
       support.R_floor_foot * (T_root_link[Size(support.foot_link)].inverse() *
                               T_root_link[Size(swing.foot_link)].translation());
   if (p_sole_swing.z() < scale_ * options_.ground_clearance) return false;
-  // From the knee on; hips are where they are.
+  // Only joints from the knee on are checked: the hips are fixed to the waist.
   for (std::size_t i = swing.joints.size() / 2; i < swing.joints.size(); ++i) {
     for (std::size_t j = support.joints.size() / 2; j < support.joints.size(); ++j) {
       const auto& a = T_root_link[Size(tree_.joints[Size(swing.joints[i])].child_link)];
@@ -213,7 +215,7 @@ std::optional<Eigen::VectorXd> PostureSampler::DrawSupport(Eigen::VectorXd q, co
   const double yaw = random_.Uniform(-options_.largest_turn, options_.largest_turn);
   const Eigen::Vector2d aim(scale_ * random_.Uniform(-options_.sway.x(), options_.sway.x()),
                             scale_ * random_.Uniform(-options_.sway.y(), options_.sway.y()));
-  // Waist over the sole, in axes of the floor.
+  // Attitude of the waist over the sole, in axes of the floor.
   const Eigen::Matrix3d R_floor_waist = (RotZ(yaw) * RotY(pitch) * RotX(roll)).linear();
   Eigen::Vector3d p_floor_waist = -T_root_link_zero_[Size(support.foot_link)].translation() -
                                   Eigen::Vector3d(0, 0, drop * height_);
@@ -239,8 +241,9 @@ Eigen::VectorXd PostureSampler::DrawSwing(Eigen::VectorXd q, const Leg& swing, c
     if (!InWorkspace(options_.foot, swing.foot_link, q)) continue;
     if (const auto found = DrawSupport(q, swing, support)) return *found;
   }
-  throw InputError("no posture found in which '" + support.chain + "' carries and the foot of '" +
-                   swing.chain + "' is in its workspace");
+  throw InputError("no posture found in which '" + support.chain +
+                   "' supports the robot and the foot of '" + swing.chain +
+                   "' is in its workspace");
 }
 
 }  // namespace elastocal

@@ -11,8 +11,8 @@
 namespace elastocal {
 namespace {
 
-/// Calls `visit(first frame, last frame + 1)` for events that come at random, `per_minute` of them,
-/// of exponentially distributed length.
+/// Calls `visit(first frame, last frame + 1)` for random events, `per_minute` of them, of
+/// exponentially distributed length.
 template <typename Visit>
 void AtRandomTimes(double per_minute, double mean_s, double rate_hz, Eigen::Index frames,
                    Random& random, const Visit& visit) {
@@ -60,7 +60,7 @@ void AddNoise(const SensorOptions& options, Random& random, Eigen::MatrixXd& pos
   }
 }
 
-/// Value of a sampled signal between its samples (Catmull-Rom); held beyond its ends.
+/// Value of a sampled signal between its samples (Catmull-Rom); constant beyond its ends.
 Eigen::RowVectorXd Interpolate(const Eigen::MatrixXd& samples, double position) {
   const Eigen::Index last = samples.rows() - 1;
   position = std::clamp(position, 0.0, static_cast<double>(last));
@@ -77,7 +77,7 @@ Eigen::RowVectorXd Interpolate(const Eigen::MatrixXd& samples, double position) 
          (3.0 * s2 - 2.0 * s3) * row(i + 1) + (s3 - s2) * slope_1;
 }
 
-/// The robot logs from the zero of its clock until the cameras stop, at least one sample.
+/// The robot logs from time zero of its clock until the cameras stop, but at least one sample.
 JointLog MakeLog(const TrueRobot& robot, const TrueMotion& motion, const SensorOptions& options,
                  const SensorTruth& truth, Random& random) {
   const double rate = 1.0 + 1e-6 * truth.drift_ppm;
@@ -113,7 +113,8 @@ JointLog MakeLog(const TrueRobot& robot, const TrueMotion& motion, const SensorO
       log.torques.col(c).setConstant(kNaN);
     }
   }
-  // As drivers print them; positions still a thousand times finer than the encoders.
+  // Numbers are rounded as drivers print them; positions are still a thousand times finer than the
+  // encoders.
   log.positions = (1e8 * log.positions).array().round() / 1e8;
   log.torques = (1e4 * log.torques).array().round() / 1e4;
   return log;

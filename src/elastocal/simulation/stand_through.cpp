@@ -8,9 +8,9 @@ namespace elastocal {
 namespace {
 
 constexpr double kLongestSettling = 4.0;  // s
-constexpr double kFallen = 0.7;           // of the height of the waist
+constexpr double kFallen = 0.7;  // share of the waist's height below which the robot has fallen
 
-/// What is commanded at a time; `at` moves along with the time.
+/// The command at a time; `at` moves along with the time.
 Eigen::VectorXd CommandAt(const JointMotion& motion, double time_s, Eigen::Index& at) {
   while (at + 2 < motion.time_s.size() && motion.time_s[at + 1] <= time_s) ++at;
   const double span = motion.time_s[at + 1] - motion.time_s[at];
@@ -18,7 +18,7 @@ Eigen::VectorXd CommandAt(const JointMotion& motion, double time_s, Eigen::Index
   return (motion.q.row(at) + share * (motion.q.row(at + 1) - motion.q.row(at))).transpose();
 }
 
-/// Distance of the pressed point to the edge of the soles that are pressed.
+/// Distance of the zero-moment point to the edge of the loaded soles, m.
 double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles,
                  const StandingSense& sense) {
   constexpr double kPressed = 50.0;  // N

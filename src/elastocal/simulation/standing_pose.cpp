@@ -9,8 +9,9 @@
 namespace elastocal {
 namespace {
 
-constexpr int kMostSteps = 12;    // of the loads' fixed point; each gains two digits or more
-constexpr double kAtRest = 1e-9;  // N.m: what is left then moves nothing by more than rounding
+constexpr int kMostSteps = 12;  // of the fixed point of loads; each gains two digits or more
+constexpr double kAtRest =
+    1e-9;  // N.m: smaller changes of loads move nothing by more than rounding
 
 class FixedPoint {
  public:
@@ -58,7 +59,7 @@ class FixedPoint {
     pose.T_ref_waist = T_ref_waist;
   }
 
-  /// Torques of the robot as it is deflected now, and the loads that follow from them. Returns
+  /// Computes the torques of the robot as it is deflected now, and the loads by them. Returns
   /// whether they are those of the step before.
   bool Feel(int leg) {
     const JointLoads load =
@@ -72,9 +73,9 @@ class FixedPoint {
       const double bias = geometry_.torque_bias.size() > 0 ? geometry_.torque_bias[joint] : 0.0;
       pose.torques[joint] = bias - load(2, joint);
     }
-    Felt felt;
-    felt.torques = pose.torques;
-    loads_ = LoadPosture(model_, geometry_, q_, leg, felt, gravity_ref_, {});
+    MeasuredLoads measured;
+    measured.torques = pose.torques;
+    loads_ = LoadPosture(model_, geometry_, q_, leg, measured, gravity_ref_, {});
     return at_rest;
   }
 

@@ -3,7 +3,8 @@
 namespace elastocal {
 
 std::uint64_t StreamSeed(std::uint64_t seed, std::string_view purpose) {
-  // FNV-1a over the purpose, then the finaliser of splitmix64 so that near seeds part.
+  // FNV-1a over the purpose, then the finaliser of splitmix64, which separates seeds that are close
+  // to each other.
   std::uint64_t hash = 0xcbf29ce484222325u ^ (seed * 0x9e3779b97f4a7c15u);
   for (const char character : purpose) {
     hash = (hash ^ static_cast<unsigned char>(character)) * 0x100000001b3u;

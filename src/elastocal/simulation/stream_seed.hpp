@@ -5,8 +5,8 @@
 
 namespace elastocal {
 
-/// Seed of the random numbers drawn for one purpose: what is drawn for one is not changed by how
-/// many are drawn for another, so that an option changes its own imperfection only.
+/// Seed of the random numbers for one purpose. Draws for one purpose do not depend on the number of
+/// draws for another, so that an option changes only its own imperfection.
 std::uint64_t StreamSeed(std::uint64_t seed, std::string_view purpose);
 
 }  // namespace elastocal

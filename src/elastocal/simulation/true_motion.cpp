@@ -11,14 +11,14 @@ void CheckStanding(const Transform& T_world_waist, double height, double time_s)
   constexpr double kFallen = 0.7;
   if (T_world_waist.translation().z() > kFallen * height) return;
   throw InputError("the robot fell after " + std::to_string(time_s) +
-                   " s: a robot that stands free needs motions that keep its balance");
+                   " s: a robot that stands freely needs motions that keep its balance");
 }
 
 }  // namespace
 
 TrueMotion PlayMotion(const TrueRobot& robot, const std::vector<int>& support, const Motion& motion,
                       const Transform& T_camera_world, const PhysicsOptions& options) {
-  constexpr double kLongestSettling = 4.0;  // s; friction may creep on
+  constexpr double kLongestSettling = 4.0;  // s; friction may go on creeping
   TrueMotion result;
   for (const Marker& marker : robot.markers) result.marker_names.push_back(marker.name);
   for (int k : robot.tree.coordinate_joint) {

@@ -163,7 +163,7 @@ Eigen::VectorXd TrueJointPositions(const TrueRobot& robot, const Eigen::VectorXd
 
 std::vector<Transform> TrueLinkTransforms(const TrueRobot& robot,
                                           const Eigen::VectorXd& positions) {
-  // A tree in which every joint is a coordinate of its own.
+  // In this tree every joint has its own coordinate.
   RobotTree tree = robot.tree;
   tree.coordinate_joint.clear();
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {

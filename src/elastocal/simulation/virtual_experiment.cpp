@@ -12,7 +12,8 @@
 namespace elastocal {
 namespace {
 
-/// The robot is put down near one place of the laboratory, roughly in one direction.
+/// Draws the poses at which the robot is put down: near one place of the laboratory, roughly in one
+/// direction.
 std::vector<Transform> DrawPlaces(std::uint64_t seed, std::size_t trials) {
   Random random(StreamSeed(seed, "place"));
   const double yaw = random.Uniform(-M_PI, M_PI);
@@ -72,7 +73,7 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
                     experiment.options.truth);
   experiment.trials = std::move(trials);
   if (legs.empty() && options.physics.standing == Standing::kFree) {
-    throw InputError("robot '" + described.tree.name + "' has no legs to stand free on");
+    throw InputError("robot '" + described.tree.name + "' has no legs to stand on freely");
   }
   CheckFaults(options.faults, experiment.robot, experiment.clusters, experiment.trials);
   experiment.T_camera_world = DrawPlaces(options.seed, experiment.trials.size());
@@ -81,7 +82,7 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
   for (const Leg& leg : legs) {
     experiment.legs.push_back(
         {leg.chain, leg.foot_link, sampler.stand(),
-         LumpedBaseCompliance(experiment.robot, leg, sampler.stand(), options.physics)});
+         LumpedWaistCompliance(experiment.robot, leg, sampler.stand(), options.physics)});
   }
   return experiment;
 }

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/simulation/base_compliance.hpp"
 #include "elastocal/simulation/sensors.hpp"
+#include "elastocal/simulation/waist_compliance.hpp"
 #include "elastocal/simulation/waist_give.hpp"
 
 namespace elastocal {
 
-/// The robot's description, as a project has it.
+/// The nominal robot, as a project describes it.
 struct DescribedRobot {
   RobotTree tree;
   std::vector<NamedChain> chains;
@@ -19,7 +19,7 @@ struct DescribedRobot {
   std::vector<int> torque_sensors;  ///< joints
 };
 
-/// Everything that a virtual experiment can be told. `seed` replaces the seeds of the parts.
+/// All options of a virtual experiment. `seed` replaces the seeds of the parts.
 struct VirtualExperimentOptions {
   std::uint64_t seed = 1;
   TruthOptions truth;
@@ -29,27 +29,28 @@ struct VirtualExperimentOptions {
   Faults faults;
 };
 
-/// A rigid robot as it is described, seen by perfect sensors: standard deviations, compliances,
-/// friction, gaps and the like all zero, encoders not quantised, clocks in step. Servos still give
-/// way to the load, which encoders see. Motions and physics stay.
+/// Makes the robot rigid and nominal and the sensors perfect: standard deviations, compliances,
+/// friction, gaps and the like become zero, encoders are not quantised, and clocks agree. Servos
+/// still yield to the load, which encoders measure. Motions and physics stay.
 void SwitchOffImperfections(VirtualExperimentOptions& options);
 
-/// A leg's lumped compliance and the posture that it was computed in.
+/// A leg's lumped compliance, and the posture in which it was computed.
 struct LegCompliance {
   std::string chain;
   int foot_link = 0;
   Eigen::VectorXd posture;  ///< by coordinate
-  BaseCompliance base;
+  WaistCompliance compliance;
 };
 
-/// A true robot and what it will be asked to do.
+/// A true robot and the trials that it will play.
 struct VirtualExperiment {
   VirtualExperimentOptions options;
   RobotTree described_tree;
   std::vector<NamedCluster> clusters;
   TrueRobot robot;
   std::vector<PlannedTrial> trials;
-  std::vector<Transform> T_camera_world;  ///< by trial: where the robot stands before the cameras
+  std::vector<Transform>
+      T_camera_world;  ///< by trial: where the robot stands in the cameras' frame
   std::vector<LegCompliance> legs;
 };
 
@@ -59,21 +60,22 @@ struct SimulatedTrial {
   RawTrial raw;
 };
 
-/// Draws the robot that shall play `trials`. Throws InputError for faults that name what is not
-/// there.
+/// Draws the robot that will play `trials`. Throws InputError for faults that name something that
+/// does not exist.
 VirtualExperiment PrepareExperiment(const DescribedRobot& described,
                                     const VirtualExperimentOptions& options,
                                     std::vector<PlannedTrial> trials);
 
-/// The same for the trials of PlanTrials. Throws InputError also where a leg has no feasible
-/// posture.
+/// The same for the trials of PlanTrials. Also throws InputError if a leg has no feasible posture.
 VirtualExperiment PrepareExperiment(const DescribedRobot& described,
                                     const VirtualExperimentOptions& options);
 
-/// Plays and measures a trial. Trials do not depend on each other: any order, or several at a time.
+/// Plays and measures a trial. Trials do not depend on each other: they may be run in any order,
+/// and several at a time.
 SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index);
 
-/// Of the true robot at rest, at the end of each posture of a trial; zero where the root is held.
+/// Largest deflection of the true robot's waist at the end of each rest of a trial; zero if the
+/// root is held still.
 WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
                                  const TrueMotion& motion);
 

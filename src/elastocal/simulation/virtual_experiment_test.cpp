@@ -36,7 +36,7 @@ TEST(VirtualExperiment, TheSameSeedGivesTheSameNumbers) {
   EXPECT_EQ(a.raw.joints.time_s, b.raw.joints.time_s);
   EXPECT_EQ(a.raw.joints.positions, b.raw.joints.positions);
   EXPECT_EQ(a.raw.joints.torques, b.raw.joints.torques);
-  EXPECT_EQ(first.legs[0].base.C_foot, again.legs[0].base.C_foot);
+  EXPECT_EQ(first.legs[0].compliance.C_foot, again.legs[0].compliance.C_foot);
   // Gaps are not equal to themselves.
   EXPECT_TRUE(((a.raw.markers.positions.array() == b.raw.markers.positions.array()) ||
                (a.raw.markers.positions.array().isNaN() && b.raw.markers.positions.array().isNaN()))
@@ -81,7 +81,7 @@ TEST(VirtualExperiment, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
   const auto found = LargestWaistDeflection(experiment, 1, played.motion);
   // The weight alone, on the stiffness in which it acts, is the least that the waist sinks.
   const double weight = 9.81 * (TotalMass(experiment.robot.tree) - 10.0);
-  EXPECT_GT(found.translation, weight * experiment.legs[1].base.C_foot(2, 2));
+  EXPECT_GT(found.translation, weight * experiment.legs[1].compliance.C_foot(2, 2));
   EXPECT_LT(found.translation, 0.015);
   EXPECT_GT(found.rotation, 5e-4);
 }

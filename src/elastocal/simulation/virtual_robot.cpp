@@ -28,7 +28,8 @@ ModelPointer Compile(const std::string& xml) {
   return model;
 }
 
-/// Where one of MuJoCo's joints (of one degree of freedom) has its numbers; -1: there is none.
+/// Indices of one of MuJoCo's joints (with one degree of freedom) in MuJoCo's arrays; -1 if there
+/// is none.
 struct Address {
   int position = -1, speed = -1;
   double stiffness = 0.0, damping = 0.0;
@@ -82,7 +83,7 @@ struct VirtualRobot::Simulation {
     return T;
   }
 
-  /// What the floor exerts in a contact: force and moment about the world's origin.
+  /// Force of the floor in a contact, and its moment about the world's origin.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> ContactWrench(int i) const {
     std::array<double, 6> local{};  // in the contact's axes; the floor is the first geometry
     mj_contactForce(model.get(), data.get(), i, local.data());
@@ -96,7 +97,7 @@ struct VirtualRobot::Simulation {
     return {force, moment};
   }
 
-  /// Coulomb friction as the friction of a bristle that bends before it slips (Dahl): it holds at
+  /// Applies Coulomb friction as that of a bristle that bends before it slips (Dahl). It holds at
   /// rest, and needs no constraint.
   void ApplyFriction() {
     constexpr double kBend = 2e-4;  // rad or m until it slips
@@ -142,7 +143,7 @@ void VirtualRobot::Command(const Eigen::VectorXd& encoders) {
 void VirtualRobot::Step() {
   simulation_->ApplyFriction();
   mj_step(simulation_->model.get(), simulation_->data.get());
-  // MuJoCo leaves the bodies where they were before the step.
+  // After a step, MuJoCo's bodies are still where they were before it.
   mj_kinematics(simulation_->model.get(), simulation_->data.get());
 }
 
@@ -164,7 +165,7 @@ void VirtualRobot::PushWaist(const Vector6d& wrench) {
   const int body = simulation_->bodies[0];
   const Eigen::Map<const Eigen::Vector3d> com(simulation_->data->xipos + 3 * body);
   Eigen::Map<Vector6d> applied(simulation_->data->xfrc_applied + 6 * body);
-  // MuJoCo takes the force at the centre of mass.
+  // MuJoCo applies the force at the centre of mass.
   const Eigen::Vector3d lever = WaistPose().translation() - com;
   const Eigen::Vector3d force = wrench.head<3>();
   applied.head<3>() = force;
@@ -187,11 +188,11 @@ Eigen::VectorXd VirtualRobot::Torques() const {
   for (std::size_t k = 0; k < simulation_->motors.size(); ++k) {
     const Address& motor = simulation_->motors[k];
     const Address& spring = simulation_->springs[k];
-    // What passes through the drive bends its spring; a rigid drive hands on what its servo gives.
-    const Address& felt = spring.position >= 0 ? spring : motor;
+    // The torque of the drive deflects its spring; in a rigid drive it is that of the servo.
+    const Address& drive = spring.position >= 0 ? spring : motor;
     const double rest = spring.position >= 0 ? 0.0 : model.qpos_spring[motor.position];
-    torques[static_cast<Eigen::Index>(k)] =
-        felt.stiffness * (rest - data.qpos[felt.position]) - felt.damping * data.qvel[felt.speed];
+    torques[static_cast<Eigen::Index>(k)] = drive.stiffness * (rest - data.qpos[drive.position]) -
+                                            drive.damping * data.qvel[drive.speed];
   }
   return torques;
 }

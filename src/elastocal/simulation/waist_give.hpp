@@ -7,17 +7,17 @@
 
 namespace elastocal {
 
-/// How far the waist is from where rigid kinematics has it: the largest displacement [m] and
-/// rotation [rad] in a trial.
+/// Deflection of the waist from rigid kinematics: the largest displacement [m] and rotation [rad]
+/// in a trial.
 struct WaistGive {
   double translation = 0.0, rotation = 0.0;
 };
 
-/// Frames at the end of each rest of a motion that was played.
+/// The last frame of each rest of a motion that was played.
 std::vector<Eigen::Index> RestFrames(const Motion& motion, const TrueMotion& played);
 
-/// The largest over `frames`, from the true pose of the first foot on the floor. `T_foot_waist`
-/// gives the rigid robot's waist for encoder positions by coordinate.
+/// The largest deflection over `frames`, relative to the true pose of the first foot on the floor.
+/// `T_foot_waist` gives the waist of the rigid robot for encoder positions by coordinate.
 WaistGive LargestWaistGive(
     const TrueMotion& played, const std::vector<Eigen::Index>& frames,
     const std::function<Transform(const Eigen::VectorXd& encoders)>& T_foot_waist);

@@ -16,7 +16,7 @@ double DegreesOfFreedom(const CalibrationEstimate& estimate) {
   return StudentDegreesOfFreedom(0.975, estimate.interval_factor);
 }
 
-/// Covariance over the parameters of an estimate, zero for those that are in no combination.
+/// Covariance of all parameters of an estimate; zero for those without an entry in the covariance.
 Eigen::MatrixXd FullCovariance(const CalibrationEstimate& estimate, bool from_file,
                                const Eigen::VectorXd& used) {
   const auto size = static_cast<Eigen::Index>(estimate.parameters.size());
@@ -101,7 +101,7 @@ ParameterDifference MakeDifference(const CommonParameter& common, const Calibrat
   return one;
 }
 
-/// Without correlations: right whatever they are.
+/// A joint's test without correlations, which holds whatever they are.
 DifferenceTest TestBySmallest(const std::vector<ParameterDifference>& parameters,
                               const std::vector<int>& which) {
   DifferenceTest test;
@@ -140,7 +140,7 @@ std::vector<JointDifference> GroupByJoint(const std::vector<ParameterDifference>
   return joints;
 }
 
-/// Adjusts for the number of joints and puts the most significant first.
+/// Adjusts p values for the number of joints, and puts the most significant joint first.
 void JudgeJoints(double level, std::vector<JointDifference>& joints) {
   std::vector<double> p;
   for (const JointDifference& joint : joints) p.push_back(joint.test.p);
@@ -156,7 +156,7 @@ void JudgeJoints(double level, std::vector<JointDifference>& joints) {
                    });
 }
 
-/// Joints that alone would explain everything.
+/// Joints of which one alone would explain all differences.
 std::vector<std::string> FindSuspects(const Differences& all,
                                       const std::vector<JointDifference>& joints, double level) {
   const std::vector<int> everything = AllOf(static_cast<std::size_t>(all.values.size()));
@@ -170,7 +170,7 @@ std::vector<std::string> FindSuspects(const Differences& all,
   return suspects;
 }
 
-/// Everything that follows from the differences of the parameters.
+/// Fills in the tests of joints and of everything together.
 void Judge(const Differences& all, double level, CalibrationComparison& comparison) {
   const auto test = [&](const std::vector<int>& which) {
     return comparison.with_covariance ? TestDifferences(all, which)
@@ -194,7 +194,7 @@ void CheckSameRobot(const CalibrationEstimate& a, const CalibrationEstimate& b) 
                    "can be compared");
 }
 
-/// Names of what is held in one and estimated in the other, added to `names`.
+/// Adds to `names` the parameters that are held in `holder` and estimated in `other`.
 void AddHeldInOneOnly(const CalibrationEstimate& holder, const CalibrationEstimate& other,
                       std::string& names) {
   for (const ParameterEstimate& held : holder.parameters) {
@@ -211,18 +211,20 @@ void AddWarnings(const CalibrationEstimate& a, const CalibrationEstimate& b,
   if (a.recording == b.recording) {
     comparison.warnings.push_back(
         "both name the recording " + a.recording +
-        "; if it is the same one their errors are not independent, and the test means nothing");
+        "; if it is the same one, their errors are not independent, and the test means nothing");
   }
   if (a.model != b.model) {
-    comparison.warnings.push_back("A is of the model " + a.model + ", B of " + b.model +
-                                  ": what one of them does not model is in its other estimates");
+    comparison.warnings.push_back(
+        "A has the model " + a.model + ", B the model " + b.model +
+        ": effects that one of them does not model are in its other estimates");
   }
   std::string held;
   AddHeldInOneOnly(a, b, held);
   AddHeldInOneOnly(b, a, held);
   if (!held.empty()) {
-    comparison.warnings.push_back("held in one calibration only, so that a deviation from " +
-                                  std::string("nominal there is in its other estimates: ") + held);
+    comparison.warnings.push_back(
+        "held in one calibration only, whose other estimates contain their deviation from " +
+        std::string("nominal: ") + held);
   }
   if (!comparison.with_covariance) {
     comparison.warnings.emplace_back(
@@ -242,8 +244,9 @@ CalibrationComparison CompareCalibrations(const CalibrationEstimate& a,
   comparison.with_covariance = full;
   CommonParameters common = FindCommonParameters(a, b, full);
   if (common.common.empty()) {
-    throw InputError(a.source + " and " + b.source +
-                     ": nothing of the robot is estimated in both, so nothing can be compared");
+    throw InputError(
+        a.source + " and " + b.source +
+        ": no parameter of the robot is estimated in both, so nothing can be compared");
   }
   comparison.not_compared = std::move(common.not_compared);
   AddWarnings(a, b, comparison);

@@ -9,13 +9,14 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSameCoefficient = 1e-6;  // regrouping is exact but for rounding
+constexpr double kSameCoefficient = 1e-6;  // regrouping is exact up to rounding
 constexpr double kDependent = 1e-6;        // relative remainder of a column
 
 /// Coefficients of a combination, by parameter name.
 using Content = std::map<std::string, double>;
 
-/// What each estimated parameter of the robot stands for, and the others not at all.
+/// The combination for which each estimated parameter of the robot stands; other parameters have
+/// none.
 struct Side {
   const CalibrationEstimate& estimate;
   std::map<std::string, int> index;  // of all parameters, by name
@@ -73,7 +74,7 @@ CommonParameter MakeCommon(const Side& a, const Side& b, int parameter_b) {
   return common;
 }
 
-/// Contents as columns, in rows one a parameter name.
+/// The contents as columns, with one row for each parameter name.
 Eigen::MatrixXd ContentColumns(const std::vector<const Content*>& contents) {
   std::map<std::string, Eigen::Index> row;
   for (const Content* content : contents) {
@@ -90,8 +91,8 @@ Eigen::MatrixXd ContentColumns(const std::vector<const Content*>& contents) {
   return columns;
 }
 
-/// Quantities beyond the equal parameters: each parameter of B in `rest_b` whose content follows
-/// linearly from those of A and of earlier ones in `rest_b`.
+/// Adds quantities beyond the equal parameters: one for each parameter of B in `rest_b` whose
+/// content depends linearly on those of A and of earlier ones in `rest_b`.
 void AddCombinations(const Side& a, const Side& b, const std::vector<int>& rest_b,
                      std::vector<CommonParameter>& common) {
   std::vector<int> parameters;
@@ -130,7 +131,7 @@ std::string StatusIn(const Side& side, const std::string& name) {
   return StatusName(side.estimate.parameters[at->second].status);
 }
 
-/// Why a parameter of the robot is in no common quantity.
+/// The reason why a parameter of the robot is in no common quantity.
 std::string Reason(const Side& a, const Side& b, const std::string& name) {
   const std::string in_a = StatusIn(a, name);
   const std::string in_b = StatusIn(b, name);

@@ -10,49 +10,50 @@
 
 namespace elastocal {
 
-/// One parameter as a calibration leaves it. Units are kept as text, so that parameters of any kind
-/// can be compared.
+/// One parameter in the result of a calibration. Units are kept as text, so that parameters of any
+/// kind can be compared.
 struct ParameterEstimate {
   std::string name;       ///< see OwnerName
   std::string unit;       ///< of value and sd, SI: "rad", "m", ...
-  bool external = false;  ///< of the experiment, not of the robot: see IsExternal
+  bool external = false;  ///< belongs to the experiment, not to the robot; see IsExternal
   ParameterStatus status = ParameterStatus::kEstimated;
   double value = 0.0;  ///< deviation from nominal
   double sd = 0.0;     ///< NaN where none applies
-  /// Of a dropped one: what of it shows up in kept ones, by name.
+  /// For a dropped parameter, its shares in the kept ones, by name.
   std::map<std::string, double> regrouped_into = {};
 };
 
-/// A calibration as it can be read back from its files.
+/// A calibration as read back from its files.
 struct CalibrationEstimate {
   std::string source;  ///< the file, for messages
   std::string robot;
   std::string nominal;            ///< fingerprint of the nominal robot
-  std::string recording;          ///< what it was made from
+  std::string recording;          ///< from which it was made
   std::string model;              ///< ModelKindName
   double interval_factor = 1.96;  ///< half width of a 95 % interval in standard deviations
   std::vector<ParameterEstimate> parameters;
-  /// Covariance of parameters by name, estimated ones among them; empty: unknown.
+  /// Names of the parameters in `covariance`, among them all estimated ones. Empty if the
+  /// covariance is unknown.
   std::vector<std::string> covariance_names;
   Eigen::MatrixXd covariance;
 
   bool has_covariance() const { return !covariance_names.empty(); }
 };
 
-/// The joint or leg that a parameter is of: what comes before the last dot of its name. The bias of
-/// a torque sensor is on its own: it drifts though the joint has not moved.
+/// The joint or leg to which a parameter belongs: the part of its name before the last dot. The
+/// bias of a torque sensor is its own owner, because it drifts even if the joint has not moved.
 std::string OwnerName(const std::string& parameter);
 
-/// One quantity of the robot that two calibrations A and B both determine. Mostly a parameter kept
-/// by both. Where the two keep different ones of the same dependent parameters, a combination:
-/// weights_a . values of A and weights_b . values of B estimate the same thing.
+/// One quantity of the robot that two calibrations A and B both determine. Usually it is a
+/// parameter kept by both. If the two keep different ones of the same dependent parameters, it is a
+/// combination: weights_a . values of A and weights_b . values of B estimate the same quantity.
 struct CommonParameter {
   std::string name;   ///< of the parameter of B that has weight 1
   std::string joint;  ///< OwnerName of `name`
   std::string unit;
-  Eigen::VectorXd weights_a, weights_b;  ///< one a parameter of A, of B
-  /// What the quantity consists of beside the parameter `name`: parameters that no measurement can
-  /// tell from it (regrouped), with their coefficients.
+  Eigen::VectorXd weights_a, weights_b;  ///< one entry for each parameter of A, of B
+  /// What the quantity contains besides the parameter `name`: dropped parameters that no
+  /// measurement can tell from it, with their coefficients.
   std::map<std::string, double> stands_for = {};
 };
 
@@ -66,15 +67,16 @@ struct CommonParameters {
   std::vector<NotCompared> not_compared;
 };
 
-/// Finds what both calibrations determine about the robot; external parameters are not compared.
+/// Finds the quantities of the robot that both calibrations determine. External parameters are not
+/// compared.
 ///
-/// A kept parameter stands for a combination: itself and its share of what was dropped (section
-/// 2.1). It is the same quantity in A and B only if that combination is the same, which depends on
-/// the joints that move a marker, on the priority and on what was held. Beyond equal ones,
-/// combinations of several parameters are found by linear algebra (`with_combinations`; their
-/// uncertainty needs the covariance). A combination that contains external parameters is never
-/// compared: those differ between experiments. Parameters held in one calibration are taken as
-/// known to be nominal there.
+/// An estimate of a kept parameter stands for a combination: the parameter itself and its shares of
+/// the dropped ones (section 2.1). It is the same quantity in A and B only if the combinations are
+/// equal, which depends on the joints that move a marker, on the priority and on the held
+/// parameters. Beyond equal ones, linear algebra finds combinations of several parameters
+/// (`with_combinations`; their uncertainty needs the covariance). A combination with external
+/// parameters is never compared, because these differ between experiments. Parameters held in one
+/// calibration are taken as nominal there.
 CommonParameters FindCommonParameters(const CalibrationEstimate& a, const CalibrationEstimate& b,
                                       bool with_combinations);
 

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// Both together, but for the markers: those of two trials need not be the same.
+/// Metrics of both together, without those of single markers, which may differ between trials.
 ErrorMetrics Pooled(const ErrorMetrics& a, const ErrorMetrics& b) {
   const auto squares = [](const ErrorMetrics& metrics) {
     return metrics.observations > 0 ? metrics.observations * std::pow(metrics.rmse_3d, 2) : 0.0;

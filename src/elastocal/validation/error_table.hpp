@@ -10,13 +10,14 @@
 
 namespace elastocal {
 
-/// How far the markers of one trial are from where each model says, for one group of chains ("left
-/// leg", "HAT" for head, arms and trunk). A trial that exercises several groups gives several.
+/// Distances of the markers of one trial to their prediction by each model, for one group of chains
+/// ("left leg", "HAT" for head, arms and trunk). A trial that exercises several groups has several
+/// of these.
 struct TrialResiduals {
   std::string trial;  ///< its name
   TrialKind kind = TrialKind::kSine;
   std::string group;
-  std::vector<int> markers;  ///< of the group: columns of `distances`
+  std::vector<int> markers;  ///< markers of the group: columns of `distances`
   /// postures x markers, m; NaN where a marker was not seen or could not be predicted.
   std::map<ModelKind, Eigen::MatrixXd> distances;
 };
@@ -25,34 +26,34 @@ struct TrialErrors {
   std::string trial;
   TrialKind kind = TrialKind::kSine;
   std::string group;
-  std::vector<int> markers;  ///< as `marker_rmse_3d` of the metrics
+  std::vector<int> markers;  ///< for each entry of `marker_rmse_3d` of the metrics
   std::map<ModelKind, ErrorMetrics> metrics;
 };
 
-/// Errors of every model over the observations that all of them predict, so that they are judged on
-/// the same data. Throws std::invalid_argument for matrices of different sizes or markers beyond
-/// them.
+/// Errors of every model over the observations that all models predict, so that all are judged on
+/// the same data. Throws std::invalid_argument for matrices of different sizes, or markers that
+/// they do not have.
 TrialErrors ComputeTrialErrors(const TrialResiduals& residuals);
 
-/// Trials of one kind of motion and one group, all observations together.
+/// Errors over all observations of the trials of one kind of motion and one group.
 struct ErrorTableRow {
   std::string group;
   TrialKind kind = TrialKind::kSine;
   int trials = 0;
-  /// Of the models that all these trials have; without `marker_rmse_3d`.
+  /// Metrics of the models that all these trials have; without `marker_rmse_3d`.
   std::map<ModelKind, ErrorMetrics> metrics;
 };
 
-/// Cross-validation on motions that took no part in the estimate: Table 2 of the paper.
+/// Errors on held-out motions: Table 2 of the paper.
 struct ErrorTable {
   std::vector<TrialErrors> trials;
-  /// By group, in the order in which they are met, then sinusoidal motions, random postures and
+  /// Ordered by group (as they first occur), and then by kind: sinusoidal motions, random postures,
   /// repetitions.
   std::vector<ErrorTableRow> rows;
-  std::vector<ErrorTableRow> groups;  ///< over all kinds; their `kind` means nothing
-  /// Mean over the rows of the 3-D RMSE, m, as the paper averages in section 6.1.4 (a row counts
-  /// once, however long its trials); of the models that all rows have. Rows without observations
-  /// do not count.
+  std::vector<ErrorTableRow> groups;  ///< over all kinds; their `kind` has no meaning
+  /// Mean over the rows of the 3-D RMSE, m, for the models that all rows have. As in the paper's
+  /// section 6.1.4, a row counts once, however long its trials are. Rows without observations do
+  /// not count.
   std::map<ModelKind, double> mean_rmse_3d;
 };
 

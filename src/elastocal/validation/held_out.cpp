@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-/// Markers of the model that are seen in a trial.
+/// Markers that are seen in a trial.
 std::vector<int> MarkersOf(const ObservationMask& seen, const Recording& recording, int trial) {
   std::vector<int> markers;
   for (int m = 0; m < seen.cols(); ++m) {
@@ -63,7 +63,7 @@ HeldOut JudgeOnTrials(const ModelComparison& comparison, const Recording& record
     const CalibrationResult& result = comparison.results[k];
     held_out.predictions[k] = Predict(result.model, result.delta, recording, options);
   }
-  const ErrorModel& model = comparison.best().model;
+  const ErrorModel& model = comparison.largest().model;
   const std::vector<std::string> groups = TrialGroups(model, recording);
   const ObservationMask seen = SeenMask(recording);
   std::vector<TrialErrors> trials;

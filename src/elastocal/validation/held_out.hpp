@@ -9,13 +9,14 @@
 
 namespace elastocal {
 
-/// Which group of chains each trial of a recording judges: the trials' chains that share joints, by
-/// their names, joined by "+" (section 6: head, arms and trunk are one group, each leg another).
+/// The group of chains that each trial of a recording judges. Chains that share joints are one
+/// group, named by the chains' names joined by "+" (section 6: head, arms and trunk are one group,
+/// each leg is another).
 std::vector<std::string> TrialGroups(const ErrorModel& model, const Recording& recording);
 
-/// The models of `comparison` on trials that took no part in the estimate (section 6.1.4): joints,
-/// elasticity and markers as estimated, only the support foot of each trial placed anew. One entry
-/// a trial with postures.
+/// The models of `comparison` on trials that were not used for the estimate (section 6.1.4).
+/// Joints, elasticity and markers are as estimated; only the support foot of each trial is placed
+/// anew. There is one entry for each trial with postures.
 struct HeldOut {
   ByModel<Prediction> predictions;
   ErrorTable table;  ///< Table 2
@@ -24,11 +25,12 @@ struct HeldOut {
 HeldOut JudgeOnTrials(const ModelComparison& comparison, const Recording& recording,
                       const CalibrationOptions& options);
 
-/// How far the waist is from where a model puts it on its standing foot, in postures on one foot:
-/// root mean square over them of the distance between true and predicted origin of the root link,
-/// m. `predicted` with FootingBy::kFootMarkers. Where in the waist the model's frame is, is a
-/// convention: its displacement from the true one is taken from postures on two feet, where the
-/// waist's own markers place it, or, without any, from the same postures. NaN for fewer than two.
+/// Error of the waist in postures on one foot: root mean square of the distance between the true
+/// origin of the root link and the one that the model predicts from the support foot, m.
+/// `predicted` must be made with FootingBy::kFootMarkers. The place of the model's frame in the
+/// waist is a convention. Its displacement from the true frame is therefore taken off first; it is
+/// estimated from postures on two feet, where the waist's own markers locate the waist, or, without
+/// these, from the same postures. NaN for fewer than two postures.
 double WaistError(const Placement& predicted, const std::vector<std::optional<Transform>>& truth);
 
 }  // namespace elastocal

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-/// Fold of each posture: a random permutation, cut into equal parts.
+/// The fold of each posture: a random permutation is cut into equal parts.
 std::vector<int> DealFolds(int postures, int folds, std::uint64_t seed) {
   std::vector<int> order(postures);
   std::iota(order.begin(), order.end(), 0);
@@ -39,13 +39,14 @@ ModelComparison CompareModels(const ErrorModel& model, const Recording& recordin
                               const BaseParameters& base, const CalibrationOptions& options) {
   ModelComparison comparison;
   comparison.kinds = ModelKinds(model);
-  const auto best = static_cast<int>(comparison.best_kind());
-  comparison.results[best] = Calibrate(model, recording, base, comparison.best_kind(), options);
-  const Selection used{comparison.best().used, comparison.best().tied};
+  const auto largest = static_cast<int>(comparison.largest_kind());
+  comparison.results[largest] =
+      Calibrate(model, recording, base, comparison.largest_kind(), options);
+  const Selection used{comparison.largest().used, comparison.largest().tied};
   for (ModelKind kind : comparison.kinds) {
     const auto k = static_cast<int>(kind);
     CalibrationResult& result = comparison.results[k];
-    if (k != best) result = Calibrate(model, recording, base, kind, options, &used);
+    if (k != largest) result = Calibrate(model, recording, base, kind, options, &used);
     comparison.predictions[k] = Predict(result.model, result.delta, recording, options);
     const Eigen::MatrixXd& distances = comparison.predictions[k].distances;
     comparison.metrics[k] = ComputeMetrics(distances, used.markers);
@@ -65,7 +66,7 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
   }
   const std::vector<int> fold_of = DealFolds(postures, folds, seed);
   const int steps = folds * static_cast<int>(comparison.kinds.size());
-  ObservationMask predicted = comparison.best().used;
+  ObservationMask predicted = comparison.largest().used;
   ByModel<Eigen::MatrixXd> distances;
   distances.fill(Eigen::MatrixXd::Zero(postures, recording.marker_count()));
   int done = 0;
@@ -76,8 +77,8 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
     for (int i = 0; i < postures; ++i) (fold_of[i] == fold ? held_out : training).push_back(i);
     const Recording training_data = SelectPostures(recording, training);
     const Recording held_out_data = SelectPostures(recording, held_out);
-    Selection selection{comparison.best().used(training, Eigen::all), {}};
-    for (int i : training) selection.tied.push_back(comparison.best().tied[i]);
+    Selection selection{comparison.largest().used(training, Eigen::all), {}};
+    for (int i : training) selection.tied.push_back(comparison.largest().tied[i]);
     for (ModelKind kind : comparison.kinds) {
       const CalibrationResult result =
           CalibrateFold(model, training_data, base, kind, options, selection, fold + 1, folds);
@@ -86,7 +87,7 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
           Predict(result.model, result.delta, held_out_data, options, &result.placement).distances;
       if (progress) progress(++done, steps);
     }
-    // A marker that is in no other fold has no estimated position to predict it from.
+    // A marker that is in no other fold has no estimated position, so it cannot be predicted.
     for (int m = 0; m < recording.marker_count(); ++m) {
       if (selection.markers.col(m).any()) continue;
       for (int i : held_out) {

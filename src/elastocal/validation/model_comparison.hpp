@@ -10,42 +10,44 @@
 
 namespace elastocal {
 
-/// Something for each ModelKind.
+/// One value for each ModelKind.
 template <typename T>
 using ByModel = std::array<T, kModelKindCount>;
 
 /// The models of paper section 6.1.4 on one recording.
 struct ModelComparison {
-  std::vector<ModelKind> kinds;  ///< those compared; of others the entries below mean nothing
+  std::vector<ModelKind> kinds;  ///< those compared; entries of other kinds below have no meaning
   ByModel<CalibrationResult> results;
-  ByModel<Prediction> predictions;    ///< of the same recording
-  ByModel<ErrorMetrics> metrics;      ///< of these, over the observations that the best model kept
-  ByModel<ErrorMetrics> metrics_all;  ///< over all, outliers included
+  ByModel<Prediction> predictions;  ///< of the same recording
+  ByModel<ErrorMetrics>
+      metrics;  ///< of the predictions, over the observations that the largest model kept
+  ByModel<ErrorMetrics> metrics_all;  ///< over all observations, outliers included
 
-  /// The model with most parameters: full, or geometric where nothing is elastic.
-  ModelKind best_kind() const { return kinds.back(); }
-  const CalibrationResult& best() const { return results[static_cast<int>(best_kind())]; }
+  /// The largest model, with the most parameters: full, or geometric if nothing is elastic.
+  ModelKind largest_kind() const { return kinds.back(); }
+  const CalibrationResult& largest() const { return results[static_cast<int>(largest_kind())]; }
 };
 
 /// Called with the number of finished steps and of all steps; may be empty.
 using Progress = std::function<void(int done, int total)>;
 
-/// Calibrates all models. The one with most parameters comes first and decides which observations
-/// are outliers, so that all are judged on the same data.
+/// Calibrates all models. The largest comes first and decides which observations are outliers, so
+/// that all models are judged on the same data.
 ModelComparison CompareModels(const ErrorModel& model, const Recording& recording,
                               const BaseParameters& base, const CalibrationOptions& options);
 
 struct CrossValidation {
   int folds = 0;
-  ByModel<ErrorMetrics> metrics;  ///< of held-out observations
+  ByModel<ErrorMetrics> metrics;  ///< over held-out observations
   int unconverged = 0;            ///< fits that did not converge
-  int not_predicted = 0;  ///< held-out observations left out: the marker was in no other fold
+  int not_predicted =
+      0;  ///< held-out observations without prediction: their marker is in no other fold
 };
 
-/// k-fold cross-validation by posture: every posture is predicted once by models calibrated without
-/// it (waist and markers included), over the observations that `comparison` kept. Postures are
-/// dealt to the folds at random, by `seed`. Throws InputError when folds are fewer than 2 or more
-/// than the postures.
+/// k-fold cross-validation by posture. Every posture is predicted once, by models calibrated
+/// without it (waist and markers included). Only the observations that `comparison` kept are used.
+/// `seed` deals the postures to the folds at random. Throws InputError for fewer than 2 folds, or
+/// more folds than postures.
 CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
                               const CalibrationOptions& options, int folds, std::uint64_t seed,

@@ -32,7 +32,7 @@ bool SameHold(const Recording& recording, int before, int i, double longest_gap_
   return recording.time_s[i] - recording.time_s[before] <= longest_gap_s;
 }
 
-/// Samples by posture and repetition. A posture is that of its first sample.
+/// Groups samples by posture and repetition. The first sample of a posture defines it.
 std::vector<Repetitions> GroupSamples(const Recording& recording,
                                       const RepeatabilityOptions& options) {
   std::vector<Repetitions> postures;
@@ -66,7 +66,7 @@ std::vector<int> SeenOf(const Recording& recording, const std::vector<int>& samp
   return seen;
 }
 
-/// Centre of the markers, each averaged over the samples that show it; NaN where one is not seen.
+/// Centre of the markers, each averaged over the samples that show it; NaN if one is never seen.
 Eigen::Vector3d Centre(const Recording& recording, const std::vector<int>& samples,
                        const std::vector<int>& markers) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -90,13 +90,14 @@ double Distance(const Recording& recording, const std::vector<int>& samples,
       .norm();
 }
 
-/// Scatter within repetitions.
+/// Scatter of samples within repetitions.
 struct Scatter {
   double squares = 0.0;
   int freedom = 0;
 };
 
-/// Samples that show all markers of the posture scatter by the noise alone.
+/// Adds the scatter of the samples that show all markers of the posture, which is due to noise
+/// alone.
 void AddScatter(const Recording& recording, const std::vector<int>& samples,
                 const RepeatedPosture& posture, Scatter& scatter) {
   std::vector<double> distances;
@@ -111,7 +112,8 @@ void AddScatter(const Recording& recording, const std::vector<int>& samples,
   scatter.freedom += static_cast<int>(d.size()) - 1;
 }
 
-/// Removes repetitions that show too few markers; chooses the markers that the rest have in common.
+/// Removes repetitions that show too few markers, and chooses the markers that the others have in
+/// common.
 RepeatedPosture ChooseMarkers(const Recording& recording, const Repetitions& repetitions,
                               const std::vector<int>& waist, const std::vector<int>& effector,
                               Repeatability& result) {

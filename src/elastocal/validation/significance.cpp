@@ -11,7 +11,8 @@
 namespace elastocal {
 namespace {
 
-/// Inverse by the correlations: rad and m are too different for the covariance itself.
+/// Inverse by way of the correlations, because rad and m differ too much in size to invert the
+/// covariance itself.
 Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<Eigen::MatrixXd> correlation(scale.asDiagonal() * covariance *

@@ -6,9 +6,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMostOutliers = 0.25;     // part of all observations: an objection
-constexpr double kManyOutliers = 0.05;     // a remark
-constexpr double kSuspectedMarker = 0.25;  // part of a marker's or a posture's sightings
+constexpr double kMostOutliers = 0.25;     // from this part of all observations on, an objection
+constexpr double kManyOutliers = 0.05;     // from this part on, a remark
+constexpr double kSuspectedMarker = 0.25;  // part of the observations of a marker or posture
 constexpr const char* kAdvice =
     " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
     "on.";
@@ -29,8 +29,8 @@ void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options
     verdict.objections.push_back("the fit has not converged: " + result.message);
   } else if (!result.settled) {
     verdict.remarks.push_back(
-        "noise, prior and the verdict on outliers have not come to rest: the standard deviations "
-        "are rough");
+        "noise, prior and outliers have not converged: the standard deviations "
+        "are approximate");
   }
   if (result.marker_sd > options.plausible_marker_sd) {
     verdict.objections.push_back(
@@ -41,14 +41,15 @@ void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options
   for (const auto& [scale, what] : {std::pair{result.prior_scale.angles, "angles"},
                                     std::pair{result.prior_scale.lengths, "lengths"}}) {
     if (scale < kMaxPriorScale) continue;
-    verdict.objections.push_back(std::string("the estimated ") + what +
-                                 " are more than ten times what the prior expects: not the errors "
-                                 "of a robot." +
-                                 kAdvice);
+    verdict.objections.push_back(
+        std::string("the estimated ") + what +
+        " are more than ten times what the prior expects, which is not an error "
+        "of a robot." +
+        kAdvice);
   }
 }
 
-/// The joint parameter furthest from nominal in units of its prior.
+/// Names the joint parameter that is furthest from nominal in units of its prior.
 void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& verdict) {
   int largest = -1;
   double furthest = 0.0;
@@ -83,10 +84,10 @@ void JudgeOutliers(const CalibrationResult& result, const Recording& recording, 
                             kSuspectedMarker * static_cast<double>(seen.col(m).count())) {
       continue;
     }
-    verdict.remarks.push_back("marker " + recording.marker_names[m] + ": " +
-                              std::to_string(rejected) + " of " +
-                              std::to_string(seen.col(m).count()) +
-                              " sightings are outliers; is it on the right link, and did it stay?");
+    verdict.remarks.push_back(
+        "marker " + recording.marker_names[m] + ": " + std::to_string(rejected) + " of " +
+        std::to_string(seen.col(m).count()) +
+        " observations are outliers; is it on the right link, and did it keep its place?");
   }
 }
 
@@ -95,7 +96,7 @@ void JudgeOutliers(const CalibrationResult& result, const Recording& recording, 
 Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options) {
-  const CalibrationResult& result = comparison.best();
+  const CalibrationResult& result = comparison.largest();
   Verdict verdict;
   JudgeFit(result, options, verdict);
   if (!std::isfinite(excitation.condition_base)) {
@@ -105,7 +106,7 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   }
   JudgeOutliers(result, recording, verdict);
   if (validation.folds > 0) {
-    if (validation.metrics[static_cast<int>(comparison.best_kind())].rmse_3d >=
+    if (validation.metrics[static_cast<int>(comparison.largest_kind())].rmse_3d >=
         validation.metrics[0].rmse_3d) {
       verdict.objections.push_back(
           "on held-out postures the calibrated model is no better than the uncalibrated one");
@@ -117,7 +118,7 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
     if (validation.not_predicted > 0) {
       verdict.remarks.push_back(
           std::to_string(validation.not_predicted) +
-          " held-out sightings could not be predicted: their marker is in no other fold");
+          " held-out observations could not be predicted: their marker is in no other fold");
     }
   }
   if (!verdict.objections.empty()) NameLargest(result, options.prior, verdict);

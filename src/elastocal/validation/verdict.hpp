@@ -9,16 +9,16 @@
 
 namespace elastocal {
 
-/// Whether a calibration can be trusted, in words that a user can act on.
+/// Whether a calibration can be trusted, in sentences on which a user can act.
 struct Verdict {
-  /// Why nothing of it should be deployed: the model does not explain the recording, or the
-  /// recording does not determine the model. Empty: nothing found.
+  /// Reasons why the calibration should not be deployed: the model does not explain the recording,
+  /// or the recording does not determine the model. Empty if there are none.
   std::vector<std::string> objections;
-  /// What to look at before it is deployed.
+  /// What to look at before the calibration is deployed.
   std::vector<std::string> remarks;
 };
 
-/// Judges a calibration. Objections: no convergence; noise above
+/// Judges a calibration. Objections are: no convergence; noise above
 /// CalibrationOptions::plausible_marker_sd; a prior that would have to be widened beyond
 /// kMaxPriorScale; dependent columns; more than a quarter of the observations outliers; held-out
 /// errors no better than uncalibrated. `validation` may have no folds.
@@ -26,9 +26,9 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options);
 
-/// Adds what trials say that took no part in the estimate (`model`: the calibrated one): an
-/// objection for each group of chains whose markers it does not predict better than the
-/// uncalibrated robot does, a remark for each that it predicts worse than a simpler model.
+/// Adds the judgement by held-out trials on the calibrated model `model`: an objection for each
+/// group of chains whose markers it does not predict better than the uncalibrated robot does, and a
+/// remark for each group that it predicts worse than a simpler model does.
 void JudgeHeldOut(const ErrorTable& table, ModelKind model, Verdict& verdict);
 
 }  // namespace elastocal

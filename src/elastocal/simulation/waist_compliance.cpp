@@ -1,12 +1,13 @@
-#include "elastocal/simulation/base_compliance.hpp"
+#include "elastocal/simulation/waist_compliance.hpp"
 
 #include <algorithm>
 
 namespace elastocal {
 
-BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
-                                    const Eigen::VectorXd& posture, PhysicsOptions options) {
-  // Servos that give way ten thousand times less than in motion: the encoders are held.
+WaistCompliance LumpedWaistCompliance(const TrueRobot& robot, const Leg& leg,
+                                      const Eigen::VectorXd& posture, PhysicsOptions options) {
+  // Servos are ten thousand times stiffer than in motion, so that the encoders keep their
+  // positions.
   constexpr double kHeld = 1e4;
   constexpr double kForce = 20.0;
   constexpr double kMoment = 4.0;
@@ -15,7 +16,7 @@ BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
   options.sliding_servo_stiffness *= kHeld;
   TrueRobot smooth = robot;
   smooth.friction.setZero();
-  // What the leg carries is as good rigid, and faster.
+  // What the leg carries may as well be rigid, which is faster.
   for (std::size_t k = 0; k < smooth.tree.joints.size(); ++k) {
     const bool carries =
         std::find(leg.joints.begin(), leg.joints.end(), static_cast<int>(k)) != leg.joints.end();
@@ -26,7 +27,7 @@ BaseCompliance LumpedBaseCompliance(const TrueRobot& robot, const Leg& leg,
   VirtualRobot body(smooth, {leg.foot_link}, posture, options);
   body.Settle();
 
-  BaseCompliance result;
+  WaistCompliance result;
   const Eigen::Matrix3d R_world_foot = body.SolePose(0).linear();
   for (int i = 0; i < 6; ++i) {
     Vector6d wrench = Vector6d::Zero();

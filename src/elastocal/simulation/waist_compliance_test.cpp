@@ -1,4 +1,4 @@
-#include "elastocal/simulation/base_compliance.hpp"
+#include "elastocal/simulation/waist_compliance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,11 +24,11 @@ TrueRobot Weightless(TrueRobot robot) {
   return robot;
 }
 
-TEST(LumpedBaseCompliance, OfAColumnOnASpringInItsFoot) {
+TEST(LumpedWaistCompliance, OfAColumnOnASpringInItsFoot) {
   TrueRobot robot = Weightless(Rigid());
   const Vector6d c{{1e-6, 2e-6, 3e-6, 1e-5, 2e-5, 3e-5}};
   robot.foot_compliance[0] = c;
-  const BaseCompliance base = LumpedBaseCompliance(robot, robot.legs[0], Straight(robot));
+  const WaistCompliance waist = LumpedWaistCompliance(robot, robot.legs[0], Straight(robot));
   // The spring is half way between ankle and sole; the waist's origin stands above and beside it.
   const double h = 0.27 + 0.38 + 0.325 + 0.5 * 0.107;
   const double x = 0.02;
@@ -36,43 +36,43 @@ TEST(LumpedBaseCompliance, OfAColumnOnASpringInItsFoot) {
   const auto near = [&](double found, double expected) {
     EXPECT_NEAR(found, expected, 2e-3 * std::abs(expected) + 1e-9);
   };
-  near(base.C_foot(0, 0), c[0] + c[4] * h * h + c[5] * y * y);
-  near(base.C_foot(1, 1), c[1] + c[3] * h * h + c[5] * x * x);
-  near(base.C_foot(2, 2), c[2] + c[3] * y * y + c[4] * x * x);
-  near(base.C_foot(3, 3), c[3]);
-  near(base.C_foot(4, 4), c[4]);
-  near(base.C_foot(5, 5), c[5]);
-  near(base.C_foot(0, 4), c[4] * h);
-  near(base.C_foot(1, 3), -c[3] * h);
-  near(base.stiffness[2], 1.0 / base.C_foot(2, 2));
-  EXPECT_LT((base.C_foot - base.C_foot.transpose()).cwiseAbs().maxCoeff(), 1e-8);
+  near(waist.C_foot(0, 0), c[0] + c[4] * h * h + c[5] * y * y);
+  near(waist.C_foot(1, 1), c[1] + c[3] * h * h + c[5] * x * x);
+  near(waist.C_foot(2, 2), c[2] + c[3] * y * y + c[4] * x * x);
+  near(waist.C_foot(3, 3), c[3]);
+  near(waist.C_foot(4, 4), c[4]);
+  near(waist.C_foot(5, 5), c[5]);
+  near(waist.C_foot(0, 4), c[4] * h);
+  near(waist.C_foot(1, 3), -c[3] * h);
+  near(waist.stiffness[2], 1.0 / waist.C_foot(2, 2));
+  EXPECT_LT((waist.C_foot - waist.C_foot.transpose()).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-TEST(LumpedBaseCompliance, SpringsOfLinksAddUp) {
+TEST(LumpedWaistCompliance, SpringsOfLinksAddUp) {
   TrueRobot robot = Weightless(Rigid());
   for (int k : robot.legs[1].joints) {
     robot.link_compliance[static_cast<std::size_t>(k)] << 0, 0, 1e-6, 0, 0, 0;
   }
   robot.foot_compliance[1] << 0, 0, 2e-6, 0, 0, 0;
-  const BaseCompliance base = LumpedBaseCompliance(robot, robot.legs[1], Straight(robot));
-  EXPECT_NEAR(base.C_foot(2, 2), 8e-6, 2e-8);
+  const WaistCompliance waist = LumpedWaistCompliance(robot, robot.legs[1], Straight(robot));
+  EXPECT_NEAR(waist.C_foot(2, 2), 8e-6, 2e-8);
 }
 
-TEST(LumpedBaseCompliance, OfAJointSpringIsThatOfItsLever) {
+TEST(LumpedWaistCompliance, OfAJointSpringIsThatOfItsLever) {
   TrueRobot robot = Weightless(Rigid());
   const int ankle = FindJoint(robot.tree, "left_5");
   robot.compliance[ankle] = 1e-5;
-  const BaseCompliance base = LumpedBaseCompliance(robot, robot.legs[0], Straight(robot));
+  const WaistCompliance waist = LumpedWaistCompliance(robot, robot.legs[0], Straight(robot));
   const double h = 0.27 + 0.38 + 0.325;
-  EXPECT_NEAR(base.C_foot(0, 0), 1e-5 * h * h, 2e-8);
-  EXPECT_NEAR(base.C_foot(4, 4), 1e-5, 2e-8);
-  EXPECT_NEAR(base.C_foot(3, 3), 0.0, 1e-8);
+  EXPECT_NEAR(waist.C_foot(0, 0), 1e-5 * h * h, 2e-8);
+  EXPECT_NEAR(waist.C_foot(4, 4), 1e-5, 2e-8);
+  EXPECT_NEAR(waist.C_foot(3, 3), 0.0, 1e-8);
 }
 
-TEST(LumpedBaseCompliance, WeightMakesAColumnSofter) {
+TEST(LumpedWaistCompliance, WeightMakesAColumnSofter) {
   TrueRobot robot = Rigid();
   robot.foot_compliance[0] << 0, 0, 0, 0, 2e-5, 0;
-  const BaseCompliance base = LumpedBaseCompliance(robot, robot.legs[0], Straight(robot));
+  const WaistCompliance waist = LumpedWaistCompliance(robot, robot.legs[0], Straight(robot));
   // An inverted pendulum on a spring: 1/K becomes 1/(K - m g h), with all weight but the foot's.
   double lever = 0.0;
   for (const auto& [mass, height] : {std::pair{12.0, 1.0285 - 0.08},
@@ -85,7 +85,7 @@ TEST(LumpedBaseCompliance, WeightMakesAColumnSofter) {
                                      {1.5, 1.0285 - 1.025}}) {
     lever += 9.81 * mass * height;
   }
-  EXPECT_NEAR(base.stiffness[4], 5e4 - lever, 0.05 * lever);
+  EXPECT_NEAR(waist.stiffness[4], 5e4 - lever, 0.05 * lever);
 }
 
 }  // namespace
