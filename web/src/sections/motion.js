@@ -2,7 +2,7 @@ import {SERIES} from '../lib/colours.js';
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure, section} from '../lib/figure.js';
-import {fixed, flatten, plural, significant} from '../lib/format.js';
+import {count, fixed, flatten, significant} from '../lib/format.js';
 import {plot} from '../lib/plot.js';
 import {table} from '../lib/table.js';
 
@@ -12,7 +12,7 @@ function marginsFigure(motion) {
   const rows = flatten(motion.margins?.margins ?? motion.margins);
   if (rows.length === 0) return null;
   return figure({title: 'Margins', data: {name: 'margins.csv', text: () => toCsv(['margin', 'value', 'unit'], rows)},
-    body: table({caption: 'Margins of the motion', columns: [{text: 'Margin'}, {text: 'Least of the motion', number: true}],
+    body: table({caption: 'Margins of the motion', columns: [{text: 'Margin'}, {text: 'Least value during the motion', number: true}],
       rows: rows.map(([name, value, unit]) => [name, [typeof value === 'number' ? significant(value) : value, h('span', {class: 'unit'}, ` ${unit}`)]])})});
 }
 
@@ -20,7 +20,7 @@ function marginsFigure(motion) {
 function leftOut(motion) {
   const items = (motion.margins?.sets ?? []).flatMap((set) => (set.left_out ?? []).map((left) =>
     `${set.name}, posture ${left.posture + 1}: ${left.reason}`));
-  return items.length > 0 && h('div', {class: 'words'}, h('h3', {}, 'Left out'), h('ul', {}, ...items.map((text) => h('li', {}, text))));
+  return items.length > 0 && h('div', {class: 'words'}, h('h3', {}, 'Postures that were left out'), h('ul', {}, ...items.map((text) => h('li', {}, text))));
 }
 
 function zmpFigure(motion) {
@@ -32,7 +32,7 @@ function zmpFigure(motion) {
 }
 
 function jointPlot(c, joint) {
-  return plot({label: `Position of ${joint} against time`, x: {label: 'time [s]', short: 's'}, y: {label: 'position [rad or m]'}, height: 220,
+  return plot({label: `Position of ${joint} against time`, x: {label: 'time [s]', short: 's'}, y: {label: 'position [rad; m if prismatic]'}, height: 220,
                series: [{text: 'position', colour: SERIES[0]}], data: [c.time, c[joint]]});
 }
 
@@ -62,5 +62,5 @@ export function motionSection(report) {
   if (parts.length === 0) return null;
   const {columns, rows} = report.motions[0];
   return section('motion', 'Motion', 'The planned motion',
-    `${fixed(columns.time.at(-1) - columns.time[0], 0)} s that take the robot through the postures while it stands; ${plural(columns.time.length, 'moment')}${rows > columns.time.length ? ` of ${rows} planned` : ''} are in this report. Play it above.`, ...parts);
+    `In ${fixed(columns.time.at(-1) - columns.time[0], 0)} s the motion takes the robot through the postures while it stands. ${rows > columns.time.length ? `This report has ${count(columns.time.length)} of its ${count(rows)} samples. ` : ''}The view of the robot above plays it.`, ...parts);
 }
