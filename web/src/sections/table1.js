@@ -42,7 +42,7 @@ function geometryNote(joints) {
     statuses.has('dropped') && ' A dot marks a parameter that no recording can tell from others of the chain; its effect is in their estimates.',
     statuses.has('unsupported') && ' 0 marks one that this recording hardly determines; it stays at nominal.',
     statuses.has('held') && ' “held” marks one that the project file keeps at nominal.',
-    ' Point at a value to see more digits.'].filter(Boolean).join('');
+    h('span', {class: 'on-screen'}, ' Point at a value to see more digits.')].filter(Boolean);
 }
 
 function geometryTable(joints, shown) {

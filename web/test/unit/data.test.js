@@ -47,7 +47,7 @@ test('Table 1 has a row a joint and the columns that occur, in order', () => {
 
 test('units', () => {
   assert.equal(Math.PI * userUnit('rad').factor, 180);
-  assert.deepEqual(stiffness({unit: 'm/N', value: 5e-6, sd: 5e-7}), {value: 200, sd: 20, unit: 'N/mm'});
+  assert.deepEqual(stiffness({unit: 'm/N', value: 5e-6, sd: 2.5e-6}), {value: 200, sd: 100, unit: 'N/mm'});
   assert.equal(stiffness({unit: 'm/N', value: 5e-6, sd: null}).sd, null);
   const rigid = {unit: 'rad/(N.m)', value: 1e-5, sd: 1e-5};
   const [low, high] = stiffnessInterval(rigid);
