@@ -7,9 +7,11 @@ import {count, fixed, significant} from '../lib/format.js';
 import {plot} from '../lib/plot.js';
 import {table} from '../lib/table.js';
 
+const ALGORITHMS = {nocp: 'NOCP', cocp: 'COCP', ioops: 'IOOPS'};
+
 function curvesPlot(columns, chain, bound) {
   const {postures, curves} = medianCurves(columns, chain);
-  const series = curves.map(({algorithm}, i) => ({text: algorithm, colour: SERIES[i % SERIES.length], dots: true, spanGaps: true}));
+  const series = curves.map(({algorithm}, i) => ({text: ALGORITHMS[algorithm] ?? algorithm, colour: SERIES[i % SERIES.length], dots: true, spanGaps: true}));
   const data = [postures, ...curves.map((c) => c.o1)];
   if (typeof bound === 'number') {
     series.push({text: 'upper bound', colour: '#8a8f98', dashed: true});
@@ -27,10 +29,10 @@ function programme(summary) {
   if (rows.length === 0) return null;
   return figure({
     title: 'The chosen postures',
-    note: 'No set of as many postures can have an O1 above the upper bound; the efficiency is O1 as a share of it. The time is that of the search.',
+    note: 'No set of as many postures can have an O1 above the upper bound; the efficiency is O1 as a share of it. A chain without a search time has the mirrored postures of another.',
     body: table({caption: 'Designed postures by chain',
       columns: [{text: 'Chain'}, {text: 'Postures', number: true}, {text: 'O1', number: true}, {text: 'Upper bound', number: true}, {text: 'Efficiency', unit: '%', number: true}, {text: 'Search time', unit: 's', number: true}],
-      rows: rows.map((r) => [(r.chain ?? r.name ?? '').replaceAll('_', ' '), count(r.postures), significant(r.o1), significant(r.bound), percent(r.efficiency), fixed(r.time_s, 1)])}),
+      rows: rows.map((r) => [(r.chain ?? r.name ?? '').replaceAll('_', ' '), count(r.postures), significant(r.o1), significant(r.bound), percent(r.efficiency), r.mirror_of ? '–' : significant(r.time_s, 2)])}),
     data: {name: 'programme.csv', text: () => toCsv(['chain', 'postures', 'o1', 'bound', 'efficiency', 'time_s'], rows.map((r) => [r.chain ?? r.name, r.postures, r.o1, r.bound, r.efficiency, r.time_s]))},
   });
 }
