@@ -9,17 +9,37 @@ export function placeOf(outlier, report) {
   return {trial: '', posture: String(outlier.posture + 1)};
 }
 
-/** Outliers of one marker in one trial as one row: [{where, marker, count, residual_mm, normalised}], the largest first. */
+/**
+ * Outliers of one marker in one trial as one row, and markers that are outliers in the same postures
+ * as one: [{trial, markers, postures, count, residual_mm, normalised}], the largest residual first.
+ * `place`: {trial, posture} of an outlier.
+ */
 export function outlierRows(outliers, place) {
-  const rows = new Map();
+  const own = new Map();
   for (const outlier of outliers) {
     const {trial, posture} = place(outlier);
     const key = JSON.stringify([trial, outlier.marker]);
-    const row = rows.get(key) ?? {trial, marker: outlier.marker, postures: [], residual_mm: 0, normalised: 0};
+    if (!own.has(key)) own.set(key, {trial, markers: [outlier.marker], postures: [], count: 0, residual_mm: 0, normalised: 0});
+    const row = own.get(key);
     row.postures.push(posture);
-    row.residual_mm = Math.max(row.residual_mm, outlier.residual_mm);
-    row.normalised = Math.max(row.normalised, outlier.normalised);
-    rows.set(key, row);
+    add(row, {count: 1, ...outlier});
+  }
+  const rows = new Map();
+  for (const row of own.values()) {
+    const key = JSON.stringify([row.trial, ...row.postures]);
+    const same = rows.get(key);
+    if (same) {
+      same.markers.push(...row.markers);
+      add(same, row);
+    } else {
+      rows.set(key, row);
+    }
   }
   return [...rows.values()].sort((a, b) => b.residual_mm - a.residual_mm);
+}
+
+function add(row, {count, residual_mm, normalised}) {
+  row.count += count;
+  row.residual_mm = Math.max(row.residual_mm, residual_mm);
+  row.normalised = Math.max(row.normalised, normalised);
 }

@@ -30,8 +30,8 @@ function outlierFigure(report) {
   const where = (row) => `${row.postures.length > 1 ? 'postures' : 'posture'} ${list(row.postures, 5)}`;
   return figure({title: `${plural(outliers.length, 'outlier')} left out`,
     note: `These sightings are further from their prediction than noise and the uncertainty of the model explain, so the estimate does not use them. The last column is the largest residual divided by its expected standard deviation.${rows.length > SHOWN ? ` The table has the ${SHOWN} rows with the largest residuals; the CSV has all outliers.` : ''}`,
-    body: table({caption: 'Outliers', className: 'wide-first-two', columns: [{text: 'Marker'}, inTrials && {text: 'Trial'}, {text: 'Where'}, {text: 'Sightings', number: true}, {text: 'Largest residual', unit: 'mm', number: true}, {text: 'Residual / sd', number: true}].filter(Boolean),
-      rows: rows.slice(0, SHOWN).map((row) => [row.marker, inTrials ? row.trial : null, where(row), count(row.postures.length), fixed(row.residual_mm), fixed(row.normalised, 1)].filter((cell) => cell !== null))}),
+    body: table({caption: 'Outliers', className: 'wide-first-two', columns: [{text: 'Markers'}, inTrials && {text: 'Trial'}, {text: 'Where'}, {text: 'Sightings', number: true}, {text: 'Largest residual', unit: 'mm', number: true}, {text: 'Residual / sd', number: true}].filter(Boolean),
+      rows: rows.slice(0, SHOWN).map((row) => [list(row.markers, 4), inTrials ? row.trial : null, where(row), count(row.count), fixed(row.residual_mm), fixed(row.normalised, 1)].filter((cell) => cell !== null))}),
     data: {name: 'outliers.csv', text: () => toCsv(['trial', 'posture', 'marker', 'residual_mm', 'normalised'], outliers.map((o) => [placeOf(o, report).trial, placeOf(o, report).posture, o.marker, o.residual_mm, o.normalised]))}});
 }
 

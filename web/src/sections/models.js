@@ -11,9 +11,15 @@ const MODEL_WORDS = {
   uncalibrated: '“uncalibrated” is the nominal robot', offsets_only: '“offsets only” corrects the joint offsets',
   geometric: '“geometric” corrects all geometric errors', full: '“full” also models elasticity',
 };
-const modelWords = (models) => ` Model ${list(models.filter((m) => MODEL_WORDS[m]).map((m) => MODEL_WORDS[m]))}.`;
 
-function build({title, what = 'Motion', words = ''}, rows, models) {
+/** What the cells of the tables are, and the models of their columns. */
+function wordsOn(models) {
+  const paper = list(models.filter((m) => PAPER[m]).map((m) => `the ${modelName(m)} model ${PAPER[m]}`));
+  return 'Each cell has the root mean square (RMSE) of the distances between measured and predicted markers without outliers and, small and grey, the largest of them. ' +
+    `Model ${list(models.filter((m) => MODEL_WORDS[m]).map((m) => MODEL_WORDS[m]))}.${paper ? ` The paper calls ${paper}.` : ''}`;
+}
+
+function build({title, what = 'Motion', words}, rows, models) {
   const columns = [{text: 'Chain'}, {text: what}, ...models.map((m) => ({text: modelName(m), unit: 'mm', number: true}))];
   const cells = rows.map((row) => {
     const least = Math.min(...row.rmse.filter((x) => typeof x === 'number'));
@@ -21,10 +27,9 @@ function build({title, what = 'Motion', words = ''}, rows, models) {
       h('span', {class: 'largest'}, typeof row.max[i] === 'number' ? fixed(row.max[i], 1) : '')];
     return {class: row.total ? 'total' : '', cells: [row.chain, row.motion, ...row.rmse.map(pair)]};
   });
-  const paper = list(models.filter((m) => PAPER[m]).map((m) => `the ${modelName(m)} model ${PAPER[m]}`));
   return figure({
     title, body: table({caption: title, columns, rows: cells, className: 'wide-first-two'}),
-    note: `Each cell has the root mean square (RMSE) of the distances between measured and predicted markers without outliers and, small and grey, the largest of them.${words}${paper ? ` The paper calls ${paper}.` : ''}`,
+    note: words || 'The cells are as in the table above.',
     data: {name: 'models_by_motion.csv', text: () => toCsv(
       ['chain', 'motion', ...models.map((m) => `rmse_3d_${m}_mm`), ...models.map((m) => `max_${m}_mm`)],
       rows.map((row) => [row.chain, row.motion, ...row.rmse, ...row.max]))},
@@ -39,8 +44,8 @@ export function modelsSection(report) {
   const errors = data?.error_table;
   const heldOut = (errors?.rows ?? []).length > 0;
   const parts = [];
-  if (heldOut) parts.push(build({title: 'On motions that took no part in the estimate', words: modelWords(models)}, table2Rows(errors, models), models));
-  parts.push(build({title: 'On the calibration postures', what: 'Postures', words: heldOut ? '' : modelWords(models)}, inSampleRows(summary, models), models));
+  if (heldOut) parts.push(build({title: 'On motions that took no part in the estimate', words: wordsOn(models)}, table2Rows(errors, models), models));
+  parts.push(build({title: 'On the calibration postures', what: 'Postures', words: heldOut ? '' : wordsOn(models)}, inSampleRows(summary, models), models));
   if (validation) parts.push(validationTable(validation));
   return section('models', 'Models', 'How well each model predicts the markers',
     `The tables show how far the markers were from where each model predicts them${heldOut ? ', first on trials that took no part in the estimate' : ''}.`, ...parts);

@@ -68,13 +68,13 @@ test('what stands elsewhere on the page is no warning again', () => {
   assert.deepEqual(knownNames({}), []);
 });
 
-test('outliers of one marker in one trial are one row', () => {
+test('outliers of one marker in one trial are one row, and so are markers in the same postures', () => {
   const outlier = (posture, marker, residual_mm) => ({posture, marker, residual_mm, normalised: residual_mm / 2});
   const place = ({posture}) => ({trial: posture < 10 ? 'leg' : 'arm', posture: String(posture % 10 + 1)});
-  const rows = outlierRows([outlier(0, 'M', 4), outlier(3, 'M', 8), outlier(12, 'M', 20), outlier(3, 'N', 2)], place);
+  const rows = outlierRows([outlier(0, 'M', 4), outlier(3, 'M', 8), outlier(12, 'M', 20), outlier(3, 'N', 2), outlier(12, 'N', 22), outlier(3, 'O', 3)], place);
   assert.deepEqual(rows, [
-    {trial: 'arm', marker: 'M', postures: ['3'], residual_mm: 20, normalised: 10},
-    {trial: 'leg', marker: 'M', postures: ['1', '4'], residual_mm: 8, normalised: 4},
-    {trial: 'leg', marker: 'N', postures: ['4'], residual_mm: 2, normalised: 1},
+    {trial: 'arm', markers: ['M', 'N'], postures: ['3'], count: 2, residual_mm: 22, normalised: 11},
+    {trial: 'leg', markers: ['M'], postures: ['1', '4'], count: 2, residual_mm: 8, normalised: 4},
+    {trial: 'leg', markers: ['N', 'O'], postures: ['4'], count: 2, residual_mm: 3, normalised: 1.5},
   ]);
 });
