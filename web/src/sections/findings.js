@@ -56,7 +56,7 @@ function trialsFigure(report) {
     return [value, h('span', {class: 'sd'}, /\d/.test(sd) && sd !== '0' ? ` ± ${sd}` : '')];
   };
   return figure({title: 'Trials', note: 'The clock lag is the time of the cameras minus the time of the robot at the beginning of the trial, ± its standard deviation. A trial in grey was not used.',
-    body: table({caption: 'Trials and what was used of them',
+    body: table({caption: 'Trials and what was used of them', className: 'findings',
       columns: [{text: 'Trial'}, {text: 'Postures', number: true}, {text: 'Samples', number: true}, {text: 'Clock lag', unit: 'ms', number: true}, {text: 'Findings'}],
       rows: trials.map((t) => ({class: t.used ? '' : 'held', cells: [t.name, count(t.postures), count(t.samples), clock(t), trialFindings(t, names)]}))}),
     data: {name: 'trials.csv', text: () => toCsv(['trial', 'used', 'postures', 'samples', 'lag_s', 'lag_sd_s', 'findings'], trials.map((t) => [t.name, String(t.used), t.postures, t.samples, t.clock?.lag_s, t.clock?.sd_s, (t.findings ?? []).join(' ')]))}});

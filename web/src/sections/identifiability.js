@@ -14,7 +14,8 @@ function statusTable(summary) {
   const kinds = kindsOf(joints);
   const cell = (p) => p ? h('span', {class: `status ${p.status}`, title: `${p.name}: ${STATUS_WORDS[p.status] ?? p.status}`},
     MARKS[p.status] ?? '?', h('span', {class: 'sr-only'}, SHORT[p.status] ?? p.status)) : '';
-  const present = Object.keys(MARKS).filter((s) => summary.parameters.some((p) => p.status === s));
+  const shown = new Set([...joints.values()].flatMap((own) => [...own.values()].map((p) => p.status)));
+  const present = Object.keys(MARKS).filter((status) => shown.has(status));
   return figure({
     title: 'What became of each parameter',
     note: present.map((s) => `${MARKS[s]}\u00a0${SHORT[s]}`).join(',  '),

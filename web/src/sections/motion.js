@@ -24,7 +24,7 @@ function marginsFigure(motion) {
   const rows = flatten(motion.margins?.margins ?? motion.margins);
   if (rows.length === 0) return null;
   return figure({title: 'Margins', data: {name: 'margins.csv', text: () => toCsv(['margin', 'value', 'unit'], rows)},
-    body: table({caption: 'Margins of the motion', columns: [{text: 'Margin'}, {text: 'Worst moment of the motion', number: true}],
+    body: table({caption: 'Margins of the motion', className: 'wrap-first', columns: [{text: 'Margin'}, {text: 'Worst moment of the motion', number: true}],
       rows: rows.map(([name, value, unit]) => [MARGIN_WORDS[name] ?? name, [typeof value === 'number' ? marginText(value, unit) : value, h('span', {class: 'unit'}, ` ${unit}`)]])})});
 }
 

@@ -15,7 +15,7 @@ function histogram(distribution, models) {
   const shares = models.map((model) => [...counts[model].map((n) => 100 * n / total(model)), 0]);
   return plot({
     label: `Distribution of residuals, ${distribution.name}`,
-    x: {label: 'distance between measured and predicted marker [mm]', short: 'mm'},
+    x: {label: 'residual [mm]', short: 'mm'},
     y: {label: 'share of sightings [%]', range: (u, min, max) => [0, max * 1.05]},
     series: models.map((m) => ({text: modelName(m), colour: MODEL_COLOURS[m], steps: true, fill: `${MODEL_COLOURS[m]}30`})),
     data: [edges, ...shares],
