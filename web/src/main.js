@@ -54,7 +54,7 @@ function show(report) {
   document.getElementById('app').append(
     h('a', {class: 'skip', href: '#main'}, 'Skip to the report'), header(report), contents(sections),
     h('main', {id: 'main'}, ...sections),
-    h('footer', {}, `Made by elastocal ${report.version ?? ''}. This file is complete: it loads nothing.`));
+    h('footer', {}, `Made by elastocal ${report.version ?? ''}. This file is complete: it needs no network and no other file.`));
 }
 
 const report = JSON.parse(document.getElementById('report-data').textContent);

@@ -47,14 +47,14 @@ export function sampleSummary() {
     status: 'converged', message: '', settled: true, objections: [],
     remarks: [`Marker ${EVIL} was seen in 3 of 24 postures only`],
     robot: `sample ${EVIL}`, recording: `day "1" ${EVIL}`, postures: 24, markers: markers.length,
-    parameters_total: 34, identifiable: 22, identifiable_theory: 22, equations: 500, marker_sd_mm: 0.021,
+    parameters_total: 34, identifiable: 309, identifiable_theory: 309, equations: 500, marker_sd_mm: 0.021,
     rmse_3d_mm: byModel(1), rmse_coordinate_mm: byModel(0.577), max_mm: byModel(3),
     held_out_rmse_3d_mm: byModel(1.1), kfold: {folds: 5, rmse_3d_mm: byModel(1.2), max_mm: byModel(3.1)},
     legs: [{name: 'leg_left', stiffness: [57.7, 75.3, 186, 24700, 5230, null]}],
     outliers: [{posture: 3, marker: EVIL, residual_mm: 12.3, normalised: 8.1}],
     trials: [{name: EVIL, chains: ['leg'], used: true, postures: 24, samples: 192, clock: {lag_s: 2.1}, findings: ['a finding']}],
     excitation: {condition_base: 84.2, O1: 0.793, hardly_excited: ['leg_1_joint.r']},
-    warnings: ['cluster HAND: was it knocked?'], parameters: parameters(),
+    warnings: ['cluster HAND: was it knocked?', ...Array.from({length: 9}, (_, i) => `joint "arm_${i + 1}_joint" is at 1.${i} rad, 0.5 degrees beyond its limit of 1 rad`)], parameters: parameters(),
     correlations: [{first: 'leg_1_joint.theta', second: 'leg_2_joint.theta', coefficient: -0.97}],
   };
 }

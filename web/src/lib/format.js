@@ -5,21 +5,65 @@ export function fixed(value, digits = 2) {
   return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');
 }
 
+/** The power of ten of a number's first digit, once it is rounded to so many digits: 0.0996 to two has −1. */
+const power = (value, digits) => Number(value.toExponential(digits - 1).split('e')[1]);
+
+const SUPERSCRIPTS = {'-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹'};
+
+/** 1.2·10⁻⁹ */
+function exponential(value, digits) {
+  const [mantissa, exponent] = value.toExponential(digits - 1).replace('e+', 'e').split('e');
+  return `${mantissa.replace('-', '−')}·10${[...exponent].map((c) => SUPERSCRIPTS[c]).join('')}`;
+}
+
 /** Three significant digits, whatever the size. */
 export function significant(value, digits = 3) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
   if (value === 0) return '0';
   const size = Math.abs(value);
-  if (size >= 1e9 || size < 1e-4) return value.toExponential(digits - 1).replace('-', '−');
-  if (size >= 1e3) return count(Number(value.toPrecision(digits)));
-  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return fixed(value, decimals);
+  if (size >= 1e9 || size < 1e-4) return exponential(value, digits);
+  return rounded(value, digits - 1 - power(value, digits));
+}
+
+/** To so many decimals; a negative number of them rounds to tens, hundreds and so on. */
+function rounded(value, decimals) {
+  if (decimals > 0) return fixed(value, decimals);
+  const step = 10 ** -decimals;
+  return count(step * Math.round(value / step));
+}
+
+const MOST_DECIMALS = 8;  // a smaller standard deviation is written with a power of ten
+
+/**
+ * An estimate with its standard deviation as texts {value, sd}: the standard deviation has two
+ * significant digits, the estimate the same decimals. Without a standard deviation (zero, infinite
+ * or none) the estimate has `decimals`.
+ */
+export function withSd(value, sd, decimals = 2) {
+  const known = typeof sd === 'number' && Number.isFinite(sd) && sd > 0;
+  if (!known) return {value: fixed(value, decimals), sd: sd === 0 ? '0' : '–'};
+  const same = 1 - power(sd, 2);
+  if (same > MOST_DECIMALS) return {value: fixed(value, MOST_DECIMALS), sd: exponential(sd, 2)};
+  return {value: Number.isFinite(value) ? rounded(value, same) : '–', sd: rounded(Number(sd.toPrecision(2)), same)};
+}
+
+/** 'low to high': both with the decimals of two significant digits of half their distance; '∞' for no end. */
+export function interval(low, high) {
+  const half = (high - low) / 2;
+  const end = (x) => !Number.isFinite(x) ? (x < 0 ? '−∞' : '∞') : Number.isFinite(half) && half > 0 ? withSd(x, half).value : significant(x);
+  return `${end(low)} to ${end(high)}`;
+}
+
+/** A probability that a test gives: nobody needs the digits of a very small one. */
+export function probability(p) {
+  if (typeof p !== 'number' || !Number.isFinite(p)) return '–';
+  return p < 1e-4 ? '< 0.0001' : significant(p, 2);
 }
 
 /** 12 345, with narrow spaces. */
 export function count(value) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
-  return String(Math.round(value)).replace(/\B(?=(\d{3})+(?!\d))/g, '\u202f');
+  return String(Math.round(value)).replace('-', '−').replace(/^−0$/, '0').replace(/\B(?=(\d{3})+(?!\d))/g, '\u202f');
 }
 
 /** '1 posture', '2 postures'. */

@@ -19,8 +19,8 @@ export function family(parameter, legs) {
 
 /** The order in which Table 1 has its columns, with the signs of the paper. */
 export const KINDS = [
-  {kind: 'theta', symbol: 'θ', what: 'offset of the joint'},
-  {kind: 'r', symbol: 'r', what: 'translation along its axis'},
+  {kind: 'theta', symbol: 'θ', what: 'rotation about the joint axis (joint offset)'},
+  {kind: 'r', symbol: 'r', what: 'translation along the joint axis'},
   {kind: 'd', symbol: 'd', what: 'translation along the common normal'},
   {kind: 'alpha', symbol: 'α', what: 'angle between consecutive axes'},
   {kind: 'beta', symbol: 'β', what: 'angle between parallel axes'},
@@ -52,9 +52,9 @@ export function kindsOf(joints) {
 
 export const STATUS_WORDS = {
   estimated: 'estimated',
-  unsupported: 'held at nominal: the data say hardly more than the prior',
-  dropped: 'held at nominal: cannot be told from other parameters',
-  held: 'held at nominal by the project file',
+  unsupported: 'kept at nominal: this recording hardly determines it',
+  dropped: 'kept at nominal: no recording can tell it from other parameters',
+  held: 'kept at nominal by the project file',
   not_in_model: 'not in this model',
 };
 

@@ -19,7 +19,7 @@ export function table2Rows(errors, models) {
 /** Recordings without trials for validation: in sample, and held-out folds. */
 export function inSampleRows(summary, models) {
   const row = (chain, motion, item) => ({chain, motion, rmse: models.map((m) => item.rmse_3d_mm?.[m]), max: models.map((m) => item.max_mm?.[m])});
-  const rows = [row('All chains', 'calibration postures, in sample', summary)];
-  if (summary.kfold) rows.push(row('All chains', `held out, ${summary.kfold.folds} folds`, summary.kfold));
+  const rows = [row('All chains', 'those of the fit', summary)];
+  if (summary.kfold) rows.push(row('All chains', `held out in turn, ${summary.kfold.folds} folds`, summary.kfold));
   return rows;
 }

@@ -12,10 +12,19 @@ const USER = {
 
 export const userUnit = (si) => USER[si] ?? {unit: si, factor: 1, digits: 4};
 
-/** The stiffness that a compliance is the inverse of, with its unit; null for other parameters. */
+/**
+ * The stiffness that a compliance is the inverse of, with its unit and, to first order, its standard
+ * deviation; null for other parameters.
+ */
 export function stiffness(parameter) {
   if (!(parameter.value > 0)) return null;
-  if (parameter.unit === 'rad/(N.m)') return {value: 1 / parameter.value, unit: 'N·m/rad'};
-  if (parameter.unit === 'm/N') return {value: 1e-3 / parameter.value, unit: 'N/mm'};
-  return null;
+  const inverse = {'rad/(N.m)': {factor: 1, unit: 'N·m/rad'}, 'm/N': {factor: 1e-3, unit: 'N/mm'}}[parameter.unit];
+  if (!inverse) return null;
+  const value = inverse.factor / parameter.value;
+  return {value, sd: typeof parameter.sd === 'number' ? value * parameter.sd / parameter.value : null, unit: inverse.unit};
+}
+
+/** Ends of the stiffness's 95 % interval: inverses of the compliance's ends; Infinity for a rigid joint. */
+export function stiffnessInterval(parameter) {
+  return [1, -1].map((sign) => stiffness({...parameter, value: parameter.value + sign * 1.96 * parameter.sd})?.value ?? Infinity);
 }

@@ -41,12 +41,12 @@ export function verdict(summary) {
   const from = errors ? `from ${fixed(errors.before)} to ${fixed(errors.after)}\u00a0mm ${errors.on}` : '';
   if (!deployable(summary)) {
     const why = summary.objections?.[0] ?? summary.message ?? summary.status;
-    return {state: 'reject', word: 'Do not deploy', sentence: from ? `Errors went ${from}, but the result is not to be trusted.` : 'The result is not to be trusted.', rest: why};
+    return {state: 'reject', word: 'Do not deploy', sentence: from ? `The errors went ${from}, but the result must not be trusted.` : 'The result must not be trusted.', rest: why};
   }
   const open = undetermined(summary);
   const rest = open.length === 0
-    ? 'Everything in the model could be determined.'
-    : `Not identifiable from this recording, and held at nominal: ${list(open, 4)}.`;
+    ? 'The recording determines every identifiable parameter of the model.'
+    : `The recording does not determine ${list(open, 4)}: ${open.length === 1 ? 'this parameter stays' : 'these parameters stay'} at nominal.`;
   const remarks = (summary.remarks ?? []).length > 0;
   return {
     state: remarks ? 'check' : 'deploy',

@@ -25,7 +25,7 @@ function colourScale() {
   const paint = () => bar.style.setProperty('background', `linear-gradient(90deg, ${[-1, -0.5, 0, 0.5, 1].map((t) => css(diverging(t, isDark()))).join(', ')})`);
   paint();
   onTheme(paint);
-  return h('p', {class: 'colour-bar'}, h('span', {}, '−1'), bar, h('span', {}, '+1 correlation'));
+  return h('p', {class: 'colour-bar'}, h('span', {}, '−1'), bar, h('span', {}, '+1'));
 }
 
 /** The map of correlations between estimates; moving on it, by pointer or arrow keys, names pairs. */
@@ -35,7 +35,7 @@ export function correlationFigure(correlation, pairs) {
   const matrix = unpackTriangle(signedBytes(correlation.lower), names.length);
   let shown = names.map((_, i) => i).filter((i) => !external(names[i]));
   const canvas = h('canvas', {class: 'map', tabindex: '0', role: 'img', 'aria-label': 'Map of correlations between estimated parameters; arrow keys move over it'});
-  const readout = h('p', {class: 'readout'}, 'Point at the map, or focus it and use the arrow keys, to name a pair.');
+  const readout = h('p', {class: 'readout'}, 'Point at the map, or move over it with the arrow keys, to read the names of a pair.');
   let at = [0, 0];
   const tell = () => {
     const [i, j] = at.map((k) => shown[Math.min(shown.length - 1, Math.max(0, k))]);
@@ -59,13 +59,13 @@ export function correlationFigure(correlation, pairs) {
   const all = h('label', {class: 'check'}, h('input', {type: 'checkbox', onchange: (e) => {
     shown = names.map((_, i) => i).filter((i) => e.target.checked || !external(names[i]));
     draw();
-  }}), 'with waist and markers');
-  const strongest = pairs.slice(0, 8).map((p) => h('li', {}, h('span', {}, `${p.first} and ${p.second}`), h('strong', {}, fixed(p.coefficient))));
+  }}), 'show waist and markers too');
+  const strongest = pairs.slice(0, 8).map((p) => h('li', {}, h('span', {}, `${p.first} and ${p.second}`), h('strong', {}, fixed(p.coefficient, Math.abs(p.coefficient) > 0.99 ? 4 : 2))));
   return figure({
     title: 'Correlation of the estimates', controls: all,
     body: h('div', {class: 'map-block'}, h('div', {}, canvas, colourScale(), readout),
       strongest.length > 0 && h('div', {}, h('h4', {}, 'Strongest pairs'), h('ol', {class: 'pairs'}, ...strongest))),
-    note: 'Joints from the waist outwards, as in the table above. A pair near ±1 is only known as a combination.',
+    note: 'Each row and each column is an estimated parameter, in the order of the table above. Where a pair comes near +1 or −1, the recording determines a combination of the two much better than either one.',
     data: {name: 'correlation.csv', text: () => toCsv(['parameter', ...names], names.map((name, i) => [name, ...Array.from(matrix[i], (x) => Number(x.toFixed(2)))]))},
   });
 }

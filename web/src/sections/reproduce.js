@@ -5,7 +5,7 @@ import {count} from '../lib/format.js';
 import {table} from '../lib/table.js';
 
 function runBlock(run) {
-  const facts = [['Version', run.version], ['Seed', run.seed === null || run.seed === undefined ? 'the project’s' : String(run.seed)], ['Written', run.time]].filter(([, value]) => value);
+  const facts = [['Version', run.version], ['Seed', run.seed === null || run.seed === undefined ? 'as in the project file' : String(run.seed)], ['Written', run.time]].filter(([, value]) => value);
   const inputs = run.inputs ?? [];
   return h('div', {class: 'run'}, h('h3', {}, run.command),
     h('pre', {tabindex: '0'}, h('code', {}, run.command_line)),
@@ -19,13 +19,13 @@ function runBlock(run) {
 export function reproduceSection(report) {
   const runs = Object.entries(report.runs ?? {}).map(([command, run]) => ({command, ...run}));
   if (runs.length === 0) return null;
-  return section('reproduce', 'Reproduce', 'How to reproduce it', 'The same version, command line and inputs give the same result.', ...runs.map(runBlock));
+  return section('reproduce', 'Reproduce', 'How to reproduce this result', 'The same version, command line and inputs give the same result.', ...runs.map(runBlock));
 }
 
 /** What this report lacks, and which command makes it. */
 export function missingSection(report) {
   const missing = report.missing ?? [];
   if (missing.length === 0) return null;
-  return section('missing', 'Missing', 'Not in this report', 'Parts for which the folder has no data, and the command that makes it.',
+  return section('missing', 'Missing', 'Not in this report', 'The folder has no data for these parts of the report. The command after each makes them.',
     h('ul', {class: 'missing'}, ...missing.map((m) => h('li', {}, `${m.what}: `, h('code', {}, m.command)))));
 }

@@ -15,7 +15,7 @@ function histogram(distribution, models) {
   const shares = models.map((model) => [...counts[model].map((n) => 100 * n / total(model)), 0]);
   return plot({
     label: `Distribution of residuals, ${distribution.name}`,
-    x: {label: 'distance between measured and predicted marker [mm]', short: 'mm'},
+    x: {label: 'residual [mm]', short: 'mm'},
     y: {label: 'share of sightings [%]', range: (u, min, max) => [0, max * 1.05]},
     series: models.map((m) => ({text: modelName(m), colour: MODEL_COLOURS[m], steps: true, fill: `${MODEL_COLOURS[m]}30`})),
     data: [edges, ...shares],
@@ -32,7 +32,7 @@ function distributionFigure(data, models) {
     (i) => { chosen = Number(i); holder.replaceChildren(histogram(sets[chosen], models)); });
   return figure({
     title: 'Distribution of residuals, before and after', body: [chooser, holder],
-    note: 'The last bin also holds everything beyond it.',
+    note: 'The last bin also has all residuals beyond it.',
     data: {name: 'residual_distribution.csv', text: () => {
       const {edges_mm: edges, counts} = sets[chosen];
       return toCsv(['from_mm', 'to_mm', ...models], counts[models[0]].map((_, i) => [edges[i], edges[i + 1], ...models.map((m) => counts[m][i])]));
@@ -62,7 +62,7 @@ function clusterFigure(data, models) {
   if (rows.length === 0) return null;
   return figure({
     title: 'Where on the body', body: dumbbells(rows, models, 'mm'),
-    note: `RMSE of the markers of each cluster${data.clusters_on ? `, ${data.clusters_on}` : ''}.`,
+    note: `The dots show the RMSE of the markers of each cluster before and after calibration${data.clusters_on ? `, ${data.clusters_on}` : ''}.`,
     data: {name: 'cluster_rmse.csv', text: () => toCsv(['cluster', 'link', ...models.map((m) => `rmse_3d_${m}_mm`)],
       data.clusters.map((c) => [c.name, c.link, ...models.map((m) => c.rmse_3d_mm?.[m])]))},
   });
@@ -89,6 +89,7 @@ function traceFigure(data, models) {
       ...traces.map((t, i) => h('option', {value: i, selected: i === chosen}, t.trial))));
   return figure({
     title: 'Along a motion', body: [chooser, holder],
+    note: 'RMS: the root mean square over the markers that were seen at each moment.',
     data: {name: 'tracking_error.csv', text: () => {
       const trace = traces[chosen];
       return columnsToCsv(['time_s', ...models.map((m) => `rms_${m}_mm`)], [trace.time_s, ...models.map((m) => trace.rms_mm[m])]);
@@ -102,6 +103,6 @@ export function residualsSection(report) {
   if (!data?.distributions?.length) return null;
   const models = firstAndLast(data.models);
   return section('residuals', 'Residuals', 'Residuals before and after',
-    'How far the markers are from where the model says, with the nominal and with the calibrated robot.',
+    'A residual is the distance between a measured marker and where the model predicts it: before calibration with the nominal robot, after it with the calibrated one.',
     distributionFigure(data, models), clusterFigure(data, models), traceFigure(data, models));
 }

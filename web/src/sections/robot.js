@@ -19,7 +19,7 @@ function colourBar(end) {
   const stops = [0, 0.25, 0.5, 0.75, 1].map((t) => css(sequential(t))).join(', ');
   return h('p', {class: 'colour-bar'}, h('span', {}, '0'),
            h('span', {class: 'bar', style: {background: `linear-gradient(90deg, ${stops})`}, 'aria-hidden': 'true'}),
-           h('span', {}, `${end} mm RMSE of the cluster`));
+           h('span', {}, `${end} mm: RMSE of the cluster to which a ball belongs`));
 }
 
 /** The controls under the picture and what they do to it. */
@@ -119,8 +119,8 @@ export function robotSection(report) {
   const frame = h('div', {class: 'viewer'}, canvas);
   const clusters = (report.data.clusters ?? []).length > 0;
   const measured = (report.data.markers ?? []).length > 0;
-  const result = section('robot', 'Robot', measured ? 'The robot, and where the residuals sit' : 'The robot',
-    !measured ? 'As planned; a foot that stands is green, the zero-moment point orange.' : 'Balls are measured markers; rods lead to where they should be by the nominal robot (orange) and by the calibrated one (blue), magnified. A foot that stands is green.', frame);
+  const result = section('robot', 'Robot', measured ? 'The robot and its residuals' : 'The robot',
+    !measured ? 'The view shows the planned motion. A foot that stands on the floor is green; the orange disc is the zero-moment point.' : 'The balls are the measured markers. From each ball a rod leads to where the nominal robot (orange) and the calibrated robot (blue) predict the marker; the rods are longer than the residuals by the factor of magnification. A foot that stands on the floor is green.', frame);
   // Once the page stands and has its width.
   queueMicrotask(() => {
     try {

@@ -36,13 +36,13 @@ export function signalSection(report) {
   let chosen = signals[0];
   const holder = h('div', {class: 'hold-plot'}, signalPlot(chosen));
   const note = h('span', {});
-  const describe = () => { note.textContent = `Shaded: at rest by the speed of all markers (below ${fixed(chosen.threshold_mm_per_s, 1)} mm/s). ${plural(chosen.chosen.length, 'frame')} chosen in ${plural(chosen.rests.length, 'rest')}.`; };
+  const describe = () => { note.textContent = `The robot rests where the plot is shaded: all markers together are slower than ${fixed(chosen.threshold_mm_per_s, 1)} mm/s there. ${plural(chosen.chosen.length, 'frame')} of ${plural(chosen.rests.length, 'rest')} became samples.`; };
   describe();
   const chooser = signals.length > 1 && h('label', {class: 'select'}, h('span', {}, 'Trial'),
     h('select', {onchange: (e) => { chosen = signals[Number(e.target.value)]; holder.replaceChildren(signalPlot(chosen)); describe(); }},
       ...signals.map((s, i) => h('option', {value: i}, s.trial))));
   return section('signal', 'Signal', 'From the cameras to samples',
-    'One coordinate of the marker that moves most, low-passed without delay, and the frames at rest that became postures.',
+    'The plot shows one coordinate of the marker that moves most, as measured and low-pass filtered without delay, and the frames at rest from which the postures come.',
     figure({title: 'Filtered signal and chosen samples', body: [chooser, holder], note,
       data: {name: 'signal.csv', text: () => {
         const {time, raw, filtered, chosen: dots} = signalColumns(chosen);

@@ -1,17 +1,23 @@
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {choice, figure, section} from '../lib/figure.js';
-import {fixed, significant} from '../lib/format.js';
+import {interval, significant, withSd} from '../lib/format.js';
 import {byJoint, family, kindsOf, STATUS_WORDS} from '../lib/parameters.js';
 import {table} from '../lib/table.js';
-import {stiffness, userUnit} from '../lib/units.js';
+import {stiffness, stiffnessInterval, userUnit} from '../lib/units.js';
 
 const pretty = (joint) => joint.replace(/_joint$/, '').replaceAll('_', ' ');
+
+/** {value, sd} of a parameter as texts in the unit that people use. */
+function inUserUnit(parameter) {
+  const {factor, digits} = userUnit(parameter.unit);
+  return withSd(parameter.value * factor, parameter.sd === null ? null : parameter.sd * factor, digits);
+}
 
 /** One parameter: value and standard deviation; greyed where it is held. */
 export function valueCell(parameter) {
   if (!parameter) return '';
-  const {unit, factor, digits} = userUnit(parameter.unit);
+  const {unit, factor} = userUnit(parameter.unit);
   const words = `${parameter.name}: ${STATUS_WORDS[parameter.status] ?? parameter.status}`;
   if (parameter.status !== 'estimated') {
     const short = {dropped: '·', not_in_model: '–', held: 'held'}[parameter.status] ?? '0';
@@ -19,13 +25,24 @@ export function valueCell(parameter) {
              h('span', {class: 'sr-only'}, ` ${STATUS_WORDS[parameter.status] ?? ''}`));
   }
   const value = parameter.value * factor;
-  const sd = parameter.sd === null ? '' : `±${fixed(parameter.sd * factor, digits).replace(/^0(?=\.)/, '')}`;
+  const text = inUserUnit(parameter);
   const k = stiffness(parameter);
   return h('span', {class: parameter.significant ? 'estimate significant' : 'estimate',
-                    title: `${words}; ${significant(value, 6)} ± ${significant(parameter.sd * factor)} ${unit}` +
-                      (k ? `; stiffness ${significant(k.value)} ${k.unit}` : ''),
+                    title: `${words}; ${text.value} ± ${text.sd} ${unit} (to six digits ${significant(value, 6)})` +
+                      (k ? `; stiffness ${withSd(k.value, k.sd).value} ${k.unit}` : ''),
                     'data-parameter': parameter.name, 'data-value': parameter.value},
-           h('span', {class: 'value'}, fixed(value, digits)), h('span', {class: 'sd'}, sd));
+           h('span', {class: 'value'}, text.value), h('span', {class: 'sd'}, parameter.sd === null ? '' : `±${text.sd}`));
+}
+
+/** What the columns and the short marks of the table mean. */
+function geometryNote(joints) {
+  const kinds = kindsOf(joints).filter(({kind}) => !kind.startsWith('compliance'));
+  const statuses = new Set([...joints.values()].flatMap((kindsOfJoint) => [...kindsOfJoint.values()].map((p) => p.status)));
+  return [`${kinds.map(({symbol, what}) => `${symbol}: ${what}`).join('; ')}.`,
+    statuses.has('dropped') && ' A dot marks a parameter that no recording can tell from others of the chain; its effect is in their estimates.',
+    statuses.has('unsupported') && ' 0 marks one that this recording hardly determines; it stays at nominal.',
+    statuses.has('held') && ' “held” marks one that the project file keeps at nominal.',
+    h('span', {class: 'on-screen'}, ' Point at a value to see more digits.')].filter(Boolean);
 }
 
 function geometryTable(joints, shown) {
@@ -42,9 +59,7 @@ function geometryTable(joints, shown) {
 function stiffnessCell(parameter) {
   const k = parameter?.significant ? stiffness(parameter) : null;
   if (!k) return '';
-  const ends = [1, -1].map((sign) => stiffness({...parameter, value: parameter.value + sign * 1.96 * parameter.sd}));
-  const text = ends.map((end) => end ? significant(end.value) : '∞').join(' to ');
-  return h('span', {title: `95 %: ${text} ${k.unit}`}, significant(k.value));
+  return h('span', {title: `95 % interval: ${interval(...stiffnessInterval(parameter))} ${k.unit}`}, withSd(k.value, k.sd).value);
 }
 
 function elasticTable(joints, shown) {
@@ -85,8 +100,8 @@ function legsTable(parameters, legs) {
     return h('span', {class: 'held', title: STATUS_WORDS[parameter?.status] ?? 'not in this model'}, text);
   };
   return figure({
-    title: 'Stiffness of the legs, as felt at the waist',
-    note: 'The whole leg between foot and waist, in the axes of the foot, in the mean of its standing postures. Greyed: its own term was not supported by the data, what is left comes from the joints.',
+    title: 'Stiffness of the legs between foot and waist',
+    note: 'Stiffness of the whole leg against forces along the axes of the foot (x, y, z) and moments about them (rx, ry, rz), averaged over the postures in which the leg stood. A grey value comes from the joints alone: the data do not support a term of the leg itself in that direction.',
     body: table({caption: 'Stiffness of the legs',
       columns: [{text: 'Leg'}, ...axes.map((a, i) => ({text: `K ${a}`, unit: i < 3 ? 'N/mm' : 'N·m/rad', number: true}))],
       rows: legs.map((leg) => [leg.name.replaceAll('_', ' '), ...axes.map((a, i) => cell(leg, a, i))])}),
@@ -94,17 +109,16 @@ function legsTable(parameters, legs) {
   });
 }
 
-/** Waist and markers: of the experiment, not of the robot; folded away. */
+/** Waist and markers belong to the experiment, not to the robot: they are folded away. */
 function externals(parameters, legNames) {
   const rows = parameters.filter((p) => ['marker', 'waist'].includes(family(p, legNames)));
   if (rows.length === 0) return null;
-  return h('details', {class: 'fold'}, h('summary', {}, `Waist and marker positions (${rows.length} parameters, fitted anew for every recording)`),
+  return h('details', {class: 'fold'}, h('summary', {}, `Waist and marker positions (${rows.length} parameters; they belong to the recording, not to the robot)`),
     table({caption: 'Waist and marker positions',
-      columns: [{text: 'Parameter'}, {text: 'Deviation', number: true}, {text: 'sd', number: true}, {text: 'Unit'}],
+      columns: [{text: 'Parameter'}, {text: 'Deviation from nominal', number: true}, {text: 'Standard deviation', number: true}, {text: 'Unit'}],
       rows: rows.map((p) => {
-        const {unit, factor, digits} = userUnit(p.unit);
-        return {class: p.status === 'estimated' ? '' : 'held',
-                cells: [p.name, fixed(p.value * factor, digits), p.sd === null ? '–' : fixed(p.sd * factor, digits), unit]};
+        const {value, sd} = inUserUnit(p);
+        return {class: p.status === 'estimated' ? '' : 'held', cells: [p.name, value, sd, userUnit(p.unit).unit]};
       })}));
 }
 
@@ -126,14 +140,14 @@ export function table1Section(report) {
   const filter = chains.length > 1 && choice('Chain', [{value: '', text: 'All chains'},
     ...chains.map((c) => ({value: c.name, text: c.name.replaceAll('_', ' ')}))], '', choose);
   return section('parameters', 'Errors', 'Errors of the robot',
-    'What differs from the nominal robot: estimate and standard deviation. Bold: the 95 % interval excludes nominal. Grey: held at nominal.',
+    'The table shows how far each parameter of the robot is from its nominal value: the estimate ± its standard deviation. A value is bold where its 95 % interval excludes the nominal value, and grey where the parameter stays at nominal.',
     filter, figure({
       title: 'Geometry',
-      note: 'A dot: cannot be told from other parameters of the chain and is counted there. 0: the data say hardly more than the prior. Point at a value for more digits.',
+      note: geometryNote(joints),
       body: holders[0].at, data: {name: 'parameters.csv', text: () => csv(summary.parameters)},
     }), elastic && figure({
       title: 'Elasticity',
-      note: 'How far a joint gives way about its axis (z) and across it (x, y); the stiffness where the 95 % interval excludes a rigid joint.',
+      note: 'The compliance c says how far a joint gives way under load: c_z about its axis, c_x and c_y across it. Its inverse K is the stiffness; it is shown where the 95 % interval of the compliance excludes a rigid joint.',
       body: holders[1].at, data: {name: 'elasticity.csv', text: () => csv(summary.parameters.filter((p) => /\.compliance_/.test(p.name)))},
     }), legs.length > 0 && legsTable(summary.parameters, legs), externals(summary.parameters, legNames));
 }

@@ -1,11 +1,22 @@
 import {h} from '../lib/dom.js';
-import {count, fixed, plural, significant} from '../lib/format.js';
+import {count, fixed, list, plural, significant} from '../lib/format.js';
 import {countByStatus} from '../lib/parameters.js';
+import {groupTexts, knownNames, spoken} from '../lib/groups.js';
 import {judgedErrors, verdict} from '../lib/verdict.js';
 
 function fact(value, unit, what) {
   return h('div', {class: 'fact'}, h('dt', {}, what),
            h('dd', {}, value, unit && h('span', {class: 'unit'}, ` ${unit}`)));
+}
+
+/** Leads to what the reader has to look at, which is further down. */
+function linkToFindings(report) {
+  const names = knownNames(report);
+  const {objections, remarks, warnings} = spoken(report.summary);
+  const numbers = [[objections, 'objection'], [remarks, 'remark'], [warnings, 'warning']]
+    .map(([texts, word]) => [groupTexts(texts, names).length, word]).filter(([n]) => n > 0);
+  if (numbers.length === 0) return null;
+  return h('p', {class: 'verdict-link'}, h('a', {href: '#findings'}, `Read ${list(numbers.map(([n, word]) => plural(n, word)))}`));
 }
 
 function facts(summary) {
@@ -15,10 +26,10 @@ function facts(summary) {
   const outliers = (summary.outliers ?? []).length;
   return h('dl', {class: 'facts'},
     errors && fact([fixed(errors.before), h('span', {class: 'arrow', 'aria-label': 'to'}, ' → '),
-                    h('strong', {}, fixed(errors.after))], 'mm', `RMSE ${errors.on.includes('held') || errors.on.includes('no part') ? 'on held-out data' : 'in sample'}`),
+                    h('strong', {}, fixed(errors.after))], 'mm', `RMSE of the marker distances ${errors.on.includes('held') || errors.on.includes('no part') ? 'on held-out data' : 'on the data of the fit'}`),
     fact(count(counts.estimated ?? 0), held ? `of ${count((counts.estimated ?? 0) + held)}` : '', 'joint and leg errors estimated'),
     fact(count(summary.postures), '', `postures, ${plural(summary.markers, 'marker')}`),
-    fact(significant(summary.marker_sd_mm, 2), 'mm', 'noise of a marker coordinate'),
+    fact(significant(summary.marker_sd_mm, 2), 'mm', 'standard deviation of the noise of a marker coordinate'),
     fact(count(outliers), '', outliers === 1 ? 'outlier left out' : 'outliers left out'));
 }
 
@@ -30,5 +41,5 @@ export function verdictSection(report) {
   return h('section', {id: 'verdict', 'data-short': 'Verdict', class: `verdict state-${result.state}`, 'aria-labelledby': 'verdict-title'},
     h('h2', {id: 'verdict-title', class: 'verdict-word'}, h('span', {class: 'mark', 'aria-hidden': 'true'}), result.word),
     h('p', {class: 'verdict-sentence'}, result.sentence), h('p', {class: 'verdict-rest'}, result.rest),
-    facts(summary));
+    linkToFindings(report), facts(summary));
 }

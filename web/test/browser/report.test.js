@@ -59,6 +59,37 @@ for (const [name, file] of Object.entries(files)) {
     }
   });
 
+  test(`${name}: no figure runs into the next`, async () => {
+    for (const [width, media] of [[320, 'screen'], [390, 'screen'], [900, 'screen'], [1280, 'screen'], [680, 'print']]) {
+      const {page} = await openPage(browser, file, {viewport: {width, height: 900}});
+      await page.emulateMedia({media});
+      const meetings = await page.evaluate(() => {
+        // What is drawn, not the boxes: text may stick out of a box.
+        const drawn = (element) => { const range = document.createRange(); range.selectNodeContents(element); return [...range.getClientRects()]; };
+        const meet = (a, b) => a.left < b.right - 0.5 && b.left < a.right - 0.5 && a.top < b.bottom - 0.5 && b.top < a.bottom - 0.5;
+        return [...document.querySelectorAll('.facts')].flatMap((facts) => {
+          const items = [...facts.querySelectorAll('.fact')].map((fact) => ({text: fact.textContent, rects: ['dt', 'dd'].flatMap((tag) => drawn(fact.querySelector(tag)))}));
+          return items.flatMap((a, i) => items.slice(i + 1).filter((b) => a.rects.some((x) => b.rects.some((y) => meet(x, y)))).map((b) => `${a.text} | ${b.text}`));
+        });
+      });
+      assert.deepEqual(meetings, [], `${media} ${width}`);
+      assert.ok(await page.$$eval('.fact', (all) => all.length) >= 9);
+      await page.close();
+    }
+  });
+
+  test(`${name}: a standard deviation on the page has two significant digits, and its estimate the same decimals`, async () => {
+    const {page} = await openPage(browser, file);
+    const cells = await page.$$eval('#parameters .estimate', (all) => all.map((e) => [e.querySelector('.value').textContent, e.querySelector('.sd').textContent]));
+    const decimals = (text) => text.split('.')[1]?.length ?? 0;
+    for (const [value, sd] of cells) {
+      assert.match(sd, /^±(0\.0*[1-9]\d|[1-9]\.\d|[1-9][\d\u202f]*)$/);
+      assert.equal(decimals(value), decimals(sd), `${value} ${sd}`);
+    }
+    assert.ok(cells.length > 5);
+    await page.close();
+  });
+
   test(`${name}: slider, play and magnification change the picture`, async () => {
     const {page, problems} = await openPage(browser, file);
     await waitForViewer(page);
@@ -92,13 +123,15 @@ for (const [name, file] of Object.entries(files)) {
     const {summary} = embeddedReport(file);
     const {page} = await openPage(browser, file);
     const shown = new Map(await page.$$eval('#parameters [data-parameter]', (all) => all.map((e) => [e.dataset.parameter, {value: e.dataset.value, text: e.querySelector('.value')?.textContent}])));
-    const unit = {'rad': [180 / Math.PI, 3], 'm': [1e3, 2], 'rad/(N.m)': [1e6, 1]};
+    const unit = {'rad': 180 / Math.PI, 'm': 1e3, 'rad/(N.m)': 1e6};
     let checked = 0;
     for (const p of summary.parameters) {
       if (p.status !== 'estimated' || /^(marker|waist)\./.test(p.name) || !shown.has(p.name)) continue;
-      const [factor, digits] = unit[p.unit];
+      const factor = unit[p.unit];
       assert.equal(Number(shown.get(p.name).value), p.value);
-      assert.equal(Math.abs(Number(shown.get(p.name).text.replace('−', '-')) - p.value * factor) <= 0.51 * 10 ** -digits, true, `${p.name}: ${shown.get(p.name).text}`);
+      // Rounded to the second digit of the standard deviation: at most half of it away, and that is at most sd / 20.
+      const off = Math.abs(Number(shown.get(p.name).text.replace('−', '-').replaceAll('\u202f', '')) - p.value * factor);
+      assert.ok(off <= 0.051 * p.sd * factor, `${p.name}: ${shown.get(p.name).text}`);
       ++checked;
     }
     assert.ok(checked > 5, `${checked} parameters`);
@@ -148,6 +181,18 @@ test('names from the user’s files are shown, not run', async () => {
   for (const id of ['parameters', 'models', 'residuals', 'findings', 'reproduce', 'history', 'identifiability']) {
     assert.ok((await page.textContent(`#${id}`)).includes(EVIL), id);
   }
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('nine equal warnings are one line with the names, and fold out', async () => {
+  const {page, problems} = await openPage(browser, sample);
+  const lines = await page.$$eval('#findings .words:not(.state-check) > ul > li', (all) => all.map((li) => li.firstChild.textContent + (li.querySelector(':scope > .others')?.textContent ?? '')));
+  assert.equal(lines.length, 2);
+  assert.match(lines[1], /"arm_1_joint".*The same is true of "arm_2_joint", .* and "arm_9_joint"\.$/);
+  await page.click('#findings .words details summary');
+  assert.equal(await page.$$eval('#findings .words details[open] li', (all) => all.filter((li) => li.offsetHeight > 0).length), 9);
+  assert.match(await page.textContent('.verdict-link'), /^Read 1 remark and 2 warnings$/);
   assert.deepEqual(problems, []);
   await page.close();
 });

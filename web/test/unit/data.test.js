@@ -7,7 +7,7 @@ import {columnsToCsv, toCsv} from '../../src/lib/csv.js';
 import {chainRows, medianCurves} from '../../src/lib/curves.js';
 import {byJoint, countByStatus, family, kindsOf, offsetsOverTime, splitName} from '../../src/lib/parameters.js';
 import {table2Rows} from '../../src/lib/table2.js';
-import {stiffness, userUnit} from '../../src/lib/units.js';
+import {stiffness, stiffnessInterval, userUnit} from '../../src/lib/units.js';
 import {advance, feet} from '../../src/viewer/clips.js';
 
 test('floats are little-endian and keep NaN', () => {
@@ -47,7 +47,12 @@ test('Table 1 has a row a joint and the columns that occur, in order', () => {
 
 test('units', () => {
   assert.equal(Math.PI * userUnit('rad').factor, 180);
-  assert.deepEqual(stiffness({unit: 'm/N', value: 5e-6}), {value: 200, unit: 'N/mm'});
+  assert.deepEqual(stiffness({unit: 'm/N', value: 5e-6, sd: 2.5e-6}), {value: 200, sd: 100, unit: 'N/mm'});
+  assert.equal(stiffness({unit: 'm/N', value: 5e-6, sd: null}).sd, null);
+  const rigid = {unit: 'rad/(N.m)', value: 1e-5, sd: 1e-5};
+  const [low, high] = stiffnessInterval(rigid);
+  assert.ok(Math.abs(low - 1e5 / 2.96) < 1e-6);
+  assert.equal(high, Infinity, 'the interval has no compliance at all in it');
   assert.equal(stiffness({unit: 'rad/(N.m)', value: 0}), null);
 });
 

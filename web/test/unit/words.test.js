@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {count, fixed, flatten, list, plural, significant} from '../../src/lib/format.js';
+import {count, fixed, flatten, interval, list, plural, probability, significant, withSd} from '../../src/lib/format.js';
 import {bestModel, judgedErrors, undetermined, verdict} from '../../src/lib/verdict.js';
 
 const good = {
@@ -25,6 +25,46 @@ test('numbers', () => {
   assert.equal(significant(123.4), '123');
   assert.equal(count(1234567), '1\u202f234\u202f567');
   assert.equal(plural(1, 'posture'), '1 posture');
+});
+
+test('a standard deviation has two significant digits, the estimate the same decimals', () => {
+  const of = (value, sd, decimals) => Object.values(withSd(value, sd, decimals));
+  assert.deepEqual(of(1.23456, 0.0123), ['1.235', '0.012']);
+  assert.deepEqual(of(-0.00004, 0.012), ['0.000', '0.012']);
+  assert.deepEqual(of(-1.5, 0.5), ['−1.50', '0.50']);
+  assert.deepEqual(of(0.5, 0.00001), ['0.500000', '0.000010']);
+  assert.deepEqual(of(0.5, 0.0996), ['0.50', '0.10'], 'rounding carries into the next decimal');
+  assert.deepEqual(of(57.4, 9.96), ['57', '10']);
+  assert.deepEqual(of(1234.5, 123.4), ['1\u202f230', '120']);
+  assert.deepEqual(of(-3, 123.4), ['0', '120']);
+  assert.deepEqual(of(-27826, 2345), ['−27\u202f800', '2\u202f300']);
+  assert.deepEqual(of(0.123456789123, 3.21e-12), ['0.12345679', '3.2·10⁻¹²']);
+});
+
+test('without a standard deviation the estimate has the decimals asked for', () => {
+  const of = (value, sd, decimals) => Object.values(withSd(value, sd, decimals));
+  assert.deepEqual(of(1.23456, 0, 3), ['1.235', '0']);
+  assert.deepEqual(of(1.23456, NaN, 3), ['1.235', '–']);
+  assert.deepEqual(of(1.23456, Infinity, 1), ['1.2', '–']);
+  assert.deepEqual(of(1.23456, null), ['1.23', '–']);
+  assert.deepEqual(of(NaN, 0.0123), ['–', '0.012']);
+  assert.deepEqual(of(Infinity, 0.0123), ['–', '0.012']);
+});
+
+test('ends of an interval have the digits that their distance calls for', () => {
+  assert.equal(interval(0.98765, 1.01234), '0.988 to 1.012');
+  assert.equal(interval(25400.3, 30211.9), '25\u202f400 to 30\u202f200');
+  assert.equal(interval(1234.5, Infinity), '1\u202f230 to ∞');
+});
+
+test('very small numbers', () => {
+  assert.equal(significant(1e-9), '1.00·10⁻⁹');
+  assert.equal(significant(-2.5e12, 2), '−2.5·10¹²');
+  assert.equal(significant(0.0996, 2), '0.10');
+  assert.equal(significant(9.996), '10.0');
+  assert.equal(probability(3e-7), '< 0.0001');
+  assert.equal(probability(0.0412), '0.041');
+  assert.equal(probability(null), '–');
 });
 
 test('lists of names', () => {
