@@ -14,7 +14,8 @@ namespace elastocal {
 class YamlValue {
  public:
   /// Reads one document. Anchors, aliases, twice given keys, keys that are not text, more than one
-  /// document, more than 1 MiB and nesting beyond 20 levels are errors, as is malformed YAML.
+  /// document, text that is not UTF-8, more than 1 MiB and nesting beyond 20 levels are errors, as
+  /// is malformed YAML.
   static YamlValue Parse(const std::string& text, const std::string& source);
 
   [[noreturn]] void Fail(const std::string& message) const;

@@ -35,6 +35,10 @@ TEST(YamlValue, ReadsEveryKind) {
   EXPECT_TRUE(Parse("").Entries().empty());
 }
 
+TEST(YamlValue, RefusesWhatIsNotUtf8) {
+  ExpectParseError("a: \u00e9\nb: caf\xe9\n", {"p.yaml:2: ", "UTF-8"});
+}
+
 TEST(YamlValue, NamesFileLineAndPath) {
   const YamlValue root = Parse("outer:\n  inner:\n    - 1\n    - two\n");
   ExpectInputError([&] { root.Get("outer").Get("inner").Items()[1].Number(); },
