@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
+#include <cmath>
 #include <sstream>
 
 #include <yaml-cpp/eventhandler.h>
@@ -140,6 +140,19 @@ YamlValue YamlValue::Parse(const std::string& text, const std::string& source) {
   return builder.TakeRoot();
 }
 
+namespace {
+
+std::string InWords(const NumberRange& range) {
+  const std::string lower = FormatNumber(range.lower), upper = FormatNumber(range.upper);
+  if (range.with_lower && range.with_upper) return "a number from " + lower + " to " + upper;
+  const std::string words =
+      (range.with_lower ? "a number of at least " : "a number above ") + lower;
+  if (std::isinf(range.upper)) return words + (range.with_upper ? ", or .inf" : "");
+  return words + (range.with_upper ? " and at most " : " and below ") + upper;
+}
+
+}  // namespace
+
 void YamlValue::Fail(const std::string& message) const {
   throw InputError(Place(source_, line_) + (path_.empty() ? "" : path_ + ": ") + message);
 }
@@ -213,11 +226,15 @@ double YamlValue::Number() const {
   return number.value_or(0.0);
 }
 
-double YamlValue::PositiveOrInfinity() const {
-  if (kind_ == Kind::kScalar && scalar_ == ".inf") return std::numeric_limits<double>::infinity();
+double YamlValue::Number(const NumberRange& range) const {
+  const bool infinite = range.with_upper && std::isinf(range.upper);
+  if (infinite && kind_ == Kind::kScalar && scalar_ == ".inf") return range.upper;
   const std::optional<double> number = kind_ == Kind::kScalar ? ParseNumber(scalar_) : std::nullopt;
-  Expect(number.value_or(0.0) > 0.0, "a number above 0, or .inf");
-  return number.value_or(0.0);
+  const bool fine = number &&
+                    (*number > range.lower || (range.with_lower && *number == range.lower)) &&
+                    (*number < range.upper || (range.with_upper && *number == range.upper));
+  if (!fine) Expect(false, InWords(range));
+  return *number;
 }
 
 std::int64_t YamlValue::Integer(std::int64_t least, std::int64_t most) const {
@@ -233,6 +250,18 @@ std::int64_t YamlValue::Integer(std::int64_t least, std::int64_t most) const {
 bool YamlValue::Boolean() const {
   Expect(kind_ == Kind::kScalar && (scalar_ == "true" || scalar_ == "false"), "true or false");
   return scalar_ == "true";
+}
+
+void YamlValue::Read(const char* key, double& option, const NumberRange& range, double unit) const {
+  if (const auto value = Find(key)) option = unit * value->Number(range);
+}
+
+void YamlValue::Read(const char* key, int& option, int least, int most) const {
+  if (const auto value = Find(key)) option = static_cast<int>(value->Integer(least, most));
+}
+
+void YamlValue::Read(const char* key, bool& option) const {
+  if (const auto value = Find(key)) option = value->Boolean();
 }
 
 }  // namespace elastocal
