@@ -98,6 +98,12 @@ int LinkNamedBy(const YamlValue& value, const RobotTree& tree) {
   return FindNamedBy(value, [&] { return FindLink(tree, name); });
 }
 
+std::vector<int> LinksNamedBy(const YamlValue& list, const RobotTree& tree) {
+  std::vector<int> links;
+  for (const YamlValue& value : list.Items()) links.push_back(LinkNamedBy(value, tree));
+  return links;
+}
+
 int JointNamedBy(const YamlValue& value, const RobotTree& tree) {
   const std::string name = value.Text();
   return FindNamedBy(value, [&] { return FindJoint(tree, name); });

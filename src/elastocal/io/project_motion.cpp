@@ -24,12 +24,6 @@ int SphereNamedBy(const YamlValue& value, const std::vector<CollisionSphere>& sp
   value.Fail("there is no sphere " + Quote(value.Text()) + DidYouMean(value.Text(), names));
 }
 
-std::vector<int> ReadSupport(const YamlValue& value, const RobotTree& tree) {
-  std::vector<int> links;
-  for (const YamlValue& item : value.Items()) links.push_back(LinkNamedBy(item, tree));
-  return links;
-}
-
 Box ReadBox(const YamlValue& value) {
   value.ExpectKeys({"lower", "upper"});
   const Box box{PointFromMm(value.Get("lower")), PointFromMm(value.Get("upper"))};
@@ -64,7 +58,7 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
     setup.mirror = project.chains[ChainNamedBy(*mirror, project)].name;
   }
   if (const auto support = value.Find("support")) {
-    setup.support = ReadSupport(*support, project.tree);
+    setup.support = LinksNamedBy(*support, project.tree);
   }
   if (const auto box = value.Find("box_mm")) setup.box = ReadBox(*box);
   if (const auto cone = value.Find("cone_deg")) {

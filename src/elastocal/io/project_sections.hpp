@@ -54,8 +54,9 @@ std::string NewName(const YamlValue& name, const char* what, const Items& items)
   return name.Text();
 }
 
-/// The link or movable joint that a value names.
+/// The link, links or movable joint that a value names.
 int LinkNamedBy(const YamlValue& value, const RobotTree& tree);
+std::vector<int> LinksNamedBy(const YamlValue& list, const RobotTree& tree);
 int JointNamedBy(const YamlValue& value, const RobotTree& tree);
 /// The joint `name`, a key whose value is `value`, with a position of its own: what another joint
 /// decides cannot be recorded or given.

@@ -227,14 +227,14 @@ double YamlValue::Number() const {
 }
 
 double YamlValue::Number(const NumberRange& range) const {
-  const bool infinite = range.with_upper && std::isinf(range.upper);
-  if (infinite && kind_ == Kind::kScalar && scalar_ == ".inf") return range.upper;
-  const std::optional<double> number = kind_ == Kind::kScalar ? ParseNumber(scalar_) : std::nullopt;
-  const bool fine = number &&
-                    (*number > range.lower || (range.with_lower && *number == range.lower)) &&
-                    (*number < range.upper || (range.with_upper && *number == range.upper));
-  if (!fine) Expect(false, InWords(range));
-  return *number;
+  const auto [lower, upper, with_lower, with_upper] = range;
+  if (with_upper && std::isinf(upper) && kind_ == Kind::kScalar && scalar_ == ".inf") return upper;
+  const std::optional<double> found = kind_ == Kind::kScalar ? ParseNumber(scalar_) : std::nullopt;
+  const double number = found.value_or(std::numeric_limits<double>::quiet_NaN());
+  Expect((number > lower || (with_lower && number == lower)) &&
+             (number < upper || (with_upper && number == upper)),
+         InWords(range));
+  return number;
 }
 
 std::int64_t YamlValue::Integer(std::int64_t least, std::int64_t most) const {
