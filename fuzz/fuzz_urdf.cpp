@@ -20,7 +20,10 @@ void ReadAndEdit(const std::string& text) {
     origin.xyz.setConstant(0.125);
     origin.rpy.setConstant(-0.5);
   }
-  elastocal::ReplaceOrigins(text, "fuzz.urdf", origins);
+  const std::string edited = elastocal::ReplaceOrigins(text, "fuzz.urdf", origins);
+  for (const auto& [joint, origin] : elastocal::ReadOrigins(edited, "fuzz.urdf")) {
+    if (origin.xyz != origins.at(joint).xyz || origin.rpy != origins.at(joint).rpy) std::abort();
+  }
 }
 
 }  // namespace

@@ -31,6 +31,18 @@ TEST_F(Program, MalformedProjectAndUrdfAreNamedByLine) {
                 {"bad.urdf:"});
 }
 
+// JSON holds nothing but UTF-8: a name that is not is refused before the fit and not after it.
+TEST_F(Program, NamesThatAreNotUtf8AreRefused) {
+  std::string project = ReadFile(project_);
+  const std::string urdf = SourceFile("tests/robots/arm6.urdf").string();
+  project.replace(project.find("arm6.urdf"), 9, urdf);
+  project.replace(project.find("name: WRIST"), 11, "name: caf\xe9");
+  project.insert(project.find("not_recorded_mm"),
+                 "columns: {markers: {caf\xe9: [WRIST_x, WRIST_y, WRIST_z]}}\n  ");
+  ExpectRefused(Calibrate(scratch_.Write("p.yaml", project), recording_), {"p.yaml:14: ", "UTF-8"});
+  ExpectRefused(Calibrate(project_, WithCell(0, 2, "caf\xe9")), {"changed.csv:1: ", "UTF-8"});
+}
+
 TEST_F(Program, UnknownKeyJointAndMarkerComeWithTheNearestKnownName) {
   const std::string urdf = SourceFile("tests/robots/arm6.urdf").string();
   const std::string begin = "robot: {urdf: " + urdf + "}\n";

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
+#include <pugixml.hpp>
 
 #include "elastocal/io/text.hpp"
 #include "elastocal/io/urdf_reader.hpp"
@@ -236,22 +237,25 @@ CalibratedUrdf MakeCalibratedUrdf(const std::string& urdf, const std::string& so
 }
 
 std::string MakeXacroOffsets(const CalibratedUrdf& calibrated) {
-  tinyxml2::XMLPrinter xml;
-  xml.PushHeader(false, true);
-  xml.PushComment(
-      calibrated.encoder_offsets.empty()
-          ? " Written by elastocal. Metres and radians, to be added component by component to the "
-            "nominal joint origins. The zero offsets of the joints are in these origins. "
-          : " Written by elastocal. Metres and radians, to be added component by component to the "
-            "nominal joint origins. The zero offsets of the joints are NOT in these origins but in "
-            "JOINT_offset: position in the URDF = position of the controller + offset. ");
-  xml.OpenElement("robot");
-  xml.PushAttribute("xmlns:xacro", "http://www.ros.org/wiki/xacro");
+  pugi::xml_document xml;
+  pugi::xml_node declaration = xml.append_child(pugi::node_declaration);
+  declaration.append_attribute("version") = "1.0";
+  declaration.append_attribute("encoding") = "UTF-8";
+  xml.append_child(pugi::node_comment)
+      .set_value(calibrated.encoder_offsets.empty()
+                     ? " Written by elastocal. Metres and radians, to be added component by "
+                       "component to the nominal joint origins. The zero offsets of the joints are "
+                       "in these origins. "
+                     : " Written by elastocal. Metres and radians, to be added component by "
+                       "component to the nominal joint origins. The zero offsets of the joints are "
+                       "NOT in these origins but in JOINT_offset: position in the URDF = position "
+                       "of the controller + offset. ");
+  pugi::xml_node robot = xml.append_child("robot");
+  robot.append_attribute("xmlns:xacro") = "http://www.ros.org/wiki/xacro";
   const auto add = [&](const std::string& name, double value) {
-    xml.OpenElement("xacro:property");
-    xml.PushAttribute("name", name.c_str());
-    xml.PushAttribute("value", FormatNumber(value).c_str());
-    xml.CloseElement();
+    pugi::xml_node property = robot.append_child("xacro:property");
+    property.append_attribute("name") = name.c_str();
+    property.append_attribute("value") = FormatNumber(value).c_str();
   };
   static constexpr const char* kLengths[] = {"_x_offset", "_y_offset", "_z_offset"};
   static constexpr const char* kAngles[] = {"_roll_offset", "_pitch_offset", "_yaw_offset"};
@@ -261,8 +265,9 @@ std::string MakeXacroOffsets(const CalibratedUrdf& calibrated) {
     for (int i = 0; i < 3; ++i) add(joint + kAngles[i], origin.rpy[i] - nominal.rpy[i]);
   }
   for (const auto& [joint, offset] : calibrated.encoder_offsets) add(joint + "_offset", offset);
-  xml.CloseElement();
-  return xml.CStr();
+  std::ostringstream stream;
+  xml.save(stream, "  ");
+  return stream.str();
 }
 
 }  // namespace elastocal

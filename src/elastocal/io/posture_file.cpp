@@ -37,12 +37,6 @@ Eigen::VectorXd ReadPosture(const YamlValue& value, const Project& project) {
   return q;
 }
 
-std::vector<int> ReadFeet(const YamlValue& value, const RobotTree& tree) {
-  std::vector<int> links;
-  for (const YamlValue& item : value.Items()) links.push_back(LinkNamedBy(item, tree));
-  return links;
-}
-
 }  // namespace
 
 std::string FormatPostureFile(const RobotTree& tree, const std::vector<ChainPostures>& chains) {
@@ -80,7 +74,7 @@ std::vector<ChainPostures> ParsePostureFile(const std::string& text, const std::
     ChainPostures chain;
     chain.chain = project.chains[ChainNamedBy(value.Get("name"), project)].name;
     if (const auto support = value.Find("support")) {
-      chain.support = ReadFeet(*support, project.tree);
+      chain.support = LinksNamedBy(*support, project.tree);
     }
     for (const YamlValue& posture : value.Get("postures").Items()) {
       chain.q.push_back(ReadPosture(posture, project));

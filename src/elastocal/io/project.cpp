@@ -51,37 +51,11 @@ void ReadChains(const YamlValue& section, Project& project) {
   for (const YamlValue& value : section.Items()) {
     value.ExpectKeys({"name", "from", "tip"});
     Chain chain;
-    chain.name = value.Get("name").Text();
-    for (const Chain& other : project.chains) {
-      if (other.name == chain.name) value.Fail("a second chain of the name " + Quote(chain.name));
-    }
+    chain.name = NewName(value.Get("name"), "chain", project.chains);
     if (const auto from = value.Find("from")) chain.from_link = LinkNamedBy(*from, project.tree);
     chain.tip_link = LinkNamedBy(value.Get("tip"), project.tree);
     CheckChain(value, chain, project.tree);
     project.chains.push_back(std::move(chain));
-  }
-}
-
-void ReadTorqueSensors(const YamlValue& section, Project& project) {
-  for (const YamlValue& value : section.Items()) {
-    const int joint = JointNamedBy(value, project.tree);
-    if (Contains(project.torque_sensors, joint)) value.Fail("the joint comes twice");
-    project.torque_sensors.push_back(joint);
-  }
-}
-
-void ReadForceTorqueSensors(const YamlValue& section, Project& project) {
-  for (const YamlValue& value : section.Items()) {
-    value.ExpectKeys({"name", "link"});
-    ForceTorqueSensor sensor;
-    sensor.name = value.Get("name").Text();
-    sensor.link = LinkNamedBy(value.Get("link"), project.tree);
-    for (const ForceTorqueSensor& other : project.force_torque_sensors) {
-      if (other.name == sensor.name)
-        value.Fail("a second sensor of the name " + Quote(sensor.name));
-      if (other.link == sensor.link) value.Fail("a second sensor on the same link");
-    }
-    project.force_torque_sensors.push_back(std::move(sensor));
   }
 }
 
@@ -92,11 +66,7 @@ void CheckHeld(const YamlValue& section, const Project& project) {
   const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   for (const YamlValue& pattern : hold->Items()) {
     const std::string text = pattern.Text();
-    try {
-      CheckPatterns(model.parameters, {text});
-    } catch (const InputError& error) {
-      pattern.Fail(error.what());
-    }
+    FindNamedBy(pattern, [&] { CheckPatterns(model.parameters, {text}); });
   }
 }
 
@@ -125,29 +95,22 @@ void ReadSettings(const YamlValue& root, Project& project) {
 
 int LinkNamedBy(const YamlValue& value, const RobotTree& tree) {
   const std::string name = value.Text();
-  try {
-    return FindLink(tree, name);
-  } catch (const InputError& error) {
-    value.Fail(error.what());
-  }
+  return FindNamedBy(value, [&] { return FindLink(tree, name); });
+}
+
+std::vector<int> LinksNamedBy(const YamlValue& list, const RobotTree& tree) {
+  std::vector<int> links;
+  for (const YamlValue& value : list.Items()) links.push_back(LinkNamedBy(value, tree));
+  return links;
 }
 
 int JointNamedBy(const YamlValue& value, const RobotTree& tree) {
   const std::string name = value.Text();
-  try {
-    return FindJoint(tree, name);
-  } catch (const InputError& error) {
-    value.Fail(error.what());
-  }
+  return FindNamedBy(value, [&] { return FindJoint(tree, name); });
 }
 
 int DriverNamedBy(const std::string& name, const YamlValue& value, const RobotTree& tree) {
-  int joint = -1;
-  try {
-    joint = FindJoint(tree, name);
-  } catch (const InputError& error) {
-    value.Fail(error.what());
-  }
+  const int joint = FindNamedBy(value, [&] { return FindJoint(tree, name); });
   if (tree.joints[joint].mimic) {
     const int driver = tree.coordinate_joint[tree.joints[joint].coordinate];
     value.Fail("joint " + Quote(name) + " follows joint " + Quote(tree.joints[driver].name) +
@@ -158,11 +121,7 @@ int DriverNamedBy(const std::string& name, const YamlValue& value, const RobotTr
 
 int ChainNamedBy(const YamlValue& value, const Project& project) {
   const std::string name = value.Text();
-  try {
-    return FindChain(project, name);
-  } catch (const InputError& error) {
-    value.Fail(error.what());
-  }
+  return FindNamedBy(value, [&] { return FindChain(project, name); });
 }
 
 int FindChain(const Project& project, const std::string& name) {

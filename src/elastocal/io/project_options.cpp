@@ -1,30 +1,12 @@
-#include <cmath>
 #include <limits>
+#include <set>
 
 #include "elastocal/io/project_sections.hpp"
-#include "elastocal/io/text.hpp"
-#include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kRadiansPerDegree = M_PI / 180.0;
-constexpr double kMetresPerMm = 1e-3;
 constexpr double kMicro = 1e-6;
-
-/// A number above 0 and below 1.
-double Fraction(const YamlValue& value) {
-  const double fraction = value.Number();
-  value.Expect(fraction > 0.0 && fraction < 1.0, "a number above 0 and below 1");
-  return fraction;
-}
-
-/// A number above 0 and at most 1.
-double Threshold(const YamlValue& value) {
-  const double threshold = value.Number();
-  value.Expect(threshold > 0.0 && threshold <= 1.0, "a number above 0 and at most 1");
-  return threshold;
-}
 
 void ReadPrior(const YamlValue& section, Prior& prior) {
   struct Entry {
@@ -33,14 +15,14 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
     double unit;
   };
   static constexpr Entry kEntries[] = {
-      {"theta_deg", ParameterKind::kTheta, kRadiansPerDegree},
-      {"gamma_deg", ParameterKind::kGamma, kRadiansPerDegree},
-      {"alpha_deg", ParameterKind::kAlpha, kRadiansPerDegree},
-      {"beta_deg", ParameterKind::kBeta, kRadiansPerDegree},
-      {"r_mm", ParameterKind::kR, kMetresPerMm},
-      {"d_mm", ParameterKind::kD, kMetresPerMm},
-      {"b_mm", ParameterKind::kB, kMetresPerMm},
-      {"marker_mm", ParameterKind::kMarker, kMetresPerMm},
+      {"theta_deg", ParameterKind::kTheta, kOneDegree},
+      {"gamma_deg", ParameterKind::kGamma, kOneDegree},
+      {"alpha_deg", ParameterKind::kAlpha, kOneDegree},
+      {"beta_deg", ParameterKind::kBeta, kOneDegree},
+      {"r_mm", ParameterKind::kR, kOneMm},
+      {"d_mm", ParameterKind::kD, kOneMm},
+      {"b_mm", ParameterKind::kB, kOneMm},
+      {"marker_mm", ParameterKind::kMarker, kOneMm},
       {"torsion_urad_per_Nm", ParameterKind::kTorsion, kMicro},
       {"bending_urad_per_Nm", ParameterKind::kBending, kMicro},
       {"base_force_um_per_N", ParameterKind::kLegForce, kMicro},
@@ -51,47 +33,82 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
   for (const Entry& entry : kEntries) keys.emplace_back(entry.key);
   section.ExpectKeys(keys);
   for (const Entry& entry : kEntries) {
-    if (const auto sd = section.Find(entry.key)) {
-      prior[entry.kind] = entry.unit * sd->PositiveOrInfinity();
+    section.Read(entry.key, prior[entry.kind], kPositiveOrInfinity, entry.unit);
+  }
+}
+
+/// One of a few words, where the section has the key.
+template <typename Enum>
+void ReadChoice(const YamlValue& section, const char* key, Enum& option,
+                const std::vector<std::pair<std::string, Enum>>& choices) {
+  const auto value = section.Find(key);
+  if (!value) return;
+  std::vector<std::string> words;
+  std::string listed;
+  for (const auto& [word, meaning] : choices) {
+    if (value->Text() == word) {
+      option = meaning;
+      return;
+    }
+    words.push_back(word);
+    listed += (listed.empty() ? "" : " or ") + word;
+  }
+  value->Fail("unknown word '" + value->Text() + "'" + DidYouMean(value->Text(), words) +
+              "; expected " + listed);
+}
+
+/// Joints, ascending, whose names match a pattern.
+std::vector<int> MatchingJoints(const RobotTree& tree, const std::vector<std::string>& patterns) {
+  std::vector<Parameter> names;
+  for (const Joint& joint : tree.joints) {
+    names.push_back({joint.name, ParameterKind::kTheta, ParameterUnit::kRadian});
+  }
+  return MatchParameters(names, patterns);
+}
+
+void ReadPatterns(const YamlValue& section, const char* key, const RobotTree& tree,
+                  std::optional<std::vector<std::string>>& patterns) {
+  const auto list = section.Find(key);
+  if (!list) return;
+  patterns.emplace();
+  for (const YamlValue& value : list->Items()) {
+    patterns->push_back(value.Text());
+    if (MatchingJoints(tree, {value.Text()}).empty()) {
+      value.Fail("no joint matches '" + value.Text() + "'");
     }
   }
-}
-
-std::string Listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) text += (i == 0 ? "" : " or ") + words[i];
-  return text;
-}
-
-/// One of a few words.
-template <typename Enum>
-Enum Choice(const YamlValue& value, const std::vector<std::pair<std::string, Enum>>& choices) {
-  std::vector<std::string> words;
-  for (const auto& [word, meaning] : choices) {
-    if (value.Text() == word) return meaning;
-    words.push_back(word);
-  }
-  value.Fail("unknown word '" + value.Text() + "'" + DidYouMean(value.Text(), words) +
-             "; expected " + Listed(words));
 }
 
 }  // namespace
 
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {
   section.ExpectKeys({"parallel_tolerance_deg"});
-  if (const auto tolerance = section.Find("parallel_tolerance_deg")) {
-    const double degrees = tolerance->Number();
-    tolerance->Expect(degrees > 0.0 && degrees < 45.0, "an angle above 0 and below 45 degrees");
-    options.parallel_tolerance_rad = kRadiansPerDegree * degrees;
-  }
+  section.Read("parallel_tolerance_deg", options.parallel_tolerance_rad, {0.0, 45.0}, kOneDegree);
+}
+
+void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& options) {
+  section.ExpectKeys({"cutoff_hz", "filter_order", "longest_gap_s", "expected_lag_s",
+                      "longest_lag_s", "largest_lag_sd_ms", "largest_rest_lag_sd_ms",
+                      "rest_speed_mm_per_s", "hold_s", "samples_per_rest", "sine_rate_hz"});
+  constexpr double kMillisecond = 1e-3;
+  section.Read("cutoff_hz", options.smoothing.cutoff_hz, kPositive);
+  section.Read("filter_order", options.smoothing.filter_order, 1, 10);
+  section.Read("longest_gap_s", options.smoothing.longest_fill_s, kNotNegative);
+  if (const auto lag = section.Find("expected_lag_s")) options.expected_lag_s = lag->Number();
+  section.Read("longest_lag_s", options.clock.longest_lag_s,
+               {.lower = 0.0, .upper = 3600.0, .with_upper = true});
+  section.Read("largest_lag_sd_ms", options.clock.largest_sd_s, kPositive, kMillisecond);
+  section.Read("largest_rest_lag_sd_ms", options.largest_rest_lag_sd_s, kPositive, kMillisecond);
+  section.Read("rest_speed_mm_per_s", options.rest.threshold_m_per_s, kPositive, kOneMm);
+  section.Read("hold_s", options.rest.hold_s, kPositive);
+  section.Read("samples_per_rest", options.rest.samples_per_run, 1, 100000);
+  section.Read("sine_rate_hz", options.sine_rate_hz, kPositive);
 }
 
 void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options) {
   section.ExpectKeys({"postures", "tolerance", "seed", "hold"});
-  if (const auto postures = section.Find("postures")) {
-    options.postures = static_cast<int>(postures->Integer(1, 1000000));
-  }
-  if (const auto tolerance = section.Find("tolerance")) options.tolerance = Fraction(*tolerance);
+  section.Read("postures", options.postures, 1, 1000000);
+  section.Read("tolerance", options.tolerance, kFraction);
   if (const auto seed = section.Find("seed")) {
     options.seed =
         static_cast<std::uint64_t>(seed->Integer(0, std::numeric_limits<std::int64_t>::max()));
@@ -106,39 +123,63 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
                       "outlier_probability", "support_threshold", "correlation_threshold",
                       "max_iterations", "support", "load", "slip_mm"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
-  if (const auto widen = section.Find("widen_prior")) options.widen_prior = widen->Boolean();
-  if (const auto sd = section.Find("marker_sd_mm")) {
-    sd->Expect(sd->Number() >= 0.0, "a number of at least 0");
-    options.marker_sd = kMetresPerMm * sd->Number();
+  section.Read("widen_prior", options.widen_prior);
+  section.Read("marker_sd_mm", options.marker_sd, kNotNegative, kOneMm);
+  section.Read("plausible_marker_sd_mm", options.plausible_marker_sd, kPositiveOrInfinity, kOneMm);
+  section.Read("outlier_probability", options.outlier_probability, kFraction);
+  section.Read("support_threshold", options.support_threshold, kFractionOrOne);
+  section.Read("correlation_threshold", options.correlation_threshold, kFractionOrOne);
+  ReadChoice<SupportForm>(section, "support", options.support_form,
+                          {{"nuisance", SupportForm::kNuisance},
+                           {"foot_rooted", SupportForm::kFootRooted},
+                           {"penalty", SupportForm::kPenalty}});
+  ReadChoice<LoadSource>(section, "load", options.load.source,
+                         {{"torques", LoadSource::kTorques},
+                          {"wrench", LoadSource::kWrench},
+                          {"statics", LoadSource::kStatics}});
+  section.Read("slip_mm", options.slip, kPositiveOrInfinity, kOneMm);
+  section.Read("max_iterations", options.max_iterations, 1, 1000000);
+}
+
+void ReadElasticity(const YamlValue& section, Project& project) {
+  ElasticityChoice& choice = project.elasticity;
+  section.ExpectKeys({"torsion", "bending", "base", "torque_bias"});
+  ReadPatterns(section, "torsion", project.tree, choice.torsion);
+  ReadPatterns(section, "bending", project.tree, choice.bending);
+  section.Read("base", choice.base);
+  section.Read("torque_bias", choice.torque_bias);
+}
+
+ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& trials) {
+  std::set<int> standing, on_floor;  // links on which a trial stands alone; joints of any support
+  for (const Trial& trial : trials) {
+    if (trial.support.size() == 1) standing.insert(trial.support[0]);
+    for (int link : trial.support) {
+      for (int joint : JointsToBody(project.tree, project.tree.links[link].body)) {
+        on_floor.insert(joint);
+      }
+    }
   }
-  if (const auto sd = section.Find("plausible_marker_sd_mm")) {
-    options.plausible_marker_sd = kMetresPerMm * sd->PositiveOrInfinity();
+  Elasticity elasticity;
+  elasticity.torque_bias = project.elasticity.torque_bias;
+  for (const Chain& chain : project.chains) {
+    if (!project.elasticity.base || !standing.contains(chain.tip_link)) continue;
+    elasticity.legs.push_back({chain.name, chain.tip_link});
+    standing.erase(chain.tip_link);  // a second chain to the same foot is the same leg
   }
-  if (const auto probability = section.Find("outlier_probability")) {
-    options.outlier_probability = Fraction(*probability);
+  const bool trials_given = !trials.empty();
+  const ElasticityChoice& choice = project.elasticity;
+  if (choice.torsion || trials_given) {
+    elasticity.torsion =
+        MatchingJoints(project.tree, choice.torsion.value_or(std::vector<std::string>{"*"}));
   }
-  if (const auto threshold = section.Find("support_threshold")) {
-    options.support_threshold = Threshold(*threshold);
+  std::vector<int> bending(on_floor.begin(), on_floor.end());
+  if (choice.bending) bending = MatchingJoints(project.tree, *choice.bending);
+  for (int joint : bending) {
+    if (project.tree.joints[joint].type == JointType::kRevolute)
+      elasticity.bending.push_back(joint);
   }
-  if (const auto threshold = section.Find("correlation_threshold")) {
-    options.correlation_threshold = Threshold(*threshold);
-  }
-  if (const auto form = section.Find("support")) {
-    options.support_form = Choice<SupportForm>(*form, {{"nuisance", SupportForm::kNuisance},
-                                                       {"foot_rooted", SupportForm::kFootRooted},
-                                                       {"penalty", SupportForm::kPenalty}});
-  }
-  if (const auto load = section.Find("load")) {
-    options.load.source = Choice<LoadSource>(*load, {{"torques", LoadSource::kTorques},
-                                                     {"wrench", LoadSource::kWrench},
-                                                     {"statics", LoadSource::kStatics}});
-  }
-  if (const auto slip = section.Find("slip_mm")) {
-    options.slip = kMetresPerMm * slip->PositiveOrInfinity();
-  }
-  if (const auto iterations = section.Find("max_iterations")) {
-    options.max_iterations = static_cast<int>(iterations->Integer(1, 1000000));
-  }
+  return MakeErrorModel(project.tree, project.markers, project.placement, elasticity);
 }
 
 }  // namespace elastocal

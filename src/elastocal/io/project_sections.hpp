@@ -1,13 +1,20 @@
 #pragma once
 
+#include <cmath>
+#include <string>
+
 #include "elastocal/io/project.hpp"
+#include "elastocal/io/text.hpp"
 #include "elastocal/io/yaml_value.hpp"
+#include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
 
 /// Parts of a project file, in the order in which they are read: each reads the section of its name
 /// into `project` and needs those before it. All throw InputError naming file, line and key.
 void ReadMarkers(const YamlValue& section, Project& project);
+void ReadTorqueSensors(const YamlValue& section, Project& project);
+void ReadForceTorqueSensors(const YamlValue& section, Project& project);
 void ReadRecordingColumns(const YamlValue& section, Project& project);
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options);
 void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& options);
@@ -20,8 +27,36 @@ void ReadCollision(const YamlValue& section, Project& project);
 void ReadDesign(const YamlValue& section, Project& project);
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options);
 
-/// The link or movable joint that a value names.
+constexpr double kOneDegree = M_PI / 180.0;  // rad
+constexpr double kOneMm = 1e-3;              // m
+
+/// Three coordinates in mm as a point in m.
+Eigen::Vector3d PointFromMm(const YamlValue& value);
+
+/// What `find` returns; the InputError that it throws is said of `value`.
+template <typename Find>
+auto FindNamedBy(const YamlValue& value, const Find& find) {
+  try {
+    return find();
+  } catch (const InputError& error) {
+    value.Fail(error.what());
+  }
+}
+
+/// The name of a new item: no text where one of `items` has it already. `what` is what they are.
+template <typename Items>
+std::string NewName(const YamlValue& name, const char* what, const Items& items) {
+  for (const auto& item : items) {
+    if (item.name == name.Text()) {
+      name.Fail(std::string("a second ") + what + " of the name " + Quote(item.name));
+    }
+  }
+  return name.Text();
+}
+
+/// The link, links or movable joint that a value names.
 int LinkNamedBy(const YamlValue& value, const RobotTree& tree);
+std::vector<int> LinksNamedBy(const YamlValue& list, const RobotTree& tree);
 int JointNamedBy(const YamlValue& value, const RobotTree& tree);
 /// The joint `name`, a key whose value is `value`, with a position of its own: what another joint
 /// decides cannot be recorded or given.

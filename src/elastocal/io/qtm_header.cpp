@@ -6,6 +6,7 @@
 
 #include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/utf8.hpp"
 
 namespace elastocal {
 namespace {
@@ -72,6 +73,7 @@ class HeaderReader {
     const std::string first(Trim(line.substr(0, line.find('\t'))));
     if (header_.leading_columns || IsQtmGap(first) || ParseNumber(first)) return false;
     if (first == "Frame" || first == "Time" || first.ends_with(" X")) {
+      RequireUtf8(line, source_, header_.data_line);
       ReadColumnNames(Cells(line));
     } else if (IsKey(first)) {
       ReadKey(first, Cells(line));
@@ -91,7 +93,10 @@ class HeaderReader {
     const std::string value = cells.size() > 1 ? cells[1] : "";
     if (key == "NO_OF_FRAMES") header_.frames = Count(key, value);
     if (key == "NO_OF_MARKERS") marker_count_ = Count(key, value);
-    if (key == "MARKER_NAMES") SetNames({cells.begin() + 1, cells.end()});
+    if (key == "MARKER_NAMES") {
+      RequireUtf8(Line(), source_, header_.data_line);
+      SetNames({cells.begin() + 1, cells.end()});
+    }
     if (key == "DATA_INCLUDED" && value != "3D") {
       Fail("DATA_INCLUDED: found " + Quote(value) + "; 3D, positions of markers, was expected");
     }

@@ -50,6 +50,11 @@ TEST(QtmTsv, ReadsWhatQtmWrites) {
   EXPECT_NEAR(t.positions(2, 5), 0.0065, kRounding);
 }
 
+TEST(QtmTsv, RefusesNamesThatAreNotUtf8) {
+  ExpectError("FREQUENCY\t100\nMARKER_NAMES\tcaf\xe9\n", {"t.tsv:2: ", "UTF-8"});
+  ExpectError("FREQUENCY\t100\nFrame\tTime\tcaf\xe9 X\n", {"t.tsv:2: ", "UTF-8"});
+}
+
 TEST(QtmTsv, InfersTheColumnsFromTheirNumber) {
   for (const char* end : {"", "\t"}) {
     for (const char* leading : {"", "7\t", "7\t0.5\t"}) {

@@ -11,6 +11,7 @@
 
 #include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/utf8.hpp"
 
 namespace elastocal {
 namespace {

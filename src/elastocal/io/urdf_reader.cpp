@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <mutex>
 #include <set>
-
-#include <console_bridge/console.h>
-#include <urdf_parser/urdf_parser.h>
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/text.hpp"
-#include "elastocal/io/urdf_document.hpp"
+#include "elastocal/io/urdf_outline.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
@@ -20,128 +15,107 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Collects what urdfdom would print.
-class CapturedLog : public console_bridge::OutputHandler {
- public:
-  CapturedLog() : previous_(console_bridge::getOutputHandler()) {
-    console_bridge::useOutputHandler(this);
-  }
-  CapturedLog(const CapturedLog&) = delete;
-  CapturedLog& operator=(const CapturedLog&) = delete;
-  ~CapturedLog() override { console_bridge::useOutputHandler(previous_); }
-
-  void log(const std::string& text, console_bridge::LogLevel, const char*, int) override {
-    text_ += (text_.empty() ? "" : "; ") + text;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  console_bridge::OutputHandler* previous_;
-  std::string text_;
-};
-
-urdf::ModelInterfaceSharedPtr ReadModel(const UrdfDocument& document, const std::string& source) {
-  static std::mutex mutex;  // the log handler is one for the whole process
-  const std::lock_guard<std::mutex> lock(mutex);
-  const CapturedLog log;
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(document.canonical);
-  if (model == nullptr) throw InputError(source + ": not a usable URDF: " + log.text());
-  return model;
+/// Roll, pitch and yaw by a quaternion, which leaves the rotation orthonormal up to rounding.
+Transform ToTransform(const UrdfOrigin& origin) {
+  const Eigen::Vector3d half = 0.5 * origin.rpy;
+  const double cr = std::cos(half.x()), cp = std::cos(half.y()), cy = std::cos(half.z());
+  const double sr = std::sin(half.x()), sp = std::sin(half.y()), sy = std::sin(half.z());
+  const Eigen::Quaterniond rotation(cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy,
+                                    cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy);
+  return Eigen::Translation3d(origin.xyz) * rotation.normalized();
 }
 
-Transform ToTransform(const urdf::Pose& pose) {
-  Eigen::Quaterniond rotation;
-  pose.rotation.getQuaternion(rotation.x(), rotation.y(), rotation.z(), rotation.w());
-  return Eigen::Translation3d(pose.position.x, pose.position.y, pose.position.z) *
-         rotation.normalized();
-}
-
-Link ToLink(const urdf::Link& source) {
+Link ReadLink(const UrdfLink& source) {
   Link link;
   link.name = source.name;
   link.T_body_link = Transform::Identity();
-  if (source.inertial == nullptr) return link;
-  const urdf::Inertial& inertial = *source.inertial;
-  const Transform T_link_inertial = ToTransform(inertial.origin);
+  const auto inertial = source.element.Find("inertial");
+  if (!inertial) return link;
+  const Transform T_link_inertial = ToTransform(ReadUrdfOrigin(*inertial));
+  const XmlElement mass = inertial->Get("mass");
+  link.mass = mass.Number("value");
+  if (link.mass < 0.0) {
+    mass.Fail("found a mass of " + FormatNumber(link.mass) + " kg; at least 0 was expected");
+  }
+  const XmlElement entries = inertial->Get("inertia");
+  const double ixy = entries.Number("ixy"), ixz = entries.Number("ixz"),
+               iyz = entries.Number("iyz");
   Eigen::Matrix3d inertia;
-  inertia << inertial.ixx, inertial.ixy, inertial.ixz,  //
-      inertial.ixy, inertial.iyy, inertial.iyz,         //
-      inertial.ixz, inertial.iyz, inertial.izz;
-  link.mass = inertial.mass;
+  inertia << entries.Number("ixx"), ixy, ixz,  //
+      ixy, entries.Number("iyy"), iyz,         //
+      ixz, iyz, entries.Number("izz");
   link.com = T_link_inertial.translation();
   link.inertia = T_link_inertial.linear() * inertia * T_link_inertial.linear().transpose();
   return link;
 }
 
-JointLimits ToLimits(const urdf::Joint& source) {
-  JointLimits limits = {-kInfinity, kInfinity, kInfinity, kInfinity};
-  if (source.limits == nullptr) return limits;
-  limits.velocity = source.limits->velocity;
-  limits.effort = source.limits->effort;
-  if (source.type == urdf::Joint::CONTINUOUS) return limits;
-  limits.lower = source.limits->lower;
-  limits.upper = source.limits->upper;
-  return limits;
+Eigen::Vector3d ReadAxis(const UrdfJoint& joint) {
+  constexpr double kShortest = 1e-6;  // below this it is rounding noise, not a direction
+  const auto axis = joint.element.Find("axis");
+  if (!axis) return Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d xyz = axis->Vector("xyz");
+  if (xyz.stableNorm() < kShortest) axis->Fail("the axis is zero; a direction was expected");
+  return xyz.stableNormalized().normalized();
 }
 
-/// How a joint moves: position = multiplier * q[coordinate] + offset.
-struct Motion {
-  double multiplier, offset;
-  int coordinate;
-};
+JointLimits ReadLimits(const UrdfJoint& joint) {
+  JointLimits limits = {-kInfinity, kInfinity, kInfinity, kInfinity};
+  const bool continuous = joint.type == "continuous";
+  if (continuous && !joint.element.Find("limit")) return limits;
+  const XmlElement limit = joint.element.Get("limit");
+  limits.velocity = limit.Number("velocity");
+  limits.effort = limit.Number("effort");
+  const double lower = limit.NumberOr("lower", 0.0), upper = limit.NumberOr("upper", 0.0);
+  if (continuous) return limits;
+  limits.lower = lower;
+  limits.upper = upper;
+  if (lower > upper) {
+    limit.Fail("joint " + Quote(joint.name) + ": lower limit " + FormatNumber(lower) +
+               " is above upper limit " + FormatNumber(upper));
+  }
+  return limits;
+}
 
 /// Builds the tree of bodies outwards from the root.
 class TreeBuilder {
  public:
-  TreeBuilder(const UrdfDocument& document, const urdf::ModelInterface& model,
-              const std::string& source)
-      : document_(document), model_(model), source_(source) {}
+  explicit TreeBuilder(const UrdfOutline& outline) : outline_(outline) {}
 
   RobotTree Build() {
-    tree_.name = model_.getName();
+    tree_.name = outline_.robot;
     AddLinks();
-    ListChildJoints();
-    Reach(0);
+    child_joints_.resize(outline_.links.size());
+    for (std::size_t j = 0; j < outline_.joints.size(); ++j) {
+      child_joints_[outline_.joints[j].parent].push_back(static_cast<int>(j));
+    }
+    tree_joint_.resize(outline_.joints.size(), -1);
+    Reach(outline_.root);
     while (!ready_.empty()) {
       const int next = *ready_.begin();
       ready_.erase(ready_.begin());
-      AddMovable(document_.joints[next]);
+      AddMovable(next);
     }
     AssignCoordinates();
     return std::move(tree_);
   }
 
  private:
-  const urdf::Joint& Source(const std::string& joint) const {
-    const urdf::JointConstSharedPtr found = model_.getJoint(joint);
-    if (found == nullptr) throw InputError(source_ + ": urdfdom has no joint " + Quote(joint));
-    return *found;
-  }
-
-  void AddLink(const std::string& name) {
-    const urdf::LinkConstSharedPtr found = model_.getLink(name);
-    if (found == nullptr) throw InputError(source_ + ": urdfdom has no link " + Quote(name));
-    tree_.links.push_back(ToLink(*found));
-  }
-
+  /// The root first, the others as in the file, without that above a floating joint.
   void AddLinks() {
-    AddLink(document_.root);
-    for (const std::string& name : document_.links) {
-      if (name != document_.root) AddLink(name);
+    std::vector<int> order = {outline_.root};
+    const int carrier = outline_.links[outline_.root].parent_joint;
+    for (int i = 0; i < static_cast<int>(outline_.links.size()); ++i) {
+      const bool dropped = carrier >= 0 && i == outline_.joints[carrier].parent;
+      if (i != outline_.root && !dropped) order.push_back(i);
     }
-    for (std::size_t i = 0; i < tree_.links.size(); ++i) {
-      link_index_[tree_.links[i].name] = static_cast<int>(i);
+    tree_link_.resize(outline_.links.size(), -1);
+    for (int i : order) {
+      tree_link_[i] = static_cast<int>(tree_.links.size());
+      tree_.links.push_back(ReadLink(outline_.links[i]));
     }
   }
 
-  void ListChildJoints() {
-    child_joints_.resize(tree_.links.size());
-    for (std::size_t j = 0; j < document_.joints.size(); ++j) {
-      const UrdfJoint& joint = document_.joints[j];
-      if (!joint.dropped)
-        child_joints_[link_index_.at(joint.parent)].push_back(static_cast<int>(j));
-    }
-  }
+  Link& TreeLink(int i) { return tree_.links[tree_link_[i]]; }
 
   /// Links fixed to a reached one are reached with it; movable joints on it become ready.
   void Reach(int first) {
@@ -150,83 +124,76 @@ class TreeBuilder {
       const int parent = reached.back();
       reached.pop_back();
       for (int j : child_joints_[parent]) {
-        const UrdfJoint& joint = document_.joints[j];
+        const UrdfJoint& joint = outline_.joints[j];
         if (joint.type != "fixed") {
           ready_.insert(j);
           continue;
         }
-        Link& child = tree_.links[link_index_.at(joint.child)];
-        child.body = tree_.links[parent].body;
-        child.T_body_link = tree_.links[parent].T_body_link * Origin(joint.name);
-        reached.push_back(link_index_.at(joint.child));
+        TreeLink(joint.child).body = TreeLink(parent).body;
+        TreeLink(joint.child).T_body_link =
+            TreeLink(parent).T_body_link * ToTransform(joint.origin);
+        reached.push_back(joint.child);
       }
     }
   }
 
-  Transform Origin(const std::string& joint) const {
-    return ToTransform(Source(joint).parent_to_joint_origin_transform);
-  }
-
-  void AddMovable(const UrdfJoint& description) {
-    const urdf::Joint& source = Source(description.name);
+  void AddMovable(int j) {
+    const UrdfJoint& source = outline_.joints[j];
     Joint joint;
-    joint.name = description.name;
-    joint.type =
-        source.type == urdf::Joint::PRISMATIC ? JointType::kPrismatic : JointType::kRevolute;
-    joint.parent_link = link_index_.at(description.parent);
-    joint.child_link = link_index_.at(description.child);
-    joint.parent_body = tree_.links[joint.parent_link].body;
-    joint.T_parent_child = Origin(description.name);
-    joint.axis = Eigen::Vector3d(source.axis.x, source.axis.y, source.axis.z).normalized();
-    joint.limits = ToLimits(source);
-    joint.mimic = source.mimic != nullptr;
+    joint.name = source.name;
+    joint.type = source.type == "prismatic" ? JointType::kPrismatic : JointType::kRevolute;
+    joint.parent_link = tree_link_[source.parent];
+    joint.child_link = tree_link_[source.child];
+    joint.parent_body = TreeLink(source.parent).body;
+    joint.T_parent_child = ToTransform(source.origin);
+    joint.axis = ReadAxis(source);
+    joint.limits = ReadLimits(source);
+    joint.mimic = source.leader >= 0;
+    tree_joint_[j] = static_cast<int>(tree_.joints.size());
     tree_.joints.push_back(joint);
-    tree_.links[joint.child_link].body = static_cast<int>(tree_.joints.size());
-    Reach(joint.child_link);
+    TreeLink(source.child).body = static_cast<int>(tree_.joints.size());
+    Reach(source.child);
   }
 
   void AssignCoordinates() {
     for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
-      if (tree_.joints[k].mimic) continue;
-      motions_[tree_.joints[k].name] = Motion{1.0, 0.0, tree_.coordinate_count()};
+      Joint& joint = tree_.joints[k];
+      if (joint.mimic) continue;
+      joint.coordinate = tree_.coordinate_count();
       tree_.coordinate_joint.push_back(static_cast<int>(k));
     }
-    for (Joint& joint : tree_.joints) {
-      const Motion motion = FollowMimic(joint.name);
-      if (!std::isfinite(motion.offset) || !std::isfinite(motion.multiplier)) {
-        throw InputError(source_ + ": joint " + Quote(joint.name) +
-                         " mimics others with a multiplier or offset that is not finite");
+    std::vector<bool> done(outline_.joints.size(), false);
+    for (std::size_t j = 0; j < outline_.joints.size(); ++j) {
+      std::vector<int> followers;
+      for (int next = static_cast<int>(j); !done[next]; next = outline_.joints[next].leader) {
+        done[next] = true;
+        if (outline_.joints[next].leader < 0) break;
+        followers.push_back(next);
       }
-      joint.multiplier = motion.multiplier;
-      joint.offset = motion.offset;
-      joint.coordinate = motion.coordinate;
+      for (auto next = followers.rbegin(); next != followers.rend(); ++next) Follow(*next);
     }
   }
 
-  /// Along a line of mimic joints: position = m (m' q + o') + o.
-  Motion FollowMimic(std::string name) {
-    std::vector<std::string> followers;
-    for (; !motions_.contains(name); name = Source(name).mimic->joint_name) {
-      followers.push_back(name);
+  /// Position = m (m' q + o') + o, where the leader's is m' q + o'.
+  void Follow(int j) {
+    const UrdfJoint& source = outline_.joints[j];
+    const XmlElement mimic = source.element.Get("mimic");
+    const double multiplier = mimic.NumberOr("multiplier", 1.0);
+    Joint& joint = tree_.joints[tree_joint_[j]];
+    const Joint& leader = tree_.joints[tree_joint_[source.leader]];
+    joint.coordinate = leader.coordinate;
+    joint.multiplier = leader.multiplier * multiplier;
+    joint.offset = multiplier * leader.offset + mimic.NumberOr("offset", 0.0);
+    if (!std::isfinite(joint.offset) || !std::isfinite(joint.multiplier)) {
+      mimic.Fail("joint " + Quote(joint.name) +
+                 " mimics others with a multiplier or offset that is not finite");
     }
-    Motion motion = motions_.at(name);
-    std::reverse(followers.begin(), followers.end());
-    for (const std::string& follower : followers) {
-      const auto mimic = Source(follower).mimic;
-      motion.offset = mimic->multiplier * motion.offset + mimic->offset;
-      motion.multiplier *= mimic->multiplier;
-      motions_[follower] = motion;
-    }
-    return motion;
   }
 
-  const UrdfDocument& document_;
-  const urdf::ModelInterface& model_;
-  const std::string& source_;
+  const UrdfOutline& outline_;
   RobotTree tree_;
-  std::map<std::string, int> link_index_;
+  std::vector<int> tree_link_, tree_joint_;     ///< in the tree, of those of the outline
   std::vector<std::vector<int>> child_joints_;  ///< of every link, in the order of the file
-  std::map<std::string, Motion> motions_;       ///< of the joints done so far
   std::set<int> ready_;                         ///< movable joints whose parent link is placed
 };
 
@@ -237,9 +204,9 @@ RobotTree ReadUrdf(const std::filesystem::path& file) {
 }
 
 RobotTree ParseUrdf(const std::string& text, const std::string& source) {
-  const UrdfDocument document = CheckUrdf(text, source);
-  const urdf::ModelInterfaceSharedPtr model = ReadModel(document, source);
-  return TreeBuilder(document, *model, source).Build();
+  const XmlText xml(text, source);
+  const UrdfOutline outline = ReadUrdfOutline(xml);
+  return TreeBuilder(outline).Build();
 }
 
 }  // namespace elastocal

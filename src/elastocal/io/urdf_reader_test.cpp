@@ -49,7 +49,7 @@ TEST(UrdfReader, ReadsJoint) {
   EXPECT_EQ(tree.links[joint.parent_link].name, "a");
   EXPECT_EQ(tree.links[joint.child_link].name, "b");
   EXPECT_TRUE(joint.axis.isApprox(-Eigen::Vector3d::UnitZ(), 1e-15));
-  // urdfdom goes through a quaternion: a few roundings.
+  // By way of a quaternion: a few roundings.
   EXPECT_TRUE(joint.T_parent_child.isApprox(FromXyzRpy({1, 2, 3}, {0, 0, 0.5}), 1e-15));
   EXPECT_EQ(joint.limits.lower, -1.0);
   EXPECT_EQ(joint.limits.upper, 2.0);
@@ -156,17 +156,23 @@ TEST(UrdfReader, FloatingOrPlanarElsewhereIsAnError) {
 }
 
 TEST(UrdfReader, NamesMalformedXml) {
-  ExpectInputError(
-      [] { ParseUrdf("<robot name='r'>\n<link name='a'>\n</robot>", "r.urdf"); },
-      {"r.urdf:2: ", "malformed XML: a tag whose end is missing or is that of another"});
-  ExpectInputError([] { ParseUrdf("a,b\n1,2\n", "r.urdf"); },
-                   {"r.urdf:1: ", "malformed XML: text where a tag was expected"});
-  ExpectInputError([] { ParseUrdf("", "r.urdf"); }, {"r.urdf:1: ", "malformed XML: no tag at all"});
-  ExpectInputError([] { ParseUrdf("no markup", "r.urdf"); }, {"r.urdf:1: "});
-  ExpectInputError([] { ParseUrdf("<!-- only -->", "r.urdf"); }, {"r.urdf:1: ", "<robot>"});
-  ExpectInputError([] { ParseUrdf("\n<sdf/>", "r.urdf"); }, {"r.urdf:2: ", "<sdf>", "<robot>"});
-  ExpectInputError([] { ParseUrdf("<robot/>", "r.urdf"); }, {"r.urdf:1: ", "'name'"});
-  ExpectInputError([] { ParseUrdf("<robot name='r'/>", "r.urdf"); }, {"r.urdf:1: ", "no <link>"});
+  const auto expect = [](const std::string& text, std::initializer_list<std::string> parts) {
+    ExpectInputError([&] { ParseUrdf(text, "r.urdf"); }, parts);
+  };
+  expect("<robot name='r'>\n<link name='a'>\n</robot>",
+         {"r.urdf:3: ", "malformed XML: Start-end tags mismatch at 'robot>'"});
+  expect("<robot name='r'>\n<link name='a'/>\n",
+         {"r.urdf:3: ", "malformed XML: Start-end tags mismatch at the end of the text"});
+  expect("<robot name='r'>\n<link name=a/>\n</robot>", {"r.urdf:2: ", "attribute at 'a/>'"});
+  expect("<robot name='r'><!-- \n", {"r.urdf:2: ", "comment at the end of the text"});
+  expect("a,b\n1,2\n", {"r.urdf:1: ", "malformed XML: No document element found at 'a,b'"});
+  expect("", {"r.urdf:1: ", "malformed XML: No document element found at the end of the text"});
+  expect("<!-- only -->", {"r.urdf:1: ", "No document element found"});
+  expect("\n<sdf/>", {"r.urdf:2: ", "<sdf>", "<robot>"});
+  expect("<robot name='r'><link name='a'/></robot>\n<robot/>",
+         {"r.urdf:2: ", "second element", "'robot'"});
+  expect("<robot/>", {"r.urdf:1: ", "'name'"});
+  expect("<robot name='r'/>", {"r.urdf:1: ", "no <link>"});
 }
 
 TEST(UrdfReader, RefusesHostileBytes) {
@@ -174,9 +180,35 @@ TEST(UrdfReader, RefusesHostileBytes) {
                    {"r.urdf:2: ", "NUL"});
   ExpectInputError([] { ParseUrdf(std::string((16u << 20) + 1, ' '), "r.urdf"); },
                    {"r.urdf", "16 MiB"});
-  std::string nested;
-  for (int i = 0; i < 100000; ++i) nested += "<a>";
-  ExpectError(nested, {"r.urdf:2: ", "malformed XML: too many elements in one another"});
+  const std::string utf16 = {'\xff', '\xfe', '<', '\0', 'r', '\0'};
+  ExpectInputError([&] { ParseUrdf(utf16, "r.urdf"); }, {"r.urdf:1: ", "NUL", "UTF-8"});
+  ExpectError(Link("a\xe9"), {"r.urdf:2: ", "'name' of link", "text in UTF-8 was expected"});
+}
+
+/// Parsing, searching and destroying take no stack that grows with the depth.
+TEST(UrdfReader, PassesOverDeepNesting) {
+  std::string open, close;
+  for (int i = 0; i < 1000000; ++i) {
+    open += "<a>";
+    close += "</a>";
+  }
+  EXPECT_EQ(Parse(Link("a") + open + close).links.size(), 1u);
+  ExpectError(Link("a") + open, {"r.urdf:3: ", "malformed XML"});
+}
+
+TEST(UrdfReader, ReadsWhateverXmlMayHoldAroundTheRobot) {
+  const RobotTree tree = ParseUrdf(
+      "\xEF\xBB\xBF<?xml version='1.0' encoding='ISO-8859-1'?>\n"
+      "<!DOCTYPE robot [<!ENTITY x \"<link name='c'/>\">]><!-- caf\xe9 > <robot> --><?pi <a?>\n"
+      "<robot name='r'>words<link name='a'/><![CDATA[<link name='b'/>]]></robot>\n",
+      "r.urdf");
+  EXPECT_EQ(tree.links.size(), 1u);
+}
+
+TEST(UrdfReader, RefusesMoreLinksThanAnyRobotHas) {
+  std::string links;
+  for (int i = 0; i <= 5000; ++i) links += Link(std::to_string(i));
+  ExpectError(links, {"r.urdf:5002: ", "more than 5000 links"});
 }
 
 TEST(UrdfReader, NamesWrongStructure) {
@@ -211,6 +243,7 @@ TEST(UrdfReader, NamesWrongJoint) {
   ExpectError(Link("a") + "<joint name='j' type='fixed'><parent link='a'/></joint>",
               {"r.urdf:3: ", "'j'", "<child>"});
   ExpectError(Link("a") + "<joint type='fixed'/>", {"r.urdf:3: ", "<joint>", "'name'"});
+  ExpectError("<link name='a'\n name='b'/>", {"r.urdf:2: ", "second attribute 'name'"});
 }
 
 TEST(UrdfReader, NamesWrongNumbers) {

@@ -72,6 +72,23 @@ TEST(UrdfWriter, InsertsMissingAttributes) {
                      "<joint name=\"toe\" type=\"fixed\"><origin xyz=\"0 0 1\" rpy=\"2 0 0\"/>"));
 }
 
+// Entities shorten what the parser holds, and a byte order mark is skipped by it: neither may move
+// the places in the text.
+TEST(UrdfWriter, FindsPlacesBehindEntitiesAndMarks) {
+  const std::string text =
+      "\xEF\xBB\xBF<!-- caf\xe9 --><robot name=\"&lt;&lt;r&gt;&gt;\"><link name='a&#233;'/><link "
+      "name='b'/><joint type='fixed' note='&#62;>' name='&quot;j&quot;' ><parent link='a&#xE9;'/>"
+      "<child link='b'/><origin note='&amp;&amp;' rpy='&#49; 2 3' xyz = '0 0 0'/></joint></robot>";
+  const auto origins = ReadOrigins(text, "r.urdf");
+  EXPECT_EQ(origins.at("\"j\"").rpy, Eigen::Vector3d(1, 2, 3));
+  const auto changed = ReplaceOrigins(text, "r.urdf", {{"\"j\"", {{0, 0, 7}, {4, 2, 3}}}});
+  EXPECT_EQ(changed, Replaced(Replaced(text, "&#49; 2 3", "4 2 3"), "0 0 0", "0 0 7"));
+  const std::string without =
+      Replaced(text, "<origin note='&amp;&amp;' rpy='&#49; 2 3' xyz = '0 0 0'/>", "");
+  EXPECT_EQ(ReplaceOrigins(without, "r.urdf", {{"\"j\"", {{0, 0, 7}, {4, 2, 3}}}}),
+            Replaced(without, "' >", "' ><origin xyz=\"0 0 7\" rpy=\"4 2 3\"/>"));
+}
+
 TEST(UrdfWriter, NumbersReadBackExactly) {
   const UrdfOrigin origin{{0.1, 1.0 / 3.0, -1e-17}, {M_PI, 2e-300, 12345.678901234567}};
   const auto written = ReadOrigins(ReplaceOrigins(kUrdf, "r.urdf", {{"toe", origin}}), "r.urdf");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,13 +9,26 @@
 
 namespace elastocal {
 
+/// The numbers between two bounds, without the bounds unless they are said to count. An infinite
+/// upper bound that counts is written as `.inf`.
+struct NumberRange {
+  double lower, upper = std::numeric_limits<double>::infinity();
+  bool with_lower = false, with_upper = false;
+};
+constexpr NumberRange kPositive = {0.0};
+constexpr NumberRange kNotNegative = {.lower = 0.0, .with_lower = true};
+constexpr NumberRange kPositiveOrInfinity = {.lower = 0.0, .with_upper = true};
+constexpr NumberRange kFraction = {0.0, 1.0};
+constexpr NumberRange kFractionOrOne = {.lower = 0.0, .upper = 1.0, .with_upper = true};
+
 /// A value of a YAML file that knows its line and the keys that lead to it. Every method that asks
 /// for something the file does not hold throws InputError naming file, line and key, what was
 /// found and what was expected.
 class YamlValue {
  public:
   /// Reads one document. Anchors, aliases, twice given keys, keys that are not text, more than one
-  /// document, more than 1 MiB and nesting beyond 20 levels are errors, as is malformed YAML.
+  /// document, text that is not UTF-8, more than 1 MiB and nesting beyond 20 levels are errors, as
+  /// is malformed YAML.
   static YamlValue Parse(const std::string& text, const std::string& source);
 
   [[noreturn]] void Fail(const std::string& message) const;
@@ -36,11 +50,16 @@ class YamlValue {
   std::string Text() const;
   /// A finite number.
   double Number() const;
-  /// A number above zero, or .inf.
-  double PositiveOrInfinity() const;
+  double Number(const NumberRange& range) const;
   /// A whole number of at least `least` and at most `most`.
   std::int64_t Integer(std::int64_t least, std::int64_t most) const;
   bool Boolean() const;
+
+  /// Of a mapping: what the key holds, a number times `unit`, goes into `option`, which stays as it
+  /// is where there is no such key.
+  void Read(const char* key, double& option, const NumberRange& range, double unit = 1.0) const;
+  void Read(const char* key, int& option, int least, int most) const;
+  void Read(const char* key, bool& option) const;
 
  private:
   friend class YamlBuilder;

@@ -27,12 +27,16 @@ TEST(YamlValue, ReadsEveryKind) {
   EXPECT_TRUE(root.Get("nothing").Items().empty());
   EXPECT_TRUE(root.Get("nothing").Entries().empty());
   EXPECT_EQ(root.Get("text").Text(), "a b");
-  EXPECT_EQ(root.Get("whole").PositiveOrInfinity(), 7.0);
+  EXPECT_EQ(root.Get("whole").Number(kPositiveOrInfinity), 7.0);
   EXPECT_TRUE(root.Get("yes").Boolean());
-  EXPECT_EQ(Parse("sd: .inf").Get("sd").PositiveOrInfinity(),
+  EXPECT_EQ(Parse("sd: .inf").Get("sd").Number(kPositiveOrInfinity),
             std::numeric_limits<double>::infinity());
   EXPECT_FALSE(root.Find("absent"));
   EXPECT_TRUE(Parse("").Entries().empty());
+}
+
+TEST(YamlValue, RefusesWhatIsNotUtf8) {
+  ExpectParseError("a: \u00e9\nb: caf\xe9\n", {"p.yaml:2: ", "UTF-8"});
 }
 
 TEST(YamlValue, NamesFileLineAndPath) {
@@ -64,7 +68,7 @@ TEST(YamlValue, ChecksNumbers) {
     EXPECT_THROW(value(text).Number(), InputError) << text;
   }
   for (const char* text : {"0", "-1", "-.inf", "text"}) {
-    EXPECT_THROW(value(text).PositiveOrInfinity(), InputError) << text;
+    EXPECT_THROW(value(text).Number(kPositiveOrInfinity), InputError) << text;
   }
   for (const char* text : {"1.5", "1e3", "0", "11", "99999999999999999999", "ten"}) {
     ExpectInputError([&] { value(text).Integer(1, 10); }, {"p.yaml:1: x: ", "from 1 to 10"});
@@ -102,6 +106,33 @@ TEST(YamlValue, RefusesHostileText) {
   ExpectParseError(indented, {"p.yaml:21: ", "20 levels"});
   ExpectParseError(std::string((1u << 20) + 1, ' '), {"p.yaml", "1 MiB"});
   EXPECT_THROW(Parse(std::string("a: \0", 4)).Get("a").Number(), InputError);
+}
+
+TEST(YamlValue, ReadsKeysIntoOptions) {
+  const YamlValue root = Parse("a: 2\nb: 7\nc: true\n");
+  double number = 1.0, absent = 1.0;
+  int whole = 0;
+  bool flag = false;
+  root.Read("a", number, kPositive, 1e-3);
+  root.Read("no", absent, kPositive);
+  root.Read("b", whole, 1, 7);
+  root.Read("c", flag);
+  EXPECT_EQ(number, 2e-3);
+  EXPECT_EQ(absent, 1.0);
+  EXPECT_EQ(whole, 7);
+  EXPECT_TRUE(flag);
+  ExpectInputError([&] { root.Read("b", whole, 1, 6); }, {"p.yaml:2: b: ", "from 1 to 6"});
+}
+
+TEST(YamlValue, NumberRangesCountTheirBoundsWhereTheySay) {
+  const YamlValue one = Parse("1");
+  EXPECT_EQ(one.Number(kFractionOrOne), 1.0);
+  EXPECT_EQ(one.Number({1.0, 1.0, true, true}), 1.0);
+  ExpectInputError([&] { one.Number(kFraction); }, {"found '1'", "above 0 and below 1"});
+  ExpectInputError([&] { one.Number({1.0}); }, {"a number above 1"});
+  ExpectInputError([&] { one.Number({.lower = 2.0, .with_lower = true}); }, {"of at least 2"});
+  ExpectInputError([&] { one.Number({0.0, 0.5, true, true}); }, {"from 0 to 0.5"});
+  ExpectInputError([&] { Parse(".inf").Number(kPositive); }, {"found '.inf'"});
 }
 
 }  // namespace

@@ -8,6 +8,9 @@
 
 namespace elastocal {
 
+/// SHA-256 of bytes as 64 hexadecimal digits: tells whether an input is the same file.
+std::string Sha256(std::string_view bytes);
+
 /// Base64 (RFC 4648, with padding) of bytes.
 std::string Base64(std::string_view bytes);
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "elastocal/report/sha256.hpp"
+#include "elastocal/report/encoding.hpp"
 
 namespace elastocal {
 namespace {

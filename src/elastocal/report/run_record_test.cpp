@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "elastocal/report/sha256.hpp"
+#include "elastocal/report/encoding.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace elastocal {

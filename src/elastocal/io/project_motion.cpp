@@ -1,28 +1,19 @@
 #include <algorithm>
-#include <cmath>
+#include <set>
 
 #include "elastocal/io/project_sections.hpp"
-#include "elastocal/io/text.hpp"
-#include "elastocal/math/input_error.hpp"
 #include "elastocal/robot/moving_chain.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kRadiansPerDegree = M_PI / 180.0;
-constexpr double kMetresPerMm = 1e-3;
-
-Eigen::Vector3d ReadPoint(const YamlValue& value) {
+Eigen::Vector2d ReadCorner(const YamlValue& value) {
   const std::vector<YamlValue> items = value.Items();
-  value.Expect(items.size() == 3, "three numbers, x, y and z");
-  return kMetresPerMm * Eigen::Vector3d(items[0].Number(), items[1].Number(), items[2].Number());
+  value.Expect(items.size() == 2, "two numbers, x and y");
+  return kOneMm * Eigen::Vector2d(items[0].Number(), items[1].Number());
 }
 
-double ReadShare(const YamlValue& value, double below) {
-  const double share = value.Number();
-  value.Expect(share >= 0.0 && share <= below, "a number from 0 to " + FormatNumber(below));
-  return share;
-}
+constexpr NumberRange ShareUpTo(double most) { return {0.0, most, true, true}; }
 
 int SphereNamedBy(const YamlValue& value, const std::vector<CollisionSphere>& spheres) {
   std::vector<std::string> names;
@@ -33,15 +24,9 @@ int SphereNamedBy(const YamlValue& value, const std::vector<CollisionSphere>& sp
   value.Fail("there is no sphere " + Quote(value.Text()) + DidYouMean(value.Text(), names));
 }
 
-std::vector<int> ReadSupport(const YamlValue& value, const RobotTree& tree) {
-  std::vector<int> links;
-  for (const YamlValue& item : value.Items()) links.push_back(LinkNamedBy(item, tree));
-  return links;
-}
-
 Box ReadBox(const YamlValue& value) {
   value.ExpectKeys({"lower", "upper"});
-  const Box box{ReadPoint(value.Get("lower")), ReadPoint(value.Get("upper"))};
+  const Box box{PointFromMm(value.Get("lower")), PointFromMm(value.Get("upper"))};
   value.Expect((box.lower.array() < box.upper.array()).all(), "a lower corner below the upper one");
   return box;
 }
@@ -73,15 +58,14 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
     setup.mirror = project.chains[ChainNamedBy(*mirror, project)].name;
   }
   if (const auto support = value.Find("support")) {
-    setup.support = ReadSupport(*support, project.tree);
+    setup.support = LinksNamedBy(*support, project.tree);
   }
   if (const auto box = value.Find("box_mm")) setup.box = ReadBox(*box);
   if (const auto cone = value.Find("cone_deg")) {
-    const double degrees = cone->Number();
-    cone->Expect(degrees > 0.0 && degrees <= 180.0, "an angle above 0 and of at most 180 degrees");
-    setup.largest_turn = kRadiansPerDegree * degrees;
+    setup.largest_turn =
+        kOneDegree * cone->Number({.lower = 0.0, .upper = 180.0, .with_upper = true});
   }
-  if (const auto floor = value.Find("floor_mm")) setup.floor_z = kMetresPerMm * floor->Number();
+  if (const auto floor = value.Find("floor_mm")) setup.floor_z = kOneMm * floor->Number();
   if (const auto contacts = value.Find("contacts")) {
     setup.contacts = ReadContacts(*contacts, project.motion.spheres);
   }
@@ -107,8 +91,7 @@ void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& moti
   for (const auto& [name, value] : section.Entries()) {
     const int joint = DriverNamedBy(name, value, tree);
     const int i = tree.joints[joint].coordinate;
-    const double unit =
-        tree.joints[joint].type == JointType::kRevolute ? kRadiansPerDegree : kMetresPerMm;
+    const double unit = tree.joints[joint].type == JointType::kRevolute ? kOneDegree : kOneMm;
     motion.rest[i] = unit * value.Number();
     value.Expect(motion.rest[i] >= motion.lower[i] && motion.rest[i] <= motion.upper[i],
                  "a position within the joint's limits, " + FormatNumber(motion.lower[i] / unit) +
@@ -118,29 +101,35 @@ void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& moti
 
 }  // namespace
 
+void ReadStanding(const YamlValue& section, Project& project) {
+  section.ExpectKeys({"soles"});
+  const YamlValue list = section.Get("soles");
+  std::set<int> links;
+  for (const YamlValue& value : list.Items()) {
+    value.ExpectKeys({"link", "lower_mm", "upper_mm"});
+    Sole sole{LinkNamedBy(value.Get("link"), project.tree), ReadCorner(value.Get("lower_mm")),
+              ReadCorner(value.Get("upper_mm"))};
+    value.Expect((sole.lower.array() < sole.upper.array()).all(),
+                 "a lower corner below the upper one");
+    value.Expect(links.insert(sole.link).second, "a link that is no sole yet");
+    project.soles.push_back(sole);
+  }
+  list.Expect(project.soles.size() == 1 || project.soles.size() == 2, "one or two soles");
+}
+
 void ReadCollision(const YamlValue& section, Project& project) {
   section.ExpectKeys({"margin_mm", "spheres"});
   MotionSetup& motion = project.motion;
-  if (const auto margin = section.Find("margin_mm")) {
-    margin->Expect(margin->Number() >= 0.0, "a number of at least 0");
-    motion.sphere_margin = kMetresPerMm * margin->Number();
-  }
+  section.Read("margin_mm", motion.sphere_margin, kNotNegative, kOneMm);
   const auto spheres = section.Find("spheres");
   if (!spheres) return;
   for (const YamlValue& value : spheres->Items()) {
     value.ExpectKeys({"name", "link", "centre_mm", "radius_mm"});
     CollisionSphere sphere;
-    sphere.name = value.Get("name").Text();
-    for (const CollisionSphere& other : motion.spheres) {
-      if (other.name == sphere.name) {
-        value.Fail("a second sphere of the name " + Quote(sphere.name));
-      }
-    }
+    sphere.name = NewName(value.Get("name"), "sphere", motion.spheres);
     sphere.link = LinkNamedBy(value.Get("link"), project.tree);
-    sphere.p_link_centre = ReadPoint(value.Get("centre_mm"));
-    const YamlValue radius = value.Get("radius_mm");
-    radius.Expect(radius.Number() > 0.0, "a number above 0");
-    sphere.radius = kMetresPerMm * radius.Number();
+    sphere.p_link_centre = PointFromMm(value.Get("centre_mm"));
+    sphere.radius = kOneMm * value.Get("radius_mm").Number(kPositive);
     motion.spheres.push_back(std::move(sphere));
   }
 }
@@ -149,15 +138,13 @@ void ReadDesign(const YamlValue& section, Project& project) {
   section.ExpectKeys({"rest_deg", "limit_margin", "effort_share", "chains", "cameras_mm"});
   MotionSetup& motion = project.motion;
   if (const auto margin = section.Find("limit_margin")) {
-    SetLimits(project.tree, ReadShare(*margin, 0.4), motion);
+    SetLimits(project.tree, margin->Number(ShareUpTo(0.4)), motion);
     motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
   }
-  if (const auto share = section.Find("effort_share")) {
-    motion.effort_share = ReadShare(*share, 1.0);
-  }
+  section.Read("effort_share", motion.effort_share, ShareUpTo(1.0));
   if (const auto rest = section.Find("rest_deg")) ReadRest(*rest, project.tree, motion);
   if (const auto cameras = section.Find("cameras_mm")) {
-    for (const YamlValue& camera : cameras->Items()) motion.cameras.push_back(ReadPoint(camera));
+    for (const YamlValue& camera : cameras->Items()) motion.cameras.push_back(PointFromMm(camera));
   }
   if (const auto chains = section.Find("chains")) {
     for (const YamlValue& value : chains->Items()) {

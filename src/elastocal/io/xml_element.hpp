@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+#include <pugixml.hpp>
+
+namespace elastocal {
+
+class XmlElement;
+
+/// A parsed XML text whose elements know where they stand in it.
+class XmlText {
+ public:
+  /// Both must outlive the object. Throws InputError naming file and line: malformed XML, no
+  /// element or several at the top, a NUL byte, more than 16 MiB. Only UTF-8 is read, whatever the
+  /// text declares.
+  XmlText(const std::string& text, const std::string& source);
+  XmlText(const XmlText&) = delete;
+  XmlText& operator=(const XmlText&) = delete;
+
+  XmlElement Root() const;
+
+ private:
+  friend class XmlElement;
+
+  [[noreturn]] void Fail(std::size_t place, const std::string& message) const;
+  /// Where in the text a name or value stands that the parser returned.
+  std::size_t Offset(const char* parsed) const { return parsed - buffer_.data(); }
+
+  const std::string& text_;
+  const std::string& source_;
+  std::string buffer_;  ///< parsed in place: names and values of the tree point into it
+  pugi::xml_document tree_;
+};
+
+/// An element with checked access to what is in it. All methods throw InputError naming file and
+/// line where the file does not hold what is asked for.
+class XmlElement {
+ public:
+  /// The text must outlive the element.
+  XmlElement(const XmlText& text, pugi::xml_node node) : text_(&text), node_(node) {}
+
+  [[noreturn]] void Fail(const std::string& message) const;
+
+  std::string_view Tag() const { return node_.name(); }
+  std::vector<XmlElement> Children() const;
+  /// The child element of this name. Programs do not agree on which of two counts, so a second one
+  /// is an error.
+  std::optional<XmlElement> Find(const char* child) const;
+  XmlElement Get(const char* child) const;
+
+  bool Has(const char* attribute) const { return !node_.attribute(attribute).empty(); }
+  /// UTF-8, not empty and without control characters.
+  std::string Text(const char* attribute) const;
+  double Number(const char* attribute) const;
+  double NumberOr(const char* attribute, double otherwise) const;
+  /// Three numbers with spaces between them.
+  Eigen::Vector3d Vector(const char* attribute) const;
+
+  /// A piece of the text.
+  struct Range {
+    std::size_t begin, length;
+  };
+  /// The value of an attribute that is there, without its quotes.
+  Range ValueRange(const char* attribute) const;
+  /// After the name in the start tag, and after the start tag.
+  std::size_t NameEnd() const;
+  std::size_t StartTagEnd() const;
+
+ private:
+  pugi::xml_attribute Attribute(const char* attribute) const;
+  Range RangeOf(const pugi::xml_attribute& attribute) const;
+  std::string Label() const;
+  [[noreturn]] void FailAttribute(const char* attribute, const std::string& expected) const;
+
+  const XmlText* text_;
+  pugi::xml_node node_;
+};
+
+}  // namespace elastocal

@@ -1,0 +1,37 @@
+#include "elastocal/math/utf8.hpp"
+
+#include <algorithm>
+
+#include <boost/locale/utf.hpp>
+
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Place of the first character that is not UTF-8; the size of the text where there is none.
+std::size_t FindNotUtf8(std::string_view text) {
+  const char* const end = text.data() + text.size();
+  for (const char* at = text.data(); at != end;) {
+    const char* const begin = at;
+    const auto code = boost::locale::utf::utf_traits<char>::decode(at, end);
+    if (!boost::locale::utf::is_valid_codepoint(code)) return begin - text.data();
+  }
+  return text.size();
+}
+
+}  // namespace
+
+bool IsUtf8(std::string_view text) { return FindNotUtf8(text) == text.size(); }
+
+void RequireUtf8(std::string_view text, const std::string& source, int first_line) {
+  const std::size_t place = FindNotUtf8(text);
+  if (place == text.size()) return;
+  const std::string_view before = text.substr(0, place);
+  const auto line = first_line + std::count(before.begin(), before.end(), '\n');
+  const auto column = place - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+  throw InputError(source + ":" + std::to_string(line) + ": byte " + std::to_string(column) +
+                   " of the line is not UTF-8 (Latin-1?); save the file as UTF-8");
+}
+
+}  // namespace elastocal
