@@ -52,7 +52,7 @@ function geometryTable(joints, shown) {
     text: h('abbr', {title: what}, symbol), unit: unitOf(kind), number: true}))];
   const rows = [...joints].filter(([joint]) => shown(joint)).map(([joint, parameters]) =>
     [h('span', {title: joint}, pretty(joint)), ...kinds.map(({kind}) => valueCell(parameters.get(kind)))]);
-  return table({caption: 'Geometric errors of the joints: value and standard deviation', columns, rows, className: 'table1'});
+  return table({caption: 'Geometric errors of the joints: value and standard deviation', columns, rows, className: 'table1 geometry'});
 }
 
 /** The stiffness that a compliance means, where it is told from a rigid joint. */
