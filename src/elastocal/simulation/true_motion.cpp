@@ -8,8 +8,8 @@ namespace elastocal {
 namespace {
 
 void CheckStanding(const Transform& T_world_waist, double height, double time_s) {
-  constexpr double kFallen = 0.7;
-  if (T_world_waist.translation().z() > kFallen * height) return;
+  constexpr double kLeastHeight = 0.7;
+  if (T_world_waist.translation().z() > kLeastHeight * height) return;
   throw InputError("the robot fell after " + std::to_string(time_s) +
                    " s: a robot that stands freely needs motions that keep its balance");
 }
