@@ -162,9 +162,9 @@ TEST(UrdfReader, NamesMalformedXml) {
   expect("<robot name='r'>\n<link name='a'>\n</robot>",
          {"r.urdf:3: ", "malformed XML: Start-end tags mismatch at 'robot>'"});
   expect("<robot name='r'>\n<link name='a'/>\n",
-         {"r.urdf:3: ", "malformed XML: Start-end tags mismatch at the end of the text"});
+         {"r.urdf:2: ", "malformed XML: Start-end tags mismatch at the end of the text"});
   expect("<robot name='r'>\n<link name=a/>\n</robot>", {"r.urdf:2: ", "attribute at 'a/>'"});
-  expect("<robot name='r'><!-- \n", {"r.urdf:2: ", "comment at the end of the text"});
+  expect("<robot name='r'><!-- \n", {"r.urdf:1: ", "comment at the end of the text"});
   expect("a,b\n1,2\n", {"r.urdf:1: ", "malformed XML: No document element found at 'a,b'"});
   expect("", {"r.urdf:1: ", "malformed XML: No document element found at the end of the text"});
   expect("<!-- only -->", {"r.urdf:1: ", "No document element found"});

@@ -20,7 +20,8 @@ XmlText::XmlText(const std::string& text, const std::string& source)
   const pugi::xml_parse_result result = tree_.load_buffer_inplace(
       buffer_.data(), buffer_.size(), pugi::parse_escapes, pugi::encoding_utf8);
   if (!result) {
-    const auto place = std::min<std::size_t>(result.offset, text.size());
+    const bool no_element = result.status == pugi::status_no_document_element;
+    const auto place = no_element ? 0 : std::min<std::size_t>(result.offset, text.size());
     std::string_view rest = Trim(std::string_view(text).substr(place));
     rest = rest.substr(0, rest.find_first_of("\r\n"));
     Fail(place, std::string("malformed XML: ") + result.description() + " at " +
