@@ -1,14 +1,17 @@
-# The packages that the library needs, in one list for this build and for the installed
-# elastocalConfig.cmake: each entry is a name and, where it matters, the least version.
-set(ELASTOCAL_DEPENDENCIES
+# The packages that each component needs, in one place for this build and for the installed
+# elastocalConfig.cmake: an entry is a name and, where it matters, the least version. The component
+# planning needs those of calibration as well.
+set(ELASTOCAL_COMPONENTS calibration planning)
+set(ELASTOCAL_calibration_DEPENDENCIES
   "Eigen3 3.4"
   "Boost"
   "Ceres 2.1"
-  "Ipopt"
-  "mujoco 2.2.2"
   "pugixml"
   "OpenSSL"
   "yaml-cpp"
   "nlohmann_json"
   "fmt"
   "Threads")
+set(ELASTOCAL_planning_DEPENDENCIES
+  "Ipopt"
+  "mujoco 2.2.2")

@@ -1,18 +1,42 @@
 # Installs the program, the libraries with their headers, the embedded models, and the CMake package
-# that find_package(elastocal) reads. elastocal::elastocal stands for all layers together.
+# that find_package(elastocal COMPONENTS ...) reads.
+#
+#   calibration  the layer `pipeline` and all that it uses: neither MuJoCo nor Ipopt is needed
+#   planning     all other layers
+#
+# elastocal::elastocal stands for all layers, or for those of the components asked for.
 include(CMakePackageConfigHelpers)
 
+# All that a layer uses, transitively, and itself.
+function(elastocal_used_layers layer out)
+  set(used ${layer})
+  get_property(uses GLOBAL PROPERTY ELASTOCAL_LAYER_USES_${layer})
+  foreach(use IN LISTS uses)
+    elastocal_used_layers(${use} more)
+    list(APPEND used ${more})
+  endforeach()
+  list(REMOVE_DUPLICATES used)
+  set(${out} ${used} PARENT_SCOPE)
+endfunction()
+
 get_property(layers GLOBAL PROPERTY ELASTOCAL_LAYERS)
-list(TRANSFORM layers PREPEND elastocal_)
-add_library(elastocal_all INTERFACE)
-add_library(elastocal::elastocal ALIAS elastocal_all)
-set_target_properties(elastocal_all PROPERTIES EXPORT_NAME elastocal)
-target_link_libraries(elastocal_all INTERFACE ${layers})
+elastocal_used_layers(pipeline calibration_layers)
+set(planning_layers ${layers})
+list(REMOVE_ITEM planning_layers ${calibration_layers})
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/elastocal)
+add_library(elastocal_all INTERFACE)
+add_library(elastocal::elastocal ALIAS elastocal_all)
+foreach(component IN LISTS ELASTOCAL_COMPONENTS)
+  set(targets ${${component}_layers})
+  list(TRANSFORM targets PREPEND elastocal:: OUTPUT_VARIABLE ${component}_targets)
+  list(TRANSFORM targets PREPEND elastocal_)
+  target_link_libraries(elastocal_all INTERFACE ${targets})
+  install(TARGETS ${targets} EXPORT elastocal_${component} ARCHIVE)
+  install(EXPORT elastocal_${component} FILE elastocal_${component}.cmake NAMESPACE elastocal::
+    DESTINATION ${package_dir})
+endforeach()
 install(TARGETS elastocal RUNTIME)
-install(TARGETS elastocal_all ${layers} EXPORT elastocalTargets ARCHIVE)
-install(EXPORT elastocalTargets NAMESPACE elastocal:: DESTINATION ${package_dir})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/elastocal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp" PATTERN "cli" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/elastocal)

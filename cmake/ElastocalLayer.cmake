@@ -64,6 +64,7 @@ function(elastocal_layer name)
     list(REMOVE_ITEM sources ${tests})
   endif()
   set_property(GLOBAL APPEND PROPERTY ELASTOCAL_LAYERS ${name})
+  set_property(GLOBAL PROPERTY ELASTOCAL_LAYER_USES_${name} ${ARG_USES})
   string(JOIN " " uses ${ARG_USES})
   set_property(GLOBAL APPEND_STRING PROPERTY ELASTOCAL_LAYER_RULES "${name}: ${uses}\n")
 

@@ -75,5 +75,41 @@ TEST_F(Program, CompareRefusesOtherRobotsAndFoldersWithoutResult) {
   refused(out_ + " " + later, {"covariance.csv:2", "another calibration"});
 }
 
+// The files of a recording folder are inputs, each of them.
+TEST_F(Program, NoCommandReplacesTheFilesOfARecording) {
+  const Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
+  for (const char* name : {"a.tsv", "a.csv"}) scratch_.Write(name, "x\n");
+  scratch_.Write("experiment.yaml",
+                 "trials: [{name: a, chain: head, markers: a.tsv, joints: a.csv}]");
+  const std::string what = project.file.string() + " --recording " + scratch_.path().string();
+  for (const char* name : {"a.tsv", "a.csv", "experiment.yaml"}) {
+    const std::string input = (scratch_.path() / name).string();
+    const std::string before = ReadFile(input);
+    ExpectRefused(RunProgram("calibrate " + what + " -o " + out_ + " --json " + input),
+                  {name, "this is an input"});
+    ExpectRefused(RunProgram("validate " + what + " --calibration c.yaml --json " + input),
+                  {name, "this is an input"});
+    EXPECT_EQ(ReadFile(input), before);
+  }
+}
+
+TEST_F(Program, CompareAndInspectReplaceNoInput) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  for (const char* name : {"calibration.yaml", "covariance.csv"}) {
+    const std::string input = out_ + "/" + name;
+    const std::string before = ReadFile(input);
+    const ProgramResult result =
+        RunProgram("compare " + out_ + " " + out_ + " --json " + out_ + "/../out/" + name);
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_NE(result.err.find("this is an input"), std::string::npos) << result.err;
+    EXPECT_EQ(ReadFile(input), before);
+  }
+  const std::string urdf =
+      scratch_.Write("arm6.urdf", ReadFile(SourceFile("tests/robots/arm6.urdf")));
+  const std::string project = scratch_.Write("arm6_project.yaml", ReadFile(project_));
+  EXPECT_EQ(RunProgram("inspect " + project + " --json " + urdf).exit_code, 3);
+  EXPECT_EQ(ReadFile(urdf), ReadFile(SourceFile("tests/robots/arm6.urdf")));
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -169,6 +169,23 @@ TEST_F(Report, ShowsEarlierCalibrationsAndGoesWhereItIsTold) {
   EXPECT_EQ(lower.size(), (names * (names + 1) / 2 + 2) / 3 * 4);  // a byte a pair, in base64
 }
 
+TEST_F(Report, NeverReplacesWhatItShows) {
+  ASSERT_EQ(Calibrate().exit_code, 0);
+  std::filesystem::copy(out_, out_ + "_earlier");
+  std::ofstream(out_ + "/postures_summary.json") << "{}";
+  for (const std::string& input : {out_ + "/postures_summary.json", out_ + "/covariance.csv",
+                                   out_ + "_earlier/covariance.csv"}) {
+    const std::string before = ReadFile(input);
+    for (const char* option : {" --json ", " -o "}) {
+      const ProgramResult result =
+          RunProgram("report " + out_ + " --earlier " + out_ + "_earlier" + option + input);
+      EXPECT_EQ(result.exit_code, 3) << input;
+      EXPECT_NE(result.err.find("input"), std::string::npos) << result.err;
+      EXPECT_EQ(ReadFile(input), before);
+    }
+  }
+}
+
 TEST_F(Report, AFolderWithoutResultsIsBadInput) {
   std::filesystem::create_directory(out_);
   const ProgramResult empty = RunProgram("report " + out_);

@@ -16,6 +16,8 @@
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/posture_file.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -159,13 +161,17 @@ bool Exercises(const Recording& recording, Eigen::Index posture, const Project& 
 
 /// The postures of a recording, by chain of the project's design and of their mirror images.
 std::vector<ChainPostures> RecordedPostures(const AssessCommand& command) {
-  const Session session = OpenSession(command.project, command.recordings, command.common.seed);
+  const Project project = ReadProject(command.project);
+  const Recording recording =
+      ReadMeasurements(project, {command.recordings.begin(), command.recordings.end()},
+                       ReadFor::kAnyUse)
+          .calibration;
   std::vector<ChainPostures> sets;
-  for (const ChainSetup& setup : SetupsOfBothSides(session.project)) {
+  for (const ChainSetup& setup : SetupsOfBothSides(project)) {
     ChainPostures set{setup.name, setup.support, {}};
-    for (Eigen::Index i = 0; i < session.recording.q.rows(); ++i) {
-      if (Exercises(session.recording, i, session.project, setup)) {
-        set.q.push_back(session.recording.q.row(i).transpose());
+    for (Eigen::Index i = 0; i < recording.q.rows(); ++i) {
+      if (Exercises(recording, i, project, setup)) {
+        set.q.push_back(recording.q.row(i).transpose());
       }
     }
     if (!set.q.empty()) sets.push_back(std::move(set));

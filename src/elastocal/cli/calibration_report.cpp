@@ -8,6 +8,8 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/cli/trial_report.hpp"
+#include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "elastocal/io/summary.hpp"
+#include "elastocal/pipeline/calibrate_experiment.hpp"
 
 namespace elastocal::cli {
 

@@ -1,13 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "elastocal/cli/commands.hpp"
-#include "elastocal/cli/session.hpp"
-#include "elastocal/io/calibrated_urdf.hpp"
-#include "elastocal/io/summary.hpp"
+#include "elastocal/pipeline/calibrate_experiment.hpp"
 
 namespace elastocal::cli {
 

@@ -1,19 +1,13 @@
-#include <cmath>
-#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/comparison_report.hpp"
 #include "elastocal/cli/session.hpp"
-#include "elastocal/io/calibration_file.hpp"
-#include "elastocal/io/covariance_file.hpp"
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/math/input_error.hpp"
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/pipeline/compare_calibrations.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -24,42 +18,21 @@ struct CompareOptions {
   ComparisonOptions comparison;
 };
 
-struct CalibrationFiles {
-  std::filesystem::path calibration, covariance;
-};
-
-/// Of an output folder of calibrate, or of a calibration.yaml.
-CalibrationFiles FilesOf(const std::string& given) {
-  const std::filesystem::path path = given;
-  if (!std::filesystem::is_directory(path)) return {path, path.parent_path() / "covariance.csv"};
-  const CalibrationFiles files{path / "calibration.yaml", path / "covariance.csv"};
-  if (!std::filesystem::exists(files.calibration)) {
-    throw InputError(given + ": no calibration.yaml in this folder; expected the folder that " +
-                     "calibrate wrote a result to that can be deployed");
-  }
-  return files;
-}
-
-CalibrationEstimate ReadBoth(const CalibrationFiles& files) {
-  CalibrationEstimate estimate = ReadEstimate(files.calibration);
-  if (std::filesystem::exists(files.covariance)) ReadCovariance(files.covariance, estimate);
-  return estimate;
-}
-
 int Compare(const CompareOptions& options) {
-  const CalibrationFiles files_a = FilesOf(options.a);
-  const CalibrationFiles files_b = FilesOf(options.b);
-  CheckOutputs({options.common.json_file},
-               {files_a.calibration, files_a.covariance, files_b.calibration, files_b.covariance});
-  const CalibrationEstimate a = ReadBoth(files_a);
-  const CalibrationEstimate b = ReadBoth(files_b);
-  const CalibrationComparison comparison = CompareCalibrations(a, b, options.comparison);
-  Print(options.common.Silent(), DescribeComparison(a, b, comparison, options.comparison));
-  PrintWarnings(comparison.warnings);
-  if (!options.common.json_file.empty()) {
-    WriteFile(options.common.json_file,
-              MakeComparisonJson(a, b, comparison, options.comparison).dump(2) + "\n");
+  OutputSet outputs;
+  for (const std::string& given : {options.a, options.b}) {
+    const CalibrationFiles files = FindCalibrationFiles(given);
+    outputs.Protect({files.calibration, files.covariance});
   }
+  outputs.Declare(options.common.json_file);
+  outputs.Prepare();
+  const ComparisonRun run = CompareCalibrations(options.a, options.b, options.comparison);
+  outputs.Set(options.common.json_file,
+              MakeComparisonJson(run.a, run.b, run.comparison, options.comparison).dump(2) + "\n");
+  outputs.Publish();
+  Print(options.common.Silent(),
+        DescribeComparison(run.a, run.b, run.comparison, options.comparison));
+  PrintWarnings(run.comparison.warnings);
   return kFine;
 }
 

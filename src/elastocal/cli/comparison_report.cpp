@@ -7,6 +7,7 @@
 
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
 namespace {

@@ -4,14 +4,12 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/report/error_table_json.hpp"
 
 namespace elastocal::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// As the paper calls the models; the one that it does not have by what it estimates.
 const char* PaperName(ModelKind kind) {
@@ -26,19 +24,6 @@ const char* PaperName(ModelKind kind) {
       return "FCM";
   }
   return "";
-}
-
-const char* CaseName(TrialKind kind) {
-  switch (kind) {
-    case TrialKind::kSine:
-      return "SW";
-    case TrialKind::kRandom:
-      return "RP";
-    case TrialKind::kRepeatability:
-      return "RM";
-    default:
-      return "calibration";
-  }
 }
 
 /// The models of a table, the one with most parameters first, as the paper has them.
@@ -71,29 +56,6 @@ std::vector<std::string> Row(const ErrorTableRow& row, const std::string& name,
   return cells;
 }
 
-/// JSON has no infinity or NaN: null.
-Json InMillimetres(double metres) {
-  return std::isfinite(metres) ? Json(1e3 * metres) : Json(nullptr);
-}
-
-Json MetricsJson(const std::map<ModelKind, ErrorMetrics>& all) {
-  Json json;
-  for (const auto& [kind, metrics] : all) {
-    const bool known = metrics.observations > 0;
-    json["observations"] = metrics.observations;
-    json["rmse_3d_mm"][ModelKindName(kind)] = InMillimetres(metrics.rmse_3d);
-    json["rmse_coordinate_mm"][ModelKindName(kind)] = InMillimetres(metrics.rmse_coordinate);
-    json["max_mm"][ModelKindName(kind)] = known ? InMillimetres(metrics.maximum) : Json(nullptr);
-  }
-  return json;
-}
-
-Json RowJson(const ErrorTableRow& row) {
-  Json json{{"chain", row.group}, {"trials", row.trials}};
-  json.update(MetricsJson(row.metrics));
-  return json;
-}
-
 }  // namespace
 
 std::string DescribeErrorTable(const ErrorTable& table) {
@@ -103,7 +65,7 @@ std::string DescribeErrorTable(const ErrorTable& table) {
   for (const ModelKind kind : kinds) header.push_back(std::string(PaperName(kind)) + " max mm");
   header.emplace_back("sightings");
   TextTable text(header);
-  for (const ErrorTableRow& row : table.rows) text.Add(Row(row, CaseName(row.kind), kinds));
+  for (const ErrorTableRow& row : table.rows) text.Add(Row(row, ErrorTableCase(row.kind), kinds));
   for (const ErrorTableRow& row : table.groups) text.Add(Row(row, "all", kinds));
   std::vector<std::string> mean = {"mean of the cases", "", ""};
   for (const ModelKind kind : kinds) {
@@ -114,29 +76,6 @@ std::string DescribeErrorTable(const ErrorTable& table) {
   return text.Render() +
          "  RMSE of distances (3-D); FCM full model, GCM geometric, NCM not calibrated;\n"
          "  SW sinusoidal motions, RP random postures, RM repeatability motion\n";
-}
-
-Json MakeErrorTableJson(const ErrorTable& table) {
-  Json json;
-  json["rows"] = Json::array();
-  for (const ErrorTableRow& row : table.rows) {
-    Json item = RowJson(row);
-    item["case"] = CaseName(row.kind);
-    json["rows"].push_back(item);
-  }
-  json["chains"] = Json::array();
-  for (const ErrorTableRow& row : table.groups) json["chains"].push_back(RowJson(row));
-  json["trials"] = Json::array();
-  for (const TrialErrors& trial : table.trials) {
-    Json item{{"trial", trial.trial}, {"chain", trial.group}, {"case", CaseName(trial.kind)}};
-    item.update(MetricsJson(trial.metrics));
-    json["trials"].push_back(item);
-  }
-  json["mean_rmse_3d_mm"] = Json::object();
-  for (const auto& [kind, value] : table.mean_rmse_3d) {
-    json["mean_rmse_3d_mm"][ModelKindName(kind)] = InMillimetres(value);
-  }
-  return json;
 }
 
 }  // namespace elastocal::cli

@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "elastocal/validation/error_table.hpp"
 
 namespace elastocal::cli {
@@ -12,8 +10,5 @@ namespace elastocal::cli {
 /// postures, RM repeatability motion), RMSE of distances and the largest by model (FCM full, GCM
 /// geometric, NCM not calibrated), then the groups as a whole and the mean.
 std::string DescribeErrorTable(const ErrorTable& table);
-
-/// The same for programs; docs/formats.md.
-nlohmann::ordered_json MakeErrorTableJson(const ErrorTable& table);
 
 }  // namespace elastocal::cli

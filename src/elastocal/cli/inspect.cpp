@@ -3,19 +3,16 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/robot/statics.hpp"
-#include "elastocal/robot/subtree.hpp"
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/pipeline/inspect_robot.hpp"
+#include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct InspectOptions {
   CommonOptions common;
@@ -49,24 +46,6 @@ std::string MdhTable(const RobotTree& tree, const std::vector<JointPlacement>& p
   return table.Render();
 }
 
-Json MdhJson(const RobotTree& tree, const std::vector<JointPlacement>& placements) {
-  Json json = Json::array();
-  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
-    const JointPlacement& p = placements[k];
-    json.push_back({{"joint", tree.joints[k].name},
-                    {"general", p.general},
-                    {"parallel", p.parallel},
-                    {"gamma", p.gamma},
-                    {"b", p.b},
-                    {"beta", p.beta},
-                    {"alpha", p.alpha},
-                    {"d", p.d},
-                    {"theta", p.theta},
-                    {"r", p.r}});
-  }
-  return json;
-}
-
 std::string ParallelAxes(const RobotTree& tree, const std::vector<JointPlacement>& placements) {
   std::string text;
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
@@ -77,66 +56,26 @@ std::string ParallelAxes(const RobotTree& tree, const std::vector<JointPlacement
   return text.empty() ? "  none\n" : text;
 }
 
-/// What is identifiable of one chain.
-struct ChainReport {
-  std::string name;
-  int joints = 0;
-  ErrorModel model;
-  BaseParameters base;
-  std::vector<int> lost;  // by special marker positions
-};
-
-ChainReport InspectChain(const std::string& name, const RobotTree& tree,
-                         const std::vector<Marker>& markers, const Project& project,
-                         IdentifiabilityOptions options) {
-  ChainReport report{name, 0, MakeErrorModel(tree, markers, project.placement), {}, {}};
-  report.joints = static_cast<int>(report.model.active_joints.size());
-  report.base = FindBaseParameters(report.model, options);
-  if (report.base.geometric_count < report.base.theoretical_count && options.hold.empty()) {
-    report.lost = LostBySpecialMarkers(report.model, options);
-  }
-  return report;
-}
-
-std::vector<ChainReport> InspectChains(const Project& project,
-                                       const IdentifiabilityOptions& options) {
-  std::vector<ChainReport> reports;
-  for (const Chain& chain : project.chains) {
-    std::vector<Marker> markers;
-    for (const std::string& name : ChainMarkers(project, chain)) {
-      for (const Marker& marker : project.markers) {
-        if (marker.name == name) markers.push_back(marker);
-      }
-    }
-    if (markers.empty()) continue;
-    const RobotTree tree = Subtree(project.tree, chain.from_link);
-    reports.push_back(InspectChain(chain.name, tree, SubtreeMarkers(project.tree, tree, markers),
-                                   project, options));
-  }
-  reports.push_back(InspectChain("(all markers)", project.tree, project.markers, project, options));
-  return reports;
-}
-
-std::string CountTable(const std::vector<ChainReport>& reports) {
+std::string CountTable(const std::vector<ChainInspection>& chains) {
   TextTable table({"chain", "joints", "markers", "parameters", "held", "identifiable", "4R+2P+3N_M",
                    "smallest kept", "largest dropped"});
-  for (const ChainReport& report : reports) {
-    table.Add(
-        {report.name, std::to_string(report.joints), std::to_string(report.model.marker_count()),
-         std::to_string(report.model.parameter_count()), std::to_string(report.base.held.size()),
-         std::to_string(report.base.geometric_count), std::to_string(report.base.theoretical_count),
-         fmt::format("{:.1e}", report.base.smallest_kept),
-         fmt::format("{:.1e}", report.base.largest_dropped)});
+  for (const ChainInspection& chain : chains) {
+    table.Add({chain.name, std::to_string(chain.joints), std::to_string(chain.model.marker_count()),
+               std::to_string(chain.model.parameter_count()),
+               std::to_string(chain.base.held.size()), std::to_string(chain.base.geometric_count),
+               std::to_string(chain.base.theoretical_count),
+               fmt::format("{:.1e}", chain.base.smallest_kept),
+               fmt::format("{:.1e}", chain.base.largest_dropped)});
   }
   return table.Render();
 }
 
-std::string RegroupingText(const ChainReport& report) {
+std::string RegroupingText(const ChainInspection& chain) {
   std::string text;
-  const auto& parameters = report.model.parameters;
-  for (std::size_t d = 0; d < report.base.dropped.size(); ++d) {
-    text += "  " + parameters[report.base.dropped[d]].name + " ->";
-    for (const Share& share : RegroupedInto(report.base, static_cast<int>(d))) {
+  const auto& parameters = chain.model.parameters;
+  for (std::size_t d = 0; d < chain.base.dropped.size(); ++d) {
+    text += "  " + parameters[chain.base.dropped[d]].name + " ->";
+    for (const Share& share : RegroupedInto(chain.base, static_cast<int>(d))) {
       text += fmt::format(" {:+.4g} {}", share.coefficient, parameters[share.parameter].name);
     }
     text += "\n";
@@ -144,83 +83,40 @@ std::string RegroupingText(const ChainReport& report) {
   return text;
 }
 
-Json ChainJson(const ChainReport& report) {
-  const auto names = [&](const std::vector<int>& which) {
-    Json list = Json::array();
-    for (int i : which) list.push_back(report.model.parameters[i].name);
-    return list;
-  };
-  Json regrouping = Json::object();
-  for (std::size_t d = 0; d < report.base.dropped.size(); ++d) {
-    Json into = Json::object();
-    for (const Share& share : RegroupedInto(report.base, static_cast<int>(d))) {
-      into[report.model.parameters[share.parameter].name] = share.coefficient;
-    }
-    regrouping[report.model.parameters[report.base.dropped[d]].name] = into;
+void PrintInspection(const Project& project, const RobotInspection& inspection, bool regrouping,
+                     bool quiet) {
+  Print(quiet,
+        fmt::format("Robot {}: {} links, {} movable joints, {:.3f} kg\n\n", project.tree.name,
+                    project.tree.links.size(), project.tree.joints.size(), inspection.mass));
+  Print(quiet,
+        "Modified Denavit-Hartenberg constants (eq. 1; gamma and b after the waist and after "
+        "branches)\n" +
+            MdhTable(project.tree, inspection.placements));
+  Print(quiet, "\nParallel consecutive axes (beta in use)\n" +
+                   ParallelAxes(project.tree, inspection.placements));
+  Print(quiet, "\nIdentifiable parameters\n" + CountTable(inspection.chains));
+  for (const ChainInspection& chain : inspection.chains) {
+    Print(quiet, fmt::format("\n{}: not identifiable beside the others: {}\n", chain.name,
+                             JoinNames(chain.model.parameters, chain.base.dropped)));
+    if (regrouping) Print(quiet, RegroupingText(chain));
   }
-  return {{"chain", report.name},
-          {"joints", report.joints},
-          {"markers", report.model.marker_count()},
-          {"parameters", report.model.parameter_count()},
-          {"identifiable", report.base.geometric_count},
-          {"identifiable_theory", report.base.theoretical_count},
-          {"smallest_kept", report.base.smallest_kept},
-          {"largest_dropped", report.base.largest_dropped},
-          {"held", names(report.base.held)},
-          {"kept", names(report.base.kept)},
-          {"dropped_regrouped_into", regrouping},
-          {"lost_by_special_markers", names(report.lost)}};
+  PrintWarnings(inspection.warnings);
 }
 
 int Inspect(const InspectOptions& options) {
   const Project project = ReadProject(options.project);
-  CheckOutputs({options.common.json_file}, {options.project, project.urdf});
-  IdentifiabilityOptions identifiability = project.identifiability;
-  if (options.common.seed) identifiability.seed = *options.common.seed;
-  if (!options.hold.empty()) identifiability.hold = options.hold;
-  identifiability.external =
-      options.external == "last" ? ExternalPriority::kLast : ExternalPriority::kFirst;
-  if (!identifiability.hold.empty()) {
-    const ErrorModel all = MakeErrorModel(project.tree, project.markers, project.placement);
-    CheckPatterns(all.parameters, identifiability.hold);
-  }
-
-  const std::vector<JointPlacement> placements = PlaceJoints(project.tree, project.placement);
-  const std::vector<ChainReport> reports = InspectChains(project, identifiability);
-  const bool quiet = options.common.Silent();
-  Print(quiet, fmt::format("Robot {}: {} links, {} movable joints, {:.3f} kg\n\n",
-                           project.tree.name, project.tree.links.size(), project.tree.joints.size(),
-                           TotalMass(project.tree)));
-  Print(quiet,
-        "Modified Denavit-Hartenberg constants (eq. 1; gamma and b after the waist and after "
-        "branches)\n" +
-            MdhTable(project.tree, placements));
-  Print(quiet,
-        "\nParallel consecutive axes (beta in use)\n" + ParallelAxes(project.tree, placements));
-  Print(quiet, "\nIdentifiable parameters\n" + CountTable(reports));
-  std::vector<std::string> warnings;
-  Json chains = Json::array();
-  for (const ChainReport& report : reports) {
-    if (!report.lost.empty()) {
-      warnings.push_back(report.name + ": special marker positions lose " +
-                         JoinNames(report.model.parameters, report.lost));
-    }
-    Print(quiet, fmt::format("\n{}: not identifiable beside the others: {}\n", report.name,
-                             JoinNames(report.model.parameters, report.base.dropped)));
-    if (options.regrouping) Print(quiet, RegroupingText(report));
-    chains.push_back(ChainJson(report));
-  }
-  PrintWarnings(warnings);
-  if (!options.common.json_file.empty()) {
-    const Json json = {{"robot", project.tree.name},
-                       {"links", project.tree.links.size()},
-                       {"joints", project.tree.joints.size()},
-                       {"mass_kg", TotalMass(project.tree)},
-                       {"mdh", MdhJson(project.tree, placements)},
-                       {"chains", chains},
-                       {"warnings", warnings}};
-    WriteFile(options.common.json_file, json.dump(2) + "\n");
-  }
+  OutputSet outputs;
+  outputs.Protect({options.project, project.urdf});
+  outputs.Declare(options.common.json_file);
+  outputs.Prepare();
+  InspectionOptions inspect;
+  if (!options.hold.empty()) inspect.hold = options.hold;
+  if (options.external == "last") inspect.external = ExternalPriority::kLast;
+  inspect.seed = options.common.seed;
+  const RobotInspection inspection = InspectRobot(project, inspect);
+  outputs.Set(options.common.json_file, MakeInspectionJson(project, inspection));
+  outputs.Publish();
+  PrintInspection(project, inspection, options.regrouping, options.common.Silent());
   return kFine;
 }
 

@@ -7,9 +7,8 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
-#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/report/page.hpp"
 
 namespace elastocal::cli {
@@ -29,18 +28,18 @@ int Report(const ReportOptions& options) {
   const std::filesystem::path folder = options.folder;
   const std::filesystem::path output =
       options.output.empty() ? folder / "report.html" : std::filesystem::path(options.output);
-  std::vector<std::filesystem::path> inputs;
-  for (const char* name : {"summary.json", "report_data.json", "calibration.yaml", "covariance.csv",
-                           "validation.json", "comparison.json", "runs.json", "motion.csv"}) {
-    inputs.push_back(folder / name);
-  }
-  CheckOutputs({output, options.common.json_file}, inputs);
-  const std::string page = MakeFolderPage(folder, options.earlier);
-  WriteFile(output, page);
-  if (!options.common.json_file.empty()) {
-    const nlohmann::ordered_json json = {{"report", output.string()}, {"bytes", page.size()}};
-    WriteFile(options.common.json_file, json.dump(2) + "\n");
-  }
+  const std::vector<std::filesystem::path> earlier(options.earlier.begin(), options.earlier.end());
+  RecoverOutputs(folder);
+  OutputSet outputs;
+  outputs.Protect(PageInputs(folder, earlier));
+  outputs.Declare(output);
+  outputs.Declare(options.common.json_file);
+  outputs.Prepare();
+  const std::string page = MakeFolderPage(folder, ELASTOCAL_VERSION, earlier);
+  outputs.Set(output, page);
+  const nlohmann::ordered_json json = {{"report", output.string()}, {"bytes", page.size()}};
+  outputs.Set(options.common.json_file, json.dump(2) + "\n");
+  outputs.Publish();
   Print(options.common.Silent() || options.output == "-",
         fmt::format("Report: {} ({:.1f} MB)\n", output.string(),
                     1e-6 * static_cast<double>(page.size())));

@@ -9,6 +9,7 @@
 #include "elastocal/cli/error_table_report.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/measurement/describe_posture.hpp"
 
 namespace elastocal::cli {
 namespace {

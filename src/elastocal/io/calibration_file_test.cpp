@@ -7,7 +7,6 @@
 
 #include "elastocal/io/covariance_file.hpp"
 #include "elastocal/io/output_files.hpp"
-#include "elastocal/io/summary.hpp"
 #include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"

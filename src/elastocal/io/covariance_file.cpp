@@ -71,11 +71,31 @@ void ReadRow(const std::vector<std::string>& cells, const std::string& source, i
 
 }  // namespace
 
+std::string MakeCovarianceCsv(const CalibrationResult& result) {
+  const std::vector<int>& parameters = result.posterior.parameters;
+  std::string text = "parameter";
+  for (int i : parameters) text += "," + result.model.parameters[i].name;
+  text += "\n";
+  for (std::size_t row = 0; row < parameters.size(); ++row) {
+    text += result.model.parameters[parameters[row]].name;
+    for (std::size_t column = 0; column < parameters.size(); ++column) {
+      text += "," + FormatNumber(result.posterior.covariance(static_cast<Eigen::Index>(row),
+                                                             static_cast<Eigen::Index>(column)));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 void ReadCovariance(const std::filesystem::path& file, CalibrationEstimate& estimate) {
-  const std::string source = file.string();
+  std::ifstream stream = OpenTable(file);
+  ReadCovariance(stream, file.string(), estimate);
+}
+
+void ReadCovariance(std::istream& stream, const std::string& source,
+                    CalibrationEstimate& estimate) {
   ByName known;
   for (const ParameterEstimate& parameter : estimate.parameters) known[parameter.name] = &parameter;
-  std::ifstream stream = OpenTable(file);
   TableLines lines(stream, source);
   estimate.covariance_names = ReadHeader(lines, source, known);
   const auto size = static_cast<Eigen::Index>(estimate.covariance_names.size());

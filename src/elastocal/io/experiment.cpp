@@ -89,6 +89,7 @@ TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Proje
   value.ExpectKeys({"name", "kind", "chain", "chains", "support", "markers", "joints",
                     "expected_lag_s", "truth"});
   TrialFiles trial;
+  CheckFileName(value.Get("name"));
   trial.name = value.Get("name").Text();
   if (const auto kind = value.Find("kind")) trial.kind = ReadKind(*kind);
   trial.chains = ReadChains(value, project);

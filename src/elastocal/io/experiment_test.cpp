@@ -105,6 +105,8 @@ TEST_F(ExperimentTest, NamesWrongValues) {
   ExpectTrialError(", chain: head, support: [left_soul]", {"did you mean 'left_sole'"});
   ExpectTrialError(", chain: head, support: [left_foot]", {"'left_foot' is not the tip"});
   ExpectTrialError(", chain: head, support: [left_sole, left_sole]", {"link comes twice"});
+  ExpectError("trials:\n  - {name: ../b, chain: head, markers: a.tsv, joints: a.csv}",
+              {"experiment.yaml:2: trials[0].name: found '../b'", "can name a file"});
   ExpectTrialError(", chain: head, kind: sinus",
                    {"experiment.yaml:1: ", "kind", "'sinus'", "did you mean 'sine'"});
 }
@@ -126,7 +128,7 @@ TEST_F(ExperimentTest, NamesWrongFiles) {
 TEST_F(ExperimentTest, WritesWhatItReads) {
   Experiment written;
   written.trials.resize(4);
-  const char* names[] = {"plain", "null", "* a: b #c", "2"};
+  const char* names[] = {"plain", "null", "a-b.c", "2"};
   for (std::size_t i = 0; i < written.trials.size(); ++i) {
     TrialFiles& trial = written.trials[i];
     trial.name = names[i];

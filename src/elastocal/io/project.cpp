@@ -51,6 +51,7 @@ void ReadChains(const YamlValue& section, Project& project) {
   for (const YamlValue& value : section.Items()) {
     value.ExpectKeys({"name", "from", "tip"});
     Chain chain;
+    CheckFileName(value.Get("name"));
     chain.name = NewName(value.Get("name"), "chain", project.chains);
     if (const auto from = value.Find("from")) chain.from_link = LinkNamedBy(*from, project.tree);
     chain.tip_link = LinkNamedBy(value.Get("tip"), project.tree);
@@ -92,6 +93,14 @@ void ReadSettings(const YamlValue& root, Project& project) {
 }
 
 }  // namespace
+
+void CheckFileName(const YamlValue& name) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
+  const std::string text = name.Text();
+  name.Expect(text.find_first_not_of(kPlain) == std::string::npos && text != "." && text != "..",
+              "a name that can name a file: letters without accents, digits, '_', '.' and '-'");
+}
 
 int LinkNamedBy(const YamlValue& value, const RobotTree& tree) {
   const std::string name = value.Text();

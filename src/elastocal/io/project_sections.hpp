@@ -54,6 +54,10 @@ std::string NewName(const YamlValue& name, const char* what, const Items& items)
   return name.Text();
 }
 
+/// Fails unless the text can name a file: letters, digits, underscore, point and hyphen, and not
+/// only one or two points. So no file lands outside of its folder.
+void CheckFileName(const YamlValue& name);
+
 /// The link, links or movable joint that a value names.
 int LinkNamedBy(const YamlValue& value, const RobotTree& tree);
 std::vector<int> LinksNamedBy(const YamlValue& list, const RobotTree& tree);

@@ -247,6 +247,10 @@ TEST(Project, NamesUnknownLinksAndJoints) {
 
 TEST(Project, ChecksChains) {
   ExpectError("chains: [{name: a, tip: tool}, {name: a, tip: tool}]", {"second chain", "'a'"});
+  for (const char* name : {"../x", "'..'", "left arm", "a/b", "b\u00e8ta", "."}) {
+    ExpectError(std::string("chains:\n  - {name: ") + name + ", tip: tool}",
+                {"p.yaml:4: chains[0].name: found ", "can name a file"});
+  }
   ExpectError("chains: [{name: a, tip: rail}]", {"chains[0]", "no joint", "'rail'"});
   ExpectError("chains: [{name: a, from: tool, tip: forearm}]",
               {"'tool' does not carry link 'forearm'"});

@@ -33,7 +33,7 @@ struct UrdfOutline {
   int root = -1;  ///< link, after a floating joint was dropped
 };
 
-/// The <origin> of a joint or an inertia; zeros for what is left out.
+/// The origin of a joint or an inertia; zeros for what is left out.
 UrdfOrigin ReadUrdfOrigin(const XmlElement& parent);
 
 /// Reads the outline of a URDF and checks that it is a tree. Throws InputError naming file and

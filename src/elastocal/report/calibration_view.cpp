@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/report/encoding.hpp"
+#include "elastocal/report/error_table_json.hpp"
 #include "elastocal/report/residual_figures.hpp"
 #include "elastocal/report/scenes.hpp"
 
@@ -123,7 +124,7 @@ std::string MakeReportDataJson(const CalibrationView& view) {
   json["clusters_on"] = view.held_out != nullptr ? "on motions that took no part in the estimate"
                                                  : "on the calibration postures";
   json["scenes"] = MakeScenes(view);
-  if (!view.error_table.empty()) json["error_table"] = Json::parse(view.error_table);
+  if (view.held_out != nullptr) json["error_table"] = MakeErrorTableJson(view.held_out->table);
   json["distributions"] = MakeDistributions(view);
   json["traces"] = MakeTraces(view);
   json["signals"] = SignalsJson(view.trials);

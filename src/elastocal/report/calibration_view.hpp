@@ -62,7 +62,6 @@ struct CalibrationView {
   const Recording& validation;        ///< may have no postures
   const HeldOut* held_out = nullptr;  ///< of `validation`
   const std::vector<TrialSummary>& trials;
-  std::string error_table;  ///< JSON of Table 2; empty: there is none
 };
 
 /// report_data.json (docs/formats.md): recorded postures and motions with measured and predicted

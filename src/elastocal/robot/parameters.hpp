@@ -41,10 +41,10 @@ inline constexpr int kParameterUnitCount = 6;
 
 /// One entry of the vector of errors: a deviation from the nominal model, zero at nominal.
 struct Parameter {
-  /// `<joint>.theta|r|d|b|alpha|beta|gamma`, `waist.T0.gamma|b|alpha|d|theta|r` or
-  /// `marker.<marker>.x|y|z` (in the frame of the link that carries the marker); elastic ones
-  /// `<joint>.compliance_x|y|z` (axes of its twisted frame, see mdh_frames.hpp: z is torsion),
-  /// `<leg>.compliance_x|y|z|rx|ry|rz` (axes of its foot) and `<joint>.torque_bias`.
+  /// JOINT.theta|r|d|b|alpha|beta|gamma, waist.T0.gamma|b|alpha|d|theta|r or
+  /// marker.MARKER.x|y|z (in the frame of the link that carries the marker); elastic ones
+  /// JOINT.compliance_x|y|z (axes of its twisted frame, see mdh_frames.hpp: z is torsion),
+  /// LEG.compliance_x|y|z|rx|ry|rz (axes of its foot) and JOINT.torque_bias.
   std::string name;
   ParameterKind kind;
   ParameterUnit unit;

@@ -35,24 +35,34 @@ CalibrationResult CalibrateFold(const ErrorModel& model, const Recording& record
 
 }  // namespace
 
-ModelComparison CompareModels(const ErrorModel& model, const Recording& recording,
-                              const BaseParameters& base, const CalibrationOptions& options) {
+ModelComparison CompareModels(CalibrationResult largest, const ErrorModel& model,
+                              const Recording& recording, const BaseParameters& base,
+                              const CalibrationOptions& options, const Progress& progress) {
   ModelComparison comparison;
   comparison.kinds = ModelKinds(model);
-  const auto largest = static_cast<int>(comparison.largest_kind());
-  comparison.results[largest] =
-      Calibrate(model, recording, base, comparison.largest_kind(), options);
+  const auto total = static_cast<int>(comparison.kinds.size());
+  comparison.results[static_cast<int>(comparison.largest_kind())] = std::move(largest);
   const Selection used{comparison.largest().used, comparison.largest().tied};
+  int done = 0;
   for (ModelKind kind : comparison.kinds) {
     const auto k = static_cast<int>(kind);
     CalibrationResult& result = comparison.results[k];
-    if (k != largest) result = Calibrate(model, recording, base, kind, options, &used);
+    if (kind != comparison.largest_kind()) {
+      result = Calibrate(model, recording, base, kind, options, &used);
+    }
+    if (progress) progress(++done, total);
     comparison.predictions[k] = Predict(result.model, result.delta, recording, options);
     const Eigen::MatrixXd& distances = comparison.predictions[k].distances;
     comparison.metrics[k] = ComputeMetrics(distances, used.markers);
     comparison.metrics_all[k] = ComputeMetrics(distances, SeenMask(recording));
   }
   return comparison;
+}
+
+ModelComparison CompareModels(const ErrorModel& model, const Recording& recording,
+                              const BaseParameters& base, const CalibrationOptions& options) {
+  return CompareModels(Calibrate(model, recording, base, ModelKinds(model).back(), options), model,
+                       recording, base, options);
 }
 
 CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorModel& model,

@@ -26,13 +26,19 @@ struct ModelComparison {
   /// The largest model, with the most parameters: full, or geometric if nothing is elastic.
   ModelKind largest_kind() const { return kinds.back(); }
   const CalibrationResult& largest() const { return results[static_cast<int>(largest_kind())]; }
+  const ErrorMetrics& largest_metrics() const { return metrics[static_cast<int>(largest_kind())]; }
 };
 
 /// Called with the number of finished steps and of all steps; may be empty.
 using Progress = std::function<void(int done, int total)>;
 
-/// Calibrates all models. The largest comes first and decides which observations are outliers, so
-/// that all models are judged on the same data.
+/// Calibrates the other models beside `largest`, the result of the largest one. That one decides
+/// which observations are outliers, so that all models are judged on the same data.
+ModelComparison CompareModels(CalibrationResult largest, const ErrorModel& model,
+                              const Recording& recording, const BaseParameters& base,
+                              const CalibrationOptions& options, const Progress& progress = {});
+
+/// Calibrates all models, the largest first.
 ModelComparison CompareModels(const ErrorModel& model, const Recording& recording,
                               const BaseParameters& base, const CalibrationOptions& options);
 

@@ -1,11 +1,10 @@
-#include "elastocal/io/summary.hpp"
+#include "elastocal/pipeline/summary.hpp"
 
 #include <cmath>
 
 #include <nlohmann/json.hpp>
 
 #include "elastocal/calibration/leg_stiffness.hpp"
-#include "elastocal/io/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -159,44 +158,6 @@ void AddTrials(const CalibrationRun& run, Json& json) {
 
 }  // namespace
 
-std::string DescribeObservation(const Recording& recording, int posture, int marker) {
-  std::string text = DescribePosture(recording, posture);
-  if (!recording.line.empty()) text += " (line " + std::to_string(recording.line[posture]) + ")";
-  return text + ", marker " + recording.marker_names[marker];
-}
-
-std::string RunStatus(const CalibrationRun& run) {
-  const Termination termination = run.comparison.largest().termination;
-  const bool implausible =
-      termination == Termination::kConverged && !run.verdict.objections.empty();
-  return implausible ? "implausible" : TerminationName(termination);
-}
-
-std::string MakeCovarianceCsv(const CalibrationResult& result) {
-  const std::vector<int>& parameters = result.posterior.parameters;
-  std::string text = "parameter";
-  for (int i : parameters) text += "," + result.model.parameters[i].name;
-  text += "\n";
-  for (std::size_t row = 0; row < parameters.size(); ++row) {
-    text += result.model.parameters[parameters[row]].name;
-    for (std::size_t column = 0; column < parameters.size(); ++column) {
-      text += "," + FormatNumber(result.posterior.covariance(static_cast<Eigen::Index>(row),
-                                                             static_cast<Eigen::Index>(column)));
-    }
-    text += "\n";
-  }
-  return text;
-}
-
-std::string DescribePosture(const Recording& recording, int posture) {
-  std::string text = "posture " + std::to_string(posture + 1);
-  if (recording.trials.empty()) return text;
-  int first = 0;
-  while (recording.trial[first] != recording.trial[posture]) ++first;
-  return "trial " + recording.trials[recording.trial[posture]].name + ", posture " +
-         std::to_string(posture - first + 1);
-}
-
 std::string MakeSummaryJson(const CalibrationRun& run) {
   const CalibrationResult& result = run.comparison.largest();
   Json json;
@@ -246,7 +207,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["warnings"] = run.warnings;
   json["correlations"] = Correlations(result);
   json["parameters"] = Parameters(result);
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace elastocal

@@ -1,0 +1,126 @@
+#include "elastocal/pipeline/calibrate_experiment.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "elastocal/identifiability/regressor.hpp"
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/robot/kinematics.hpp"
+
+namespace elastocal {
+namespace {
+
+Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& base,
+                        const Recording& recording) {
+  const Eigen::MatrixXd factor = RegressorFactor(
+      result.model, ApplyErrors(result.model, result.delta), recording.q, SeenMask(recording));
+  // Of the geometry: whether a compliance was excited, its loads say (see unsupported parameters).
+  std::vector<int> geometric;
+  for (int i : base.kept) {
+    if (!IsElastic(result.model.parameters[i].kind)) geometric.push_back(i);
+  }
+  return AssessExcitation(factor, geometric, recording.posture_count(), result.marker_sd);
+}
+
+/// The error of the waist by model, on trials for validation where there are any, else on those of
+/// the estimate.
+ByModel<double> WaistErrors(const ModelComparison& comparison, const Measurements& measured,
+                            const CalibrationOptions& settings) {
+  ByModel<double> errors;
+  errors.fill(std::numeric_limits<double>::quiet_NaN());
+  const bool held_out = measured.validation.posture_count() > 0;
+  const Recording& recording = held_out ? measured.validation : measured.calibration;
+  const auto& truth = held_out ? measured.validation_truth : measured.calibration_truth;
+  const auto known = [](const std::optional<Transform>& waist) { return waist.has_value(); };
+  if (std::none_of(truth.begin(), truth.end(), known)) return errors;
+  for (ModelKind kind : comparison.kinds) {
+    const CalibrationResult& result = comparison.results[static_cast<int>(kind)];
+    const Prediction prediction =
+        Predict(result.model, result.delta, recording, settings, nullptr, FootingBy::kFootMarkers);
+    errors[static_cast<int>(kind)] = WaistError(prediction.placement, truth);
+  }
+  return errors;
+}
+
+Progress OfStep(const StepProgress& progress, const std::string& step) {
+  if (!progress) return {};
+  return [progress, step](int done, int total) { progress(step, done, total); };
+}
+
+void Append(const std::vector<std::string>& more, std::vector<std::string>& warnings) {
+  warnings.insert(warnings.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+CalibrationRun CalibrateExperiment(const Project& project,
+                                   const std::vector<std::filesystem::path>& recordings,
+                                   const ExperimentOptions& options) {
+  const CalibrationOptions& settings = project.calibration;
+  CalibrationRun run;
+
+  // Section 5.1, the measurements y^. Markers and the robot's log pass the same low-pass filter,
+  // get one clock, and are reduced to the samples at which the markers are stable: for every marker
+  // of a posture the same ones, so that none weighs more. The trials of all chains are joined.
+  Measurements measured = ReadMeasurements(project, recordings);
+
+  // Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
+  // that give way under their loads (eq. 5 and 6): delta is eq. 7. A QR decomposition of the
+  // regressor (eq. 4) over random postures tells which of it can be identified (section 2.1).
+  RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
+  const Recording& recording = measured.calibration;
+
+  // Section 5, eq. 14. One least-squares problem over all samples: find the delta that minimises
+  // |y^ - y(delta)|^2 while the pose F(q_i, delta) of the supporting foot stays what it was. Each
+  // residual is weighed by its standard deviation, which follows from the residuals, and a prior
+  // around the nominal robot takes the place of parameters held by hand.
+  CalibrationResult calibrated =
+      Calibrate(robot.model, recording, robot.base, ModelKinds(robot.model).back(), settings);
+
+  // Section 6.1.4. Simpler models (not calibrated, geometric) on the same data.
+  run.comparison = CompareModels(std::move(calibrated), robot.model, recording, robot.base,
+                                 settings, OfStep(options.progress, "fit"));
+
+  // Eq. 12: how well the recorded postures tell the parameters apart.
+  run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording);
+
+  // Section 6.1.4, Table 2: errors on postures and on motions that took no part in the estimate.
+  if (options.folds > 0) {
+    run.cross_validation =
+        CrossValidate(run.comparison, robot.model, recording, robot.base, settings, options.folds,
+                      options.seed.value_or(1), OfStep(options.progress, "cross-validation"));
+  }
+  if (measured.validation.posture_count() > 0) {
+    run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);
+  }
+  run.waist_error = WaistErrors(run.comparison, measured, settings);
+
+  // Whether all this can be trusted; if so, the robot description with delta in it.
+  run.verdict = Judge(run.comparison, run.cross_validation, run.excitation, recording, settings);
+  if (run.held_out) JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.verdict);
+  run.warnings = std::move(measured.warnings);
+  Append(run.verdict.remarks, run.warnings);
+  run.zero_offsets = options.zero_offsets;
+  if (run.deployable()) {
+    run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(),
+                                  run.comparison.largest(), options.zero_offsets);
+    Append(run.urdf->warnings, run.warnings);
+  }
+
+  run.recording = std::move(measured.calibration);
+  run.validation = std::move(measured.validation);
+  run.trials = std::move(measured.trials);
+  run.base = std::move(robot.base);
+  run.knocks = std::move(robot.knocks);
+  return run;
+}
+
+std::string RunStatus(const CalibrationRun& run) {
+  const Termination termination = run.comparison.largest().termination;
+  const bool implausible = termination == Termination::kConverged && !run.deployable();
+  return implausible ? "implausible" : TerminationName(termination);
+}
+
+}  // namespace elastocal

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/knocks.hpp"
+#include "elastocal/identifiability/observability.hpp"
+#include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/validation/held_out.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+#include "elastocal/validation/verdict.hpp"
+
+namespace elastocal {
+
+/// Called while a long step runs: its name, and how many of its parts are done.
+using StepProgress = std::function<void(const std::string& step, int done, int total)>;
+
+struct ExperimentOptions {
+  int folds = 0;  ///< of the cross-validation; 0: none, else 2 to the number of postures
+  /// Where the joints' zero offsets go in the calibrated URDF.
+  ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
+  /// Seed of the random postures that tell what is identifiable (instead of the project's) and of
+  /// the deal of postures to folds (instead of 1).
+  std::optional<std::uint64_t> seed = {};
+  StepProgress progress = {};
+};
+
+/// All that is known after a calibration.
+struct CalibrationRun {
+  Recording recording;               ///< that the parameters were estimated from
+  BaseParameters base;               ///< which of them can be identified
+  ModelComparison comparison;        ///< the estimates: `comparison.largest()` is the calibration
+  Excitation excitation;             ///< how well the recorded postures tell the parameters apart
+  CrossValidation cross_validation;  ///< folds 0: not asked for
+  std::vector<TrialSummary> trials;  ///< of recording folders: what was used of each trial
+  std::vector<Knock> knocks;         ///< clusters that were knocked, and are taken as two
+  Recording validation;              ///< trials that took no part in the estimate; may be empty
+  std::optional<HeldOut> held_out;   ///< errors on them, where there are any
+  ByModel<double> waist_error = {};  ///< m, see WaistError; NaN where the truth is unknown
+  Verdict verdict;
+  /// The robot description with the estimates in it; nothing where the verdict has objections.
+  std::optional<CalibratedUrdf> urdf;
+  ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;  ///< as asked for
+  std::vector<std::string> warnings;                ///< what a user should know of, a sentence each
+
+  /// Whether the calibration can be trusted.
+  bool deployable() const { return verdict.objections.empty(); }
+};
+
+/// Calibrates a robot: reads what was recorded of it and estimates its geometric and elastic errors
+/// (paper, sections 2 and 5), compares the calibrated with simpler models, tests it on data that it
+/// was not estimated from (section 6.1.4), and judges whether it can be deployed.
+///
+///   const Project project = ReadProject("project.yaml");
+///   const CalibrationRun run = CalibrateExperiment(project, {"recording.csv"});
+///   if (run.deployable()) std::cout << run.urdf->text;
+///
+/// `recordings`: one posture table, or one or more recording folders; see ReadMeasurements. The
+/// same input and seed give the same bits.
+///
+/// Throws InputError for recordings that cannot be read or do not suffice, and for folds that the
+/// postures do not allow. A calibration that did not converge or is not to be trusted is no
+/// exception: see `verdict`.
+CalibrationRun CalibrateExperiment(const Project& project,
+                                   const std::vector<std::filesystem::path>& recordings,
+                                   const ExperimentOptions& options = {});
+
+/// "converged", "not converged", "failed", or "implausible" where the verdict has objections though
+/// the fit has converged.
+std::string RunStatus(const CalibrationRun& run);
+
+}  // namespace elastocal

@@ -1,0 +1,71 @@
+#include "elastocal/pipeline/calibration_files.hpp"
+
+#include "elastocal/io/calibration_file.hpp"
+#include "elastocal/io/covariance_file.hpp"
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/robot_views.hpp"
+#include "elastocal/pipeline/summary.hpp"
+
+namespace elastocal {
+namespace {
+
+std::string UrdfName(const Project& project) {
+  return project.urdf.stem().string() + "_calibrated.urdf";
+}
+
+/// Of project and run together; adds to the run's warnings.
+std::string MakeReportData(const Project& project, CalibrationRun& run) {
+  const CalibrationView view{.robot = MakeRobotView(project, run.warnings),
+                             .clusters = MakeClusterViews(project),
+                             .recording = run.recording,
+                             .comparison = run.comparison,
+                             .validation = run.validation,
+                             .held_out = run.held_out ? &*run.held_out : nullptr,
+                             .trials = run.trials};
+  return MakeReportDataJson(view);
+}
+
+}  // namespace
+
+std::vector<std::string> CalibrationFileNames(const Project& project) {
+  return {UrdfName(project), "calibration.yaml", "offsets.xacro",
+          "covariance.csv",  "summary.json",     "report_data.json"};
+}
+
+std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
+                                                        CalibrationRun& run) {
+  std::map<std::string, std::string> files;
+  if (run.urdf) {
+    const CalibrationResult& result = run.comparison.largest();
+    files[UrdfName(project)] = run.urdf->text;
+    files["calibration.yaml"] =
+        MakeCalibrationYaml(result, run.base, run.recording.source, run.zero_offsets);
+    files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
+    files["covariance.csv"] = MakeCovarianceCsv(result);
+  }
+  files["report_data.json"] = MakeReportData(project, run);
+  files["summary.json"] = MakeSummaryJson(run);
+  return files;
+}
+
+CalibrationFiles FindCalibrationFiles(const std::filesystem::path& given) {
+  const bool is_folder = std::filesystem::is_directory(given);
+  const std::filesystem::path folder = is_folder ? given : given.parent_path();
+  RecoverOutputs(folder.empty() ? "." : folder);
+  const CalibrationFiles files{is_folder ? given / "calibration.yaml" : given,
+                               folder / "covariance.csv"};
+  if (is_folder && !std::filesystem::exists(files.calibration)) {
+    throw InputError(given.string() + ": no calibration.yaml in this folder; expected the folder " +
+                     "that calibrate wrote a result to that can be deployed");
+  }
+  return files;
+}
+
+CalibrationEstimate ReadCalibrationFiles(const CalibrationFiles& files) {
+  CalibrationEstimate estimate = ReadEstimate(files.calibration);
+  if (std::filesystem::exists(files.covariance)) ReadCovariance(files.covariance, estimate);
+  return estimate;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,125 @@
+#include "elastocal/pipeline/inspect_robot.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/robot/parameter_names.hpp"
+#include "elastocal/robot/statics.hpp"
+#include "elastocal/robot/subtree.hpp"
+
+namespace elastocal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ChainInspection InspectChain(const std::string& name, const RobotTree& tree,
+                             const std::vector<Marker>& markers, const Project& project,
+                             const IdentifiabilityOptions& options) {
+  ChainInspection chain{name, 0, MakeErrorModel(tree, markers, project.placement), {}, {}};
+  chain.joints = static_cast<int>(chain.model.active_joints.size());
+  chain.base = FindBaseParameters(chain.model, options);
+  if (chain.base.geometric_count < chain.base.theoretical_count && options.hold.empty()) {
+    chain.lost = LostBySpecialMarkers(chain.model, options);
+  }
+  return chain;
+}
+
+std::vector<Marker> MarkersOf(const Project& project, const Chain& chain) {
+  std::vector<Marker> markers;
+  for (const std::string& name : ChainMarkers(project, chain)) {
+    for (const Marker& marker : project.markers) {
+      if (marker.name == name) markers.push_back(marker);
+    }
+  }
+  return markers;
+}
+
+Json PlacementsJson(const RobotTree& tree, const std::vector<JointPlacement>& placements) {
+  Json json = Json::array();
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const JointPlacement& p = placements[k];
+    json.push_back({{"joint", tree.joints[k].name},
+                    {"general", p.general},
+                    {"parallel", p.parallel},
+                    {"gamma", p.gamma},
+                    {"b", p.b},
+                    {"beta", p.beta},
+                    {"alpha", p.alpha},
+                    {"d", p.d},
+                    {"theta", p.theta},
+                    {"r", p.r}});
+  }
+  return json;
+}
+
+Json ChainJson(const ChainInspection& chain) {
+  const auto names = [&](const std::vector<int>& which) {
+    Json list = Json::array();
+    for (int i : which) list.push_back(chain.model.parameters[i].name);
+    return list;
+  };
+  Json regrouping = Json::object();
+  for (std::size_t d = 0; d < chain.base.dropped.size(); ++d) {
+    Json into = Json::object();
+    for (const Share& share : RegroupedInto(chain.base, static_cast<int>(d))) {
+      into[chain.model.parameters[share.parameter].name] = share.coefficient;
+    }
+    regrouping[chain.model.parameters[chain.base.dropped[d]].name] = into;
+  }
+  return {{"chain", chain.name},
+          {"joints", chain.joints},
+          {"markers", chain.model.marker_count()},
+          {"parameters", chain.model.parameter_count()},
+          {"identifiable", chain.base.geometric_count},
+          {"identifiable_theory", chain.base.theoretical_count},
+          {"smallest_kept", chain.base.smallest_kept},
+          {"largest_dropped", chain.base.largest_dropped},
+          {"held", names(chain.base.held)},
+          {"kept", names(chain.base.kept)},
+          {"dropped_regrouped_into", regrouping},
+          {"lost_by_special_markers", names(chain.lost)}};
+}
+
+}  // namespace
+
+RobotInspection InspectRobot(const Project& project, const InspectionOptions& options) {
+  IdentifiabilityOptions identifiability = project.identifiability;
+  if (options.seed) identifiability.seed = *options.seed;
+  if (options.hold) identifiability.hold = *options.hold;
+  identifiability.external = options.external;
+  if (!identifiability.hold.empty()) {
+    const ErrorModel all = MakeErrorModel(project.tree, project.markers, project.placement);
+    CheckPatterns(all.parameters, identifiability.hold);
+  }
+  RobotInspection inspection{
+      PlaceJoints(project.tree, project.placement), {}, TotalMass(project.tree), {}};
+  for (const Chain& chain : project.chains) {
+    const std::vector<Marker> markers = MarkersOf(project, chain);
+    if (markers.empty()) continue;
+    const RobotTree tree = Subtree(project.tree, chain.from_link);
+    inspection.chains.push_back(InspectChain(
+        chain.name, tree, SubtreeMarkers(project.tree, tree, markers), project, identifiability));
+  }
+  inspection.chains.push_back(
+      InspectChain("(all markers)", project.tree, project.markers, project, identifiability));
+  for (const ChainInspection& chain : inspection.chains) {
+    if (chain.lost.empty()) continue;
+    inspection.warnings.push_back(chain.name + ": special marker positions lose " +
+                                  JoinNames(chain.model.parameters, chain.lost));
+  }
+  return inspection;
+}
+
+std::string MakeInspectionJson(const Project& project, const RobotInspection& inspection) {
+  Json chains = Json::array();
+  for (const ChainInspection& chain : inspection.chains) chains.push_back(ChainJson(chain));
+  const Json json = {{"robot", project.tree.name},
+                     {"links", project.tree.links.size()},
+                     {"joints", project.tree.joints.size()},
+                     {"mass_kg", inspection.mass},
+                     {"mdh", PlacementsJson(project.tree, inspection.placements)},
+                     {"chains", chains},
+                     {"warnings", inspection.warnings}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal

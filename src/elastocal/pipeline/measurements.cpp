@@ -1,0 +1,129 @@
+#include "elastocal/pipeline/measurements.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "elastocal/calibration/residuals.hpp"
+#include "elastocal/io/experiment.hpp"
+#include "elastocal/io/posture_table.hpp"
+#include "elastocal/io/recording_folder.hpp"
+#include "elastocal/io/truth_file.hpp"
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The recording with these markers only: a model has no position for those that it never shows.
+Recording WithMarkers(const Recording& recording, const std::vector<int>& markers) {
+  Recording selected = recording;
+  selected.marker_names.clear();
+  selected.markers.resize(recording.posture_count(), 3 * static_cast<Eigen::Index>(markers.size()));
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    selected.marker_names.push_back(recording.marker_names[markers[k]]);
+    selected.markers.middleCols<3>(3 * static_cast<Eigen::Index>(k)) =
+        recording.markers.middleCols<3>(3 * markers[k]);
+  }
+  return selected;
+}
+
+std::vector<int> SeenMarkers(const Recording& recording) {
+  std::vector<int> seen;
+  const ObservationMask mask = SeenMask(recording);
+  for (int m = 0; m < mask.cols(); ++m) {
+    if (mask.col(m).any()) seen.push_back(m);
+  }
+  return seen;
+}
+
+/// True waists at the times of the postures, of trials that have a file of them.
+std::vector<std::optional<Transform>> TrueWaists(const std::vector<fs::path>& folders,
+                                                 const Project& project,
+                                                 const Recording& recording) {
+  std::vector<std::optional<Transform>> waists(recording.posture_count());
+  for (const fs::path& folder : folders) {
+    for (const TrialFiles& files : ReadExperiment(folder, project).trials) {
+      if (files.truth.empty()) continue;
+      const WaistTruth truth = ReadWaistTruth(files.truth);
+      for (int i = 0; i < recording.posture_count(); ++i) {
+        const std::string& name = recording.trials[recording.trial[i]].name;
+        const bool same = folders.size() == 1 ? name == files.name : name.ends_with(files.name);
+        if (!same || truth.time_s.size() == 0) continue;
+        Eigen::Index nearest = 0;
+        (truth.time_s.array() - recording.time_s[i]).abs().minCoeff(&nearest);
+        waists[i] = truth.T_camera_waist[static_cast<std::size_t>(nearest)];
+      }
+    }
+  }
+  return waists;
+}
+
+[[noreturn]] void RefuseWithoutCalibration(const RecordingFolder& read) {
+  std::string message = read.validation.source +
+                        ": no trial of kind 'calibration' can be used, only such of other kinds, "
+                        "which are for validation; a folder with trials for calibration was "
+                        "expected as well";
+  for (const TrialSummary& trial : read.trials) {
+    if (trial.trial.kind != TrialKind::kCalibration || trial.refused.empty()) continue;
+    message += " (trial '" + trial.trial.name + "': " + trial.refused + ")";
+  }
+  throw InputError(message);
+}
+
+Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& project,
+                         ReadFor purpose) {
+  RecordingFolder read = ReadRecordingFolders(folders, project);
+  if (read.calibration.posture_count() == 0) {
+    if (purpose == ReadFor::kCalibration) RefuseWithoutCalibration(read);
+    std::swap(read.calibration, read.validation);
+  }
+  Measurements measured;
+  measured.trials = std::move(read.trials);
+  measured.warnings = std::move(read.findings);
+  const std::vector<int> seen = SeenMarkers(read.calibration);
+  measured.calibration = WithMarkers(read.calibration, seen);
+  measured.calibration_truth = TrueWaists(folders, project, measured.calibration);
+  if (read.validation.posture_count() > 0) {
+    measured.validation = WithMarkers(read.validation, seen);
+    measured.validation_truth = TrueWaists(folders, project, measured.validation);
+  }
+  return measured;
+}
+
+}  // namespace
+
+Measurements ReadMeasurements(const Project& project, const std::vector<fs::path>& recordings,
+                              ReadFor purpose) {
+  if (std::any_of(recordings.begin(), recordings.end(), IsRecordingFolder)) {
+    return ReadFolders(recordings, project, purpose);
+  }
+  if (recordings.empty()) throw InputError("no recording; one or more were expected");
+  if (recordings.size() > 1) {
+    throw InputError(recordings[1].string() +
+                     ": no experiment.yaml in it; only recording folders can be taken together");
+  }
+  PostureTable table = ReadPostureTable(recordings[0], project);
+  Measurements measured;
+  measured.calibration = std::move(table.recording);
+  measured.warnings = std::move(table.warnings);
+  return measured;
+}
+
+std::vector<fs::path> InputFiles(const Project& project, const std::vector<fs::path>& recordings) {
+  std::vector<fs::path> files = {project.file, project.urdf};
+  for (const fs::path& recording : recordings) {
+    if (!IsRecordingFolder(recording)) {
+      files.push_back(recording);
+      continue;
+    }
+    files.push_back(recording / "experiment.yaml");
+    for (const TrialFiles& trial : ReadExperiment(recording, project).trials) {
+      files.insert(files.end(), {trial.markers, trial.joints});
+      if (!trial.truth.empty()) files.push_back(trial.truth);
+    }
+  }
+  return files;
+}
+
+}  // namespace elastocal

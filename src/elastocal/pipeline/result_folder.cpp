@@ -1,0 +1,148 @@
+#include "elastocal/pipeline/result_folder.hpp"
+
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "elastocal/io/calibration_file.hpp"
+#include "elastocal/io/covariance_file.hpp"
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/report/page.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRuns = "runs.json";
+constexpr const char* kPage = "report.html";
+
+/// The files of a folder as they are after the publication of `outputs` (null: as they are).
+class FolderAfter {
+ public:
+  FolderAfter(const fs::path& folder, const OutputSet* outputs)
+      : folder_(folder), outputs_(outputs) {}
+
+  /// Nothing where there is no such file.
+  std::optional<std::string> Text(const std::string& name) const {
+    const fs::path file = folder_ / name;
+    if (outputs_ != nullptr && outputs_->IsDeclared(file)) {
+      const std::string* contents = outputs_->Contents(file);
+      return contents == nullptr ? std::nullopt : std::optional(*contents);
+    }
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return std::nullopt;
+    return ReadFile(file);
+  }
+
+ private:
+  const fs::path& folder_;
+  const OutputSet* outputs_;
+};
+
+void CheckFolder(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw InputError(folder.string() + ": is no folder; expected one that calibrate -o wrote to");
+  }
+}
+
+std::set<std::string> RegularFiles(const fs::path& folder) {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_regular_file(error)) names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+/// The folder's calibration; nothing where there is none.
+std::optional<LabelledCalibration> CalibrationOf(const fs::path& folder, const FolderAfter& after) {
+  const auto text = after.Text("calibration.yaml");
+  if (!text) return std::nullopt;
+  LabelledCalibration calibration{folder.lexically_normal().string(),
+                                  ParseEstimate(*text, (folder / "calibration.yaml").string())};
+  if (const auto table = after.Text("covariance.csv")) {
+    std::istringstream stream(*table);
+    ReadCovariance(stream, (folder / "covariance.csv").string(), calibration.estimate);
+  }
+  return calibration;
+}
+
+/// The page of a folder with files of these names.
+std::string MakePageOf(const fs::path& folder, const std::set<std::string>& names,
+                       const FolderAfter& after, const std::string& version,
+                       const std::vector<fs::path>& earlier) {
+  ReportSources sources{folder.lexically_normal().string(), version, {}, {}};
+  for (const std::string& name : ReportFiles({names.begin(), names.end()})) {
+    if (auto text = after.Text(name)) sources.files[name] = std::move(*text);
+  }
+  if (sources.files.empty()) {
+    throw InputError(folder.string() +
+                     ": nothing to report in this folder; expected summary.json of calibrate -o, "
+                     "or what design or plan write");
+  }
+  for (const fs::path& given : earlier) {
+    sources.calibrations.push_back(
+        {given.lexically_normal().string(), ReadCalibrationFiles(FindCalibrationFiles(given))});
+  }
+  if (auto own = CalibrationOf(folder, after)) sources.calibrations.push_back(std::move(*own));
+  return MakePage(PageTemplate(), MakeReportJson(sources));
+}
+
+}  // namespace
+
+const char* const kNoPage =
+    "no report.html: this program was built without Node.js, so it lacks the page; install nodejs "
+    "and npm, then configure and build again";
+
+void DeclareResults(const fs::path& folder, const std::vector<std::string>& names,
+                    OutputSet& outputs) {
+  for (const std::string& name : names) outputs.Declare(folder / name);
+  outputs.Declare(folder / kRuns);
+  outputs.Declare(folder / kPage);
+}
+
+std::string SetResults(const fs::path& folder, const std::map<std::string, std::string>& files,
+                       const RunRecord& record, OutputSet& outputs) {
+  std::set<std::string> names = RegularFiles(folder);
+  for (const auto& [name, contents] : files) {
+    outputs.Set(folder / name, contents);
+    names.insert(name);
+  }
+  const auto runs = FolderAfter(folder, nullptr).Text(kRuns);
+  outputs.Set(folder / kRuns, UpdateRuns(runs.value_or(""), record));
+  names.insert(kRuns);
+  if (PageTemplate().empty()) return kNoPage;
+  try {
+    outputs.Set(folder / kPage,
+                MakePageOf(folder, names, FolderAfter(folder, &outputs), record.version, {}));
+  } catch (const InputError& error) {
+    // The results themselves are fine: something else in the folder cannot be shown.
+    return std::string("no report.html: ") + error.what();
+  }
+  return "";
+}
+
+std::string MakeFolderPage(const fs::path& folder, const std::string& version,
+                           const std::vector<fs::path>& earlier) {
+  CheckFolder(folder);
+  return MakePageOf(folder, RegularFiles(folder), FolderAfter(folder, nullptr), version, earlier);
+}
+
+std::vector<fs::path> PageInputs(const fs::path& folder, const std::vector<fs::path>& earlier) {
+  CheckFolder(folder);
+  const std::set<std::string> names = RegularFiles(folder);
+  std::vector<fs::path> inputs = {folder / "calibration.yaml", folder / "covariance.csv"};
+  for (const std::string& name : ReportFiles({names.begin(), names.end()})) {
+    inputs.push_back(folder / name);
+  }
+  for (const fs::path& given : earlier) {
+    const CalibrationFiles files = FindCalibrationFiles(given);
+    inputs.insert(inputs.end(), {files.calibration, files.covariance});
+  }
+  return inputs;
+}
+
+}  // namespace elastocal

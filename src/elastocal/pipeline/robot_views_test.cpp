@@ -1,0 +1,52 @@
+#include "elastocal/pipeline/robot_views.hpp"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "elastocal/io/output_files.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// For its lifetime a user who may read what is open to everybody: root may read all.
+class CommonUser {
+ public:
+  CommonUser() : was_root_(geteuid() == 0 && seteuid(65534) == 0) {}
+  ~CommonUser() {
+    if (was_root_) EXPECT_EQ(seteuid(0), 0);
+  }
+  CommonUser(const CommonUser&) = delete;
+  CommonUser& operator=(const CommonUser&) = delete;
+
+ private:
+  bool was_root_;
+};
+
+TEST(RobotViews, AMeshThatCannotBeReadIsPassedOver) {
+  const ScratchFolder scratch;
+  fs::permissions(scratch.path(), fs::perms::others_read | fs::perms::others_exec,
+                  fs::perm_options::add);
+  std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  urdf.insert(urdf.rfind("</robot>"), "<!-- filename=\"fine.stl\" filename=\"secret.stl\" -->");
+  scratch.Write("arm6.urdf", urdf);
+  scratch.Write("fine.stl", "abc");
+  fs::permissions(scratch.Write("secret.stl", "abc"), fs::perms::none);
+  const Project project = ReadProject(
+      scratch.Write("project.yaml", ReadFile(SourceFile("tests/robots/arm6_project.yaml"))));
+  const CommonUser user;
+  std::vector<std::string> warnings;
+  const RobotView view = MakeRobotView(project, warnings);
+  EXPECT_EQ(view.meshes.size(), 1u);
+  EXPECT_TRUE(view.meshes.contains("fine.stl"));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("secret.stl"), std::string::npos) << warnings[0];
+}
+
+}  // namespace
+}  // namespace elastocal

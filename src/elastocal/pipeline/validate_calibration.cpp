@@ -1,0 +1,94 @@
+#include "elastocal/pipeline/validate_calibration.hpp"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
+
+namespace elastocal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool HasConverged(const Refit& refit) {
+  return refit.result.termination == Termination::kConverged;
+}
+
+/// More than one outlier in twenty observations is worth a warning.
+void WarnOfOutliers(ValidationRun& run) {
+  const auto outliers = run.transfer.calibrated.result.outliers.size();
+  const auto seen = SeenMask(run.recording).count();
+  if (20 * static_cast<Eigen::Index>(outliers) <= seen) return;
+  run.warnings.push_back(std::to_string(outliers) + " of " + std::to_string(seen) +
+                         " observations are outliers of the calibrated model; see the figures "
+                         "with outliers");
+}
+
+}  // namespace
+
+bool ValidationRun::converged() const {
+  return HasConverged(transfer.calibrated) && HasConverged(transfer.uncalibrated);
+}
+
+bool ValidationRun::better() const {
+  return transfer.calibrated.metrics_all.rmse_3d < transfer.uncalibrated.metrics_all.rmse_3d;
+}
+
+ValidationRun ValidateCalibration(const Project& project, const std::filesystem::path& calibration,
+                                  const std::filesystem::path& recording,
+                                  std::optional<std::uint64_t> seed) {
+  const std::filesystem::path folder = calibration.parent_path();
+  RecoverOutputs(folder.empty() ? "." : folder);
+  ValidationRun run{.calibration = ReadCalibration(calibration),
+                    .calibration_file = calibration.string(),
+                    .recording = {},
+                    .transfer = {},
+                    .warnings = {}};
+  Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
+  const RecordedModel robot = MakeRecordedModel(project, seed, measured);
+  if (run.calibration.nominal != NominalFingerprint(robot.model)) {
+    throw InputError(calibration.string() + ": made for robot '" + run.calibration.robot +
+                     "' with other nominal geometry than " + project.urdf.string() +
+                     "; expected the URDF that was calibrated, not the calibrated one");
+  }
+  run.transfer = ValidateTransfer(robot.model, measured.calibration, robot.base,
+                                  project.calibration, run.calibration.joint_errors);
+  run.recording = std::move(measured.calibration);
+  run.warnings = std::move(measured.warnings);
+  WarnOfOutliers(run);
+  return run;
+}
+
+std::string ValidationStatus(const ValidationRun& run) {
+  if (!run.converged()) return "not converged";
+  return run.better() ? "better" : "not better";
+}
+
+std::string MakeValidationJson(const ValidationRun& run) {
+  Json json;
+  json["status"] = ValidationStatus(run);
+  json["calibration"] = run.calibration_file;
+  json["recording"] = run.recording.source;
+  json["postures"] = run.recording.posture_count();
+  json["markers"] = run.recording.marker_count();
+  for (const auto& [name, refit] : {std::pair{"uncalibrated", &run.transfer.uncalibrated},
+                                    std::pair{"calibrated", &run.transfer.calibrated}}) {
+    json["rmse_3d_mm"][name] = 1e3 * refit->metrics.rmse_3d;
+    json["rmse_coordinate_mm"][name] = 1e3 * refit->metrics.rmse_coordinate;
+    json["max_mm"][name] = 1e3 * refit->metrics.maximum;
+    json["rmse_3d_mm_with_outliers"][name] = 1e3 * refit->metrics_all.rmse_3d;
+  }
+  json["outliers"] = Json::array();
+  for (const Outlier& outlier : run.transfer.calibrated.result.outliers) {
+    json["outliers"].push_back({{"posture", outlier.posture},
+                                {"marker", run.recording.marker_names[outlier.marker]},
+                                {"residual_mm", 1e3 * outlier.residual}});
+  }
+  json["warnings"] = run.warnings;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal

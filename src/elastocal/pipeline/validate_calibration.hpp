@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/calibration_file.hpp"
+#include "elastocal/io/project.hpp"
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/validation/transfer.hpp"
+
+namespace elastocal {
+
+/// A calibration on a recording that it was not made from.
+struct ValidationRun {
+  StoredCalibration calibration;
+  std::string calibration_file;
+  Recording recording;
+  TransferValidation transfer;
+  std::vector<std::string> warnings;  ///< what a user should know of, a sentence each
+
+  bool converged() const;
+  /// Whether the calibrated robot explains the recording better than the uncalibrated one, outliers
+  /// included.
+  bool better() const;
+};
+
+/// Applies a stored calibration to another recording of the same robot: only waist and markers are
+/// fitted anew, for the calibrated and for the nominal robot (paper, section 6.1.4).
+///
+/// `recording`: a posture table or a recording folder; trials for validation will do. `seed` is
+/// taken instead of the project's. Throws InputError: files that cannot be read; a calibration of a
+/// robot with other nominal geometry than the project's.
+ValidationRun ValidateCalibration(const Project& project, const std::filesystem::path& calibration,
+                                  const std::filesystem::path& recording,
+                                  std::optional<std::uint64_t> seed = {});
+
+/// "better", "not better" or "not converged".
+std::string ValidationStatus(const ValidationRun& run);
+
+/// validation.json: the figures for programs (docs/formats.md).
+std::string MakeValidationJson(const ValidationRun& run);
+
+}  // namespace elastocal

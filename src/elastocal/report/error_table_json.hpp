@@ -1,0 +1,16 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "elastocal/validation/error_table.hpp"
+
+namespace elastocal {
+
+/// A kind of trial as Table 2 of the paper abbreviates it: SW sinusoidal motions, RP random
+/// postures, RM repeatability motion.
+const char* ErrorTableCase(TrialKind kind);
+
+/// Table 2 of the paper for programs, mm; docs/formats.md.
+nlohmann::ordered_json MakeErrorTableJson(const ErrorTable& table);
+
+}  // namespace elastocal

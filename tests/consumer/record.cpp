@@ -1,0 +1,18 @@
+// Writes a recording of the robot of a project with errors: what the component planning can do.
+//   record PROJECT.yaml RECORDING.csv
+
+#include "elastocal/elastocal.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const elastocal::Project project = elastocal::ReadProject(argv[1]);
+  const elastocal::ErrorModel model =
+      elastocal::MakeErrorModel(project.tree, project.markers, project.placement);
+  const elastocal::BaseParameters base =
+      elastocal::FindBaseParameters(model, project.identifiability);
+  const Eigen::VectorXd truth =
+      elastocal::DrawErrors(model, base.kept, {{elastocal::ParameterKind::kTheta, 0.01}}, 1);
+  elastocal::WritePostureTable(
+      argv[2], elastocal::MakeSyntheticRecording(model, truth, {.postures = 30}), project.tree);
+}

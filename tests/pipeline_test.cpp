@@ -1,0 +1,117 @@
+// Calibration through the library, as the header elastocal.hpp offers it.
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/elastocal.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class Pipeline : public testing::Test {
+ protected:
+  void SetUp() override {
+    const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+    const BaseParameters base = FindBaseParameters(model, project_.identifiability);
+    recorded_ = MakeSyntheticRecording(
+        model, DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1), {.postures = 30});
+    WritePostureTable(table_, recorded_, project_.tree);
+  }
+
+  /// Calibrates into a folder as the program does.
+  std::string Publish(const std::filesystem::path& folder, CalibrationRun& run) const {
+    OutputSet outputs;
+    outputs.Protect(InputFiles(project_, {table_}));
+    DeclareResults(folder, CalibrationFileNames(project_), outputs);
+    outputs.Prepare();
+    const std::string no_page = SetResults(folder, MakeCalibrationFiles(project_, run),
+                                           {"calibrate", "", "1", {}, {}}, outputs);
+    outputs.Publish();
+    return no_page;
+  }
+
+  ScratchFolder scratch_;
+  Project project_ = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  std::filesystem::path table_ = scratch_.path() / "recording.csv";
+  Recording recorded_;
+};
+
+std::set<std::string> Names(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+TEST_F(Pipeline, CalibratesAndTellsOfItsSteps) {
+  std::vector<std::string> steps;
+  const CalibrationRun run = CalibrateExperiment(
+      project_, {table_}, {.folds = 3, .progress = [&](const std::string& step, int done, int all) {
+                             if (done == all) steps.push_back(step);
+                           }});
+  EXPECT_EQ(steps, (std::vector<std::string>{"fit", "cross-validation"}));
+  EXPECT_TRUE(run.deployable());
+  EXPECT_EQ(RunStatus(run), "converged");
+  EXPECT_EQ(run.recording.posture_count(), 30);
+  EXPECT_EQ(run.cross_validation.folds, 3);
+  // Noise of 0.2 mm a coordinate is 0.35 mm in 3-D; the fit takes a part of it away.
+  EXPECT_LT(run.comparison.largest_metrics().rmse_3d, 0.35e-3);
+  ASSERT_TRUE(run.urdf.has_value());
+  EXPECT_NE(run.urdf->text.find("<robot"), std::string::npos);
+}
+
+// A folder holds the files of one run: those of a good run go when a bad one follows.
+TEST_F(Pipeline, ARunThatIsNotDeployableTakesTheEarlierFilesAway) {
+  const std::filesystem::path folder = scratch_.path() / "out";
+  CalibrationRun run = CalibrateExperiment(project_, {table_});
+  const std::string no_page = Publish(folder, run);
+  const std::vector<std::string> all = CalibrationFileNames(project_);
+  std::set<std::string> expected(all.begin(), all.end());
+  expected.insert("runs.json");
+  if (no_page.empty()) expected.insert("report.html");
+  EXPECT_EQ(Names(folder), expected);
+  EXPECT_EQ(CompareCalibrations(folder, folder).comparison.changed, false);
+
+  project_.calibration.plausible_marker_sd = 1e-6;  // nothing real is as good
+  run = CalibrateExperiment(project_, {table_});
+  EXPECT_FALSE(run.deployable());
+  EXPECT_FALSE(run.urdf.has_value());
+  Publish(folder, run);
+  for (const char* name :
+       {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro", "covariance.csv"}) {
+    expected.erase(name);
+  }
+  EXPECT_EQ(Names(folder), expected);
+  ExpectInputError([&] { CompareCalibrations(folder, folder); }, {"no calibration.yaml"});
+}
+
+TEST_F(Pipeline, ACalibrationIsValidatedOnAnotherRecording) {
+  const std::filesystem::path folder = scratch_.path() / "out";
+  CalibrationRun run = CalibrateExperiment(project_, {table_});
+  Publish(folder, run);
+  const ValidationRun validation =
+      ValidateCalibration(project_, folder / "calibration.yaml", table_);
+  EXPECT_EQ(ValidationStatus(validation), "better");
+  EXPECT_LT(validation.transfer.calibrated.metrics.rmse_3d,
+            0.5 * validation.transfer.uncalibrated.metrics.rmse_3d);
+}
+
+TEST_F(Pipeline, InspectsEveryChainAndTheWhole) {
+  const RobotInspection inspection = InspectRobot(project_);
+  ASSERT_EQ(inspection.chains.size(), 3u);
+  EXPECT_EQ(inspection.chains.back().name, "(all markers)");
+  EXPECT_EQ(inspection.placements.size(), project_.tree.joints.size());
+  for (const ChainInspection& chain : inspection.chains) {
+    EXPECT_EQ(chain.base.geometric_count, chain.base.theoretical_count) << chain.name;
+  }
+  ExpectInputError([&] { InspectRobot(project_, {.hold = {{"elbow.thet"}}}); }, {"elbow.thet"});
+}
+
+}  // namespace
+}  // namespace elastocal
