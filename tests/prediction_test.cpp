@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/recording_folder.hpp"
-#include "elastocal/io/truth_file.hpp"
+#include "elastocal/io/waist_truth.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/standing_robot.hpp"
 #include "tests/test_files.hpp"

@@ -11,7 +11,7 @@
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/io/summary.hpp"
-#include "elastocal/io/truth_file.hpp"
+#include "elastocal/io/waist_truth.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal::cli {

@@ -10,7 +10,7 @@
 #include "elastocal/motion/plan.hpp"
 #include "elastocal/robot/joint_motion.hpp"
 
-namespace elastocal::cli {
+namespace elastocal {
 
 /// The project's robot, standing in its posture of rest, with what keeps its parts apart: the
 /// contacts of all chains of the section `design`. Throws InputError where the project has no
@@ -40,4 +40,4 @@ std::string ReasonText(const Project& project, const LeftOut& left_out);
 std::string MarginTable(const Project& project, const MotionMargins& margins,
                         const MotionLimits& limits, double rate_hz);
 
-}  // namespace elastocal::cli
+}  // namespace elastocal

@@ -1,4 +1,4 @@
-#include "elastocal/cli/plan_problem.hpp"
+#include "elastocal/planning/project_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/cli/design_problem.hpp"
+#include "elastocal/planning/chain_setups.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/motion/validation_tours.hpp"
 
-namespace elastocal::cli {
+namespace elastocal {
 namespace {
 
 std::size_t Size(int i) { return static_cast<std::size_t>(i); }
@@ -160,4 +160,4 @@ std::string MarginTable(const Project& project, const MotionMargins& margins,
   return table.Render();
 }
 
-}  // namespace elastocal::cli
+}  // namespace elastocal
