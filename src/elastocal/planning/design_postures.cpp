@@ -54,9 +54,8 @@ void DesignOneSide(const Project& project, const ChainSetup& setup,
         {options.design.algorithm, setup.name, design.sizes[i], design.indices[i]});
   }
   if (design.index == 0.0 || !options.compare_algorithms) return;
-  for (const CurvePoint& point :
-       CompareAlgorithms(*chain.model, chain.base.kept, project.motion, setup, design.sizes,
-                         options.design)) {
+  for (const CurvePoint& point : CompareAlgorithms(*chain.model, chain.base.kept, project.motion,
+                                                   setup, design.sizes, options.design)) {
     result.curves.push_back(point);
   }
 }

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+constexpr double kRadPerDeg = M_PI / 180.0;
 
 /// Writes numbers with all digits.
 class TruthWriter {
@@ -49,9 +49,9 @@ void WriteJoints(const VirtualExperiment& experiment, const RobotTree& described
     writer.Key(joint.name);
     writer.yaml << YAML::BeginMap;
     writer.Value(slides ? "offset_mm" : "offset_deg",
-                 robot.offset[index] / (slides ? 1e-3 : kDegree));
+                 robot.offset[index] / (slides ? 1e-3 : kRadPerDeg));
     writer.List("shift_mm", Eigen::Vector3d(1e3 * error.translation()));
-    writer.List("turn_deg", Eigen::Vector3d(turn.angle() / kDegree * turn.axis()));
+    writer.List("turn_deg", Eigen::Vector3d(turn.angle() / kRadPerDeg * turn.axis()));
     writer.Value(slides ? "compliance_m_per_n" : "compliance_rad_per_nm", robot.compliance[index]);
     if (robot.link_compliance[k].any()) {
       writer.List("carrier_compliance", robot.link_compliance[k]);

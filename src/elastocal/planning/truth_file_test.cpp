@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/output_files.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/io/waist_truth.hpp"
 #include "elastocal/io/yaml_value.hpp"
+#include "elastocal/planning/simulate_experiment.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -33,7 +34,8 @@ TEST_F(SimulatedFolder, IsWhatTheReadersOfARecordingTake) {
   const VirtualExperiment experiment = PrepareExperiment(DescribeRobot(project_), options_);
   const SimulatedTrial trial = RunTrial(experiment, 1);
   Experiment written;
-  written.trials.push_back(WriteSimulatedTrial(scratch_.path(), experiment.trials[1], trial));
+  written.trials.push_back(FilesOfTrial(experiment.trials[1], scratch_.path()));
+  WriteSimulatedTrial(written.trials[0], trial);
   WriteExperiment(scratch_.path(), written, project_);
 
   const Experiment read = ReadExperiment(scratch_.path(), project_);
@@ -56,9 +58,8 @@ TEST_F(SimulatedFolder, TruthTellsWhatWasDrawn) {
   options_.faults.dead_torque_sensor.clear();
   const VirtualExperiment experiment = PrepareExperiment(DescribeRobot(project_), options_);
   const SimulatedTrial trial = RunTrial(experiment, 0);
-  WriteTruth(scratch_.path(), experiment, {0}, {trial.raw.truth});
-  const std::string file = (scratch_.path() / "truth.yaml").string();
-  const YamlValue truth = YamlValue::Parse(ReadFile(file), file);
+  const YamlValue truth =
+      YamlValue::Parse(FormatTruth(experiment, {0}, {trial.raw.truth}), "truth.yaml");
   EXPECT_EQ(truth.Get("seed").Integer(0, 9), 1);
 
   const int knee = FindJoint(project_.tree, "left_knee_pitch");
