@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/recording_folder.hpp"
-#include "elastocal/io/truth_file.hpp"
+#include "elastocal/planning/simulate_experiment.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/standing_robot.hpp"
 #include "tests/test_files.hpp"
@@ -82,8 +82,8 @@ TEST(Prediction, OfAPerfectMatchedFolderByItsTruthIsExact) {
   const ScratchFolder folder;
   Experiment written;
   for (std::size_t i = 0; i < plan.trials.size(); ++i) {
-    written.trials.push_back(
-        WriteSimulatedTrial(folder.path(), plan.trials[i], RunMatchedTrial(matched, i)));
+    written.trials.push_back(FilesOfTrial(plan.trials[i], folder.path()));
+    WriteSimulatedTrial(written.trials.back(), RunMatchedTrial(matched, i));
   }
   WriteExperiment(folder.path(), written, project);
 

@@ -1,24 +1,17 @@
-#include "elastocal/posture/design.hpp"
-
-#include <algorithm>
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
-#include "elastocal/cli/design_problem.hpp"
 #include "elastocal/cli/design_report.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/posture_file.hpp"
-#include "elastocal/math/input_error.hpp"
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/planning/design_postures.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -32,148 +25,68 @@ struct DesignCommand {
   bool elastic = false, no_certificate = false, curves = false;
 };
 
-double Seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 constexpr std::array kAlgorithms = {DesignAlgorithm::kNocp, DesignAlgorithm::kCocp,
                                     DesignAlgorithm::kIoops, DesignAlgorithm::kExchange,
                                     DesignAlgorithm::kRandom};
 
-DesignOptions MakeOptions(const DesignCommand& command) {
-  DesignOptions options;
-  options.criterion = static_cast<Criterion>(command.criterion[1] - '1');
-  options.certify = !command.no_certificate;
-  options.seed = command.common.seed.value_or(1);
+PostureDesignOptions MakeOptions(const DesignCommand& command) {
+  PostureDesignOptions options;
+  options.chains = command.chains;
+  options.elastic = command.elastic;
+  options.compare_algorithms = command.curves;
+  DesignOptions& design = options.design;
+  design.criterion = static_cast<Criterion>(command.criterion[1] - '1');
+  design.certify = !command.no_certificate;
+  design.seed = command.common.seed.value_or(1);
   for (DesignAlgorithm algorithm : kAlgorithms) {
-    if (command.algorithm == AlgorithmName(algorithm)) options.algorithm = algorithm;
+    if (command.algorithm == AlgorithmName(algorithm)) design.algorithm = algorithm;
   }
-  options.nocp.block = command.block;
-  options.nocp.plateau.tolerance = command.plateau;
-  options.nocp.plateau.max_postures = command.max_postures;
+  design.nocp.block = command.block;
+  design.nocp.plateau.tolerance = command.plateau;
+  design.nocp.plateau.max_postures = command.max_postures;
   if (command.postures > 0) {
-    options.nocp.plateau.tolerance = -1.0;
-    options.nocp.plateau.max_postures = command.postures;
-    options.postures = command.postures;
+    design.nocp.plateau.tolerance = -1.0;
+    design.nocp.plateau.max_postures = command.postures;
+    design.postures = command.postures;
   }
   return options;
 }
 
-/// What `design` finds.
-struct Programme {
-  std::vector<Designed> designed;
-  std::vector<CurvePoint> points;
-};
-
-/// The postures of the chain on the other side.
-Designed DesignOtherSide(const Project& project, const ChainDesign& design, bool elastic,
-                         const DesignOptions& options) {
-  const double start = Seconds();
-  const ChainSetup other = OtherSide(project, design.setup);
-  const DesignedChain chain = PrepareChain(project, other, elastic);
-  std::string reason;
-  const auto mirror =
-      FindMirror(project.tree, design.setup.coordinates, other.coordinates, &reason);
-  Designed opposite;
-  if (mirror) {
-    opposite.design = MirrorDesign(design, *mirror, *chain.model, chain.base.kept, project.motion,
-                                   other, options);
-  } else {
-    opposite.design = DesignChain(*chain.model, chain.base.kept, project.motion, other, options);
-    opposite.design.notes.push_back("designed by itself: " + reason);
-  }
-  opposite.seconds = Seconds() - start;
-  return opposite;
-}
-
-/// Both sides of a chain, where it has two.
-void DesignSides(const Project& project, const ChainSetup& setup, const DesignCommand& command,
-                 const DesignOptions& options, Programme& programme) {
-  const double start = Seconds();
-  const DesignedChain chain = PrepareChain(project, setup, command.elastic);
-  const ChainDesign design =
-      DesignChain(*chain.model, chain.base.kept, project.motion, setup, options);
-  programme.designed.push_back({design, Seconds() - start});
-  for (std::size_t i = 0; i < design.sizes.size(); ++i) {
-    programme.points.push_back({options.algorithm, setup.name, design.sizes[i], design.indices[i]});
-  }
-  if (design.index == 0.0) return;
-  if (command.curves) {
-    for (const CurvePoint& point : CompareAlgorithms(*chain.model, chain.base.kept, project.motion,
-                                                     setup, design.sizes, options)) {
-      programme.points.push_back(point);
-    }
-  }
-  if (!setup.mirror.empty()) {
-    programme.designed.push_back(DesignOtherSide(project, design, command.elastic, options));
-  }
-}
-
-/// "postures.yaml" -> "postures_summary.json".
-std::string Beside(const std::string& output, const std::string& ending) {
-  const std::filesystem::path path(output);
-  return (path.parent_path() / (path.stem().string() + ending)).string();
-}
-
-/// Why a chain has no postures that determine its parameters; empty where it has.
-std::string WhyInfeasible(const ChainDesign& design) {
-  if (design.index > 0.0) return "";
-  const std::string chain = "chain '" + design.setup.name + "': ";
-  if (design.status == DesignResult::Status::kNoPosture) {
-    return chain + "no feasible posture was found; what stands in the way most often is the " +
-           design.blame;
-  }
-  return chain +
-         "its feasible postures do not determine all parameters; hold some (identifiability: "
-         "hold) or widen its workspace";
-}
-
 int Design(const DesignCommand& command) {
   const Project project = ReadProject(command.project);
-  const std::vector<std::string> outputs = {command.output, Beside(command.output, "_summary.json"),
-                                            Beside(command.output, "_curves.csv"),
-                                            Beside(command.output, "_curves.svg")};
-  CheckOutputs({outputs.begin(), outputs.end()}, {command.project, project.urdf});
-  CheckOutputs({command.common.json_file}, {command.project, project.urdf});
-  if (command.algorithm == "exchange" && command.criterion != "O1") {
-    throw InputError("--algorithm exchange is for --criterion O1");
-  }
+  const DesignFiles files(command.output);
+  OutputSet outputs;
+  outputs.Protect({command.project, project.urdf});
+  for (const std::filesystem::path& file : files.all()) outputs.Declare(file);
+  outputs.Declare(command.common.json_file);
+  DeclarePlanningReport(command.output, outputs);
+  outputs.Prepare();
+
   const bool quiet = command.common.Silent();
-  const DesignOptions options = MakeOptions(command);
-  Programme programme;
-  const std::vector<Designed>& designed = programme.designed;
-  for (const ChainSetup& setup : ChosenSetups(project, command.chains)) {
-    DesignSides(project, setup, command, options, programme);
-    if (const std::string why = WhyInfeasible(designed.back().design); !why.empty()) {
-      spdlog::error("{}", why);
-      return kNotConverged;
-    }
+  const PostureDesignOptions options = MakeOptions(command);
+  const PostureDesign design =
+      DesignPostures(project, options, TerminalProgress("designed chain", quiet));
+  if (!design.infeasible.empty()) {
+    spdlog::error("{}", design.infeasible);
+    return kNotConverged;
   }
-  std::vector<std::string> warnings;
-  std::vector<ChainPostures> postures;
-  std::size_t total = 0;
-  for (const auto& [design, seconds] : designed) {
-    postures.push_back({design.setup.name, design.setup.support, design.postures});
-    total += design.postures.size();
-    for (const std::string& note : design.notes) {
-      warnings.push_back(design.setup.name + ": " + note);
-    }
-  }
-  const nlohmann::ordered_json json =
-      DesignJson(designed, project.tree.name, command.criterion, options.seed);
-  WriteFiles({{outputs[0], FormatPostureFile(project.tree, postures)},
-              {outputs[1], json.dump(2) + "\n"},
-              {outputs[2], CurvesCsv(programme.points, options.seed)},
-              {outputs[3], CurvesSvg(programme.points, command.criterion)}});
-  if (!command.common.json_file.empty()) {
-    WriteFile(command.common.json_file, json.dump(2) + "\n");
-  }
-  Print(quiet, "Calibration postures\n" + DesignTable(designed));
-  Print(quiet, fmt::format("{} postures in all: {:.1f} minutes at 5 s each\n\nWrote {} and {}\n",
-                           total, static_cast<double>(total) * 5.0 / 60.0, outputs[0],
-                           fmt::join(outputs.begin() + 1, outputs.end(), ", ")));
-  PrintWarnings(warnings);
-  WritePlanningReport(command.output, "design", command.common, project, {});
+  SetDesignFiles(files, project, design, options, outputs);
+  outputs.Set(command.common.json_file, FormatDesignSummary(project, design, options));
+  const PlanningReport report = SetPlanningReport(
+      command.output,
+      MakeRunRecord("design", command.common, RecordInputs({command.project, project.urdf})),
+      project, outputs);
+  outputs.Publish();
+
+  Print(quiet, "Calibration postures\n" + DesignTable(design));
+  Print(quiet, fmt::format("{} postures in all: {:.1f} minutes at 5 s each\n\n"
+                           "Wrote {} and {}, {}, {}\n",
+                           design.posture_count(), design.posture_count() * 5.0 / 60.0,
+                           files.postures.string(), files.summary.string(), files.curves.string(),
+                           files.picture.string()));
+  PrintWarnings(design.warnings());
+  PrintWarnings(report.warnings);
+  PrintReportPlace(report.folder, report.why_none, quiet);
   return kFine;
 }
 

@@ -20,6 +20,10 @@ std::vector<std::string>& CommandLine() {
   return words;
 }
 
+fs::path FolderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
 }  // namespace
 
 void SetCommandLine(int argc, char** argv) {
@@ -43,24 +47,16 @@ void PrintReportPlace(const fs::path& folder, const std::string& why_none, bool 
   }
 }
 
-void WritePlanningReport(const fs::path& output, const std::string& command,
-                         const CommonOptions& options, const Project& project,
-                         const std::vector<fs::path>& inputs) {
-  const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
-  std::vector<fs::path> files = {project.file, project.urdf};
-  files.insert(files.end(), inputs.begin(), inputs.end());
-  OutputSet outputs;
-  outputs.Protect(files);
-  DeclareResults(folder, {"robot_data.json"}, outputs);
-  outputs.Prepare();
-  std::vector<std::string> warnings;
-  const std::string robot = MakeRobotDataJson(MakeRobotView(project, warnings));
-  const std::string why_none =
-      SetResults(folder, {{"robot_data.json", robot}},
-                 MakeRunRecord(command, options, RecordInputs(files)), outputs);
-  outputs.Publish();
-  PrintWarnings(warnings);
-  PrintReportPlace(folder, why_none, options.Silent());
+void DeclarePlanningReport(const fs::path& output, OutputSet& outputs) {
+  DeclareResults(FolderOf(output), {"robot_data.json"}, outputs);
+}
+
+PlanningReport SetPlanningReport(const fs::path& output, const RunRecord& record,
+                                 const Project& project, OutputSet& outputs) {
+  PlanningReport report{FolderOf(output), {}, {}};
+  const std::string robot = MakeRobotDataJson(MakeRobotView(project, report.warnings));
+  report.why_none = SetResults(report.folder, {{"robot_data.json", robot}}, record, outputs);
+  return report;
 }
 
 }  // namespace elastocal::cli

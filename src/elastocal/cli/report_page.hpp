@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/io/output_set.hpp"
 #include "elastocal/io/project.hpp"
 #include "elastocal/report/run_record.hpp"
 
@@ -20,10 +21,19 @@ RunRecord MakeRunRecord(const std::string& command, const CommonOptions& options
 /// Says where the report of a folder is or, where that is not empty, why there is none.
 void PrintReportPlace(const std::filesystem::path& folder, const std::string& why_none, bool quiet);
 
-/// The end of `design` and `plan`: beside their output, what the report needs of them and the
-/// report itself.
-void WritePlanningReport(const std::filesystem::path& output, const std::string& command,
-                         const CommonOptions& options, const Project& project,
-                         const std::vector<std::filesystem::path>& inputs);
+/// What `design` and `plan` write beside their output (robot_data.json, runs.json and report.html),
+/// declared together with it.
+void DeclarePlanningReport(const std::filesystem::path& output, OutputSet& outputs);
+
+/// What to say of it.
+struct PlanningReport {
+  std::filesystem::path folder;
+  std::string why_none;  ///< why there is no report.html; empty where there is one
+  std::vector<std::string> warnings;
+};
+
+/// The contents of these files. Call it when those of the command itself are set.
+PlanningReport SetPlanningReport(const std::filesystem::path& output, const RunRecord& record,
+                                 const Project& project, OutputSet& outputs);
 
 }  // namespace elastocal::cli

@@ -180,14 +180,19 @@ Experiment ParseExperiment(const std::string& text, const fs::path& folder,
   return experiment;
 }
 
-void WriteExperiment(const fs::path& folder, const Experiment& experiment, const Project& project) {
+std::string FormatExperiment(const fs::path& folder, const Experiment& experiment,
+                             const Project& project) {
   YAML::Emitter yaml;
   yaml << YAML::BeginMap;
   if (experiment.gravity.y() != 0.0) yaml << YAML::Key << "up" << YAML::Value << "y";
   yaml << YAML::Key << "trials" << YAML::Value << YAML::BeginSeq;
   for (const TrialFiles& trial : experiment.trials) EmitTrial(trial, folder, project, yaml);
   yaml << YAML::EndSeq << YAML::EndMap;
-  WriteFile(folder / kFileName, std::string(yaml.c_str()) + "\n");
+  return std::string(yaml.c_str()) + "\n";
+}
+
+void WriteExperiment(const fs::path& folder, const Experiment& experiment, const Project& project) {
+  WriteFile(folder / kFileName, FormatExperiment(folder, experiment, project));
 }
 
 }  // namespace elastocal

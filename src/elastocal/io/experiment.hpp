@@ -44,7 +44,11 @@ Experiment ReadExperiment(const std::filesystem::path& folder, const Project& pr
 Experiment ParseExperiment(const std::string& text, const std::filesystem::path& folder,
                            const Project& project);
 
-/// Writes `folder`/experiment.yaml for such trials, with files as seen from the folder.
+/// The text of `folder`/experiment.yaml for such trials, with files as seen from the folder.
+std::string FormatExperiment(const std::filesystem::path& folder, const Experiment& experiment,
+                             const Project& project);
+
+/// Writes it.
 void WriteExperiment(const std::filesystem::path& folder, const Experiment& experiment,
                      const Project& project);
 

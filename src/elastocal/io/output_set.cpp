@@ -230,8 +230,9 @@ struct OutputSet::State {
   std::vector<Output> outputs;
 
   Output* Find(const fs::path& file) {
+    const fs::path normal = file.lexically_normal();
     for (Output& output : outputs) {
-      if (output.given == file) return &output;
+      if (output.given.lexically_normal() == normal) return &output;
     }
     return nullptr;
   }

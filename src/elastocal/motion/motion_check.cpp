@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <utility>
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/motion/sampled_motion.hpp"
@@ -148,22 +150,32 @@ MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motio
   return margins;
 }
 
-std::optional<Constraint> Broken(const MotionMargins& margins, const MotionLimits& limits) {
-  constexpr double kFootMoves = 1e-6;
-  constexpr double kOnFloor = -1e-6;
+std::vector<Constraint> BrokenConstraints(const MotionMargins& margins,
+                                          const MotionLimits& limits) {
+  // Written so that NaN breaks them.
   const auto below = [](const Worst& worst, double limit) { return !(worst.value >= limit); };
   const auto above = [](const Worst& worst, double limit) { return !(worst.value <= limit); };
-  if (below(margins.position, limits.position_margin)) return Constraint::kPosition;
-  if (above(margins.velocity, limits.velocity_share)) return Constraint::kVelocity;
-  if (above(margins.torque, limits.torque_share)) return Constraint::kTorque;
-  if (below(margins.clearance, limits.clearance)) return Constraint::kClearance;
-  if (below(margins.zmp, limits.zmp_margin)) return Constraint::kZmp;
-  if (above(margins.friction, limits.friction)) return Constraint::kFriction;
-  if (below(margins.knee, limits.least_knee)) return Constraint::kKnee;
-  if (above(margins.foot_moved, kFootMoves)) return Constraint::kFeet;
-  if (above(margins.foot_turned, kFootMoves)) return Constraint::kFeet;
-  if (below(margins.floor, kOnFloor)) return Constraint::kFloor;
-  return std::nullopt;
+  const std::initializer_list<std::pair<Constraint, bool>> checks = {
+      {Constraint::kPosition, below(margins.position, limits.position_margin)},
+      {Constraint::kVelocity, above(margins.velocity, limits.velocity_share)},
+      {Constraint::kTorque, above(margins.torque, limits.torque_share)},
+      {Constraint::kClearance, below(margins.clearance, limits.clearance)},
+      {Constraint::kZmp, below(margins.zmp, limits.zmp_margin)},
+      {Constraint::kFriction, above(margins.friction, limits.friction)},
+      {Constraint::kKnee, below(margins.knee, limits.least_knee)},
+      {Constraint::kFeet,
+       above(margins.foot_moved, kFootTolerance) || above(margins.foot_turned, kFootTolerance)},
+      {Constraint::kFloor, below(margins.floor, -kFootTolerance)}};
+  std::vector<Constraint> broken;
+  for (const auto& [constraint, breaks] : checks) {
+    if (breaks) broken.push_back(constraint);
+  }
+  return broken;
+}
+
+std::optional<Constraint> Broken(const MotionMargins& margins, const MotionLimits& limits) {
+  const std::vector<Constraint> broken = BrokenConstraints(margins, limits);
+  return broken.empty() ? std::nullopt : std::optional(broken.front());
 }
 
 }  // namespace elastocal

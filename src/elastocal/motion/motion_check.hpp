@@ -70,7 +70,14 @@ struct MotionForces {
 MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motion,
                           MotionForces* forces = nullptr);
 
-/// The first limit, in the order of Constraint, that is broken. A foot may move by 1e-6 m and rad.
+/// A standing foot may move by this, m or rad, and a corner of a swinging foot may be as far below
+/// the floor, m: rounding.
+inline constexpr double kFootTolerance = 1e-6;
+
+/// All constraints that the margins break, in the order of Constraint.
+std::vector<Constraint> BrokenConstraints(const MotionMargins& margins, const MotionLimits& limits);
+
+/// The first of them, if any.
 std::optional<Constraint> Broken(const MotionMargins& margins, const MotionLimits& limits);
 
 }  // namespace elastocal

@@ -10,8 +10,8 @@
 namespace elastocal {
 namespace {
 
-/// Progress of a way, from 0 to 1, for rows that rest at both ends and move in between.
-Eigen::VectorXd Progress(Eigen::Index samples, Eigen::Index before, Eigen::Index after) {
+/// Share of a way that is done, from 0 to 1, for rows that rest at both ends and move in between.
+Eigen::VectorXd ShareOfWay(Eigen::Index samples, Eigen::Index before, Eigen::Index after) {
   Eigen::VectorXd progress(samples);
   const auto moving = static_cast<double>(samples - 1 - before - after);
   for (Eigen::Index i = 0; i < samples; ++i) {
@@ -255,7 +255,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const PlacedPosture& from,
   stretch.rate_hz = options_.rate_hz;
   stretch.standing = robot_.AllFeet();
   stretch.q = WithEnds(from.q.transpose().replicate(SamplesOf(options_.shift_s) + 1, 1));
-  const Eigen::VectorXd progress = Progress(stretch.q.rows(), SamplesOf(kEnds), SamplesOf(kEnds));
+  const Eigen::VectorXd progress = ShareOfWay(stretch.q.rows(), SamplesOf(kEnds), SamplesOf(kEnds));
   const Eigen::RowVector2d begin = SupportCentre(robot_, stretch.standing).transpose();
   const Eigen::RowVector2d way = HandOver(onto).transpose() - begin;
   stretch.zmp = begin.replicate(progress.size(), 1) + progress * way;
@@ -275,8 +275,8 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, cons
   // further. If the robot tips towards the foot, that foot is still near the floor.
   const Eigen::Index ends = SamplesOf(kEnds);
   const auto part = [&](double first, double last) {
-    return Progress(stretch.q.rows(), ends + SamplesOf(first * options_.lift_s),
-                    ends + SamplesOf((1.0 - last) * options_.lift_s));
+    return ShareOfWay(stretch.q.rows(), ends + SamplesOf(first * options_.lift_s),
+                      ends + SamplesOf((1.0 - last) * options_.lift_s));
   };
   const Eigen::VectorXd lifted = options_.first_lift_m * part(0.0, 0.4) +
                                  (options_.lift_m - options_.first_lift_m) * part(0.6, 1.0);

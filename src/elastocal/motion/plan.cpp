@@ -1,13 +1,10 @@
 #include "elastocal/motion/plan.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
-#include <mutex>
 #include <numeric>
-#include <thread>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/parallel.hpp"
 #include "elastocal/motion/move_builder.hpp"
 #include "elastocal/motion/order.hpp"
 
@@ -220,26 +217,12 @@ PlannedTour PlanTour(const StandingRobot& robot, const PostureTour& set,
 }
 
 std::vector<PlannedTour> PlanTours(const StandingRobot& robot, const std::vector<PostureTour>& sets,
-                                   const PlanOptions& options, int threads) {
+                                   const PlanOptions& options, int threads,
+                                   const Progress& progress) {
   std::vector<PlannedTour> planned(sets.size());
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  std::mutex guard;
-  const auto work = [&] {
-    try {
-      for (std::size_t i = next++; i < sets.size(); i = next++) {
-        planned[i] = PlanTour(robot, sets[i], options);
-      }
-    } catch (...) {
-      const std::lock_guard lock(guard);
-      failure = std::current_exception();
-    }
-  };
-  std::vector<std::thread> workers;
-  for (int i = 1; i < threads; ++i) workers.emplace_back(work);
-  work();
-  for (std::thread& worker : workers) worker.join();
-  if (failure) std::rethrow_exception(failure);
+  ForAll(
+      sets.size(), threads, [&](std::size_t i) { planned[i] = PlanTour(robot, sets[i], options); },
+      progress);
   return planned;
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "elastocal/math/progress.hpp"
 #include "elastocal/motion/balance.hpp"
 #include "elastocal/motion/joint_path.hpp"
 #include "elastocal/motion/motion_check.hpp"
@@ -86,8 +87,10 @@ PlannedTour PlanTour(const StandingRobot& robot, const PostureTour& set,
                      const PlanOptions& options);
 
 /// Plans several sets, on several threads. The result does not depend on the number of threads.
+/// Progress counts sets.
 std::vector<PlannedTour> PlanTours(const StandingRobot& robot, const std::vector<PostureTour>& sets,
-                                   const PlanOptions& options, int threads);
+                                   const PlanOptions& options, int threads,
+                                   const Progress& progress = {});
 
 /// All motions one after the other, with a rest before the first.
 SampledMotion JoinMotions(const StandingRobot& robot, const std::vector<PlannedTour>& sets,

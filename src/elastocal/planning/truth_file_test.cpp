@@ -1,47 +1,18 @@
-#include "elastocal/io/truth_file.hpp"
+#include "elastocal/planning/truth_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/output_files.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/io/waist_truth.hpp"
 #include "elastocal/io/yaml_value.hpp"
+#include "elastocal/planning/simulate_experiment.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
-
-TEST(WaistTruth, ReadsBackWhatItWrote) {
-  const ScratchFolder scratch;
-  WaistTruth truth;
-  truth.time_s = Eigen::Vector3d(0.0, 0.01, 0.02);
-  for (double angle : {0.1, 1.7, 3.1}) {
-    truth.T_camera_waist.push_back(FromXyzRpy({0.3 * angle, -1.0, 0.98}, {angle, -0.4, 2.0}));
-  }
-  WriteWaistTruth(scratch.path() / "waist.csv", truth);
-  const WaistTruth read = ReadWaistTruth(scratch.path() / "waist.csv");
-  EXPECT_EQ(read.time_s, truth.time_s);
-  ASSERT_EQ(read.T_camera_waist.size(), 3u);
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_LT(
-        (read.T_camera_waist[i].matrix() - truth.T_camera_waist[i].matrix()).cwiseAbs().maxCoeff(),
-        1e-15);
-  }
-}
-
-TEST(WaistTruth, RefusesWhatIsNone) {
-  const ScratchFolder scratch;
-  const auto refused = [&](const std::string& text, std::initializer_list<std::string> parts) {
-    const std::string file = scratch.Write("waist.csv", text);
-    ExpectInputError([&] { ReadWaistTruth(file); }, parts);
-  };
-  refused("t,x,y,z\n", {"waist.csv", "t,x,y,z,qw,qx,qy,qz"});
-  refused("t,x,y,z,qw,qx,qy,qz\n0,1,2\n", {"waist.csv:2", "3 cells"});
-  refused("t,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,0,0,a\n", {"waist.csv:2", "qz"});
-  refused("t,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,1,0,0\n", {"waist.csv:2", "unit length"});
-}
 
 /// The small humanoid's arm, one trial of two postures.
 class SimulatedFolder : public testing::Test {
@@ -63,7 +34,8 @@ TEST_F(SimulatedFolder, IsWhatTheReadersOfARecordingTake) {
   const VirtualExperiment experiment = PrepareExperiment(DescribeRobot(project_), options_);
   const SimulatedTrial trial = RunTrial(experiment, 1);
   Experiment written;
-  written.trials.push_back(WriteSimulatedTrial(scratch_.path(), experiment.trials[1], trial));
+  written.trials.push_back(FilesOfTrial(experiment.trials[1], scratch_.path()));
+  WriteSimulatedTrial(written.trials[0], trial);
   WriteExperiment(scratch_.path(), written, project_);
 
   const Experiment read = ReadExperiment(scratch_.path(), project_);
@@ -86,9 +58,8 @@ TEST_F(SimulatedFolder, TruthTellsWhatWasDrawn) {
   options_.faults.dead_torque_sensor.clear();
   const VirtualExperiment experiment = PrepareExperiment(DescribeRobot(project_), options_);
   const SimulatedTrial trial = RunTrial(experiment, 0);
-  WriteTruth(scratch_.path(), experiment, {0}, {trial.raw.truth});
-  const std::string file = (scratch_.path() / "truth.yaml").string();
-  const YamlValue truth = YamlValue::Parse(ReadFile(file), file);
+  const YamlValue truth =
+      YamlValue::Parse(FormatTruth(experiment, {0}, {trial.raw.truth}), "truth.yaml");
   EXPECT_EQ(truth.Get("seed").Integer(0, 9), 1);
 
   const int knee = FindJoint(project_.tree, "left_knee_pitch");

@@ -1,10 +1,10 @@
-#include "elastocal/cli/design_problem.hpp"
+#include "elastocal/planning/chain_setups.hpp"
 
 #include <algorithm>
 
 #include "elastocal/math/input_error.hpp"
 
-namespace elastocal::cli {
+namespace elastocal {
 namespace {
 
 /// What can give way while the chain moves: its joints, and the leg that the robot stands on, if
@@ -59,8 +59,8 @@ std::vector<ChainSetup> ChosenSetups(const Project& project,
   for (const std::string& name : names) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) {
-      throw InputError("--chain: the project's design has no chain '" + name + "'" +
-                       DidYouMean(name, known));
+      throw InputError(project.file.string() + ": the section 'design' has no chain '" + name +
+                       "'" + DidYouMean(name, known));
     }
     chosen.push_back(project.motion.chains[found - known.begin()]);
   }
@@ -88,4 +88,4 @@ std::vector<ChainSetup> SetupsOfBothSides(const Project& project) {
   return setups;
 }
 
-}  // namespace elastocal::cli
+}  // namespace elastocal

@@ -7,10 +7,11 @@
 #include "elastocal/io/project.hpp"
 #include "elastocal/posture/chain_problem.hpp"
 
-namespace elastocal::cli {
+namespace elastocal {
 
-/// A chain for which postures are sought: its model with the chain's markers, and what of it can be
-/// identified. Problems refer to the model, so it stays where it is.
+/// A chain for which postures are sought, with its error model (of the chain's markers only) and
+/// the parameters of it that can be identified. Problems refer to the model, so the model has an
+/// address that stays.
 struct DesignedChain {
   ChainSetup setup;
   std::unique_ptr<ErrorModel> model;
@@ -21,9 +22,8 @@ struct DesignedChain {
 /// Throws InputError where the chain carries no markers.
 DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic);
 
-/// The project's chain set-ups of these names, or all; a name may be that of a mirrored chain only
-/// together with the chain that it mirrors. Throws InputError for unknown names, and where the
-/// project has no section `design`.
+/// The chain set-ups of the project's section `design` with these names, or all of them. Throws
+/// InputError for an unknown name, and where the project has no section `design`.
 std::vector<ChainSetup> ChosenSetups(const Project& project, const std::vector<std::string>& names);
 
 /// Set-up of the chain on the other side. Throws InputError where there is no mirror image.
@@ -32,4 +32,4 @@ ChainSetup OtherSide(const Project& project, const ChainSetup& setup);
 /// The project's chain set-ups, each followed by that of the other side where it has one.
 std::vector<ChainSetup> SetupsOfBothSides(const Project& project);
 
-}  // namespace elastocal::cli
+}  // namespace elastocal

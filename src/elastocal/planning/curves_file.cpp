@@ -1,4 +1,4 @@
-#include "elastocal/io/curves_file.hpp"
+#include "elastocal/planning/curves_file.hpp"
 
 #include <algorithm>
 #include <array>

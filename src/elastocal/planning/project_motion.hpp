@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "elastocal/motion/plan.hpp"
 #include "elastocal/robot/joint_motion.hpp"
 
-namespace elastocal::cli {
+namespace elastocal {
 
 /// The project's robot, standing in its posture of rest, with what keeps its parts apart: the
 /// contacts of all chains of the section `design`. Throws InputError where the project has no
@@ -25,19 +24,10 @@ std::vector<std::string> ContactNames(const Project& project);
 std::vector<PostureTour> PostureTours(const StandingRobot& robot,
                                       const std::vector<ChainPostures>& chains);
 
-/// Those of a validation motion, `sine`, `random` or `repeatability`, of all chains of the section
-/// `design` and of those on the other side.
-std::vector<PostureTour> ProjectValidationTours(const Project& project, const StandingRobot& robot,
-                                                const std::string& kind, std::uint64_t seed);
-
 /// Links of soles, by sample, and times: what files hold.
 JointMotion ToJointMotion(const StandingRobot& robot, const SampledMotion& motion);
 
 /// "joint torque limit: leg_left_4_joint at 104 %" and the like.
 std::string ReasonText(const Project& project, const LeftOut& left_out);
 
-/// Table of the worst values of a motion and the limits.
-std::string MarginTable(const Project& project, const MotionMargins& margins,
-                        const MotionLimits& limits, double rate_hz);
-
-}  // namespace elastocal::cli
+}  // namespace elastocal

@@ -1,4 +1,4 @@
-#include "elastocal/io/simulation_settings.hpp"
+#include "elastocal/planning/simulation_settings.hpp"
 
 #include <set>
 

@@ -1,26 +1,16 @@
-#include "elastocal/io/truth_file.hpp"
+#include "elastocal/planning/truth_file.hpp"
 
-#include <array>
 #include <cmath>
-#include <fstream>
 
 #include <yaml-cpp/emitter.h>
 
-#include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/output_files.hpp"
 #include "elastocal/io/posture_checks.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
-#include "elastocal/io/table_lines.hpp"
 #include "elastocal/io/text.hpp"
-#include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr double kDegree = M_PI / 180.0;
-constexpr std::array kColumns = {"t", "x", "y", "z", "qw", "qx", "qy", "qz"};
+constexpr double kRadPerDeg = M_PI / 180.0;
 
 /// Writes numbers with all digits.
 class TruthWriter {
@@ -59,9 +49,9 @@ void WriteJoints(const VirtualExperiment& experiment, const RobotTree& described
     writer.Key(joint.name);
     writer.yaml << YAML::BeginMap;
     writer.Value(slides ? "offset_mm" : "offset_deg",
-                 robot.offset[index] / (slides ? 1e-3 : kDegree));
+                 robot.offset[index] / (slides ? 1e-3 : kRadPerDeg));
     writer.List("shift_mm", Eigen::Vector3d(1e3 * error.translation()));
-    writer.List("turn_deg", Eigen::Vector3d(turn.angle() / kDegree * turn.axis()));
+    writer.List("turn_deg", Eigen::Vector3d(turn.angle() / kRadPerDeg * turn.axis()));
     writer.Value(slides ? "compliance_m_per_n" : "compliance_rad_per_nm", robot.compliance[index]);
     if (robot.link_compliance[k].any()) {
       writer.List("carrier_compliance", robot.link_compliance[k]);
@@ -137,74 +127,8 @@ void WriteTrials(const VirtualExperiment& experiment, const std::vector<std::siz
 
 }  // namespace
 
-DescribedRobot DescribeRobot(const Project& project) {
-  DescribedRobot robot;
-  robot.tree = project.tree;
-  robot.markers = project.markers;
-  robot.torque_sensors = project.torque_sensors;
-  for (const Chain& chain : project.chains) {
-    robot.chains.push_back({chain.name, chain.from_link, chain.tip_link});
-  }
-  for (const MarkerCluster& cluster : project.clusters) {
-    robot.clusters.push_back({cluster.name, cluster.markers});
-  }
-  return robot;
-}
-
-WaistTruth ReadWaistTruth(const fs::path& file) {
-  std::ifstream stream = OpenTable(file);
-  TableLines lines(stream, file.string());
-  std::vector<std::string> cells;
-  const std::vector<std::string> expected(kColumns.begin(), kColumns.end());
-  if (!lines.Next(cells) || cells != expected) {
-    throw InputError(file.string() + ": the header t,x,y,z,qw,qx,qy,qz was expected");
-  }
-  WaistTruth truth;
-  std::vector<double> time_s;
-  while (lines.Next(cells)) {
-    if (cells.size() != expected.size()) {
-      throw InputError(Place(file.string(), lines.line()) + "found " +
-                       std::to_string(cells.size()) + " cells; 8 were expected");
-    }
-    std::array<double, kColumns.size()> row{};
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      row[c] = CellNumber(cells[c], expected[c], file.string(), lines.line());
-    }
-    const Eigen::Quaterniond q(row[4], row[5], row[6], row[7]);
-    if (!(std::abs(q.norm() - 1.0) < 1e-6)) {
-      throw InputError(Place(file.string(), lines.line()) +
-                       "columns 'qw' to 'qz': a quaternion of unit length was expected");
-    }
-    Transform T = Transform::Identity();
-    T.linear() = q.normalized().toRotationMatrix();
-    T.translation() = Eigen::Vector3d(row[1], row[2], row[3]);
-    truth.T_camera_waist.push_back(T);
-    time_s.push_back(row[0]);
-  }
-  truth.time_s =
-      Eigen::Map<const Eigen::VectorXd>(time_s.data(), static_cast<Eigen::Index>(time_s.size()));
-  return truth;
-}
-
-void WriteWaistTruth(const fs::path& file, const WaistTruth& truth) {
-  std::string text;
-  for (const char* column : kColumns) text += (text.empty() ? "" : ",") + std::string(column);
-  text += '\n';
-  for (std::size_t i = 0; i < truth.T_camera_waist.size(); ++i) {
-    const Transform& T = truth.T_camera_waist[i];
-    const Eigen::Quaterniond q(T.linear());
-    text += FormatNumber(truth.time_s[static_cast<Eigen::Index>(i)]);
-    for (double value : {T.translation().x(), T.translation().y(), T.translation().z(), q.w(),
-                         q.x(), q.y(), q.z()}) {
-      text += "," + FormatNumber(value);
-    }
-    text += '\n';
-  }
-  WriteFile(file, text);
-}
-
-void WriteTruth(const fs::path& folder, const VirtualExperiment& experiment,
-                const std::vector<std::size_t>& trials, const std::vector<SensorTruth>& sensors) {
+std::string FormatTruth(const VirtualExperiment& experiment, const std::vector<std::size_t>& trials,
+                        const std::vector<SensorTruth>& sensors) {
   TruthWriter writer;
   writer.yaml << YAML::BeginMap;
   writer.Key("seed");
@@ -219,12 +143,12 @@ void WriteTruth(const fs::path& folder, const VirtualExperiment& experiment,
     writer.List(marker.name, Eigen::Vector3d(1e3 * marker.p_link_marker));
   }
   writer.yaml << YAML::EndMap << YAML::EndMap;
-  WriteFile(folder / "truth.yaml", std::string(writer.yaml.c_str()) + "\n");
+  return std::string(writer.yaml.c_str()) + "\n";
 }
 
-void WriteMatchedTruth(const fs::path& folder, const MatchedExperiment& experiment,
-                       const std::vector<std::size_t>& trials,
-                       const std::vector<SensorTruth>& sensors) {
+std::string FormatMatchedTruth(const MatchedExperiment& experiment,
+                               const std::vector<std::size_t>& trials,
+                               const std::vector<SensorTruth>& sensors) {
   TruthWriter writer;
   writer.yaml << YAML::BeginMap;
   writer.Key("matched");
@@ -244,27 +168,7 @@ void WriteMatchedTruth(const fs::path& folder, const MatchedExperiment& experime
     writer.yaml << UnitName(parameter.unit) << YAML::EndMap;
   }
   writer.yaml << YAML::EndMap << YAML::EndMap;
-  WriteFile(folder / "truth.yaml", std::string(writer.yaml.c_str()) + "\n");
-}
-
-TrialFiles WriteSimulatedTrial(const fs::path& folder, const PlannedTrial& plan,
-                               const SimulatedTrial& trial) {
-  TrialFiles files;
-  files.name = plan.name;
-  files.kind = plan.kind;
-  files.chains = plan.chains;
-  files.support = plan.support;
-  files.markers = folder / (plan.name + ".tsv");
-  files.joints = folder / (plan.name + ".csv");
-  files.truth = folder / (plan.name + "_waist.csv");
-  WriteQtmTsv(files.markers, trial.raw.markers);
-  WriteJointLog(files.joints, trial.raw.joints);
-  WaistTruth waist;
-  waist.T_camera_waist = trial.motion.T_camera_waist;
-  waist.time_s = Eigen::VectorXd::LinSpaced(
-      trial.motion.frame_count(), 0.0, (trial.motion.frame_count() - 1) / trial.motion.rate_hz);
-  WriteWaistTruth(files.truth, waist);
-  return files;
+  return std::string(writer.yaml.c_str()) + "\n";
 }
 
 }  // namespace elastocal

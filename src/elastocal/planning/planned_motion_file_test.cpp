@@ -1,4 +1,4 @@
-#include "elastocal/io/planned_motion_file.hpp"
+#include "elastocal/planning/planned_motion_file.hpp"
 
 #include <sstream>
 

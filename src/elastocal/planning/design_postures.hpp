@@ -1,0 +1,76 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/io/posture_file.hpp"
+#include "elastocal/io/project.hpp"
+#include "elastocal/math/progress.hpp"
+#include "elastocal/posture/design.hpp"
+
+namespace elastocal {
+
+struct PostureDesignOptions {
+  /// Of the project's section `design`; empty: all. A chain with a mirror image brings that along.
+  std::vector<std::string> chains = {};
+  /// The compliances of the joints (eq. 5), and of the one leg that stands (eq. 6), shall be
+  /// determined as well.
+  bool elastic = false;
+  /// Also finds what the other algorithms reach with as many postures; takes several times as long.
+  bool compare_algorithms = false;
+  DesignOptions design = {};  ///< of each chain
+};
+
+/// The postures of one chain, and how long they took to find.
+struct DesignedPostures {
+  ChainDesign design;
+  double seconds = 0.0;
+};
+
+/// Calibration postures of a robot.
+struct PostureDesign {
+  std::vector<DesignedPostures> chains;  ///< each followed by its mirror image, where it has one
+  std::vector<CurvePoint> curves;        ///< index against number of postures
+  /// Why there are no postures that determine the parameters of the last chain; empty where there
+  /// are for all. Then the design has ended early and is of no use.
+  std::string infeasible;
+
+  std::vector<ChainPostures> postures() const;
+  int posture_count() const;
+  std::vector<std::string> warnings() const;  ///< notes on the chains, each with the chain's name
+};
+
+/// Finds, chain by chain, the smallest set of feasible postures that tells most of the identifiable
+/// parameters (paper, section 3). The chain on the other side of the robot gets the mirrored
+/// postures. The same seed gives the same postures. Progress counts chains.
+///
+/// Throws InputError for a chain that the section `design` does not have or that carries no
+/// markers, where there is no such section, and for an exchange design by another criterion than
+/// O1.
+PostureDesign DesignPostures(const Project& project, const PostureDesignOptions& options,
+                             const Progress& progress = {});
+
+/// What `design` writes: the posture file, and beside it, if the file is `postures.yaml`,
+/// postures_summary.json, postures_curves.csv and postures_curves.svg (docs/formats.md, Postures).
+struct DesignFiles {
+  explicit DesignFiles(const std::filesystem::path& output);
+
+  std::filesystem::path postures, summary, curves, picture;
+
+  std::vector<std::filesystem::path> all() const { return {postures, summary, curves, picture}; }
+};
+
+/// Puts the contents of these files, which have been declared, into the set.
+void SetDesignFiles(const DesignFiles& files, const Project& project, const PostureDesign& design,
+                    const PostureDesignOptions& options, OutputSet& outputs);
+
+/// postures_summary.json.
+std::string FormatDesignSummary(const Project& project, const PostureDesign& design,
+                                const PostureDesignOptions& options);
+
+/// How the search for the postures of a chain ended, in a word or two.
+const char* StatusText(DesignResult::Status status);
+
+}  // namespace elastocal

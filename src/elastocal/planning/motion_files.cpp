@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/planning/plan_motion.hpp"
+#include "elastocal/planning/project_motion.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Json = nlohmann::ordered_json;
+
+/// Whether a file begins with a header that FormatMotionTable writes.
+bool IsPlannedMotion(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string header;
+  std::getline(stream, header);
+  return header.starts_with("time,") && header.find(",support,zmp_x,zmp_y") != std::string::npos;
+}
+
+/// Of each chain the part in which its feet stand, as a motion of its own.
+std::vector<PlannedMotion> ChainMotions(const MotionPlan& plan) {
+  const PlannedMotion& whole = plan.whole;
+  std::vector<PlannedMotion> motions;
+  Eigen::Index row = whole.motion.q.rows();
+  for (const PlannedTour& tour : plan.planned) row -= tour.motion.q.rows();
+  for (const PlannedTour& tour : plan.planned) {
+    const Eigen::Index first = row + tour.begin, count = tour.end - tour.begin;
+    const auto support = whole.motion.support.begin() + first;
+    PlannedMotion part;
+    part.motion.time_s =
+        whole.motion.time_s.segment(first, count).array() - whole.motion.time_s[first];
+    part.motion.q = whole.motion.q.middleRows(first, count);
+    part.motion.support.assign(support, support + count);
+    part.zmp = whole.zmp.middleRows(first, count);
+    part.torques = whole.torques.middleRows(first, count);
+    motions.push_back(std::move(part));
+    row += tour.motion.q.rows();
+  }
+  return motions;
+}
+
+Json TourJson(const Project& project, const PlannedTour& set, double rate_hz) {
+  Json json = {{"name", set.name},
+               {"duration_s", static_cast<double>(set.motion.q.rows()) / rate_hz},
+               {"visits", Json::array()},
+               {"left_out", Json::array()}};
+  for (const Visit& visit : set.visits) json["visits"].push_back(visit.posture);
+  for (const LeftOut& left : set.left_out) {
+    json["left_out"].push_back({{"posture", left.posture}, {"reason", ReasonText(project, left)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+MotionFiles::MotionFiles(const fs::path& output)
+    : motion(output), margins(output.parent_path() / (output.stem().string() + "_margins.json")) {}
+
+void MotionFiles::AddChains(const fs::path& folder, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const fs::path file = folder / (name + "_motion.csv");
+    std::error_code error;
+    if (fs::exists(file, error) && !IsPlannedMotion(file)) {
+      throw InputError(file.string() +
+                       ": is there and is no planned motion; it is not replaced. Choose another "
+                       "folder for the motions of the chains");
+    }
+    chains.push_back(file);
+  }
+}
+
+std::vector<fs::path> MotionFiles::all() const {
+  std::vector<fs::path> files = {motion, margins, trajectory};
+  files.insert(files.end(), chains.begin(), chains.end());
+  return files;
+}
+
+void SetMotionFiles(const MotionFiles& files, const Project& project, const MotionPlan& plan,
+                    const std::vector<MotionTrial>& trials, OutputSet& outputs) {
+  constexpr int kEvery = 5;  // samples of a trajectory: 20 Hz
+  outputs.Set(files.motion, FormatMotionTable(project.tree, plan.whole));
+  outputs.Set(files.margins, FormatMotionSummary(project, plan, trials));
+  if (!files.trajectory.empty()) {
+    outputs.Set(files.trajectory, FormatJointTrajectory(project.tree, plan.whole.motion, kEvery));
+  }
+  if (files.chains.empty()) return;
+  const std::vector<PlannedMotion> motions = ChainMotions(plan);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    outputs.Set(files.chains.at(i), FormatMotionTable(project.tree, motions[i]));
+  }
+}
+
+std::string FormatMotionSummary(const Project& project, const MotionPlan& plan,
+                                const std::vector<MotionTrial>& trials) {
+  const MotionMargins& margins = plan.margins;
+  Json json;
+  json["planning_s"] = plan.seconds;
+  json["sets"] = Json::array();
+  for (const PlannedTour& set : plan.planned) {
+    json["sets"].push_back(TourJson(project, set, plan.rate_hz));
+  }
+  json["margins"] = {
+      {"clearance_m", margins.clearance.value}, {"zmp_m", margins.zmp.value},
+      {"torque_share", margins.torque.value},   {"velocity_share", margins.velocity.value},
+      {"friction", margins.friction.value},     {"foot_moved_m", margins.foot_moved.value}};
+  for (const auto& [seed, run] : trials) {
+    json["tries"].push_back({{"seed", seed},
+                             {"stood", run.stood},
+                             {"time_s", run.time_s},
+                             {"largest_lean", run.largest_lean},
+                             {"tracking", run.tracking},
+                             {"least_zmp_margin", run.least_zmp_margin},
+                             {"largest_shift", run.largest_shift}});
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace elastocal

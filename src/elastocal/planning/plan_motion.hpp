@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/io/posture_file.hpp"
+#include "elastocal/io/project.hpp"
+#include "elastocal/math/progress.hpp"
+#include "elastocal/motion/plan.hpp"
+#include "elastocal/motion/validation_tours.hpp"
+#include "elastocal/planning/planned_motion_file.hpp"
+#include "elastocal/simulation/stand_through.hpp"
+
+namespace elastocal {
+
+struct MotionPlanOptions {
+  /// plan.balanced = false gives a motion that may break the limits, to see what comes of it.
+  PlanOptions plan = {};
+  MotionLimits limits = {};
+  int threads = 2;  ///< chains planned at a time; the result does not depend on it
+};
+
+/// The worst value of a quantity over a whole motion beside its limit, in words for people.
+struct LimitUse {
+  std::string what;  ///< "torque, % of limit"
+  std::string worst,
+      limit;            ///< in the unit that `what` names; `limit` is empty where there is none
+  double time_s = 0.0;  ///< when the worst value occurs
+  std::string where;    ///< joint, pair of parts or foot; empty where it is of the whole robot
+  bool broken = false;
+
+  /// "torque, % of limit: 104 at 12.31 s (leg_left_4_joint), the limit is 90".
+  std::string Describe() const;
+};
+
+/// A motion of the whole robot through sets of postures, one set a chain.
+struct MotionPlan {
+  std::vector<PostureTour> sets;     ///< what was to be visited
+  std::vector<PlannedTour> planned;  ///< one a set, the parts of the motion in turn
+  PlannedMotion whole;
+  double rate_hz = 100.0;
+  MotionMargins margins;         ///< of the whole motion, from its samples alone
+  std::vector<LimitUse> limits;  ///< the same beside the limits
+  double seconds = 0.0;          ///< that the planning took
+
+  /// Sets of which no posture can be kept and reached. With one of these there is no motion.
+  std::vector<std::string> impossible;
+  /// What of `limits` the motion breaks: nothing, unless the options ask for the impossible or the
+  /// motion is not balanced. Such a motion should not be played.
+  std::vector<LimitUse> broken() const;
+  /// What each set leaves out and why, a sentence each.
+  std::vector<std::string> left_out;
+};
+
+/// Plans the motion through calibration postures (paper, section 3.6): order, ways that avoid the
+/// robot's own parts, balance on one foot or two with changes between. The same input gives the
+/// same motion. Progress counts chains.
+///
+/// Throws InputError for shares outside (0, 1] and negative margins in the options, where the
+/// project has no soles, for a chain that stands on what is no sole, and where the robot cannot
+/// stand.
+MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& postures,
+                      const MotionPlanOptions& options, const Progress& progress = {});
+
+/// The same for a validation motion of all chains of the project's section `design` and of those on
+/// the other side. The seed draws its postures.
+MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std::uint64_t seed,
+                                const MotionPlanOptions& options, const Progress& progress = {});
+
+/// Names of the sets that PlanValidationMotion plans.
+std::vector<std::string> ValidationChains(const Project& project);
+
+struct MotionTrialOptions {
+  int robots = 1;
+  std::uint64_t seed = 1;  ///< of the first robot; the next ones have the numbers after it
+  double leg_errors =
+      TruthOptions{}.leg_geometry_scale;  ///< factor on their legs' geometric errors
+  double floor_friction = 0.5;
+  bool stabilised = true;  ///< false: they follow the motion whatever feet and inertial unit feel
+  int threads = 2;         ///< robots at a time; the result does not depend on it
+};
+
+/// How one robot came through a motion.
+struct MotionTrial {
+  std::uint64_t seed = 1;
+  StandingRun run;
+};
+
+/// Plays a motion on robots with errors that stand free (MuJoCo). Progress counts robots.
+std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,
+                                   const MotionTrialOptions& options,
+                                   const Progress& progress = {});
+
+/// What `plan` writes: the motion and, if that is `motion.csv`, motion_margins.json beside it.
+/// Where they are wanted: the motion as a ROS trajectory, and in a folder a motion of each chain,
+/// CHAIN_motion.csv, that simulate plays as a trial.
+struct MotionFiles {
+  std::filesystem::path motion, margins;
+  std::filesystem::path trajectory = {};  ///< empty: none
+  std::vector<std::filesystem::path> chains = {};
+
+  explicit MotionFiles(const std::filesystem::path& output);
+
+  /// Adds a file for each chain. Throws InputError where a file of that name stands there that is
+  /// no planned motion: it is not replaced.
+  void AddChains(const std::filesystem::path& folder, const std::vector<std::string>& names);
+
+  std::vector<std::filesystem::path> all() const;
+};
+
+/// Puts the contents of these files, which have been declared, into the set.
+void SetMotionFiles(const MotionFiles& files, const Project& project, const MotionPlan& plan,
+                    const std::vector<MotionTrial>& trials, OutputSet& outputs);
+
+/// The plan for programs (JSON): times, postures visited and left out, margins, and how the robots
+/// came through that tried it.
+std::string FormatMotionSummary(const Project& project, const MotionPlan& plan,
+                                const std::vector<MotionTrial>& trials);
+
+}  // namespace elastocal

@@ -1,0 +1,175 @@
+#include "elastocal/planning/simulate_experiment.hpp"
+
+#include <algorithm>
+
+#include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/io/joint_log.hpp"
+#include "elastocal/io/motion_file.hpp"
+#include "elastocal/io/posture_file.hpp"
+#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/io/waist_truth.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/parallel.hpp"
+#include "elastocal/planning/truth_file.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::size_t> ChooseTrials(const VirtualExperiment& experiment,
+                                      const std::string& which) {
+  std::vector<std::size_t> chosen;
+  std::vector<std::string> names = {"all", "calibration", "validation"};
+  for (std::size_t i = 0; i < experiment.trials.size(); ++i) {
+    const PlannedTrial& trial = experiment.trials[i];
+    names.push_back(trial.name);
+    const bool calibration = trial.kind == TrialKind::kCalibration;
+    if (which == "all" || which == trial.name ||
+        which == (calibration ? "calibration" : "validation")) {
+      chosen.push_back(i);
+    }
+  }
+  if (chosen.empty()) {
+    throw InputError("there is no trial '" + which + "'" + DidYouMean(which, names));
+  }
+  return chosen;
+}
+
+/// The model that a calibration of these trials has, with its errors.
+MatchedExperiment MatchTrials(const VirtualExperiment& experiment, const Project& project,
+                              const std::vector<std::size_t>& chosen) {
+  std::vector<Trial> trials;
+  for (std::size_t i : chosen) {
+    const PlannedTrial& planned = experiment.trials[i];
+    if (planned.kind != TrialKind::kCalibration) continue;
+    Trial trial{planned.name, planned.kind, {}, planned.support};
+    for (int chain : planned.chains) trial.chains.push_back(project.chains[chain].name);
+    trials.push_back(trial);
+  }
+  if (trials.empty()) {
+    throw InputError(
+        "a matched truth is that of the model for calibration trials, and none is played");
+  }
+  const ErrorModel model = MakeProjectModel(project, trials);
+  return MatchExperiment(experiment, model,
+                         FindBaseParameters(model, project.identifiability).kept);
+}
+
+SimulatedTrial Play(const Simulation& simulation, std::size_t trial) {
+  return simulation.matched ? RunMatchedTrial(*simulation.matched, trial)
+                            : RunTrial(simulation.experiment, trial);
+}
+
+WaistGive LargestDeflection(const Simulation& simulation, std::size_t trial,
+                            const TrueMotion& motion) {
+  return simulation.matched ? LargestMatchedDeflection(*simulation.matched, trial, motion)
+                            : LargestWaistDeflection(simulation.experiment, trial, motion);
+}
+
+/// The files where they are written before they are published.
+TrialFiles Staged(const TrialFiles& files, OutputSet& outputs) {
+  TrialFiles staged = files;
+  for (fs::path* file : {&staged.markers, &staged.joints, &staged.truth}) {
+    *file = outputs.StagingPath(*file);
+  }
+  return staged;
+}
+
+}  // namespace
+
+Simulation PrepareSimulation(const Project& project, const SimulationOptions& options) {
+  const DescribedRobot robot = DescribeRobot(project);
+  VirtualExperimentOptions settings = options.experiment;
+  Simulation simulation;
+  if (options.motion) {
+    settings.motion.seed = settings.seed;
+    simulation.experiment = PrepareExperiment(
+        robot, settings,
+        PlanGivenMotion(robot.tree, robot.chains, *options.motion, settings.motion, options.given));
+  } else {
+    simulation.experiment = PrepareExperiment(robot, settings);
+  }
+  simulation.chosen = ChooseTrials(simulation.experiment, options.trials);
+  if (options.matched) {
+    simulation.matched = MatchTrials(simulation.experiment, project, simulation.chosen);
+    simulation.experiment = simulation.matched->plan;
+  }
+  return simulation;
+}
+
+SimulationRun PlaySimulation(const Project& project, const Simulation& simulation,
+                             const SimulationFiles& files, int threads, OutputSet& outputs,
+                             const Progress& progress) {
+  std::vector<TrialFiles> staged;
+  for (const TrialFiles& trial : files.trials) staged.push_back(Staged(trial, outputs));
+  SimulationRun run;
+  run.trials.resize(simulation.chosen.size());
+  run.legs = simulation.experiment.legs;
+  const auto play = [&](std::size_t i) {
+    const std::size_t index = simulation.chosen[i];
+    const PlannedTrial& planned = simulation.experiment.trials[index];
+    const SimulatedTrial trial = Play(simulation, index);
+    WriteSimulatedTrial(staged[i], trial);
+    run.trials[i] = {planned.name,     planned.kind,
+                     planned.postures, trial.motion.frame_count(),
+                     trial.raw.truth,  LargestDeflection(simulation, index, trial.motion)};
+  };
+  ForAll(run.trials.size(), threads, play, progress);
+
+  std::vector<SensorTruth> sensors;
+  for (const PlayedTrial& trial : run.trials) sensors.push_back(trial.sensors);
+  outputs.Set(files.truth, simulation.matched
+                               ? FormatMatchedTruth(*simulation.matched, simulation.chosen, sensors)
+                               : FormatTruth(simulation.experiment, simulation.chosen, sensors));
+  Experiment experiment;
+  experiment.trials = files.trials;
+  outputs.Set(files.experiment, FormatExperiment(files.folder, experiment, project));
+  return run;
+}
+
+SimulationRun SimulateExperiment(const Project& project, const SimulationOptions& options,
+                                 const std::filesystem::path& folder, const Progress& progress) {
+  const Simulation simulation = PrepareSimulation(project, options);
+  const SimulationFiles files = FilesOfSimulation(simulation, folder);
+  OutputSet outputs;
+  outputs.Protect({project.file, project.urdf});
+  for (const fs::path& file : files.all()) outputs.Declare(file);
+  outputs.Prepare();
+  SimulationRun run =
+      PlaySimulation(project, simulation, files, options.threads, outputs, progress);
+  outputs.Publish();
+  return run;
+}
+
+void WriteSimulatedTrial(const TrialFiles& files, const SimulatedTrial& trial) {
+  WriteQtmTsv(files.markers, trial.raw.markers);
+  WriteJointLog(files.joints, trial.raw.joints);
+  WaistTruth waist;
+  waist.T_camera_waist = trial.motion.T_camera_waist;
+  waist.time_s = Eigen::VectorXd::LinSpaced(
+      trial.motion.frame_count(), 0.0, (trial.motion.frame_count() - 1) / trial.motion.rate_hz);
+  WriteWaistTruth(files.truth, waist);
+}
+
+DescribedRobot DescribeRobot(const Project& project) {
+  DescribedRobot robot;
+  robot.tree = project.tree;
+  robot.markers = project.markers;
+  robot.torque_sensors = project.torque_sensors;
+  for (const Chain& chain : project.chains) {
+    robot.chains.push_back({chain.name, chain.from_link, chain.tip_link});
+  }
+  for (const MarkerCluster& cluster : project.clusters) {
+    robot.clusters.push_back({cluster.name, cluster.markers});
+  }
+  return robot;
+}
+
+JointMotion ReadPosturesToPlay(const std::filesystem::path& file, const Project& project) {
+  const std::string extension = file.extension().string();
+  if (extension != ".yaml" && extension != ".yml") return ReadPostureList(file, project);
+  return ListPostures(ReadPostureFile(file, project), file.string());
+}
+
+}  // namespace elastocal
