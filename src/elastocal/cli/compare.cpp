@@ -28,7 +28,9 @@ int Compare(const CompareOptions& options) {
   outputs.Prepare();
   const ComparisonRun run = CompareCalibrations(options.a, options.b, options.comparison);
   outputs.Set(options.common.json_file,
-              MakeComparisonJson(run.a, run.b, run.comparison, options.comparison).dump(2) + "\n");
+              MakeComparisonJson(run.a, run.b, run.comparison, options.comparison)
+                      .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                  "\n");
   outputs.Publish();
   Print(options.common.Silent(),
         DescribeComparison(run.a, run.b, run.comparison, options.comparison));

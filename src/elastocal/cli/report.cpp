@@ -38,7 +38,8 @@ int Report(const ReportOptions& options) {
   const std::string page = MakeFolderPage(folder, ELASTOCAL_VERSION, earlier);
   outputs.Set(output, page);
   const nlohmann::ordered_json json = {{"report", output.string()}, {"bytes", page.size()}};
-  outputs.Set(options.common.json_file, json.dump(2) + "\n");
+  outputs.Set(options.common.json_file,
+              json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   outputs.Publish();
   Print(options.common.Silent() || options.output == "-",
         fmt::format("Report: {} ({:.1f} MB)\n", output.string(),

@@ -139,7 +139,10 @@ bool TableLines::Next(std::vector<std::string>& cells) {
     }
     return false;
   }
-  if (separator_ == '\0') separator_ = FindSeparator(text);
+  if (separator_ == '\0') {
+    RequireUtf8(text, source_, line_);
+    separator_ = FindSeparator(text);
+  }
   if (!SplitCells(text, separator_, cells)) {
     throw InputError(Place(source_, line_) + "quotes that do not enclose a whole cell");
   }

@@ -134,7 +134,8 @@ std::vector<ChainPostures> RecordedPostures(const Project& project, const Record
 std::string FormatAssessment(const std::vector<ChainAssessment>& chains, int weakest) {
   Json list = Json::array();
   for (const ChainAssessment& chain : chains) list.push_back(AssessedJson(chain, weakest));
-  return Json{{"chains", list}}.dump(2) + "\n";
+  return Json{{"chains", list}}.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+         "\n";
 }
 
 }  // namespace elastocal

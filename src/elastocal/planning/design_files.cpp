@@ -97,7 +97,7 @@ std::string FormatDesignSummary(const Project& project, const PostureDesign& des
                      {"seed", options.design.seed},
                      {"postures", design.posture_count()},
                      {"chains", chains}};
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 void SetDesignFiles(const DesignFiles& files, const Project& project, const PostureDesign& design,

@@ -118,7 +118,7 @@ std::string FormatMotionSummary(const Project& project, const MotionPlan& plan,
                              {"least_zmp_margin", run.least_zmp_margin},
                              {"largest_shift", run.largest_shift}});
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace elastocal

@@ -116,7 +116,7 @@ std::string FormatSimulationSummary(const SimulationRun& run) {
     json["stiffness"][leg.chain] =
         std::vector<double>(leg.compliance.stiffness.begin(), leg.compliance.stiffness.end());
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 std::string TrialNameOf(const fs::path& file) {
