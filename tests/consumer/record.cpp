@@ -2,6 +2,7 @@
 //   record PROJECT.yaml RECORDING.csv
 
 #include "elastocal/elastocal.hpp"
+#include "elastocal/planning.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 
 int main(int argc, char** argv) {

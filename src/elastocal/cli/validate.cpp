@@ -11,6 +11,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/pipeline/validate_calibration.hpp"
@@ -59,7 +60,7 @@ int Validate(const ValidateOptions& options) {
   const std::filesystem::path folder = options.output;
   const Project project = ReadProject(options.project);
   std::vector<std::filesystem::path> inputs = InputFiles(project, {options.recording});
-  inputs.push_back(options.calibration);
+  inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
   OutputSet outputs;
   outputs.Protect(inputs);
   if (!folder.empty()) DeclareResults(folder, {"validation.json"}, outputs);

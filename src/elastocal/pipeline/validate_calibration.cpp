@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "elastocal/io/output_set.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 
 namespace elastocal {
@@ -40,17 +40,16 @@ bool ValidationRun::better() const {
 ValidationRun ValidateCalibration(const Project& project, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
                                   std::optional<std::uint64_t> seed) {
-  const std::filesystem::path folder = calibration.parent_path();
-  RecoverOutputs(folder.empty() ? "." : folder);
-  ValidationRun run{.calibration = ReadCalibration(calibration),
-                    .calibration_file = calibration.string(),
+  const std::filesystem::path file = FindCalibrationFiles(calibration).calibration;
+  ValidationRun run{.calibration = ReadCalibration(file),
+                    .calibration_file = file.string(),
                     .recording = {},
                     .transfer = {},
                     .warnings = {}};
   Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
   const RecordedModel robot = MakeRecordedModel(project, seed, measured);
   if (run.calibration.nominal != NominalFingerprint(robot.model)) {
-    throw InputError(calibration.string() + ": made for robot '" + run.calibration.robot +
+    throw InputError(file.string() + ": made for robot '" + run.calibration.robot +
                      "' with other nominal geometry than " + project.urdf.string() +
                      "; expected the URDF that was calibrated, not the calibrated one");
   }

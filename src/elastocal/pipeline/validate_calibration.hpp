@@ -16,7 +16,7 @@ namespace elastocal {
 /// A calibration on a recording that it was not made from.
 struct ValidationRun {
   StoredCalibration calibration;
-  std::string calibration_file;
+  std::string calibration_file;  ///< its calibration.yaml
   Recording recording;
   TransferValidation transfer;
   std::vector<std::string> warnings;  ///< what a user should know of, a sentence each
@@ -30,9 +30,10 @@ struct ValidationRun {
 /// Applies a stored calibration to another recording of the same robot: only waist and markers are
 /// fitted anew, for the calibrated and for the nominal robot (paper, section 6.1.4).
 ///
-/// `recording`: a posture table or a recording folder; trials for validation will do. `seed` is
-/// taken instead of the project's. Throws InputError: files that cannot be read; a calibration of a
-/// robot with other nominal geometry than the project's.
+/// `calibration`: the folder that calibrate wrote to, or its calibration.yaml. `recording`: a
+/// posture table or a recording folder; trials for validation will do. `seed` is taken instead of
+/// the project's. Throws InputError: files that cannot be read; a calibration of a robot with other
+/// nominal geometry than the project's.
 ValidationRun ValidateCalibration(const Project& project, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
                                   std::optional<std::uint64_t> seed = {});
