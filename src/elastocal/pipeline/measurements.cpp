@@ -7,7 +7,7 @@
 #include "elastocal/io/experiment.hpp"
 #include "elastocal/io/posture_table.hpp"
 #include "elastocal/io/recording_folder.hpp"
-#include "elastocal/io/truth_file.hpp"
+#include "elastocal/io/waist_truth.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
