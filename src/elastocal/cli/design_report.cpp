@@ -6,6 +6,7 @@
 
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/curves_file.hpp"
+#include "elastocal/tables/table_writer.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -78,8 +79,8 @@ Json DesignJson(const std::vector<Designed>& designed, const std::string& robot,
 std::string CurvesCsv(const std::vector<CurvePoint>& points, std::uint64_t seed) {
   std::string text = "algorithm,chain,seed,postures,o1\n";
   for (const CurvePoint& point : points) {
-    text += fmt::format("{},{},{},{},{:.9g}\n", AlgorithmName(point.algorithm), point.chain, seed,
-                        point.postures, point.index);
+    text += fmt::format("{},{},{},{},{:.9g}\n", AlgorithmName(point.algorithm),
+                        MakeCell(point.chain), seed, point.postures, point.index);
   }
   return text;
 }

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/calibration/leg_stiffness.hpp"
-#include "elastocal/io/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -170,22 +169,6 @@ std::string RunStatus(const CalibrationRun& run) {
   const bool implausible =
       termination == Termination::kConverged && !run.verdict.objections.empty();
   return implausible ? "implausible" : TerminationName(termination);
-}
-
-std::string MakeCovarianceCsv(const CalibrationResult& result) {
-  const std::vector<int>& parameters = result.posterior.parameters;
-  std::string text = "parameter";
-  for (int i : parameters) text += "," + result.model.parameters[i].name;
-  text += "\n";
-  for (std::size_t row = 0; row < parameters.size(); ++row) {
-    text += result.model.parameters[parameters[row]].name;
-    for (std::size_t column = 0; column < parameters.size(); ++column) {
-      text += "," + FormatNumber(result.posterior.covariance(static_cast<Eigen::Index>(row),
-                                                             static_cast<Eigen::Index>(column)));
-    }
-    text += "\n";
-  }
-  return text;
 }
 
 std::string DescribePosture(const Recording& recording, int posture) {

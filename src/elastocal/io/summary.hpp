@@ -36,10 +36,6 @@ std::string RunStatus(const CalibrationRun& run);
 /// summary.json: the figures of a run, for programs to read (docs/formats.md).
 std::string MakeSummaryJson(const CalibrationRun& run);
 
-/// covariance.csv: covariance of the estimated and unsupported parameters together, rad and m, with
-/// their names as header row and first column.
-std::string MakeCovarianceCsv(const CalibrationResult& result);
-
 /// A posture as people find it again: "posture 12", or "trial leg_left, posture 3".
 std::string DescribePosture(const Recording& recording, int posture);
 

@@ -1,25 +1,3 @@
 #pragma once
 
-#include <optional>
-#include <string>
-#include <string_view>
-
-namespace elastocal {
-
-/// 'text' as it is shown in a message: in quotes, long text clipped, control characters as '?'.
-std::string Quote(std::string_view text);
-
-/// "file:line: ", how messages about a line begin.
-std::string Place(const std::string& source, int line);
-
-/// The text without spaces, tabs and line ends around it.
-std::string_view Trim(std::string_view text);
-
-/// The whole text, spaces around it aside, as a finite number in the notation of C, whatever the
-/// locale; nothing where it is anything else ("1,5", "nan", "1e999", "2 3").
-std::optional<double> ParseNumber(std::string_view text);
-
-/// The shortest decimal text that reads back as the same double.
-std::string FormatNumber(double value);
-
-}  // namespace elastocal
+#include "elastocal/tables/text.hpp"

@@ -1,9 +1,8 @@
-#include "elastocal/io/table_lines.hpp"
-
 #include <sstream>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/io/table_lines.hpp"
 #include "tests/expect_input_error.hpp"
 
 namespace elastocal {

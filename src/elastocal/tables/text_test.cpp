@@ -1,4 +1,4 @@
-#include "elastocal/io/text.hpp"
+#include "elastocal/tables/text.hpp"
 
 #include <limits>
 
