@@ -178,11 +178,15 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParam
 }
 
 CalibrationEstimate ReadEstimate(const std::filesystem::path& file) {
-  const YamlValue root = YamlValue::Parse(ReadFile(file), file.string());
+  return ParseEstimate(ReadFile(file), file.string());
+}
+
+CalibrationEstimate ParseEstimate(const std::string& text, const std::string& source) {
+  const YamlValue root = YamlValue::Parse(text, source);
   root.Get("format").Expect(root.Get("format").Text() == kFormat,
                             std::string("format ") + kFormat + ", which calibrate writes");
   CalibrationEstimate estimate;
-  estimate.source = file.string();
+  estimate.source = source;
   estimate.robot = root.Get("robot").Text();
   estimate.nominal = root.Get("nominal").Text();
   estimate.recording = root.Get("recording").Text();

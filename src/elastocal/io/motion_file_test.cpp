@@ -88,8 +88,8 @@ TEST(MotionFile, RefusesWhatIsNoMotion) {
   ExpectError("time,zmp_x\n0,0\n1,0\n", {"m.csv:1: ", "no column of any joint"});
   ExpectError("time,elbow_jiont\n0,0\n1,0\n", {"m.csv:1: ", "did you mean 'elbow_joint'"});
   ExpectError("0,0\n1,0\n", {"m.csv:1: ", "header row"});
-  ExpectError("time,t,elbow_joint\n0,0,0\n", {"'time' and 't' say the same"});
-  ExpectError("time,elbow_joint,elbow_joint\n0,0,0\n", {"say the same"});
+  ExpectError("time,t,elbow_joint\n0,0,0\n", {"'time' and 't' stand for the same"});
+  ExpectError("time,elbow_joint,elbow_joint\n0,0,0\n", {"'elbow_joint' comes twice"});
   ExpectError("time,elbow_joint\n0,0,0\n1,0\n", {"m.csv:2: ", "3 cells; the header has 2"});
   ExpectError("time,elbow_joint\n0,0\n1,\n", {"m.csv:3: ", "elbow_joint"});
   ExpectError("time,elbow_joint\n0,0\n1,nan\n", {"m.csv:3: ", "elbow_joint"});

@@ -81,6 +81,27 @@ TEST(PostureTable, ReadsRenamedColumnsInAnyOrder) {
   EXPECT_EQ(table.recording.joints_not_recorded[0], "rail_joint");
 }
 
+/// Joints that move no recorded marker and mimic joints need no column.
+TEST(PostureTable, FindsEveryKindOfColumn) {
+  const Project project = ParseProject(
+      "robot: {urdf: arm6.urdf}\n"
+      "markers: {single: [{name: M, link: rail, position_mm: [1, 2, 3]},\n"
+      "                   {name: N, link: carriage, position_mm: [1, 2, 3]}]}\n"
+      "recording: {columns: {markers: {N: [x, y, z]}, joints: {rail_joint: q}}, ignore: [note]}\n",
+      SourceFile("tests/robots/p.yaml"));
+  const Recording recording =
+      Read("note,z,y,x,q,t,elbow_joint,finger_right_joint\na,3,2,1,0.5,7,0.25,b\n", project)
+          .recording;
+  EXPECT_EQ(recording.time_s[0], 7.0);
+  EXPECT_EQ(recording.marker_names, std::vector<std::string>{"N"});
+  EXPECT_EQ(MarkerPosition(recording, 0, 0), Eigen::Vector3d(1, 2, 3));
+  // Coordinates: rail, turret, shoulder, elbow, roll, bend, flange, left finger.
+  Eigen::RowVectorXd q(8);
+  q << 0.5, 0, 0, 0.25, 0, 0, 0, 0;
+  EXPECT_EQ(recording.q, q);
+  EXPECT_EQ(recording.joints_not_recorded.size(), 6u);
+}
+
 TEST(PostureTable, EmptyMarkerCellsMeanNotSeen) {
   const std::string header =
       "A_x,A_y,A_z,B_x,B_y,B_z,rail_joint,turret_joint,shoulder_joint,"
@@ -90,6 +111,8 @@ TEST(PostureTable, EmptyMarkerCellsMeanNotSeen) {
   EXPECT_FALSE(Seen(table.recording, 0, 0));
   EXPECT_TRUE(Seen(table.recording, 1, 0));
   EXPECT_EQ(table.markers_not_recorded, (std::vector<std::string>{"B", "T"}));
+  ASSERT_FALSE(table.warnings.empty());
+  EXPECT_EQ(table.warnings[0], "marker B was never seen and is left out");
   ExpectError(header + ",,,,,,0,0,0,0,0\n", {"t.csv", "no marker was seen"});
   ExpectError(header + "1,,3,,,,0,0,0,0,0\n", {"t.csv:2: ", "'A_y'", "found nothing"});
 }
@@ -215,6 +238,28 @@ TEST(PostureTable, WritesWhatItReads) {
   EXPECT_EQ(second.joints_not_recorded, first.joints_not_recorded);
   EXPECT_FALSE(Seen(second, 0, 0));
   EXPECT_EQ(second.markers.row(1), first.markers.row(1));
+}
+
+TEST(PostureTable, NamesWithSeparatorsAndQuotesSurvive) {
+  const ScratchFolder scratch;
+  const Project project = ParseProject(
+      "robot: {urdf: arm6.urdf}\n"
+      "markers:\n"
+      "  single:\n"
+      "    - {name: \"A, left; low\", link: forearm, position_mm: [10, 20, 30]}\n"
+      "    - {name: 'B \"old\"', link: forearm, position_mm: [-10, 20, 30]}\n",
+      SourceFile("tests/robots/p.yaml"));
+  Recording recording;
+  recording.marker_names = {"A, left; low", "B \"old\""};
+  recording.q = Eigen::MatrixXd::Zero(2, project.tree.coordinate_count());
+  recording.q(1, 0) = 0.1;
+  recording.markers.resize(2, 6);
+  recording.markers << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.2, 0.2, 0.3, 0.5, 0.5, 0.6;
+  const std::filesystem::path file = scratch.path() / "named.csv";
+  WritePostureTable(file, recording, project.tree);
+  const Recording read = ReadPostureTable(file, project).recording;
+  EXPECT_EQ(read.marker_names, recording.marker_names);
+  EXPECT_EQ(read.markers, recording.markers);
 }
 
 TEST(PostureTable, ReadsTheMeasuredRecording) {

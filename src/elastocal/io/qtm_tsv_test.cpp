@@ -124,7 +124,7 @@ TEST(QtmTsv, NamesWrongCells) {
   ExpectError(kShort + "1\t2\t3\n", {"t.tsv:3: ", "3 cells", "6"});
   ExpectError(kShort + "1\t2\t3\t4\t5\t6\t\t\t\t\n", {"t.tsv:3: ", "10 cells", "8"});
   ExpectError(kShort + "1\t2\t3\t4\t5\t6\t\n1\t2\t3\t4\t5\t6\t7\n", {"t.tsv:4: column 7"});
-  ExpectError(kShort + good + "\n" + good, {"t.tsv:4: ", "1 cells"});
+  ExpectError(kShort + good + "\n" + good, {"t.tsv:5: ", "below an empty line"});
   ExpectError(kHeader + kColumns + "1\tNULL\t1\t2\t3\t4\t5\t6\n",
               {":15: column 2 (Time)", "'NULL'"});
   ExpectError(kShort + std::string("1\t2\t3\t4\t5\t6\0", 12), {"t.tsv:3: ", "NUL"});
@@ -175,6 +175,9 @@ TEST(QtmTsv, WritesWhatItReads) {
   WriteQtmTsv(file, written, 12);
   read = ReadQtmTsv(file);
   EXPECT_TRUE(read.positions.row(0).isApprox(written.positions.row(0), kRounding));
+  written.names = {"A, \"left\"", "\"B\""};
+  WriteQtmTsv(file, written);
+  EXPECT_EQ(ReadQtmTsv(file).names, written.names);
   std::filesystem::remove(file);
   written.names[1] = "B\t2";
   ExpectInputError([&] { WriteQtmTsv(file, written); }, {"cannot hold", "'B?2'"});
