@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -133,7 +133,7 @@ void ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
     for (int column : columns.torques) {
       // Drivers log NaN for joints without a sensor.
       const bool gap = column < 0 || IsGap(table.Cell(column));
-      torques.push_back(gap ? std::numeric_limits<double>::quiet_NaN() : table.Number(column));
+      torques.push_back(gap ? kNaN : table.Number(column));
     }
     for (int column : columns.wrenches) wrenches.push_back(table.Number(column));
   }

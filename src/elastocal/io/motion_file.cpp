@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/robot/legs.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -142,7 +142,7 @@ JointMotion ReadSamples(std::istream& stream, const std::string& source, const P
     motion.line.push_back(table.line());
     if (timed) AppendTime(table, columns.time, time);
     for (int column : columns.coordinates) {
-      q.push_back(column < 0 ? std::numeric_limits<double>::quiet_NaN() : table.Number(column));
+      q.push_back(column < 0 ? kNaN : table.Number(column));
     }
     if (columns.support >= 0) {
       motion.support.push_back(ReadSupport(table, columns.support, supports));

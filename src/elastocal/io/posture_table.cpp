@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -118,7 +118,7 @@ void ReadPostures(const Project& project, const PostureColumns& columns, Table& 
       const bool seen = std::any_of(xyz.begin(), xyz.end(),
                                     [&](int column) { return !table.Cell(column).empty(); });
       for (int column : xyz) {
-        markers.push_back(seen ? table.Number(column) : std::numeric_limits<double>::quiet_NaN());
+        markers.push_back(seen ? table.Number(column) : kNaN);
       }
     }
   }

@@ -4,13 +4,11 @@
 #include "elastocal/io/project_sections.hpp"
 #include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/robot/moving_chain.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kRadiansPerDegree = M_PI / 180.0;
-constexpr double kMetresPerMm = 1e-3;
 
 Eigen::Vector3d ReadPoint(const YamlValue& value) {
   const std::vector<YamlValue> items = value.Items();

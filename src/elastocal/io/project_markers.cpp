@@ -3,11 +3,11 @@
 #include "elastocal/io/project_sections.hpp"
 #include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kMetresPerMm = 1e-3;
 constexpr std::size_t kSmallestCluster = 3;
 
 Eigen::Vector3d ReadPosition(const YamlValue& value) {

@@ -1,9 +1,8 @@
 #include "elastocal/io/project_sections.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kMetresPerMm = 1e-3;
 
 /// A finite number above 0, or what `option` is without the key.
 void ReadPositive(const YamlValue& section, const char* key, double& option, double unit = 1.0) {

@@ -4,12 +4,11 @@
 #include "elastocal/io/project_sections.hpp"
 #include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kRadiansPerDegree = M_PI / 180.0;
-constexpr double kMetresPerMm = 1e-3;
 constexpr double kMicro = 1e-6;
 
 /// A number above 0 and below 1.

@@ -1,12 +1,12 @@
 #include <set>
 
 #include "elastocal/io/project_sections.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
 
 Eigen::Vector2d ReadCorner(const YamlValue& value) {
-  constexpr double kMetresPerMm = 1e-3;
   const std::vector<YamlValue> items = value.Items();
   value.Expect(items.size() == 2, "two numbers, x and y");
   return kMetresPerMm * Eigen::Vector2d(items[0].Number(), items[1].Number());

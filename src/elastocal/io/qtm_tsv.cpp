@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kMmPerMetre = 1e3;
-constexpr double kMetresPerMm = 1e-3;
 /// More lines above the frames are no header, and would only take long to read.
 constexpr int kMostHeaderLines = 10000;
 
@@ -255,7 +253,7 @@ class FrameReader {
       if (missing == 1 || missing == 2) {
         Fail(i, "X, Y and Z, or none of them for a marker that was not seen");
       }
-      if (x == 0.0 && y == 0.0 && z == 0.0) x = y = z = std::numeric_limits<double>::quiet_NaN();
+      if (x == 0.0 && y == 0.0 && z == 0.0) x = y = z = kNaN;
       for (double position : {x, y, z}) positions_.push_back(kMetresPerMm * position);
     }
     if (i < width_ && !lines_.cells[i].empty()) Fail(i, "the end of the line");
@@ -264,7 +262,7 @@ class FrameReader {
   /// NaN for a gap.
   double Number(std::size_t i) const {
     if (const std::optional<double> number = ParseNumber(lines_.cells[i])) return *number;
-    if (IsGap(lines_.cells[i])) return std::numeric_limits<double>::quiet_NaN();
+    if (IsGap(lines_.cells[i])) return kNaN;
     Fail(i, "a number with a decimal point");
   }
 
@@ -414,7 +412,7 @@ void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& tr
     AppendFixed(static_cast<double>(i) / trajectories.rate_hz, kTimeDecimals, text);
     for (Eigen::Index c = 0; c < positions.cols(); ++c) {
       text += '\t';
-      if (!std::isnan(positions(i, c))) AppendFixed(kMmPerMetre * positions(i, c), decimals, text);
+      if (!std::isnan(positions(i, c))) AppendFixed(1e3 * positions(i, c), decimals, text);
     }
     text += "\r\n";
   }
