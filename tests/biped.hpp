@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "elastocal/robot/error_model.hpp"
-#include "elastocal/simulation/legs.hpp"
+#include "elastocal/robot/legs.hpp"
 #include "tests/test_robots.hpp"
 
 namespace elastocal {

@@ -87,6 +87,24 @@ TEST_F(CalibrationFile, ReadsBackWhatAComparisonNeeds) {
   }
 }
 
+TEST_F(CalibrationFile, ACovarianceHoldsNamesWithSeparatorsAndQuotes) {
+  const std::vector<int>& parameters = result_.posterior.parameters;
+  ASSERT_GE(parameters.size(), 3u);
+  result_.model.parameters[parameters[0]].name = "hand, left; upper.mx";
+  result_.model.parameters[parameters[1]].name = "\"hand\".my";
+  result_.model.parameters[parameters[2]].name = " hand .mz";
+  CalibrationEstimate estimate;
+  for (const int i : parameters) {
+    estimate.parameters.push_back(
+        {.name = result_.model.parameters[i].name, .unit = "m", .sd = result_.sd[i]});
+  }
+  ReadCovariance(scratch_.Write("covariance.csv", MakeCovarianceCsv(result_)), estimate);
+  EXPECT_EQ(estimate.covariance, result_.posterior.covariance);
+  EXPECT_EQ(estimate.covariance_names[0], "hand, left; upper.mx");
+  EXPECT_EQ(estimate.covariance_names[1], "\"hand\".my");
+  EXPECT_EQ(estimate.covariance_names[2], " hand .mz");
+}
+
 TEST_F(CalibrationFile, ACovarianceThatDoesNotBelongIsNamedByLine) {
   CalibrationEstimate two;
   two.parameters = {{.name = "a.theta", .unit = "rad", .value = 0.0, .sd = 2.0},
@@ -100,7 +118,9 @@ TEST_F(CalibrationFile, ACovarianceThatDoesNotBelongIsNamedByLine) {
   CalibrationEstimate fine = two;
   ReadCovariance(scratch_.Write("covariance.csv", header + "a.theta,4,1\na.d,1,9\n"), fine);
   EXPECT_EQ(fine.covariance(0, 1), 1.0);
-  refused("", {"covariance.csv:1", "'parameter'"});
+  refused("", {"covariance.csv", "empty"});
+  refused("a.theta,a.d\n", {"covariance.csv:1", "'parameter'"});
+  refused("parameter,parameter,a.theta,a.d\n", {"covariance.csv:1", "'parameter' comes twice"});
   refused("parameter,a.theta,a.r\n", {"covariance.csv:1", "a.r"});
   refused("parameter,a.d,a.d\n", {"covariance.csv:1", "a.d", "twice"});
   refused("parameter,a.d\na.d,9\n", {"covariance.csv:1", "a.theta"});

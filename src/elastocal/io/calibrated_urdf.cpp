@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
-#include "elastocal/io/text.hpp"
 #include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/special_geometry.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

@@ -9,8 +9,8 @@
 #include <yaml-cpp/yaml.h>
 
 #include "elastocal/io/output_files.hpp"
-#include "elastocal/io/text.hpp"
 #include "elastocal/io/yaml_value.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

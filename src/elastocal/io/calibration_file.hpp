@@ -25,7 +25,7 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParam
 /// Throws InputError naming file, line and key.
 CalibrationEstimate ReadEstimate(const std::filesystem::path& file);
 
-/// The same from the text of the file; `source` names it in messages.
+/// The same from the text of a file; `source` names it in messages.
 CalibrationEstimate ParseEstimate(const std::string& text, const std::string& source);
 
 /// What another run needs of such a file.

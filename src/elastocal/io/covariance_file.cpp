@@ -2,70 +2,69 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "elastocal/io/table_lines.hpp"
-#include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/table_reader.hpp"
+#include "elastocal/tables/table_writer.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
+const char* const kNameColumn = "parameter";
 constexpr double kSameVariance = 1e-6;  // relative: both files have all digits
 constexpr std::size_t kMostParameters = 5000;
 
-using ByName = std::map<std::string, const ParameterEstimate*>;
-
-std::vector<std::string> ReadHeader(TableLines& lines, const std::string& source,
-                                    const ByName& known) {
-  std::vector<std::string> header;
-  if (!lines.Next(header) || header[0] != "parameter") {
-    throw InputError(Place(source, 1) + "expected a row of names that begins with 'parameter'");
+/// Checks the names of the columns and returns, in their order, the parameters of the calibration.
+std::vector<const ParameterEstimate*> FindParameters(const Table& table,
+                                                     const CalibrationEstimate& estimate) {
+  const std::vector<std::string>& header = table.header();
+  if (header[0] != kNameColumn) {
+    table.Fail("expected a row of names that begins with 'parameter'");
   }
-  header.erase(header.begin());
-  if (header.size() > kMostParameters) {
-    throw InputError(Place(source, 1) + std::to_string(header.size()) + " parameters; at most " +
-                     std::to_string(kMostParameters) + " are read");
+  if (header.size() > kMostParameters + 1) {
+    table.Fail(std::to_string(header.size() - 1) + " parameters; at most " +
+               std::to_string(kMostParameters) + " are read");
   }
-  std::vector<std::string> sorted = header;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice != sorted.end()) {
-    throw InputError(Place(source, 1) + "parameter " + Quote(*twice) + " is given twice");
+  const std::size_t count = estimate.parameters.size();
+  ColumnRoles roles = {{kNameColumn, kPassedOver}};
+  for (std::size_t k = 0; k < count; ++k) {
+    roles[estimate.parameters[k].name] = static_cast<int>(k);
   }
-  for (const std::string& name : header) {
-    if (known.contains(name)) continue;
-    throw InputError(Place(source, 1) + "parameter " + Quote(name) + " is not in the calibration");
+  const std::vector<int> columns =
+      FindColumns(table, roles, count, "the calibration has no parameter of this name");
+  std::vector<const ParameterEstimate*> parameters(header.size() - 1);
+  for (std::size_t k = 0; k < count; ++k) {
+    const ParameterEstimate& parameter = estimate.parameters[k];
+    if (columns[k] > 0) {
+      parameters[static_cast<std::size_t>(columns[k] - 1)] = &parameter;
+    } else if (parameter.status == ParameterStatus::kEstimated) {
+      table.Fail("no parameter " + Quote(parameter.name) + ", which the calibration estimates");
+    }
   }
-  return header;
+  // A second column of names.
+  if (std::find(parameters.begin(), parameters.end(), nullptr) != parameters.end()) {
+    table.Fail("the column 'parameter' comes twice");
+  }
+  return parameters;
 }
 
-/// Fills row `i` of the covariance from the cells of a line and checks it against those above.
-void ReadRow(const std::vector<std::string>& cells, const std::string& source, int line,
-             const ParameterEstimate& parameter, Eigen::Index i, CalibrationEstimate& estimate) {
-  const std::vector<std::string>& names = estimate.covariance_names;
-  if (cells.size() != names.size() + 1 || cells[0] != parameter.name) {
-    throw InputError(Place(source, line) + "expected the name " + Quote(parameter.name) + " and " +
-                     std::to_string(names.size()) + " numbers, found " +
-                     std::to_string(cells.size()) + " cells that begin with " + Quote(cells[0]));
-  }
-  for (std::size_t j = 0; j < names.size(); ++j) {
-    estimate.covariance(i, static_cast<Eigen::Index>(j)) =
-        CellNumber(cells[j + 1], names[j], source, line);
-  }
-  const Eigen::MatrixXd& covariance = estimate.covariance;
-  const double variance = parameter.sd * parameter.sd;
+/// Checks row `i` of a covariance that is filled up to there.
+void CheckRow(const Table& table, double sd, const Eigen::MatrixXd& covariance, Eigen::Index i) {
+  const double variance = sd * sd;
+  const auto column = static_cast<int>(i) + 1;
   if (!(std::abs(covariance(i, i) - variance) <= kSameVariance * variance)) {
-    throw InputError(Place(source, line) + "the variance of " + Quote(parameter.name) + " is " +
-                     FormatNumber(covariance(i, i)) + ", but by its sd in the calibration it is " +
-                     FormatNumber(variance) + ": this covariance belongs to another calibration");
+    table.FailCell(column, "the variance is " + FormatNumber(covariance(i, i)) +
+                               ", but by the sd in the calibration it is " +
+                               FormatNumber(variance) +
+                               ": this covariance belongs to another calibration");
   }
   for (Eigen::Index j = 0; j < i; ++j) {
     const double scale = std::sqrt(covariance(i, i) * covariance(j, j));
     if (std::abs(covariance(i, j) - covariance(j, i)) <= kSameVariance * scale) continue;
-    throw InputError(Place(source, line) + "column " + Quote(names[j]) + ": " +
-                     FormatNumber(covariance(i, j)) + " is not what stands on the other side, " +
-                     FormatNumber(covariance(j, i)) + "; a covariance is symmetric");
+    table.FailCell(static_cast<int>(j) + 1,
+                   FormatNumber(covariance(i, j)) + " is not what stands on the other side, " +
+                       FormatNumber(covariance(j, i)) + "; a covariance is symmetric");
   }
 }
 
@@ -73,18 +72,18 @@ void ReadRow(const std::vector<std::string>& cells, const std::string& source, i
 
 std::string MakeCovarianceCsv(const CalibrationResult& result) {
   const std::vector<int>& parameters = result.posterior.parameters;
-  std::string text = "parameter";
-  for (int i : parameters) text += "," + result.model.parameters[i].name;
-  text += "\n";
+  TableWriter table;
+  table.Add(kNameColumn);
+  for (int i : parameters) table.Add(result.model.parameters[i].name);
+  table.EndRow();
   for (std::size_t row = 0; row < parameters.size(); ++row) {
-    text += result.model.parameters[parameters[row]].name;
-    for (std::size_t column = 0; column < parameters.size(); ++column) {
-      text += "," + FormatNumber(result.posterior.covariance(static_cast<Eigen::Index>(row),
-                                                             static_cast<Eigen::Index>(column)));
+    table.Add(result.model.parameters[parameters[row]].name);
+    for (double entry : result.posterior.covariance.row(static_cast<Eigen::Index>(row))) {
+      table.Add(entry);
     }
-    text += "\n";
+    table.EndRow();
   }
-  return text;
+  return table.text();
 }
 
 void ReadCovariance(const std::filesystem::path& file, CalibrationEstimate& estimate) {
@@ -94,32 +93,24 @@ void ReadCovariance(const std::filesystem::path& file, CalibrationEstimate& esti
 
 void ReadCovariance(std::istream& stream, const std::string& source,
                     CalibrationEstimate& estimate) {
-  ByName known;
-  for (const ParameterEstimate& parameter : estimate.parameters) known[parameter.name] = &parameter;
-  TableLines lines(stream, source);
-  estimate.covariance_names = ReadHeader(lines, source, known);
-  const auto size = static_cast<Eigen::Index>(estimate.covariance_names.size());
+  Table table(stream, source);
+  const std::vector<const ParameterEstimate*> parameters = FindParameters(table, estimate);
+  const auto size = static_cast<Eigen::Index>(parameters.size());
   estimate.covariance.resize(size, size);
-  std::vector<std::string> cells;
   for (Eigen::Index i = 0; i < size; ++i) {
-    const std::string& name = estimate.covariance_names[i];
-    if (!lines.Next(cells)) {
-      throw InputError(Place(source, lines.line()) + "the file ends before the row of " +
-                       Quote(name));
+    const ParameterEstimate& parameter = *parameters[static_cast<std::size_t>(i)];
+    if (!table.Next()) table.Fail("the file ends before the row of " + Quote(parameter.name));
+    if (table.Cell(0) != parameter.name) {
+      table.FailCell(0, "found " + Quote(table.Cell(0)) + "; " + Quote(parameter.name) +
+                            " was expected, in the order of the header");
     }
-    ReadRow(cells, source, lines.line(), *known.at(name), i, estimate);
-  }
-  if (lines.Next(cells)) throw InputError(Place(source, lines.line()) + "a row too many");
-  for (const ParameterEstimate& parameter : estimate.parameters) {
-    const bool missing =
-        parameter.status == ParameterStatus::kEstimated &&
-        std::find(estimate.covariance_names.begin(), estimate.covariance_names.end(),
-                  parameter.name) == estimate.covariance_names.end();
-    if (missing) {
-      throw InputError(Place(source, 1) + "no parameter " + Quote(parameter.name) +
-                       ", which the calibration estimates");
+    for (Eigen::Index j = 0; j < size; ++j) {
+      estimate.covariance(i, j) = table.Number(static_cast<int>(j) + 1);
     }
+    CheckRow(table, parameter.sd, estimate.covariance, i);
   }
+  if (table.Next()) table.Fail("a row too many");
+  estimate.covariance_names.assign(table.header().begin() + 1, table.header().end());
 }
 
 }  // namespace elastocal

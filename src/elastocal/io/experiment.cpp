@@ -7,9 +7,9 @@
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/project_sections.hpp"
-#include "elastocal/io/text.hpp"
 #include "elastocal/io/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

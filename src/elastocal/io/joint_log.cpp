@@ -1,108 +1,149 @@
 #include "elastocal/io/joint_log.hpp"
 
+#include <array>
 #include <cmath>
-#include <fstream>
-#include <limits>
-#include <optional>
 
-#include "elastocal/io/joint_columns.hpp"
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/posture_checks.hpp"
-#include "elastocal/io/table_lines.hpp"
-#include "elastocal/io/text.hpp"
+#include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/tables/table_writer.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
 /// A quarter of an hour at 1 kHz; this bounds the memory that a file can take.
-constexpr std::size_t kMostRows = 1000000;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kMostLogRows = 1000000;
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using WrenchNames = std::array<std::string, 6>;
 
-bool IsNan(const std::string& cell) { return cell == "nan" || cell == "NaN" || cell == "NAN"; }
+/// The columns of a force-torque sensor.
+WrenchNames WrenchColumns(const ForceTorqueSensor& sensor) {
+  const std::string& name = sensor.name;
+  return {name + "_fx", name + "_fy", name + "_fz", name + "_tx", name + "_ty", name + "_tz"};
+}
 
-/// The numbers of a log as they are read, row after row.
-class LogReader {
- public:
-  LogReader(const JointColumns& columns, const TableLines& lines, const std::string& source)
-      : columns_(columns), lines_(lines), source_(source) {}
-
-  void Add(const std::vector<std::string>& cells) {
-    if (cells.size() != columns_.names.size()) {
-      Fail("found " + std::to_string(cells.size()) + " cells; the header has " +
-           std::to_string(columns_.names.size()));
-    }
-    if (time_.size() >= kMostRows) Fail("more than " + std::to_string(kMostRows) + " rows");
-    const double time = Number(cells, columns_.time);
-    if (!time_.empty() && !(time > time_.back())) {
-      Fail("column " + Quote(columns_.names[columns_.time]) + ": found " + FormatNumber(time) +
-           " after " + FormatNumber(time_.back()) + "; the time must increase from row to row");
-    }
-    time_.push_back(time);
-    for (int column : columns_.positions) positions_.push_back(Number(cells, column));
-    for (int column : columns_.torques) torques_.push_back(Torque(cells, column));
-    for (const auto& sensor : columns_.wrenches) {
-      for (int column : sensor) wrenches_.push_back(Number(cells, column));
-    }
-  }
-
-  JointLog Finish(const Project& project) {
-    if (time_.empty()) throw InputError(source_ + ": no row below the header");
-    const auto rows = static_cast<Eigen::Index>(time_.size());
-    const auto joints = static_cast<Eigen::Index>(columns_.joints.size());
-    JointLog log;
-    log.source = source_;
-    log.time_s = Eigen::Map<const Eigen::VectorXd>(time_.data(), rows);
-    log.positions = Eigen::Map<const RowMajor>(positions_.data(), rows, joints);
-    log.torques = Eigen::Map<const RowMajor>(torques_.data(), rows, joints);
-    log.wrenches = Eigen::Map<const RowMajor>(
-        wrenches_.data(), rows, static_cast<Eigen::Index>(6 * columns_.wrenches.size()));
-    for (int sensor : columns_.wrench_sensors) {
-      log.wrench_sensors.push_back(project.force_torque_sensors[sensor]);
-    }
-    for (Eigen::Index i = 0; i < joints; ++i) {
-      const Joint& joint = project.tree.joints[columns_.joints[i]];
-      log.names.push_back(joint.name);
-      CheckRadians(joint, log.positions.col(i), [&](Eigen::Index row) { return PlaceOf(row); });
-      CheckTorques(log.torques.col(i), columns_.torques[i]);
-    }
-    return log;
-  }
-
- private:
-  [[noreturn]] void Fail(const std::string& message) const {
-    throw InputError(Place(source_, lines_.line()) + message);
-  }
-
-  /// Rows stand below the header line by line.
-  std::string PlaceOf(Eigen::Index row) const { return Place(source_, 2 + static_cast<int>(row)); }
-
-  double Number(const std::vector<std::string>& cells, int column) const {
-    return CellNumber(cells[column], columns_.names[column], source_, lines_.line());
-  }
-
-  /// Drivers log NaN for joints without a sensor.
-  double Torque(const std::vector<std::string>& cells, int column) const {
-    if (column < 0 || cells[column].empty() || IsNan(cells[column])) return kNaN;
-    return Number(cells, column);
-  }
-
-  void CheckTorques(const Eigen::Ref<const Eigen::VectorXd>& torques, int column) const {
-    const Eigen::Index missing = torques.array().isNaN().count();
-    if (missing == 0 || missing == torques.size()) return;
-    Eigen::Index row = 0;
-    while (!std::isnan(torques[row])) ++row;
-    throw InputError(PlaceOf(row) + "column " + Quote(columns_.names[column]) +
-                     ": found no torque; a finite number was expected, or no torque in any row");
-  }
-
-  const JointColumns& columns_;
-  const TableLines& lines_;
-  const std::string& source_;
-  std::vector<double> time_, positions_, torques_, wrenches_;
+/// Which column of a joint log holds what.
+struct JointColumns {
+  int time = -1;
+  std::vector<int> joints;     ///< of the tree, those with positions, in the order of these columns
+  std::vector<int> positions;  ///< column of each of these
+  std::vector<int> torques;    ///< column of each of these; -1 where there is none
+  std::vector<int> sensors;    ///< of Project::force_torque_sensors, those with columns
+  std::vector<int> wrenches;   ///< six columns of each of these: fx, ..., tz
 };
+
+/// What names mean: quantity 0 is the time; 1 + k and 1 + joints + k are position and torque of
+/// joint k; the six of each force-torque sensor follow.
+ColumnRoles LogRoles(const Table& table, const Project& project) {
+  const std::vector<Joint>& joints = project.tree.joints;
+  const auto count = static_cast<int>(joints.size());
+  const auto role = [&](int k, int quantity) { return joints[k].mimic ? kPassedOver : quantity; };
+  ColumnRoles roles;
+  roles[project.recording.time] = 0;
+  for (int k = 0; k < count; ++k) {
+    AddRole(project, JointColumn(project, joints[k].name), role(k, 1 + k), roles);
+  }
+  // Where one of these is the name of another joint, it is that joint.
+  roles.emplace("time", 0);
+  for (int k = 0; k < count; ++k) {
+    const std::string column = JointColumn(project, joints[k].name);
+    roles.emplace(column + "_position", role(k, 1 + k));
+    roles.emplace(column + "_torque", role(k, 1 + count + k));
+    roles.emplace(column + "_effort", role(k, 1 + count + k));
+  }
+  int quantity = 1 + 2 * count;
+  for (const ForceTorqueSensor& sensor : project.force_torque_sensors) {
+    for (const std::string& column : WrenchColumns(sensor)) roles.emplace(column, quantity++);
+  }
+  for (const std::string& column : table.header()) {
+    if (column.ends_with("_velocity")) roles.emplace(column, kPassedOver);
+  }
+  return roles;
+}
+
+JointColumns FindJointColumns(const Table& table, const Project& project) {
+  const std::vector<Joint>& joints = project.tree.joints;
+  const auto& sensors = project.force_torque_sensors;
+  const std::vector<int> found =
+      FindRecordingColumns(table, LogRoles(table, project),
+                           1 + 2 * joints.size() + WrenchNames().size() * sensors.size(), project);
+  const int* const positions = found.data() + 1;
+  const int* const torques = positions + joints.size();
+  const int* wrench = torques + joints.size();
+  JointColumns columns;
+  columns.time = found[0];
+  if (columns.time < 0) {
+    table.Fail("there is no column of the time in s; expected " + Quote(project.recording.time) +
+               " or 'time'");
+  }
+  std::map<int, int> joint_of_column;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (positions[k] >= 0) {
+      joint_of_column[positions[k]] = static_cast<int>(k);
+    } else if (torques[k] >= 0) {
+      table.Fail("the column " + Quote(table.header()[torques[k]]) + " has torques of joint " +
+                 Quote(joints[k].name) + ", whose positions are missing");
+    }
+  }
+  for (const auto& [column, joint] : joint_of_column) {
+    columns.joints.push_back(joint);
+    columns.positions.push_back(column);
+    columns.torques.push_back(torques[joint]);
+  }
+  for (std::size_t i = 0; i < sensors.size(); ++i, wrench += 6) {
+    const std::string owner = "force-torque sensor " + Quote(sensors[i].name);
+    if (!HasGroup(table, {wrench, 6}, WrenchColumns(sensors[i]), owner)) continue;
+    columns.sensors.push_back(static_cast<int>(i));
+    columns.wrenches.insert(columns.wrenches.end(), wrench, wrench + 6);
+  }
+  if (columns.joints.empty()) {
+    table.Fail("there is no column of any joint; expected the names of the joints");
+  }
+  return columns;
+}
+
+/// Rows stand below the header line by line.
+std::string RowPlace(const std::string& source, Eigen::Index row) {
+  return Place(source, 2 + static_cast<int>(row));
+}
+
+/// A joint has a torque sensor or it has none.
+void CheckTorques(const Eigen::Ref<const Eigen::VectorXd>& torques, const std::string& column,
+                  const std::string& source) {
+  const Eigen::Index missing = torques.array().isNaN().count();
+  if (missing == 0 || missing == torques.size()) return;
+  Eigen::Index row = 0;
+  while (!std::isnan(torques[row])) ++row;
+  throw InputError(RowPlace(source, row) + "column " + Quote(column) +
+                   ": found no torque; a finite number was expected, or no torque in any row");
+}
+
+/// Reads the numbers of all rows: time, positions, torques and wrenches of the log.
+void ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
+  std::vector<double> time, positions, torques, wrenches;
+  while (table.Next()) {
+    if (table.row_count() > kMostLogRows) {
+      table.Fail("more than " + std::to_string(kMostLogRows) + " rows");
+    }
+    AppendTime(table, columns.time, time);
+    for (int column : columns.positions) positions.push_back(table.Number(column));
+    for (int column : columns.torques) {
+      // Drivers log NaN for joints without a sensor.
+      const bool gap = column < 0 || IsGap(table.Cell(column));
+      torques.push_back(gap ? kNaN : table.Number(column));
+    }
+    for (int column : columns.wrenches) wrenches.push_back(table.Number(column));
+  }
+  const std::size_t rows = time.size();
+  if (rows == 0) throw InputError(table.source() + ": no row below the header");
+  log.time_s = StackRows(time, rows);
+  log.positions = StackRows(positions, rows);
+  log.torques = StackRows(torques, rows);
+  log.wrenches = StackRows(wrenches, rows);
+}
 
 }  // namespace
 
@@ -112,40 +153,48 @@ JointLog ReadJointLog(const std::filesystem::path& file, const Project& project)
 }
 
 JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& project) {
-  TableLines lines(stream, source);
-  std::vector<std::string> cells;
-  if (!lines.Next(cells)) throw InputError(source + ": is empty; a header row was expected");
-  const JointColumns columns = FindJointColumns(cells, Place(source, lines.line()), project);
-  LogReader reader(columns, lines, source);
-  while (lines.Next(cells)) reader.Add(cells);
-  return reader.Finish(project);
+  Table table(stream, source);
+  const JointColumns columns = FindJointColumns(table, project);
+  JointLog log;
+  log.source = source;
+  ReadNumbers(columns, table, log);
+  for (int sensor : columns.sensors) {
+    log.wrench_sensors.push_back(project.force_torque_sensors[sensor]);
+  }
+  for (std::size_t i = 0; i < columns.joints.size(); ++i) {
+    const Joint& joint = project.tree.joints[columns.joints[i]];
+    const auto column = static_cast<Eigen::Index>(i);
+    log.names.push_back(joint.name);
+    CheckRadians(joint, log.positions.col(column),
+                 [&](Eigen::Index row) { return RowPlace(source, row); });
+    if (columns.torques[i] < 0) continue;
+    CheckTorques(log.torques.col(column), table.header()[columns.torques[i]], source);
+  }
+  return log;
 }
 
 void WriteJointLog(const std::filesystem::path& file, const JointLog& log) {
-  std::vector<Eigen::Index> sensors;
-  std::string text = "t";
-  for (const std::string& name : log.names) text += "," + MakeCell(name);
+  std::vector<Eigen::Index> with_torque;
+  TableWriter table;
+  table.Add("t");
+  for (const std::string& name : log.names) table.Add(name);
   for (Eigen::Index i = 0; i < log.torques.cols(); ++i) {
     if (log.torques.col(i).array().isNaN().all()) continue;
-    sensors.push_back(i);
-    text += "," + MakeCell(log.names[static_cast<std::size_t>(i)] + "_torque");
+    with_torque.push_back(i);
+    table.Add(log.names[static_cast<std::size_t>(i)] + "_torque");
   }
   for (const ForceTorqueSensor& sensor : log.wrench_sensors) {
-    for (const char* component : {"_fx", "_fy", "_fz", "_tx", "_ty", "_tz"}) {
-      text += "," + MakeCell(sensor.name + component);
-    }
+    for (const std::string& column : WrenchColumns(sensor)) table.Add(column);
   }
-  text += '\n';
+  table.EndRow();
   for (Eigen::Index row = 0; row < log.time_s.size(); ++row) {
-    text += FormatNumber(log.time_s[row]);
-    for (double position : log.positions.row(row)) text += "," + FormatNumber(position);
-    for (Eigen::Index i : sensors) text += "," + FormatNumber(log.torques(row, i));
-    for (Eigen::Index i = 0; i < log.wrenches.cols(); ++i) {
-      text += "," + FormatNumber(log.wrenches(row, i));
-    }
-    text += '\n';
+    table.Add(log.time_s[row]);
+    for (double position : log.positions.row(row)) table.Add(position);
+    for (Eigen::Index i : with_torque) table.Add(log.torques(row, i));
+    for (double component : log.wrenches.row(row)) table.Add(component);
+    table.EndRow();
   }
-  WriteFile(file, text);
+  WriteFile(file, table.text());
 }
 
 }  // namespace elastocal

@@ -13,7 +13,7 @@
 namespace elastocal {
 namespace {
 
-Project ArmProject(const std::string& recording = "{}", const std::string& more = "") {
+Project LogProject(const std::string& recording = "{}", const std::string& more = "") {
   return ParseProject(
       "robot: {urdf: arm6.urdf}\n"
       "markers: {single: [{name: A, link: tool, position_mm: [10, 20, 30]}]}\n"
@@ -22,17 +22,17 @@ Project ArmProject(const std::string& recording = "{}", const std::string& more 
       SourceFile("tests/robots/p.yaml"));
 }
 
-JointLog Read(const std::string& text, const Project& project = ArmProject()) {
+JointLog ReadLog(const std::string& text, const Project& project = LogProject()) {
   std::istringstream stream(text);
   return ReadJointLog(stream, "j.csv", project);
 }
 
-void ExpectError(const std::string& text, std::initializer_list<std::string> parts) {
-  ExpectInputError([&] { Read(text); }, parts);
+void ExpectLogError(const std::string& text, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { ReadLog(text); }, parts);
 }
 
 TEST(JointLog, ReadsPositionsAndTorques) {
-  const JointLog log = Read(
+  const JointLog log = ReadLog(
       "elbow_joint_torque,t,elbow_joint,rail_joint_position,rail_joint_effort,turret_joint,"
       "turret_joint_velocity,gone_velocity,finger_right_joint,finger_right_joint_torque\n"
       "-5,100.5,0.1,0.2,7,0.3,x,y,z,w\n-6,100.75,-1.1,1e-3,8,0.4,,,,\n");
@@ -47,9 +47,9 @@ TEST(JointLog, ReadsPositionsAndTorques) {
 }
 
 TEST(JointLog, ReadsAndWritesForceTorqueSensors) {
-  const Project project = ArmProject(
+  const Project project = LogProject(
       "{}", "force_torque_sensors: [{name: base, link: pedestal}, {name: tip, link: tool}]");
-  const JointLog log = Read(
+  const JointLog log = ReadLog(
       "t,tip_tz,elbow_joint,tip_fx,tip_fy,tip_fz,tip_tx,tip_ty\n1,6,0.5,1,2,3,4,5\n"
       "2,-6,0.5,-1,-2,-3,-4,-5\n",
       project);
@@ -64,75 +64,75 @@ TEST(JointLog, ReadsAndWritesForceTorqueSensors) {
   WriteJointLog(file, log);
   EXPECT_EQ(ReadJointLog(file, project).wrenches, log.wrenches);
   std::filesystem::remove(file);
-  ExpectInputError([&] { Read("t,elbow_joint,tip_fx\n1,2,3\n", project); },
-                   {"j.csv:1: ", "'tip' has only some of its columns", "tip_tz"});
-  ExpectInputError([&] { Read("t,elbow_joint,tip_fa\n1,2,3\n", project); },
+  ExpectInputError([&] { ReadLog("t,elbow_joint,tip_fx\n1,2,3\n", project); },
+                   {"j.csv:1: ", "'tip_fy' of force-torque sensor 'tip' is missing", "'tip_fx'"});
+  ExpectInputError([&] { ReadLog("t,elbow_joint,tip_fa\n1,2,3\n", project); },
                    {"'tip_fa'", "did you mean 'tip_f"});
-  EXPECT_EQ(Read("t,elbow_joint\n1,2\n", project).wrenches.size(), 0);
+  EXPECT_EQ(ReadLog("t,elbow_joint\n1,2\n", project).wrenches.size(), 0);
 }
 
 TEST(JointLog, UsesTheNamesOfTheProject) {
-  const Project project = ArmProject(
+  const Project project = LogProject(
       "{columns: {time: stamp, joints: {elbow_joint: q4}}, ignore: [mode, turret_joint_torque]}");
-  const JointLog log = Read(
+  const JointLog log = ReadLog(
       "stamp;mode;q4_position;q4_torque;turret_joint;turret_joint_torque\r\n"
       "1;idle;0.4;9;0.5;broken\r\n",
       project);
   EXPECT_EQ(log.names, (std::vector<std::string>{"elbow_joint", "turret_joint"}));
   EXPECT_EQ(log.torques(0, 0), 9.0);
   EXPECT_TRUE(std::isnan(log.torques(0, 1)));
-  EXPECT_EQ(Read("time,elbow_joint\n2,0.5\n").time_s[0], 2.0);
-  ExpectInputError([] { Read("x\n", ArmProject("{columns: {time: elbow_joint}}")); },
+  EXPECT_EQ(ReadLog("time,elbow_joint\n2,0.5\n").time_s[0], 2.0);
+  ExpectInputError([] { ReadLog("x\n", LogProject("{columns: {time: elbow_joint}}")); },
                    {"p.yaml", "'elbow_joint' stands for two things"});
 }
 
 TEST(JointLog, ATorqueColumnWithoutNumbersIsNoSensor) {
   const std::string header = "t,elbow_joint,elbow_joint_torque,rail_joint,rail_joint_torque\n";
-  const JointLog log = Read(header + "1,0,nan,0,\n2,0,NaN,0,\n");
+  const JointLog log = ReadLog(header + "1,0,nan,0,\n2,0,NaN,0,\n");
   EXPECT_TRUE(log.torques.array().isNaN().all());
-  ExpectError(header + "1,0,5,0,\n2,0,5,0,\n3,0,nan,0,\n4,0,,0,\n",
-              {"j.csv:4: column 'elbow_joint_torque'", "found no torque", "in any row"});
+  ExpectLogError(header + "1,0,5,0,\n2,0,5,0,\n3,0,nan,0,\n4,0,,0,\n",
+                 {"j.csv:4: column 'elbow_joint_torque'", "found no torque", "in any row"});
 }
 
 TEST(JointLog, NamesWrongColumns) {
-  ExpectError("", {"j.csv", "empty"});
-  ExpectError("t,elbo_joint\n",
-              {"j.csv:1: ", "'elbo_joint'", "did you mean 'elbow_joint'", "recording.ignore"});
-  ExpectError("t,elbow_joint,elbow_joint_torqe\n", {"did you mean 'elbow_joint_torque'"});
-  ExpectError("t,elbow_joint,elbow_joint_position\n",
-              {"j.csv:1: ", "'elbow_joint' and 'elbow_joint_position' stand for the same"});
-  ExpectError("t,elbow_joint,elbow_joint_torque,elbow_joint_effort\n", {"stand for the same"});
-  ExpectError("t,time,elbow_joint\n", {"'t' and 'time' stand for the same"});
-  ExpectError("elbow_joint\n", {"j.csv:1: ", "no column of the time", "'t'"});
-  ExpectError("t,elbow_joint_velocity\n", {"j.csv:1: ", "no column of any joint"});
-  ExpectError("t,elbow_joint,rail_joint_torque\n",
-              {"j.csv:1: ", "'rail_joint_torque'", "positions are missing"});
-  ExpectError("0.1,0.2\n", {"j.csv:1: ", "number '0.1'", "header row"});
+  ExpectLogError("", {"j.csv", "empty"});
+  ExpectLogError("t,elbo_joint\n",
+                 {"j.csv:1: ", "'elbo_joint'", "did you mean 'elbow_joint'", "recording.ignore"});
+  ExpectLogError("t,elbow_joint,elbow_joint_torqe\n", {"did you mean 'elbow_joint_torque'"});
+  ExpectLogError("t,elbow_joint,elbow_joint_position\n",
+                 {"j.csv:1: ", "'elbow_joint' and 'elbow_joint_position' stand for the same"});
+  ExpectLogError("t,elbow_joint,elbow_joint_torque,elbow_joint_effort\n", {"stand for the same"});
+  ExpectLogError("t,time,elbow_joint\n", {"'t' and 'time' stand for the same"});
+  ExpectLogError("elbow_joint\n", {"j.csv:1: ", "no column of the time", "'t'"});
+  ExpectLogError("t,elbow_joint_velocity\n", {"j.csv:1: ", "no column of any joint"});
+  ExpectLogError("t,elbow_joint,rail_joint_torque\n",
+                 {"j.csv:1: ", "'rail_joint_torque'", "positions are missing"});
+  ExpectLogError("0.1,0.2\n", {"j.csv:1: ", "number '0.1'", "header row"});
 }
 
 TEST(JointLog, NamesWrongCells) {
   const std::string header = "t,elbow_joint,elbow_joint_torque\n";
-  ExpectError(header, {"j.csv", "no row"});
-  ExpectError(header + "1,0\n", {"j.csv:2: ", "2 cells", "3"});
-  ExpectError(header + "1,0,0\n2,x,0\n", {"j.csv:3: column 'elbow_joint'", "'x'"});
-  ExpectError(header + "1,0,0\n2,nan,0\n", {"j.csv:3: column 'elbow_joint'", "'nan'"});
-  ExpectError(header + "1,0,0\n2,,0\n", {"j.csv:3: column 'elbow_joint'", "found nothing"});
-  ExpectError(header + "1,0,0\n2,0,inf\n", {"j.csv:3: column 'elbow_joint_torque'", "'inf'"});
-  ExpectError(header + "1,0,\"0,5\"\n", {"j.csv:2: ", "'0,5'", "decimal point"});
-  ExpectError(header + "nan,0,0\n", {"j.csv:2: column 't'", "'nan'"});
+  ExpectLogError(header, {"j.csv", "no row"});
+  ExpectLogError(header + "1,0\n", {"j.csv:2: ", "2 cells", "3"});
+  ExpectLogError(header + "1,0,0\n2,x,0\n", {"j.csv:3: column 'elbow_joint'", "'x'"});
+  ExpectLogError(header + "1,0,0\n2,nan,0\n", {"j.csv:3: column 'elbow_joint'", "'nan'"});
+  ExpectLogError(header + "1,0,0\n2,,0\n", {"j.csv:3: column 'elbow_joint'", "found nothing"});
+  ExpectLogError(header + "1,0,0\n2,0,inf\n", {"j.csv:3: column 'elbow_joint_torque'", "'inf'"});
+  ExpectLogError(header + "1,0,\"0,5\"\n", {"j.csv:2: ", "'0,5'", "decimal point"});
+  ExpectLogError(header + "nan,0,0\n", {"j.csv:2: column 't'", "'nan'"});
 }
 
 TEST(JointLog, TimeIncreases) {
   const std::string header = "time,elbow_joint\n";
-  ExpectError(header + "1,0\n2,0\n2,0\n", {"j.csv:4: column 'time'", "2 after 2", "increase"});
-  ExpectError(header + "1,0\n2,0\n1.5,0\n", {"j.csv:4: ", "1.5 after 2"});
+  ExpectLogError(header + "1,0\n2,0\n2,0\n", {"j.csv:4: column 'time'", "2 after 2", "increase"});
+  ExpectLogError(header + "1,0\n2,0\n1.5,0\n", {"j.csv:4: ", "1.5 after 2"});
 }
 
 TEST(JointLog, SuspectsDegrees) {
-  ExpectError("t,elbow_joint\n1,0\n2,-45\n3,12\n",
-              {"j.csv:3: ", "'elbow_joint'", "-45", "degrees"});
+  ExpectLogError("t,elbow_joint\n1,0\n2,-45\n3,12\n",
+                 {"j.csv:3: ", "'elbow_joint'", "-45", "degrees"});
   // A prismatic joint is in metres, and two turns are 12.57 rad.
-  EXPECT_NO_THROW(Read("t,elbow_joint,rail_joint\n1,12.5,45\n"));
+  EXPECT_NO_THROW(ReadLog("t,elbow_joint,rail_joint\n1,12.5,45\n"));
 }
 
 TEST(JointLog, RefusesARecordingWithoutEnd) {
@@ -141,7 +141,7 @@ TEST(JointLog, RefusesARecordingWithoutEnd) {
   stream << "t,elbow_joint\n";
   for (int i = 0; i < 1000010; ++i) stream << i << ",0\n";
   stream.close();
-  ExpectInputError([&] { ReadJointLog(file, ArmProject()); },
+  ExpectInputError([&] { ReadJointLog(file, LogProject()); },
                    {"endless.csv:1000002: ", "more than 1000000 rows"});
   std::filesystem::remove(file);
 }
@@ -149,12 +149,12 @@ TEST(JointLog, RefusesARecordingWithoutEnd) {
 TEST(JointLog, WritesWhatItReads) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "written_joints.csv";
-  const JointLog written = Read(
+  const JointLog written = ReadLog(
       "t,elbow_joint,rail_joint,rail_joint_torque\n0.1,0.3333333333333333,1e-17,-7.25\n"
       "0.30000000000000004,2,3,4\n");
   WriteJointLog(file, written);
   EXPECT_EQ(ReadFile(file).substr(0, 44), "t,elbow_joint,rail_joint,rail_joint_torque\n0");
-  const JointLog read = ReadJointLog(file, ArmProject());
+  const JointLog read = ReadJointLog(file, LogProject());
   EXPECT_EQ(read.source, file.string());
   EXPECT_EQ(read.names, written.names);
   EXPECT_EQ(read.time_s, written.time_s);
@@ -164,8 +164,28 @@ TEST(JointLog, WritesWhatItReads) {
   std::filesystem::remove(file);
 }
 
+TEST(JointLog, NamesWithSeparatorsAndQuotesSurvive) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "named_joints.csv";
+  const Project project =
+      LogProject("{columns: {joints: {elbow_joint: \"el,bow;;;\", rail_joint: 'ra\"il'}}}",
+                 "force_torque_sensors: [{name: \"tip, right\", link: tool}]");
+  JointLog written;
+  written.names = {"el,bow;;;", "ra\"il"};
+  written.time_s = Eigen::Vector2d(1, 2);
+  written.positions = Eigen::Matrix2d::Constant(0.25);
+  written.torques = Eigen::Matrix2d::Constant(0.5);
+  written.wrench_sensors = project.force_torque_sensors;
+  written.wrenches = Eigen::MatrixXd::Constant(2, 6, 3.0);
+  WriteJointLog(file, written);
+  const JointLog read = ReadJointLog(file, project);
+  EXPECT_EQ(read.names, (std::vector<std::string>{"elbow_joint", "rail_joint"}));
+  EXPECT_EQ(read.torques, written.torques);
+  EXPECT_EQ(read.wrenches, written.wrenches);
+  std::filesystem::remove(file);
+}
+
 TEST(JointLog, NamesAFileThatCannotBeRead) {
-  ExpectInputError([] { ReadJointLog("nowhere/j.csv", ArmProject()); },
+  ExpectInputError([] { ReadJointLog("nowhere/j.csv", LogProject()); },
                    {"nowhere/j.csv", "there is no such file"});
 }
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

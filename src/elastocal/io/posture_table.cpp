@@ -2,96 +2,132 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
-#include <optional>
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/posture_checks.hpp"
-#include "elastocal/io/posture_columns.hpp"
-#include "elastocal/io/table_lines.hpp"
-#include "elastocal/io/text.hpp"
+#include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/tables/table_writer.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
 /// More are no static postures but a motion; and they bound the memory that a file can take.
-constexpr std::size_t kMostRows = 100000;
+constexpr int kMostPostures = 100000;
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+const std::string& CoordinateName(const RobotTree& tree, int coordinate) {
+  return tree.joints[tree.coordinate_joint[coordinate]].name;
+}
 
-/// The numbers of a table as they are read, row after row.
-class RowReader {
- public:
-  RowReader(const PostureColumns& columns, const TableLines& lines, const std::string& source,
-            const Project& project)
-      : columns_(columns), lines_(lines), source_(source) {
-    const RobotTree& tree = project.tree;
-    for (int joint : tree.coordinate_joint) {
-      const auto given = project.recording.not_recorded.find(tree.joints[joint].name);
-      fallback_.push_back(given == project.recording.not_recorded.end() ? 0.0 : given->second);
-    }
-  }
-
-  void Add(const std::vector<std::string>& cells) {
-    if (cells.size() != columns_.names.size()) {
-      // A decimal comma splits a number in two.
-      const bool commas =
-          lines_.separator() == ',' && 2 * cells.size() >= 3 * columns_.names.size();
-      Fail("found " + std::to_string(cells.size()) + " cells; the header has " +
-           std::to_string(columns_.names.size()) + (commas ? "; decimal commas?" : ""));
-    }
-    if (line_.size() >= kMostRows) {
-      Fail("more than " + std::to_string(kMostRows) +
-           " rows; one for each static posture expected");
-    }
-    line_.push_back(lines_.line());
-    if (columns_.time >= 0) time_.push_back(Number(cells, columns_.time));
-    for (std::size_t c = 0; c < fallback_.size(); ++c) {
-      const int column = columns_.coordinate_columns[c];
-      q_.push_back(column < 0 ? fallback_[c] : Number(cells, column));
-    }
-    for (const std::array<int, 3>& xyz : columns_.marker_columns) AddMarker(cells, xyz);
-  }
-
-  void Finish(Recording& recording) {
-    if (line_.empty()) throw InputError(source_ + ": no row below the header; postures expected");
-    const auto rows = static_cast<Eigen::Index>(line_.size());
-    const auto view = [rows](const std::vector<double>& values, std::size_t columns) {
-      return Eigen::Map<const RowMajor>(values.data(), rows, static_cast<Eigen::Index>(columns));
-    };
-    recording.q = view(q_, fallback_.size());
-    recording.markers = view(markers_, 3 * columns_.marker_columns.size());
-    if (!time_.empty()) recording.time_s = view(time_, 1);
-    recording.line = std::move(line_);
-  }
-
- private:
-  [[noreturn]] void Fail(const std::string& message) const {
-    throw InputError(Place(source_, lines_.line()) + message);
-  }
-
-  double Number(const std::vector<std::string>& cells, int column) const {
-    return CellNumber(cells[column], columns_.names[column], source_, lines_.line());
-  }
-
-  void AddMarker(const std::vector<std::string>& cells, const std::array<int, 3>& xyz) {
-    // All three cells empty: not seen. Only some: something went wrong, and Number() says where.
-    const bool seen =
-        std::any_of(xyz.begin(), xyz.end(), [&](int column) { return !cells[column].empty(); });
-    for (int column : xyz) {
-      markers_.push_back(seen ? Number(cells, column) : std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-
-  const PostureColumns& columns_;
-  const TableLines& lines_;
-  const std::string& source_;
-  std::vector<double> fallback_;  ///< positions of joints without a column
-  std::vector<double> q_, markers_, time_;
-  std::vector<int> line_;
+/// Which column of a posture table holds what; -1 where there is none.
+struct PostureColumns {
+  int time = -1;
+  std::vector<int> coordinates;                    ///< by coordinate of the tree
+  std::vector<int> markers;                        ///< of the project, those with columns
+  std::vector<std::array<int, 3>> marker_columns;  ///< x, y, z of each of these
 };
+
+/// Throws InputError for a joint that moves a recorded marker and has neither a column nor a
+/// position in the project.
+void CheckMovingJoints(const Table& table, const Project& project, const PostureColumns& columns) {
+  const RobotTree& tree = project.tree;
+  for (int m : columns.markers) {
+    const Marker& marker = project.markers[m];
+    for (int k : JointsToBody(tree, tree.links[marker.link].body)) {
+      const int coordinate = tree.joints[k].coordinate;
+      const Joint& joint = tree.joints[tree.coordinate_joint[coordinate]];
+      if (columns.coordinates[coordinate] >= 0) continue;
+      if (project.recording.not_recorded.contains(joint.name)) continue;
+      table.Fail("the column " + Quote(JointColumn(project, joint.name)) + " of joint " +
+                 Quote(joint.name) + ", which moves marker " + Quote(marker.name) +
+                 ", is missing; a joint that stood still is given in recording." +
+                 (joint.type == JointType::kRevolute ? "not_recorded_deg" : "not_recorded_mm") +
+                 " of " + project.file.string());
+    }
+  }
+}
+
+PostureColumns FindPostureColumns(const Table& table, const Project& project) {
+  const RobotTree& tree = project.tree;
+  const int coordinates = tree.coordinate_count();
+  const int first_marker = 1 + coordinates;
+  int quantities = 0;
+  ColumnRoles roles;
+  AddRole(project, project.recording.time, quantities++, roles);
+  for (int c = 0; c < coordinates; ++c) {
+    AddRole(project, JointColumn(project, CoordinateName(tree, c)), quantities++, roles);
+  }
+  for (const Marker& marker : project.markers) {
+    for (const std::string& column : MarkerColumns(project, marker.name)) {
+      AddRole(project, column, quantities++, roles);
+    }
+  }
+  // Joints that follow others need not be read.
+  for (const Joint& joint : tree.joints) {
+    if (joint.mimic) roles.emplace(joint.name, kPassedOver);
+  }
+  const std::vector<int> found =
+      FindRecordingColumns(table, std::move(roles), static_cast<std::size_t>(quantities), project);
+
+  PostureColumns columns;
+  columns.time = found[0];
+  columns.coordinates.assign(found.begin() + 1, found.begin() + first_marker);
+  for (std::size_t m = 0; m < project.markers.size(); ++m) {
+    const std::string& name = project.markers[m].name;
+    std::array<int, 3> xyz;
+    std::copy_n(found.begin() + first_marker + 3 * static_cast<std::ptrdiff_t>(m), 3, xyz.begin());
+    if (!HasGroup(table, xyz, MarkerColumns(project, name), "marker " + Quote(name))) continue;
+    columns.markers.push_back(static_cast<int>(m));
+    columns.marker_columns.push_back(xyz);
+  }
+  if (columns.markers.empty()) {
+    const std::string& first = project.markers[0].name;
+    table.Fail("there is no column of any marker; expected " +
+               Quote(MarkerColumns(project, first)[0]) + " of marker " + Quote(first) +
+               " or others");
+  }
+  CheckMovingJoints(table, project, columns);
+  return columns;
+}
+
+/// Reads the numbers of all rows: time, q, markers and line of the recording.
+void ReadPostures(const Project& project, const PostureColumns& columns, Table& table,
+                  Recording& recording) {
+  const auto& given = project.recording.not_recorded;
+  std::vector<double> elsewhere;  // positions of joints without a column
+  for (int c = 0; c < project.tree.coordinate_count(); ++c) {
+    const auto position = given.find(CoordinateName(project.tree, c));
+    elsewhere.push_back(position == given.end() ? 0.0 : position->second);
+  }
+  std::vector<double> time, q, markers;
+  while (table.Next()) {
+    if (table.row_count() > kMostPostures) {
+      table.Fail("more than " + std::to_string(kMostPostures) +
+                 " rows; one for each static posture expected");
+    }
+    recording.line.push_back(table.line());
+    if (columns.time >= 0) time.push_back(table.Number(columns.time));
+    for (std::size_t c = 0; c < elsewhere.size(); ++c) {
+      const int column = columns.coordinates[c];
+      q.push_back(column < 0 ? elsewhere[c] : table.Number(column));
+    }
+    for (const std::array<int, 3>& xyz : columns.marker_columns) {
+      // All three cells empty: not seen. Only some: something went wrong, and Number says where.
+      const bool seen = std::any_of(xyz.begin(), xyz.end(),
+                                    [&](int column) { return !table.Cell(column).empty(); });
+      for (int column : xyz) {
+        markers.push_back(seen ? table.Number(column) : kNaN);
+      }
+    }
+  }
+  const std::size_t rows = recording.line.size();
+  if (rows == 0) throw InputError(table.source() + ": no row below the header; postures expected");
+  recording.q = StackRows(q, rows);
+  recording.markers = StackRows(markers, rows);
+  if (!time.empty()) recording.time_s = StackRows(time, rows);
+}
 
 /// Names what was recorded. A marker that was never seen counts as not recorded.
 void NameMarkers(const PostureColumns& columns, const Project& project, PostureTable& table) {
@@ -117,37 +153,6 @@ void NameMarkers(const PostureColumns& columns, const Project& project, PostureT
   recording.markers = recording.markers(Eigen::all, kept).eval();
 }
 
-void NameJoints(const PostureColumns& columns, const RobotTree& tree, Recording& recording) {
-  for (int c = 0; c < tree.coordinate_count(); ++c) {
-    if (columns.coordinate_columns[c] >= 0) continue;
-    recording.joints_not_recorded.push_back(tree.joints[tree.coordinate_joint[c]].name);
-  }
-}
-
-/// Coordinates of the tree that the recording holds.
-std::vector<int> RecordedCoordinates(const Recording& recording, const RobotTree& tree) {
-  const auto& absent = recording.joints_not_recorded;
-  std::vector<int> coordinates;
-  for (int c = 0; c < tree.coordinate_count(); ++c) {
-    const std::string& name = tree.joints[tree.coordinate_joint[c]].name;
-    if (std::find(absent.begin(), absent.end(), name) == absent.end()) coordinates.push_back(c);
-  }
-  return coordinates;
-}
-
-std::string Header(const Recording& recording, const RobotTree& tree) {
-  std::string header;
-  if (recording.time_s.size() > 0) header += RecordingColumns().time + ",";
-  for (const std::string& marker : recording.marker_names) {
-    for (const std::string& column : DefaultMarkerColumns(marker)) header += MakeCell(column) + ",";
-  }
-  for (int c : RecordedCoordinates(recording, tree)) {
-    header += MakeCell(tree.joints[tree.coordinate_joint[c]].name) + ",";
-  }
-  header.back() = '\n';
-  return header;
-}
-
 }  // namespace
 
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project) {
@@ -157,38 +162,50 @@ PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& 
 
 PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
                               const Project& project) {
-  TableLines lines(stream, source);
-  std::vector<std::string> cells;
-  if (!lines.Next(cells)) throw InputError(source + ": is empty; a header row was expected");
-  const PostureColumns columns = FindPostureColumns(cells, Place(source, lines.line()), project);
-
-  RowReader rows(columns, lines, source, project);
-  while (lines.Next(cells)) rows.Add(cells);
-  PostureTable table;
-  table.recording.source = source;
-  rows.Finish(table.recording);
-  NameMarkers(columns, project, table);
-  NameJoints(columns, project.tree, table.recording);
-  CheckPlausible(table.recording, project.tree);
-  table.warnings = LimitWarnings(table.recording, project.tree);
-  const std::string repetition = RepetitionWarning(table.recording);
-  if (!repetition.empty()) table.warnings.push_back(repetition);
-  return table;
+  Table table(stream, source);
+  const PostureColumns columns = FindPostureColumns(table, project);
+  PostureTable result;
+  Recording& recording = result.recording;
+  recording.source = source;
+  ReadPostures(project, columns, table, recording);
+  NameMarkers(columns, project, result);
+  for (int c = 0; c < project.tree.coordinate_count(); ++c) {
+    if (columns.coordinates[c] >= 0) continue;
+    recording.joints_not_recorded.push_back(CoordinateName(project.tree, c));
+  }
+  CheckPlausible(recording, project.tree);
+  for (std::string& warning : LimitWarnings(recording, project.tree)) {
+    result.warnings.push_back(std::move(warning));
+  }
+  const std::string repetition = RepetitionWarning(recording);
+  if (!repetition.empty()) result.warnings.push_back(repetition);
+  return result;
 }
 
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
                        const RobotTree& tree) {
-  const std::vector<int> coordinates = RecordedCoordinates(recording, tree);
-  std::string text = Header(recording, tree);
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    if (recording.time_s.size() > 0) text += FormatNumber(recording.time_s[i]) + ",";
-    for (double position : recording.markers.row(i)) {
-      text += (std::isnan(position) ? "" : FormatNumber(position)) + ",";
-    }
-    for (int c : coordinates) text += FormatNumber(recording.q(i, c)) + ",";
-    text.back() = '\n';
+  const bool timed = recording.time_s.size() > 0;
+  const auto& absent = recording.joints_not_recorded;
+  std::vector<int> coordinates;  // that the recording holds
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    const bool recorded =
+        std::find(absent.begin(), absent.end(), CoordinateName(tree, c)) == absent.end();
+    if (recorded) coordinates.push_back(c);
   }
-  WriteFile(file, text);
+  TableWriter table;
+  if (timed) table.Add(RecordingColumns().time);
+  for (const std::string& marker : recording.marker_names) {
+    for (const std::string& column : DefaultMarkerColumns(marker)) table.Add(column);
+  }
+  for (int c : coordinates) table.Add(CoordinateName(tree, c));
+  table.EndRow();
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (timed) table.Add(recording.time_s[i]);
+    for (double position : recording.markers.row(i)) table.Add(position);
+    for (int c : coordinates) table.Add(recording.q(i, c));
+    table.EndRow();
+  }
+  WriteFile(file, table.text());
 }
 
 }  // namespace elastocal

@@ -17,7 +17,7 @@ namespace elastocal {
 namespace {
 
 /// Markers A and B on the forearm, which rail, turret, shoulder and elbow move, T on the tool.
-Project ArmProject(const std::string& recording = "{}") {
+Project TableProject(const std::string& recording = "{}") {
   return ParseProject(
       "robot: {urdf: arm6.urdf}\n"
       "markers:\n"
@@ -30,26 +30,27 @@ Project ArmProject(const std::string& recording = "{}") {
       SourceFile("tests/robots/p.yaml"));
 }
 
-const std::string kHeader = "t,A_x,A_y,A_z,rail_joint,turret_joint,shoulder_joint,elbow_joint\n";
+const std::string kTableHeader =
+    "t,A_x,A_y,A_z,rail_joint,turret_joint,shoulder_joint,elbow_joint\n";
 
-PostureTable Read(const std::string& text, const Project& project = ArmProject()) {
+PostureTable ReadTable(const std::string& text, const Project& project = TableProject()) {
   std::istringstream stream(text);
   return ReadPostureTable(stream, "t.csv", project);
 }
 
-void ExpectError(const std::string& text, std::initializer_list<std::string> parts) {
-  ExpectInputError([&] { Read(text); }, parts);
+void ExpectTableError(const std::string& text, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { ReadTable(text); }, parts);
 }
 
 TEST(PostureTable, ReadsPostures) {
-  const PostureTable table =
-      Read(kHeader + "1.5,1,2,3,0.1,0.2,0.3,0.4\n2.5,1.5,2.5,-3e-1,-0.1,-0.2,-0.3,-0.4\n");
+  const PostureTable table = ReadTable(
+      kTableHeader + "1.5,1,2,3,0.1,0.2,0.3,0.4\n2.5,1.5,2.5,-3e-1,-0.1,-0.2,-0.3,-0.4\n");
   const Recording& recording = table.recording;
   EXPECT_EQ(recording.source, "t.csv");
   EXPECT_EQ(recording.marker_names, std::vector<std::string>{"A"});
   ASSERT_EQ(recording.posture_count(), 2);
   EXPECT_EQ(MarkerPosition(recording, 1, 0), Eigen::Vector3d(1.5, 2.5, -0.3));
-  const RobotTree tree = ArmProject().tree;
+  const RobotTree tree = TableProject().tree;
   const int elbow = tree.joints[FindJoint(tree, "elbow_joint")].coordinate;
   EXPECT_EQ(recording.q(0, elbow), 0.4);
   EXPECT_EQ(recording.q.cols(), tree.coordinate_count());
@@ -63,10 +64,10 @@ TEST(PostureTable, ReadsPostures) {
 }
 
 TEST(PostureTable, ReadsRenamedColumnsInAnyOrder) {
-  const Project project = ArmProject(
+  const Project project = TableProject(
       "{columns: {time: stamp, markers: {A: [x, y, z]}, joints: {elbow_joint: q4}}, "
       "ignore: [note, B_x], not_recorded_mm: {rail_joint: 250}}");
-  const PostureTable table = Read(
+  const PostureTable table = ReadTable(
       "\xEF\xBB\xBF"
       "\"q4\";note;z;y;x;turret_joint;shoulder_joint;B_x\r\n"
       "0.4;any text;3;2;1;0.2;0.3;\r\n\r\n",
@@ -81,62 +82,87 @@ TEST(PostureTable, ReadsRenamedColumnsInAnyOrder) {
   EXPECT_EQ(table.recording.joints_not_recorded[0], "rail_joint");
 }
 
+/// Joints that move no recorded marker and mimic joints need no column.
+TEST(PostureTable, FindsEveryKindOfColumn) {
+  const Project project = ParseProject(
+      "robot: {urdf: arm6.urdf}\n"
+      "markers: {single: [{name: M, link: rail, position_mm: [1, 2, 3]},\n"
+      "                   {name: N, link: carriage, position_mm: [1, 2, 3]}]}\n"
+      "recording: {columns: {markers: {N: [x, y, z]}, joints: {rail_joint: q}}, ignore: [note]}\n",
+      SourceFile("tests/robots/p.yaml"));
+  const Recording recording =
+      ReadTable("note,z,y,x,q,t,elbow_joint,finger_right_joint\na,3,2,1,0.5,7,0.25,b\n", project)
+          .recording;
+  EXPECT_EQ(recording.time_s[0], 7.0);
+  EXPECT_EQ(recording.marker_names, std::vector<std::string>{"N"});
+  EXPECT_EQ(MarkerPosition(recording, 0, 0), Eigen::Vector3d(1, 2, 3));
+  // Coordinates: rail, turret, shoulder, elbow, roll, bend, flange, left finger.
+  Eigen::RowVectorXd q(8);
+  q << 0.5, 0, 0, 0.25, 0, 0, 0, 0;
+  EXPECT_EQ(recording.q, q);
+  EXPECT_EQ(recording.joints_not_recorded.size(), 6u);
+}
+
 TEST(PostureTable, EmptyMarkerCellsMeanNotSeen) {
   const std::string header =
       "A_x,A_y,A_z,B_x,B_y,B_z,rail_joint,turret_joint,shoulder_joint,"
       "elbow_joint,finger_right_joint\n";
-  const PostureTable table = Read(header + ",,,,,,0,0,0,0,1\n1,2,3,,,,0,0,0,0.1,1\n");
+  const PostureTable table = ReadTable(header + ",,,,,,0,0,0,0,1\n1,2,3,,,,0,0,0,0.1,1\n");
   EXPECT_EQ(table.recording.marker_names, std::vector<std::string>{"A"});
   EXPECT_FALSE(Seen(table.recording, 0, 0));
   EXPECT_TRUE(Seen(table.recording, 1, 0));
   EXPECT_EQ(table.markers_not_recorded, (std::vector<std::string>{"B", "T"}));
-  ExpectError(header + ",,,,,,0,0,0,0,0\n", {"t.csv", "no marker was seen"});
-  ExpectError(header + "1,,3,,,,0,0,0,0,0\n", {"t.csv:2: ", "'A_y'", "found nothing"});
+  ASSERT_FALSE(table.warnings.empty());
+  EXPECT_EQ(table.warnings[0], "marker B was never seen and is left out");
+  ExpectTableError(header + ",,,,,,0,0,0,0,0\n", {"t.csv", "no marker was seen"});
+  ExpectTableError(header + "1,,3,,,,0,0,0,0,0\n", {"t.csv:2: ", "'A_y'", "found nothing"});
 }
 
 TEST(PostureTable, NamesWrongColumns) {
-  ExpectError("", {"t.csv", "empty"});
-  ExpectError("A_x,A_y,A_zz\n", {"t.csv:1: ", "'A_zz'", "did you mean 'A_z'", "recording.ignore"});
-  ExpectError("A_x,A_y,A_x,A_z\n", {"t.csv:1: ", "'A_x' comes twice"});
-  ExpectError("A_x,A_z,rail_joint\n", {"t.csv:1: ", "'A_y' of marker 'A' is missing"});
-  ExpectError("t,rail_joint\n", {"t.csv:1: ", "no column of any marker", "'A_x'"});
-  ExpectError("A_x,A_y,A_z,rail_joint,turret_joint,shoulder_joint\n",
-              {"t.csv:1: ", "'elbow_joint'", "moves marker 'A'", "not_recorded_deg"});
-  ExpectError("A_x,A_y,A_z\n", {"'rail_joint'", "not_recorded_mm"});
-  ExpectError("0.1,0.2\n", {"t.csv:1: ", "number '0.1'", "header row"});
-  ExpectInputError([] { Read("x\n", ArmProject("{columns: {time: A_x}}")); },
+  ExpectTableError("", {"t.csv", "empty"});
+  ExpectTableError("A_x,A_y,A_zz\n",
+                   {"t.csv:1: ", "'A_zz'", "did you mean 'A_z'", "recording.ignore"});
+  ExpectTableError("A_x,A_y,A_x,A_z\n", {"t.csv:1: ", "'A_x' comes twice"});
+  ExpectTableError("A_x,A_z,rail_joint\n", {"t.csv:1: ", "'A_y' of marker 'A' is missing"});
+  ExpectTableError("t,rail_joint\n", {"t.csv:1: ", "no column of any marker", "'A_x'"});
+  ExpectTableError("A_x,A_y,A_z,rail_joint,turret_joint,shoulder_joint\n",
+                   {"t.csv:1: ", "'elbow_joint'", "moves marker 'A'", "not_recorded_deg"});
+  ExpectTableError("A_x,A_y,A_z\n", {"'rail_joint'", "not_recorded_mm"});
+  ExpectTableError("0.1,0.2\n", {"t.csv:1: ", "number '0.1'", "header row"});
+  ExpectInputError([] { ReadTable("x\n", TableProject("{columns: {time: A_x}}")); },
                    {"p.yaml", "'A_x' stands for two things"});
 }
 
 TEST(PostureTable, NamesWrongCells) {
-  ExpectError(kHeader, {"t.csv", "no row"});
-  ExpectError(kHeader + "1,1,2,3,0.1,0.2,0.3\n", {"t.csv:2: ", "7 cells", "8"});
-  ExpectError(kHeader + "1,1,5,2,0,3,0,0,1,0,2,0,3,0,4\n", {"15 cells", "8; decimal commas?"});
-  ExpectError("A_x,A_y,A_z,,t\n", {"t.csv:1: empty column name, cell 4"});
+  ExpectTableError(kTableHeader, {"t.csv", "no row"});
+  ExpectTableError(kTableHeader + "1,1,2,3,0.1,0.2,0.3\n", {"t.csv:2: ", "7 cells", "8"});
+  ExpectTableError(kTableHeader + "1,1,5,2,0,3,0,0,1,0,2,0,3,0,4\n",
+                   {"15 cells", "8; decimal commas?"});
+  ExpectTableError("A_x,A_y,A_z,,t\n", {"t.csv:1: empty column name, cell 4"});
   const auto row = [](const std::string& x, const std::string& q) {
-    return kHeader + "1,1,2,3,0,0,0,0\n1," + x + ",2,3,0,0,0," + q + "\n";
+    return kTableHeader + "1,1,2,3,0,0,0,0\n1," + x + ",2,3,0,0,0," + q + "\n";
   };
-  ExpectError(row("abc", "0"), {"t.csv:3: ", "'A_x'", "'abc'", "finite number"});
-  ExpectError(row("nan", "0"), {"t.csv:3: ", "'A_x'", "'nan'"});
-  ExpectError(row("1", "NaN"), {"t.csv:3: ", "'elbow_joint'", "'NaN'"});
-  ExpectError(row("1", "inf"), {"t.csv:3: ", "'elbow_joint'", "'inf'"});
-  ExpectError(row("1", ""), {"t.csv:3: ", "'elbow_joint'", "found nothing"});
-  ExpectError(row("\"1,5\"", "0"), {"t.csv:3: ", "'1,5'", "decimal point"});
+  ExpectTableError(row("abc", "0"), {"t.csv:3: ", "'A_x'", "'abc'", "finite number"});
+  ExpectTableError(row("nan", "0"), {"t.csv:3: ", "'A_x'", "'nan'"});
+  ExpectTableError(row("1", "NaN"), {"t.csv:3: ", "'elbow_joint'", "'NaN'"});
+  ExpectTableError(row("1", "inf"), {"t.csv:3: ", "'elbow_joint'", "'inf'"});
+  ExpectTableError(row("1", ""), {"t.csv:3: ", "'elbow_joint'", "found nothing"});
+  ExpectTableError(row("\"1,5\"", "0"), {"t.csv:3: ", "'1,5'", "decimal point"});
 }
 
 TEST(PostureTable, SuspectsMillimetresAndDegrees) {
   // The arm reaches less than 2 m; a hand that moves by 400 mm is not 400 m away.
-  ExpectError(kHeader + "1,100,2,3,0,0,0,0\n1,500,2,3,0,0,0,0.1\n",
-              {"t.csv", "marker 'A'", "400 m along x", "millimetres"});
-  EXPECT_NO_THROW(Read(kHeader + "1,1000,2,3,0,0,0,0\n1,1000.4,2,3,0,0,0,0.1\n"));
-  ExpectError(kHeader + "1,1,2,3,0,0,0,0\n1,1,2,3,0,0,0,-45\n",
-              {"t.csv:3: ", "'elbow_joint'", "-45", "degrees"});
+  ExpectTableError(kTableHeader + "1,100,2,3,0,0,0,0\n1,500,2,3,0,0,0,0.1\n",
+                   {"t.csv", "marker 'A'", "400 m along x", "millimetres"});
+  EXPECT_NO_THROW(ReadTable(kTableHeader + "1,1000,2,3,0,0,0,0\n1,1000.4,2,3,0,0,0,0.1\n"));
+  ExpectTableError(kTableHeader + "1,1,2,3,0,0,0,0\n1,1,2,3,0,0,0,-45\n",
+                   {"t.csv:3: ", "'elbow_joint'", "-45", "degrees"});
 }
 
 TEST(PostureTable, WarnsOfJointsBeyondTheirLimits) {
   // elbow: +-2.3 rad; rail: -0.5 to 0.6 m. A degree and 5 mm are allowed.
   const PostureTable table =
-      Read(kHeader + "1,1,2,3,0.604,0,0,2.31\n1,1,2,3,0.7,0,0,2.4\n1,1,2,3,0,0,0,-2.5\n");
+      ReadTable(kTableHeader + "1,1,2,3,0.604,0,0,2.31\n1,1,2,3,0.7,0,0,2.4\n1,1,2,3,0,0,0,-2.5\n");
   ASSERT_EQ(table.warnings.size(), 2u);
   EXPECT_EQ(table.warnings[0],
             "t.csv:3: joint 'rail_joint' is at 0.7 m, 100 mm beyond its limit of 0.6 m");
@@ -147,18 +173,20 @@ TEST(PostureTable, WarnsOfJointsBeyondTheirLimits) {
 
 TEST(PostureTable, WarnsOfRepeatedRows) {
   const std::string row = "1,2,3,0,0,0,0.1\n";
-  const PostureTable table = Read(kHeader + "1," + row + "2," + row + "3,1,2,3,0,0,0,0.2\n");
+  const PostureTable table =
+      ReadTable(kTableHeader + "1," + row + "2," + row + "3,1,2,3,0,0,0,0.2\n");
   ASSERT_EQ(table.warnings.size(), 1u);
   EXPECT_EQ(table.warnings[0].rfind("t.csv: line 3 repeats line 2: ", 0), 0u);
-  ExpectError(kHeader + "1," + row + "2," + row, {"t.csv: the 2 postures are all the same"});
+  ExpectTableError(kTableHeader + "1," + row + "2," + row,
+                   {"t.csv: the 2 postures are all the same"});
 }
 
 TEST(PostureTable, RefusesIdenticalMarkers) {
   const std::string header =
       "A_x,A_y,A_z,B_x,B_y,B_z,rail_joint,turret_joint,shoulder_joint,elbow_joint\n";
-  ExpectError(header + "1,2,3,1,2,3,0,0,0,0\n4,2,3,4,2,3,0,0,0,1\n,,,,,,0,0,0,1\n",
-              {"t.csv", "'A' and 'B'", "identical"});
-  EXPECT_NO_THROW(Read(header + "1,2,3,1,2,3,0,0,0,0\n4,2,3,4,2,3.1,0,0,0,1\n"));
+  ExpectTableError(header + "1,2,3,1,2,3,0,0,0,0\n4,2,3,4,2,3,0,0,0,1\n,,,,,,0,0,0,1\n",
+                   {"t.csv", "'A' and 'B'", "identical"});
+  EXPECT_NO_THROW(ReadTable(header + "1,2,3,1,2,3,0,0,0,0\n4,2,3,4,2,3.1,0,0,0,1\n"));
 }
 
 /// Zeros without end, in a few shapes: each is refused by what comes first.
@@ -172,40 +200,41 @@ TEST(PostureTable, RefusesALargeFileOfZeros) {
     while (block.size() < 1 << 20) block += piece;
     for (int i = 0; i < 200; ++i) stream << block;
   };
-  const auto read = [&] { ReadPostureTable(file, ArmProject()); };
+  const auto read = [&] { ReadPostureTable(file, TableProject()); };
   write("", "0");
   ExpectInputError(read, {"zeros.csv:1: ", "1 MiB"});
   write("", std::string(1, '\0'));
   ExpectInputError(read, {"zeros.csv:1: ", "NUL"});
   write("", "0\n");
   ExpectInputError(read, {"zeros.csv:1: ", "header row"});
-  write(kHeader, "0\n");
+  write(kTableHeader, "0\n");
   ExpectInputError(read, {"zeros.csv:2: ", "1 cells"});
-  write(kHeader, "0,0,0,0,0,0,0,0\n");
+  write(kTableHeader, "0,0,0,0,0,0,0,0\n");
   ExpectInputError(read, {"zeros.csv:100002: ", "more than 100000 rows"});
 }
 
 TEST(PostureTable, NamesAFileThatCannotBeRead) {
-  ExpectInputError([] { ReadPostureTable("nowhere/t.csv", ArmProject()); },
+  ExpectInputError([] { ReadPostureTable("nowhere/t.csv", TableProject()); },
                    {"nowhere/t.csv", "there is no such file"});
   ExpectInputError(
-      [] { ReadPostureTable(std::filesystem::path(testing::TempDir()), ArmProject()); },
+      [] { ReadPostureTable(std::filesystem::path(testing::TempDir()), TableProject()); },
       {"is a folder"});
   const ScratchFolder scratch;
   const std::filesystem::path file = scratch.path() / "t.csv";
-  WriteFile(file, kHeader);
+  WriteFile(file, kTableHeader);
   std::filesystem::permissions(file, std::filesystem::perms::none);
   if (std::ifstream(file)) GTEST_SKIP() << "this user may read everything";
-  ExpectInputError([&] { ReadPostureTable(file, ArmProject()); },
+  ExpectInputError([&] { ReadPostureTable(file, TableProject()); },
                    {"t.csv: cannot be read: Permission denied"});
 }
 
 TEST(PostureTable, WritesWhatItReads) {
   const ScratchFolder scratch;
   const std::filesystem::path file = scratch.path() / "written.csv";
-  const Project project = ArmProject();
+  const Project project = TableProject();
   const Recording first =
-      Read(kHeader + "1.5,,,,0.1,0.2,0.3,0.4\n2.5,0.1,0.333333333333333315,-3e-1,-0.1,0,0,0\n")
+      ReadTable(kTableHeader +
+                "1.5,,,,0.1,0.2,0.3,0.4\n2.5,0.1,0.333333333333333315,-3e-1,-0.1,0,0,0\n")
           .recording;
   WritePostureTable(file, first, project.tree);
   const Recording second = ReadPostureTable(file, project).recording;
@@ -215,6 +244,28 @@ TEST(PostureTable, WritesWhatItReads) {
   EXPECT_EQ(second.joints_not_recorded, first.joints_not_recorded);
   EXPECT_FALSE(Seen(second, 0, 0));
   EXPECT_EQ(second.markers.row(1), first.markers.row(1));
+}
+
+TEST(PostureTable, NamesWithSeparatorsAndQuotesSurvive) {
+  const ScratchFolder scratch;
+  const Project project = ParseProject(
+      "robot: {urdf: arm6.urdf}\n"
+      "markers:\n"
+      "  single:\n"
+      "    - {name: \"A, left; low\", link: forearm, position_mm: [10, 20, 30]}\n"
+      "    - {name: 'B \"old\"', link: forearm, position_mm: [-10, 20, 30]}\n",
+      SourceFile("tests/robots/p.yaml"));
+  Recording recording;
+  recording.marker_names = {"A, left; low", "B \"old\""};
+  recording.q = Eigen::MatrixXd::Zero(2, project.tree.coordinate_count());
+  recording.q(1, 0) = 0.1;
+  recording.markers.resize(2, 6);
+  recording.markers << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.2, 0.2, 0.3, 0.5, 0.5, 0.6;
+  const std::filesystem::path file = scratch.path() / "named.csv";
+  WritePostureTable(file, recording, project.tree);
+  const Recording read = ReadPostureTable(file, project).recording;
+  EXPECT_EQ(read.marker_names, recording.marker_names);
+  EXPECT_EQ(read.markers, recording.markers);
 }
 
 TEST(PostureTable, ReadsTheMeasuredRecording) {

@@ -4,9 +4,9 @@
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/project_sections.hpp"
-#include "elastocal/io/text.hpp"
 #include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

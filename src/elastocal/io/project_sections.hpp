@@ -4,9 +4,9 @@
 #include <string>
 
 #include "elastocal/io/project.hpp"
-#include "elastocal/io/text.hpp"
 #include "elastocal/io/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 

@@ -11,43 +11,43 @@ namespace elastocal {
 namespace {
 
 /// As QTM writes it, with the markers A and "B 2".
-const std::string kHeader =
+const std::string kTsvHeader =
     "NO_OF_FRAMES\t3\r\nNO_OF_CAMERAS\t20\r\nNO_OF_MARKERS\t2\r\nFREQUENCY\t100\r\n"
     "NO_OF_ANALOG\t0\r\nANALOG_FREQUENCY\t0\r\nDESCRIPTION\t--\r\n"
     "TIME_STAMP\t2021-03-04, 10:38:02.123\t30235.1\r\nDATA_INCLUDED\t3D\r\n"
     "EVENT\tstart\t1\t0.00000\r\nEVENT\tend\t3\t0.02000\r\nMARKER_NAMES\tA\tB 2\r\n"
     "TRAJECTORY_TYPES\tMeasured\tMixed\r\n";
-const std::string kColumns = "Frame\tTime\tA X\tA Y\tA Z\tB 2 X\tB 2 Y\tB 2 Z\r\n";
+const std::string kTsvColumns = "Frame\tTime\tA X\tA Y\tA Z\tB 2 X\tB 2 Y\tB 2 Z\r\n";
 /// The least that says everything.
-const std::string kShort = "FREQUENCY\t100\nMARKER_NAMES\tA\tB\n";
+const std::string kShortTsv = "FREQUENCY\t100\nMARKER_NAMES\tA\tB\n";
 
-MarkerTrajectories Parse(const std::string& text) { return ParseQtmTsv(text, "t.tsv"); }
+MarkerTrajectories ParseTsv(const std::string& text) { return ParseQtmTsv(text, "t.tsv"); }
 
-void ExpectError(const std::string& text, std::initializer_list<std::string> parts) {
-  ExpectInputError([&] { Parse(text); }, parts);
+void ExpectTsvError(const std::string& text, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { ParseTsv(text); }, parts);
 }
 
 /// Products with 1e-3 are rounded.
-constexpr double kRounding = 1e-15;
+constexpr double kTsvRounding = 1e-15;
 
 TEST(QtmTsv, ReadsWhatQtmWrites) {
   const MarkerTrajectories t =
-      Parse(kHeader + kColumns +
-            "1\t0.00000\t100.5\t-20\t1e3\t4\t5\t6\r\n2\t0.01000\t101\t-21\t1001\t\t\t\r\n"
-            "3\t0.02000\t0.000\t0.000\t0.000\t0.000\t0.000\t6.5\r\n");
+      ParseTsv(kTsvHeader + kTsvColumns +
+               "1\t0.00000\t100.5\t-20\t1e3\t4\t5\t6\r\n2\t0.01000\t101\t-21\t1001\t\t\t\r\n"
+               "3\t0.02000\t0.000\t0.000\t0.000\t0.000\t0.000\t6.5\r\n");
   EXPECT_EQ(t.source, "t.tsv");
   EXPECT_EQ(t.names, (std::vector<std::string>{"A", "B 2"}));
   EXPECT_EQ(t.rate_hz, 100.0);
   ASSERT_EQ(t.frame_count(), 3);
   Eigen::RowVectorXd first(6);
   first << 0.1005, -0.02, 1.0, 0.004, 0.005, 0.006;
-  EXPECT_TRUE(t.positions.row(0).isApprox(first, kRounding));
-  EXPECT_NEAR(t.positions(1, 2), 1.001, kRounding);
+  EXPECT_TRUE(t.positions.row(0).isApprox(first, kTsvRounding));
+  EXPECT_NEAR(t.positions(1, 2), 1.001, kTsvRounding);
   EXPECT_TRUE(t.positions.block(1, 3, 1, 3).array().isNaN().all());
   EXPECT_TRUE(t.positions.block(2, 0, 1, 3).array().isNaN().all());
   // Not a gap: one coordinate is not zero.
   EXPECT_EQ(t.positions(2, 3), 0.0);
-  EXPECT_NEAR(t.positions(2, 5), 0.0065, kRounding);
+  EXPECT_NEAR(t.positions(2, 5), 0.0065, kTsvRounding);
 }
 
 TEST(QtmTsv, RefusesNamesThatAreNotUtf8) {
@@ -59,19 +59,19 @@ TEST(QtmTsv, InfersTheColumnsFromTheirNumber) {
   for (const char* end : {"", "\t"}) {
     for (const char* leading : {"", "7\t", "7\t0.5\t"}) {
       const std::string row = std::string(leading) + "\t\t\t4\t5\t6" + end + "\n";
-      const MarkerTrajectories t = Parse(kShort + row);
+      const MarkerTrajectories t = ParseTsv(kShortTsv + row);
       ASSERT_EQ(t.frame_count(), 1) << row;
       EXPECT_TRUE(std::isnan(t.positions(0, 0))) << row;
-      EXPECT_NEAR(t.positions(0, 5), 0.006, kRounding) << row;
+      EXPECT_NEAR(t.positions(0, 5), 0.006, kTsvRounding) << row;
     }
   }
   // One cell more than six: is the last marker a gap after a frame number, or is the end a tab?
-  EXPECT_NEAR(Parse(kShort + "7\t1\t2\t3\t\t\t\n").positions(0, 0), 0.001, kRounding);
-  EXPECT_NEAR(Parse(kShort + "1\t2\t3\t\t\t\t\n").positions(0, 0), 0.001, kRounding);
+  EXPECT_NEAR(ParseTsv(kShortTsv + "7\t1\t2\t3\t\t\t\n").positions(0, 0), 0.001, kTsvRounding);
+  EXPECT_NEAR(ParseTsv(kShortTsv + "1\t2\t3\t\t\t\t\n").positions(0, 0), 0.001, kTsvRounding);
 }
 
 TEST(QtmTsv, NeedsNoHeader) {
-  const MarkerTrajectories t = Parse(
+  const MarkerTrajectories t = ParseTsv(
       "\xEF\xBB\xBF"
       "Time\tA X\tA Y\tA Z\n0.5\t1\t2\t3\n0.525\t1\t2\t3\n0.55\t1\t2\t3");
   EXPECT_EQ(t.names, std::vector<std::string>{"A"});
@@ -81,86 +81,89 @@ TEST(QtmTsv, NeedsNoHeader) {
 
 TEST(QtmTsv, FindsTheRate) {
   const std::string names = "MARKER_NAMES\tA\n";
-  EXPECT_NEAR(Parse(names + "0.00\t1\t2\t3\n0.01\t1\t2\t3\n0.02\t1\t2\t3\n").rate_hz, 100.0, 1e-9);
-  EXPECT_EQ(Parse("FREQUENCY\t300\n" + names + "4\t1\t2\t3\n5\t1\t2\t3\n").rate_hz, 300.0);
+  EXPECT_NEAR(ParseTsv(names + "0.00\t1\t2\t3\n0.01\t1\t2\t3\n0.02\t1\t2\t3\n").rate_hz, 100.0,
+              1e-9);
+  EXPECT_EQ(ParseTsv("FREQUENCY\t300\n" + names + "4\t1\t2\t3\n5\t1\t2\t3\n").rate_hz, 300.0);
   const std::string advice = "FREQUENCY<tab>100";
-  ExpectError(names + "1\t2\t3\n1\t2\t3\n", {"t.tsv", "rate is not known", advice});
-  ExpectError(names + "4\t1\t2\t3\n5\t1\t2\t3\n", {"rate is not known", advice});
-  ExpectError(names + "4\t0.1\t1\t2\t3\n", {"rate is not known", advice});
-  ExpectError("FREQUENCY\t0\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'0'"});
-  ExpectError("FREQUENCY\t100,5\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'100,5'"});
+  ExpectTsvError(names + "1\t2\t3\n1\t2\t3\n", {"t.tsv", "rate is not known", advice});
+  ExpectTsvError(names + "4\t1\t2\t3\n5\t1\t2\t3\n", {"rate is not known", advice});
+  ExpectTsvError(names + "4\t0.1\t1\t2\t3\n", {"rate is not known", advice});
+  ExpectTsvError("FREQUENCY\t0\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'0'"});
+  ExpectTsvError("FREQUENCY\t100,5\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'100,5'"});
 }
 
 TEST(QtmTsv, FramesFollowEachOther) {
   const std::string head = "FREQUENCY\t100\nMARKER_NAMES\tA\nFrame\tTime\tA X\tA Y\tA Z\n";
   const std::string cells = "\t1\t2\t3\n";
-  ExpectError(head + "7\t0.00" + cells + "8\t0.01" + cells + "10\t0.03" + cells,
-              {"t.tsv:6: ", "Frame", "10 after 8"});
-  ExpectError(head + "7\t0.00" + cells + "8\t0.02" + cells, {"t.tsv:5: ", "Time", "0.02 after 0"});
-  ExpectError(head + "7\t0.00" + cells + "8\t0.00" + cells, {"t.tsv:5: ", "Time", "not later"});
+  ExpectTsvError(head + "7\t0.00" + cells + "8\t0.01" + cells + "10\t0.03" + cells,
+                 {"t.tsv:6: ", "Frame", "10 after 8"});
+  ExpectTsvError(head + "7\t0.00" + cells + "8\t0.02" + cells,
+                 {"t.tsv:5: ", "Time", "0.02 after 0"});
+  ExpectTsvError(head + "7\t0.00" + cells + "8\t0.00" + cells, {"t.tsv:5: ", "Time", "not later"});
   // Steps of 0.012 s are within half a frame of 0.01 s each, but not all together.
-  ExpectError(head + "7\t0" + cells + "8\t.012" + cells + "9\t.024" + cells + "10\t.036" + cells,
-              {"t.tsv:7: ", "Time", "0.036 s", "FREQUENCY, 100", "0.03 s"});
-  EXPECT_EQ(Parse(head + "7\t5.00" + cells + "8\t5.01" + cells).rate_hz, 100.0);
+  ExpectTsvError(head + "7\t0" + cells + "8\t.012" + cells + "9\t.024" + cells + "10\t.036" + cells,
+                 {"t.tsv:7: ", "Time", "0.036 s", "FREQUENCY, 100", "0.03 s"});
+  EXPECT_EQ(ParseTsv(head + "7\t5.00" + cells + "8\t5.01" + cells).rate_hz, 100.0);
 }
 
 TEST(QtmTsv, GapsHaveManyShapes) {
   for (const char* gap : {"\t\t", "0\t0\t0", "0.000\t-0.000\t0", "NaN\tNaN\tnan",
                           "NULL\tNULL\tnull", " \tNaN\tNULL"}) {
-    const MarkerTrajectories t = Parse(kShort + gap + "\t4\t5\t6\n1\t2\t3\t" + gap);
+    const MarkerTrajectories t = ParseTsv(kShortTsv + gap + "\t4\t5\t6\n1\t2\t3\t" + gap);
     ASSERT_EQ(t.frame_count(), 2) << gap;
     EXPECT_TRUE(t.positions.block(0, 0, 1, 3).array().isNaN().all()) << gap;
     EXPECT_TRUE(t.positions.block(1, 3, 1, 3).array().isNaN().all()) << gap;
-    EXPECT_NEAR(t.positions(0, 5), 0.006, kRounding) << gap;
+    EXPECT_NEAR(t.positions(0, 5), 0.006, kTsvRounding) << gap;
   }
-  ExpectError(kShort + "1\t2\t3\t4\t5\t6\n1\t2\t3\t4\t\t6\n",
-              {"t.tsv:4: column 4 (B X)", "X, Y and Z, or none"});
+  ExpectTsvError(kShortTsv + "1\t2\t3\t4\t5\t6\n1\t2\t3\t4\t\t6\n",
+                 {"t.tsv:4: column 4 (B X)", "X, Y and Z, or none"});
 }
 
 TEST(QtmTsv, NamesWrongCells) {
   const std::string good = "1\t2\t3\t4\t5\t6\n";
   for (const char* wrong : {"1,5", "abc", "inf", "-inf", "1e999", "2 3", "0x10", "--1"}) {
-    ExpectError(kShort + good + "1\t2\t3\t4\t" + wrong + "\t6\n",
-                {"t.tsv:4: column 5 (B Y)", "'" + std::string(wrong) + "'", "decimal point"});
+    ExpectTsvError(kShortTsv + good + "1\t2\t3\t4\t" + wrong + "\t6\n",
+                   {"t.tsv:4: column 5 (B Y)", "'" + std::string(wrong) + "'", "decimal point"});
   }
-  EXPECT_NEAR(Parse(kShort + "1\t2\t3\t4\t5\t +6 \n").positions(0, 5), 0.006, kRounding);
-  ExpectError(kShort + good + "1\t2\t3\t4\t5\n", {"t.tsv:4: ", "5 cells", "6"});
-  ExpectError(kShort + good + good.substr(0, 11) + "\t7\n", {"t.tsv:4: ", "7 cells"});
-  ExpectError(kShort + "1\t2\t3\n", {"t.tsv:3: ", "3 cells", "6"});
-  ExpectError(kShort + "1\t2\t3\t4\t5\t6\t\t\t\t\n", {"t.tsv:3: ", "10 cells", "8"});
-  ExpectError(kShort + "1\t2\t3\t4\t5\t6\t\n1\t2\t3\t4\t5\t6\t7\n", {"t.tsv:4: column 7"});
-  ExpectError(kShort + good + "\n" + good, {"t.tsv:4: ", "1 cells"});
-  ExpectError(kHeader + kColumns + "1\tNULL\t1\t2\t3\t4\t5\t6\n",
-              {":15: column 2 (Time)", "'NULL'"});
-  ExpectError(kShort + std::string("1\t2\t3\t4\t5\t6\0", 12), {"t.tsv:3: ", "NUL"});
+  EXPECT_NEAR(ParseTsv(kShortTsv + "1\t2\t3\t4\t5\t +6 \n").positions(0, 5), 0.006, kTsvRounding);
+  ExpectTsvError(kShortTsv + good + "1\t2\t3\t4\t5\n", {"t.tsv:4: ", "5 cells", "6"});
+  ExpectTsvError(kShortTsv + good + good.substr(0, 11) + "\t7\n", {"t.tsv:4: ", "7 cells"});
+  ExpectTsvError(kShortTsv + "1\t2\t3\n", {"t.tsv:3: ", "3 cells", "6"});
+  ExpectTsvError(kShortTsv + "1\t2\t3\t4\t5\t6\t\t\t\t\n", {"t.tsv:3: ", "10 cells", "8"});
+  ExpectTsvError(kShortTsv + "1\t2\t3\t4\t5\t6\t\n1\t2\t3\t4\t5\t6\t7\n", {"t.tsv:4: column 7"});
+  ExpectTsvError(kShortTsv + good + "\n" + good, {"t.tsv:5: ", "below an empty line"});
+  ExpectTsvError(kTsvHeader + kTsvColumns + "1\tNULL\t1\t2\t3\t4\t5\t6\n",
+                 {":15: column 2 (Time)", "'NULL'"});
+  ExpectTsvError(kShortTsv + std::string("1\t2\t3\t4\t5\t6\0", 12), {"t.tsv:3: ", "NUL"});
 }
 
 TEST(QtmTsv, NamesWrongHeaders) {
-  ExpectError("", {"t.tsv:1: ", "MARKER_NAMES"});
-  ExpectError("1\t2\t3\n", {"t.tsv:1: ", "MARKER_NAMES"});
-  ExpectError(kShort, {"t.tsv", "no frame"});
-  ExpectError(kShort + "\r\n\r\n", {"t.tsv", "no frame"});
-  ExpectError("MARKER_NAMES\tA\tA\n", {"t.tsv:1: ", "two markers", "'A'"});
-  ExpectError("MARKER_NAMES\tA\t\tB\n", {"t.tsv:1: ", "without a name"});
-  ExpectError("MARKER_NAMES\tA\nMARKER_NAMES\tA\n", {"t.tsv:2: ", "second line MARKER_NAMES"});
-  ExpectError("NO_OF_MARKERS\t3\n" + kShort + "1\n", {"t.tsv:4: ", "2 markers", "is 3"});
-  ExpectError("NO_OF_MARKERS\tmany\n", {"t.tsv:1: NO_OF_MARKERS", "'many'", "whole number"});
-  ExpectError("NO_OF_FRAMES\t2\n" + kShort + "1\t2\t3\t4\t5\t6\n", {"t.tsv", "1 frames", "is 2"});
-  ExpectError("DATA_INCLUDED\t6D\n", {"t.tsv:1: ", "'6D'", "3D"});
-  ExpectError("marker,x,y\n", {"t.tsv:1: column 1", "'marker,x,y'", "header line"});
-  ExpectError("Frame\tFrame\tA X\tA Y\tA Z\n", {"t.tsv:1: column 2", "second column Frame"});
-  ExpectError("Frame\tA X\tA Y\tB Z\n", {"t.tsv:1: column 4", "'B Z'", "'A Z'"});
-  ExpectError("Frame\tA X\tA Y\n", {"t.tsv:1: ", "'A'", "not complete"});
-  ExpectError(kShort + "B X\tB Y\tB Z\tA X\tA Y\tA Z\n", {"t.tsv:3: ", "other markers"});
-  ExpectError("DESCRIPTION\t" + std::string(1 << 20, 'x') + "\n", {"t.tsv:1: ", "1 MiB"});
+  ExpectTsvError("", {"t.tsv:1: ", "MARKER_NAMES"});
+  ExpectTsvError("1\t2\t3\n", {"t.tsv:1: ", "MARKER_NAMES"});
+  ExpectTsvError(kShortTsv, {"t.tsv", "no frame"});
+  ExpectTsvError(kShortTsv + "\r\n\r\n", {"t.tsv", "no frame"});
+  ExpectTsvError("MARKER_NAMES\tA\tA\n", {"t.tsv:1: ", "two markers", "'A'"});
+  ExpectTsvError("MARKER_NAMES\tA\t\tB\n", {"t.tsv:1: ", "without a name"});
+  ExpectTsvError("MARKER_NAMES\tA\nMARKER_NAMES\tA\n", {"t.tsv:2: ", "second line MARKER_NAMES"});
+  ExpectTsvError("NO_OF_MARKERS\t3\n" + kShortTsv + "1\n", {"t.tsv:4: ", "2 markers", "is 3"});
+  ExpectTsvError("NO_OF_MARKERS\tmany\n", {"t.tsv:1: NO_OF_MARKERS", "'many'", "whole number"});
+  ExpectTsvError("NO_OF_FRAMES\t2\n" + kShortTsv + "1\t2\t3\t4\t5\t6\n",
+                 {"t.tsv", "1 frames", "is 2"});
+  ExpectTsvError("DATA_INCLUDED\t6D\n", {"t.tsv:1: ", "'6D'", "3D"});
+  ExpectTsvError("marker,x,y\n", {"t.tsv:1: column 1", "'marker,x,y'", "header line"});
+  ExpectTsvError("Frame\tFrame\tA X\tA Y\tA Z\n", {"t.tsv:1: column 2", "second column Frame"});
+  ExpectTsvError("Frame\tA X\tA Y\tB Z\n", {"t.tsv:1: column 4", "'B Z'", "'A Z'"});
+  ExpectTsvError("Frame\tA X\tA Y\n", {"t.tsv:1: ", "'A'", "not complete"});
+  ExpectTsvError(kShortTsv + "B X\tB Y\tB Z\tA X\tA Y\tA Z\n", {"t.tsv:3: ", "other markers"});
+  ExpectTsvError("DESCRIPTION\t" + std::string(1 << 20, 'x') + "\n", {"t.tsv:1: ", "1 MiB"});
   std::string endless;
   for (int i = 0; i < 10001; ++i) endless += "A\n";
-  ExpectError(endless, {"t.tsv:10001: ", "more than 10000 lines"});
+  ExpectTsvError(endless, {"t.tsv:10001: ", "more than 10000 lines"});
 }
 
 TEST(QtmTsv, WritesWhatItReads) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "written.tsv";
-  MarkerTrajectories written = Parse(
+  MarkerTrajectories written = ParseTsv(
       "FREQUENCY\t120.5\nMARKER_NAMES\tA\tB "
       "2\n1.0004\t-2.5\t1234.567\t4\t5\t6\n\t\t\t0\t0\t0.001\n");
   WriteQtmTsv(file, written);
@@ -179,7 +182,10 @@ TEST(QtmTsv, WritesWhatItReads) {
   EXPECT_LT((read.positions.row(0) - written.positions.row(0)).cwiseAbs().maxCoeff(), 0.5e-6);
   WriteQtmTsv(file, written, 12);
   read = ReadQtmTsv(file);
-  EXPECT_TRUE(read.positions.row(0).isApprox(written.positions.row(0), kRounding));
+  EXPECT_TRUE(read.positions.row(0).isApprox(written.positions.row(0), kTsvRounding));
+  written.names = {"A, \"left\"", "\"B\""};
+  WriteQtmTsv(file, written);
+  EXPECT_EQ(ReadQtmTsv(file).names, written.names);
   std::filesystem::remove(file);
   written.names[1] = "B\t2";
   ExpectInputError([&] { WriteQtmTsv(file, written); }, {"cannot hold", "'B?2'"});

@@ -7,9 +7,9 @@
 
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
-#include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

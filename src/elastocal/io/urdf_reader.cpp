@@ -6,9 +6,9 @@
 #include <set>
 
 #include "elastocal/io/output_files.hpp"
-#include "elastocal/io/text.hpp"
 #include "elastocal/io/urdf_outline.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "elastocal/io/text.hpp"
 #include "elastocal/io/urdf_outline.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

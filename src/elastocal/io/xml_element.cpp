@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/utf8.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 

@@ -10,9 +10,9 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
-#include "elastocal/io/text.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/utf8.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 

@@ -10,14 +10,14 @@
 namespace elastocal {
 namespace {
 
-YamlValue Parse(const std::string& text) { return YamlValue::Parse(text, "p.yaml"); }
+YamlValue ParseYaml(const std::string& text) { return YamlValue::Parse(text, "p.yaml"); }
 
 void ExpectParseError(const std::string& text, std::initializer_list<std::string> parts) {
-  ExpectInputError([&] { Parse(text); }, parts);
+  ExpectInputError([&] { ParseYaml(text); }, parts);
 }
 
 TEST(YamlValue, ReadsEveryKind) {
-  const YamlValue root = Parse(
+  const YamlValue root = ParseYaml(
       "number: -1.5e3\nlist: [a, 2]\nmapping: {x: 1}\nnothing:\ntext: 'a b'\nwhole: 7\nyes: "
       "true\n");
   EXPECT_EQ(root.Get("number").Number(), -1500.0);
@@ -29,10 +29,10 @@ TEST(YamlValue, ReadsEveryKind) {
   EXPECT_EQ(root.Get("text").Text(), "a b");
   EXPECT_EQ(root.Get("whole").Number(kPositiveOrInfinity), 7.0);
   EXPECT_TRUE(root.Get("yes").Boolean());
-  EXPECT_EQ(Parse("sd: .inf").Get("sd").Number(kPositiveOrInfinity),
+  EXPECT_EQ(ParseYaml("sd: .inf").Get("sd").Number(kPositiveOrInfinity),
             std::numeric_limits<double>::infinity());
   EXPECT_FALSE(root.Find("absent"));
-  EXPECT_TRUE(Parse("").Entries().empty());
+  EXPECT_TRUE(ParseYaml("").Entries().empty());
 }
 
 TEST(YamlValue, RefusesWhatIsNotUtf8) {
@@ -40,7 +40,7 @@ TEST(YamlValue, RefusesWhatIsNotUtf8) {
 }
 
 TEST(YamlValue, NamesFileLineAndPath) {
-  const YamlValue root = Parse("outer:\n  inner:\n    - 1\n    - two\n");
+  const YamlValue root = ParseYaml("outer:\n  inner:\n    - 1\n    - two\n");
   ExpectInputError([&] { root.Get("outer").Get("inner").Items()[1].Number(); },
                    {"p.yaml:4: outer.inner[1]: found 'two'; expected a number"});
   ExpectInputError([&] { root.Get("outer").Get("x"); }, {"p.yaml:2: outer: ", "'x' is missing"});
@@ -49,7 +49,7 @@ TEST(YamlValue, NamesFileLineAndPath) {
 }
 
 TEST(YamlValue, NamesUnknownKeysWithTheNearestKnownOne) {
-  const YamlValue root = Parse("a: {marker: 1,\n  jont: 2}");
+  const YamlValue root = ParseYaml("a: {marker: 1,\n  jont: 2}");
   ExpectInputError(
       [&] {
         root.Get("a").ExpectKeys({"marker", "joint"});
@@ -63,7 +63,7 @@ TEST(YamlValue, NamesUnknownKeysWithTheNearestKnownOne) {
 }
 
 TEST(YamlValue, ChecksNumbers) {
-  const auto value = [](const std::string& text) { return Parse("x: " + text).Get("x"); };
+  const auto value = [](const std::string& text) { return ParseYaml("x: " + text).Get("x"); };
   for (const char* text : {".nan", ".inf", "1e999", "1 mm", "[1]", "''", ""}) {
     EXPECT_THROW(value(text).Number(), InputError) << text;
   }
@@ -105,7 +105,7 @@ TEST(YamlValue, RefusesHostileText) {
   for (int i = 0; i < 1000; ++i) indented += std::string(i, ' ') + "a:\n";
   ExpectParseError(indented, {"p.yaml:21: ", "20 levels"});
   ExpectParseError(std::string((1u << 20) + 1, ' '), {"p.yaml", "1 MiB"});
-  EXPECT_THROW(Parse(std::string("a: \0", 4)).Get("a").Number(), InputError);
+  EXPECT_THROW(ParseYaml(std::string("a: \0", 4)).Get("a").Number(), InputError);
 }
 
 TEST(YamlValue, ReadsKeysIntoOptions) {

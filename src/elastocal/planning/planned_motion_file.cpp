@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/tables/table_writer.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -24,7 +26,7 @@ std::string SupportCell(const RobotTree& tree, const std::vector<int>& links) {
   for (const int link : links) {
     cell += (cell.empty() ? "" : "+") + tree.links[static_cast<std::size_t>(link)].name;
   }
-  return cell.empty() ? "none" : cell;
+  return cell.empty() ? "none" : MakeCell(cell);
 }
 
 template <typename Row>
@@ -43,8 +45,10 @@ std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planne
   const std::vector<std::string> joints = JointNames(tree);
   Buffer out;
   const auto put = std::back_inserter(out);
-  fmt::format_to(put, "time,{},support,zmp_x,zmp_y", fmt::join(joints, ","));
-  for (const std::string& joint : joints) fmt::format_to(put, ",torque_{}", joint);
+  fmt::format_to(put, "time");
+  for (const std::string& joint : joints) fmt::format_to(put, ",{}", MakeCell(joint));
+  fmt::format_to(put, ",support,zmp_x,zmp_y");
+  for (const std::string& joint : joints) fmt::format_to(put, ",{}", MakeCell("torque_" + joint));
   fmt::format_to(put, "\n");
   const JointMotion& motion = planned.motion;
   for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {

@@ -6,14 +6,14 @@
 #include <sstream>
 
 #include "elastocal/io/output_files.hpp"
-#include "elastocal/io/text.hpp"
 #include "elastocal/io/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kMillimetre = 1e-3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -21,20 +21,20 @@ using Settings = std::vector<SimulationSetting>;
 
 void AddTruth(TruthOptions& truth, Settings& list) {
   const std::string g = "True geometry (standard deviations)";
-  list.insert(
-      list.end(),
-      {{g, "upper_offset_deg", &truth.upper_offset_sd, kDegree, 0, 45,
-        "Joint zeros of head, arms and trunk"},
-       {g, "leg_offset_deg", &truth.leg_offset_sd, kDegree, 0, 45, "Joint zeros of the legs"},
-       {g, "length_mm", &truth.length_sd, kMillimetre, 0, 100,
-        "Placement of every joint, along each direction"},
-       {g, "angle_deg", &truth.angle_sd, kDegree, 0, 45,
-        "Placement of every joint, about each axis"},
-       {g, "upper_geometry_scale", &truth.upper_geometry_scale, 1, 0, 100,
-        "Factor on all of these, of head, arms and trunk"},
-       {g, "leg_geometry_scale", &truth.leg_geometry_scale, 1, 0, 100, "The same, of the legs"},
-       {g, "marker_mm", &truth.marker_sd, kMillimetre, 0, 100,
-        "Markers on their links, each coordinate"}});
+  list.insert(list.end(), {{g, "upper_offset_deg", &truth.upper_offset_sd, kRadiansPerDegree, 0, 45,
+                            "Joint zeros of head, arms and trunk"},
+                           {g, "leg_offset_deg", &truth.leg_offset_sd, kRadiansPerDegree, 0, 45,
+                            "Joint zeros of the legs"},
+                           {g, "length_mm", &truth.length_sd, kMillimetre, 0, 100,
+                            "Placement of every joint, along each direction"},
+                           {g, "angle_deg", &truth.angle_sd, kRadiansPerDegree, 0, 45,
+                            "Placement of every joint, about each axis"},
+                           {g, "upper_geometry_scale", &truth.upper_geometry_scale, 1, 0, 100,
+                            "Factor on all of these, of head, arms and trunk"},
+                           {g, "leg_geometry_scale", &truth.leg_geometry_scale, 1, 0, 100,
+                            "The same, of the legs"},
+                           {g, "marker_mm", &truth.marker_sd, kMillimetre, 0, 100,
+                            "Markers on their links, each coordinate"}});
   const std::string e = "True elasticity";
   list.insert(
       list.end(),

@@ -5,7 +5,7 @@
 #include <yaml-cpp/emitter.h>
 
 #include "elastocal/io/posture_checks.hpp"
-#include "elastocal/io/text.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

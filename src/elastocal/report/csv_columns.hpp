@@ -6,10 +6,9 @@
 
 namespace elastocal {
 
-/// Columns of a CSV by name: arrays of numbers (null for empty cells), or of texts where a cell is
-/// none. `text` as this program writes tables: commas, a row of names, cells that may be quoted.
-/// Of more than `most_rows` rows that many are taken, evenly, the last one always; `rows` tells how
-/// many there were. Throws InputError, naming `file` and the line, for rows of another length.
+/// Columns of a table by name: arrays of numbers (null for empty cells), or of texts where a cell
+/// is none. Of more than `most_rows` rows that many are taken, evenly, the last one always; `rows`
+/// tells how many there were. Throws InputError naming `file` and the line: what Table refuses.
 nlohmann::ordered_json ReadCsvColumns(const std::string& file, const std::string& text,
                                       std::size_t most_rows, std::size_t& rows);
 

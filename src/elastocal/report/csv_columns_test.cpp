@@ -10,12 +10,12 @@ namespace {
 
 TEST(CsvColumns, ReadsNumbersTextsAndGaps) {
   std::size_t rows = 0;
-  const auto columns =
-      ReadCsvColumns("a.csv", "t,\"a,\"\"b\",name\r\n0.5,1e3,x\r\n1.5,,y\r\n", 10, rows);
-  EXPECT_EQ(rows, 2u);
-  EXPECT_EQ(columns["t"].dump(), "[0.5,1.5]");
-  EXPECT_EQ(columns["a,\"b"].dump(), "[1000.0,null]");
-  EXPECT_EQ(columns["name"].dump(), "[\"x\",\"y\"]");
+  const auto columns = ReadCsvColumns(
+      "a.csv", "t,\"a,\"\"b\",name\r\n0.5,1e3,x\r\n1.5,,y\r\n2.5,nan,z\r\n3.5,inf,\r\n", 10, rows);
+  EXPECT_EQ(rows, 4u);
+  EXPECT_EQ(columns["t"].dump(), "[0.5,1.5,2.5,3.5]");
+  EXPECT_EQ(columns["a,\"b"].dump(), "[1000.0,null,null,null]");
+  EXPECT_EQ(columns["name"].dump(), "[\"x\",\"y\",\"z\",\"\"]");
 }
 
 TEST(CsvColumns, ThinsEvenlyAndKeepsBothEnds) {

@@ -7,7 +7,7 @@
 
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/inverse_dynamics.hpp"
-#include "elastocal/simulation/legs.hpp"
+#include "elastocal/robot/legs.hpp"
 
 namespace elastocal {
 

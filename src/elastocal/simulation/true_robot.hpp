@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "elastocal/robot/error_model.hpp"
-#include "elastocal/simulation/legs.hpp"
+#include "elastocal/robot/legs.hpp"
 
 namespace elastocal {
 

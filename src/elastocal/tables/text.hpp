@@ -19,7 +19,15 @@ std::string_view Trim(std::string_view text);
 /// locale; nothing where it is anything else ("1,5", "nan", "1e999", "2 3").
 std::optional<double> ParseNumber(std::string_view text);
 
+/// Whether a cell of a table stands for a number that was not measured: it is empty, NaN or NULL,
+/// in small or capital letters.
+bool IsGap(std::string_view cell);
+
 /// The shortest decimal text that reads back as the same double.
 std::string FormatNumber(double value);
+
+/// Adds such a text, or one with so many digits behind the point, to the end of another.
+void AppendNumber(double value, std::string& text);
+void AppendFixed(double value, int decimals, std::string& text);
 
 }  // namespace elastocal

@@ -1,4 +1,4 @@
-#include "elastocal/io/text.hpp"
+#include "elastocal/tables/text.hpp"
 
 #include <limits>
 
@@ -22,12 +22,21 @@ TEST(Text, WrittenNumbersReadBackExactly) {
     EXPECT_EQ(ParseNumber(FormatNumber(value)), value);
   }
   EXPECT_EQ(FormatNumber(0.1), "0.1");
+  std::string text = "x ";
+  AppendFixed(-1.0 / 3.0, 2, text);
+  EXPECT_EQ(text, "x -0.33");
 }
 
 TEST(Text, QuotesShowWhatIsThereInOneShortLine) {
   EXPECT_EQ(Quote("a b"), "'a b'");
   EXPECT_EQ(Quote("a\n\x01z"), "'a??z'");
   EXPECT_EQ(Quote(std::string(1000, 'x')), "'" + std::string(60, 'x') + "...'");
+}
+
+TEST(Text, GapsHaveManyShapes) {
+  for (const char* text : {"", "  ", "nan", "NaN", "NULL", " null"})
+    EXPECT_TRUE(IsGap(text)) << text;
+  for (const char* text : {"0", "n", "nano", "nulls", "inf"}) EXPECT_FALSE(IsGap(text)) << text;
 }
 
 TEST(Text, TrimTakesSpacesOfBothEnds) {

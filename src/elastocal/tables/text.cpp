@@ -1,4 +1,4 @@
-#include "elastocal/io/text.hpp"
+#include "elastocal/tables/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,6 +6,11 @@
 #include <cmath>
 
 namespace elastocal {
+namespace {
+
+bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+}  // namespace
 
 std::string Quote(std::string_view text) {
   constexpr std::size_t kLongest = 60;
@@ -21,10 +26,9 @@ std::string Place(const std::string& source, int line) {
 }
 
 std::string_view Trim(std::string_view text) {
-  constexpr std::string_view kSpaces = " \t\r\n";
-  const std::size_t begin = text.find_first_not_of(kSpaces);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kSpaces) - begin + 1);
+  while (!text.empty() && IsSpace(text.front())) text.remove_prefix(1);
+  while (!text.empty() && IsSpace(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 std::optional<double> ParseNumber(std::string_view text) {
@@ -39,10 +43,30 @@ std::optional<double> ParseNumber(std::string_view text) {
   return value;
 }
 
+bool IsGap(std::string_view cell) {
+  std::string lower(Trim(cell).substr(0, 5));
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower.empty() || lower == "nan" || lower == "null";
+}
+
 std::string FormatNumber(double value) {
+  std::string text;
+  AppendNumber(value, text);
+  return text;
+}
+
+void AppendNumber(double value, std::string& text) {
   std::array<char, 32> buffer;
   const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return std::string(buffer.data(), end);
+  text.append(buffer.data(), end);
+}
+
+void AppendFixed(double value, int decimals, std::string& text) {
+  // The largest double has 309 digits before the point.
+  std::array<char, 340> buffer;
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                          std::chars_format::fixed, decimals);
+  text.append(buffer.data(), end);
 }
 
 }  // namespace elastocal

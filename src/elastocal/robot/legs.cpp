@@ -1,4 +1,4 @@
-#include "elastocal/simulation/legs.hpp"
+#include "elastocal/robot/legs.hpp"
 
 #include <algorithm>
 #include <limits>
