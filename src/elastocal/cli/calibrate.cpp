@@ -42,8 +42,8 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   outputs.Set(options.common.json_file, files.at("summary.json"));
   outputs.Publish();
 
-  Print(quiet, DescribeRun(run));
-  PrintWarnings(run.warnings);
+  Print(quiet, DescribeRun(run, options.common.verbose));
+  PrintWarnings(run.warnings, options.common.verbose);
   for (const std::string& objection : run.verdict.objections) spdlog::error("{}", objection);
   if (!run.deployable()) spdlog::error("no calibrated URDF is written");
   Print(quiet, fmt::format("\nWritten to {}\n", options.output));
