@@ -24,8 +24,7 @@ std::string TruthTable(const std::vector<FoundParameter>& found) {
     const double user_sd = InUserUnits(parameter, sd);
     table.Add({parameter.name, UserUnit(parameter),
                RoundedTo(InUserUnits(parameter, truth), user_sd),
-               RoundedTo(InUserUnits(parameter, estimate), user_sd),
-               RoundedSd(user_sd),
+               RoundedTo(InUserUnits(parameter, estimate), user_sd), RoundedSd(user_sd),
                fmt::format("{:+.2f}", (estimate - truth) / sd)});
   }
   return "\nTruth against estimate\n" + table.Render() +
