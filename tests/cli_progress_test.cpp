@@ -70,7 +70,7 @@ TEST(ProgressLine, IsErasedBeforeAnythingElseIsPrinted) {
 TEST(ProgressLine, IsErasedWhereTheWorkEndsEarly) {
   Terminal terminal;
   {
-    const auto progress = TerminalSteps(false);
+    const auto progress = TerminalSteps("reading", false);
     progress("fit", 0, 0);
     EXPECT_EQ(terminal.Read(), kErase + "fit");
     progress("a step with a name that is longer than the line", 1, 2);
@@ -99,7 +99,7 @@ TEST(ProgressLine, IsNotDrawnWhereNobodyLooks) {
   }
   Terminal terminal;
   EXPECT_FALSE(TerminalProgress("trial", true));
-  EXPECT_FALSE(TerminalSteps(true));
+  EXPECT_FALSE(TerminalSteps("reading", true));
 }
 
 }  // namespace

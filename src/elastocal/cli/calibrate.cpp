@@ -35,7 +35,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
                            .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
                                                                              : ZeroOffsets::kOrigin,
                            .seed = options.common.seed,
-                           .progress = TerminalSteps(options.common.quiet)});
+                           .progress = TerminalSteps("reading and fitting", options.common.quiet)});
   const auto files = MakeCalibrationFiles(project, run);
   const std::string no_report = SetResults(
       folder, files, MakeRunRecord("calibrate", options.common, inputs_read.get()), outputs);

@@ -60,7 +60,7 @@ std::string FooterParagraphs(const std::string& footer) {
       text += (text.empty() ? ".PP\n" : "") + Escaped(line) + "\n";
       continue;
     }
-    text += ".PP\nExample:\n.PP\n.RS 4\n" + Bold(line.substr(mark.size())) + "\n.RE\n";
+    text += ".PP\nExample:\n.RS 4\n" + Bold(line.substr(mark.size())) + "\n.RE\n";
   }
   return text;
 }

@@ -107,9 +107,10 @@ Progress TerminalProgress(const std::string& what, bool quiet) {
   return [line](int done, int total) { line->Set(done, total); };
 }
 
-std::function<void(const std::string&, int, int)> TerminalSteps(bool quiet) {
+std::function<void(const std::string&, int, int)> TerminalSteps(const std::string& first,
+                                                                bool quiet) {
   if (!IsShown(quiet)) return {};
-  const auto line = std::make_shared<ProgressLine>("", quiet);
+  const auto line = std::make_shared<ProgressLine>(first, quiet);
   return [line](const std::string& what, int done, int total) { line->Set(what, done, total); };
 }
 

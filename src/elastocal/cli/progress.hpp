@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "elastocal/validation/model_comparison.hpp"
+#include "elastocal/math/progress.hpp"
 
 namespace elastocal::cli {
 
@@ -42,8 +42,9 @@ class ProgressLine {
 /// A progress line for a function that counts its steps; it lives as long as the result does. Empty
 /// where nothing would be drawn.
 Progress TerminalProgress(const std::string& what, bool quiet);
-/// The same for a function that also names what it is at.
-std::function<void(const std::string& what, int done, int total)> TerminalSteps(bool quiet);
+/// The same for a function that also names what it is at; `first` until it does.
+std::function<void(const std::string& what, int done, int total)> TerminalSteps(
+    const std::string& first, bool quiet);
 
 /// Empties the terminal's line if a progress line stands there.
 void EraseProgressLine();
