@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/io/experiment.hpp"
 #include "elastocal/io/output_set.hpp"
@@ -69,10 +70,11 @@ std::string AssessedText(const ChainAssessment& chain, const RobotTree& tree, in
   text += "  weakest parameters (standard deviation from these postures alone):\n";
   for (int i : chain.WeakestParameters(weakest)) {
     const Parameter& parameter = chain.parameters[i];
-    text += std::isfinite(a.parameter_sd[i])
-                ? fmt::format("    {} {:.4g} {}\n", parameter.name,
-                              InUserUnits(parameter, a.parameter_sd[i]), UserUnit(parameter))
-                : fmt::format("    {} not determined\n", parameter.name);
+    text +=
+        std::isfinite(a.parameter_sd[i])
+            ? fmt::format("    {} {} {}\n", parameter.name,
+                          RoundedSd(InUserUnits(parameter, a.parameter_sd[i])), UserUnit(parameter))
+            : fmt::format("    {} not determined\n", parameter.name);
   }
   return text;
 }

@@ -35,15 +35,15 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
                            .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
                                                                              : ZeroOffsets::kOrigin,
                            .seed = options.common.seed,
-                           .progress = TerminalSteps(options.common.quiet)});
+                           .progress = TerminalSteps("reading and fitting", options.common.quiet)});
   const auto files = MakeCalibrationFiles(project, run);
   const std::string no_report = SetResults(
       folder, files, MakeRunRecord("calibrate", options.common, inputs_read.get()), outputs);
   outputs.Set(options.common.json_file, files.at("summary.json"));
   outputs.Publish();
 
-  Print(quiet, DescribeRun(run));
-  PrintWarnings(run.warnings);
+  Print(quiet, DescribeRun(run, options.common.verbose));
+  PrintWarnings(run.warnings, options.common.verbose);
   for (const std::string& objection : run.verdict.objections) spdlog::error("{}", objection);
   if (!run.deployable()) spdlog::error("no calibrated URDF is written");
   Print(quiet, fmt::format("\nWritten to {}\n", options.output));

@@ -2,189 +2,197 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
+#include "elastocal/cli/calibration_details.hpp"
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
-#include "elastocal/cli/trial_report.hpp"
-#include "elastocal/measurement/describe_posture.hpp"
-#include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
 namespace {
 
-std::string Millimetres(double metres) {
-  return std::isfinite(metres) ? fmt::format("{:.3f}", 1e3 * metres) : "-";
-}
+constexpr std::size_t kMostParameters = 10;
+constexpr std::size_t kMostNamed = 5;
 
-std::string Names(const CalibrationResult& result, const std::vector<int>& which) {
-  return which.empty() ? "none" : JoinNames(result.model.parameters, which);
-}
-
-std::vector<int> WithStatus(const CalibrationResult& result, ParameterStatus status) {
-  std::vector<int> which;
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    if (result.status[i] == status) which.push_back(i);
+/// One sentence for whoever reads no table.
+std::string VerdictText(const CalibrationRun& run) {
+  if (!run.verdict.objections.empty()) {
+    return "Verdict: do not deploy. " + run.verdict.objections.front() + "\n";
   }
-  return which;
+  if (run.held_out) {
+    const auto& mean = run.held_out->table.mean_rmse_3d;
+    return fmt::format("Verdict: deploy. Markers of held-out motions: from {} to {} mm.\n",
+                       Millimetres(mean.at(ModelKind::kUncalibrated), 3),
+                       Millimetres(mean.at(run.comparison.largest_kind()), 3));
+  }
+  const bool folded = run.cross_validation.folds > 0;
+  const auto& metrics = folded ? run.cross_validation.metrics : run.comparison.metrics;
+  return fmt::format(
+      "Verdict: from {} to {} mm {}. {}\n", Millimetres(metrics[0].rmse_3d, 3),
+      Millimetres(metrics[static_cast<int>(run.comparison.largest_kind())].rmse_3d, 3),
+      folded ? "on held-out postures" : "in the fit",
+      folded ? "Before deploying, validate on another recording."
+             : "Cross-validate (--kfold 10) and validate on another recording before deploying.");
 }
 
-std::string ParameterTable(const CalibrationRun& run) {
+std::string Overview(const CalibrationRun& run) {
   const CalibrationResult& result = run.comparison.largest();
-  const std::vector<int> weak =
-      HardlyExcited(result.model.parameters, run.base.kept, run.excitation);
-  TextTable table({"parameter", "unit", "estimate", "sd", "95 % interval", ""});
-  for (int i : WithStatus(result, ParameterStatus::kEstimated)) {
-    const Parameter& parameter = result.model.parameters[i];
-    if (parameter.joint < 0 || IsCompliance(parameter.kind)) continue;
-    const double value = InUserUnits(parameter, result.delta[i]);
-    const double sd = InUserUnits(parameter, result.sd[i]);
-    const double half = result.interval_factor * sd;
-    const bool is_weak = std::binary_search(weak.begin(), weak.end(), i);
-    table.Add({parameter.name, UserUnit(parameter), fmt::format("{:.4f}", value),
-               fmt::format("{:.4f}", sd),
-               fmt::format("[{:.4f}, {:.4f}]", value - half, value + half),
-               std::string(Significant(result, i) ? "*" : "") + (is_weak ? " weak" : "")});
-  }
-  return table.Render() +
-         "  theta: zero offset; r, d, b: lengths; alpha, beta, gamma: tilts of the axis (eq. 1)\n"
-         "  * differs from nominal at 95 %; weak: hardly excited by this recording, leans on the "
-         "prior\n";
+  const auto used = std::count_if(run.trials.begin(), run.trials.end(),
+                                  [](const TrialSummary& trial) { return trial.refused.empty(); });
+  return fmt::format(
+      "{}: {} postures{}, {} markers, {} equations\n"
+      "{} of {} parameters identifiable (theory {}); {} model {} after {} iterations\n"
+      "Noise of a marker coordinate {:.3g} mm\n",
+      result.model.tree.name, run.recording.posture_count(),
+      run.trials.empty() ? "" : fmt::format(" ({} of {} trials used)", used, run.trials.size()),
+      run.recording.marker_count(), result.equations, run.base.geometric_count,
+      result.model.parameter_count(), run.base.theoretical_count, ModelKindName(result.kind),
+      TerminationName(result.termination), result.iterations, 1e3 * result.marker_sd);
 }
 
-std::string OutlierText(const CalibrationRun& run) {
-  constexpr std::size_t kMost = 10;
-  const auto& outliers = run.comparison.largest().outliers;
-  if (outliers.empty()) return "Outliers: none\n";
-  std::string text = fmt::format("Outliers (left out of the fit): {}\n", outliers.size());
-  for (std::size_t i = 0; i < std::min(kMost, outliers.size()); ++i) {
-    text += fmt::format("  {}: off by {:.3f} mm, {:.1f} times what is likely\n",
-                        DescribeObservation(run.recording, outliers[i].posture, outliers[i].marker),
-                        1e3 * outliers[i].residual, outliers[i].normalised);
+/// RMSE and largest distance of each model, of whatever it was judged on.
+std::string ModelTable(const CalibrationRun& run) {
+  const int folds = run.cross_validation.folds;
+  const bool knows_waist =
+      std::any_of(run.waist_error.begin(), run.waist_error.end(),
+                  [](double error) { return std::isfinite(error) && error != 0.0; });
+  std::vector<std::string> header = {"model", "fit RMSE", "largest"};
+  if (folds > 0) header.insert(header.end(), {fmt::format("{}-fold RMSE", folds), "largest"});
+  if (run.held_out) header.emplace_back("held-out motions RMSE");
+  if (knows_waist) header.emplace_back("true waist RMSE");
+  TextTable table(header);
+  for (const ModelKind kind : run.comparison.kinds) {
+    const auto index = static_cast<std::size_t>(kind);
+    const ErrorMetrics& fit = run.comparison.metrics[index];
+    std::vector<std::string> row = {ModelKindName(kind), Millimetres(fit.rmse_3d, 3),
+                                    Millimetres(fit.maximum, 3)};
+    if (folds > 0) {
+      const ErrorMetrics& folded = run.cross_validation.metrics[index];
+      row.insert(row.end(), {Millimetres(folded.rmse_3d, 3), Millimetres(folded.maximum, 3)});
+    }
+    if (run.held_out) {
+      const auto& mean = run.held_out->table.mean_rmse_3d;
+      const auto value = mean.find(kind);
+      row.push_back(value == mean.end() ? "-" : Millimetres(value->second, 3));
+    }
+    if (knows_waist) row.push_back(Millimetres(run.waist_error[index], 3));
+    table.Add(row);
   }
-  if (outliers.size() > kMost) {
-    text += fmt::format("  and {} more in summary.json\n", outliers.size() - kMost);
+  return (run.trials.empty()
+              ? "\nDistance of markers from the model, waist and markers fitted, mm\n"
+              : "\nDistance of markers from where their foot (or the waist) puts them, mm\n") +
+         table.Render();
+}
+
+/// Parameters of the robot that differ from nominal at 95 %, the furthest first: in units of what
+/// is usual for their kind, so that angles, lengths and compliances can stand in one order.
+std::vector<int> Remarkable(const CalibrationResult& result) {
+  const Prior usual;
+  std::vector<int> order;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[i];
+    const bool of_robot = !IsExternal(parameter.kind) && std::isfinite(usual[parameter.kind]);
+    if (of_robot && Significant(result, i)) order.push_back(i);
+  }
+  const auto size = [&](int i) {
+    return std::abs(result.delta[i]) / usual[result.model.parameters[i].kind];
+  };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size(a) > size(b); });
+  return order;
+}
+
+std::string ParametersText(const CalibrationResult& result) {
+  std::vector<int> order = Remarkable(result);
+  if (order.empty()) return "\nNo parameter differs from nominal at 95 %\n";
+  const std::size_t all = order.size();
+  order.resize(std::min(all, kMostParameters));
+  return fmt::format("\nFurthest from nominal, of {} parameters that differ from it at 95 %\n",
+                     all) +
+         EstimateTable(result, order);
+}
+
+/// The most frequent first: "a 12, b 3 and 4 more".
+std::string Counts(const std::map<std::string, int>& counts) {
+  std::vector<std::pair<std::string, int>> order(counts.begin(), counts.end());
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<std::string> words;
+  for (const auto& [name, count] : order) words.push_back(fmt::format("{} {}", name, count));
+  return FirstOf(words, kMostNamed);
+}
+
+std::string OutlierLine(const CalibrationRun& run) {
+  const auto& outliers = run.comparison.largest().outliers;
+  if (outliers.empty()) return "";
+  std::map<std::string, int> counts;
+  for (const Outlier& outlier : outliers) ++counts[run.recording.marker_names[outlier.marker]];
+  return fmt::format("  {} of {} sightings are outliers, left out: {}\n", outliers.size(),
+                     SeenMask(run.recording).count(), Counts(counts));
+}
+
+std::string Line(const std::string& what, const std::vector<std::string>& which) {
+  return which.empty() ? "" : "  " + what + ": " + FirstOf(which, kMostNamed) + "\n";
+}
+
+std::string TrialLines(const CalibrationRun& run) {
+  std::vector<std::string> refused, knocked;
+  for (const TrialSummary& trial : run.trials) {
+    if (!trial.refused.empty()) refused.push_back(trial.trial.name);
+  }
+  for (const Knock& knock : run.knocks) {
+    knocked.push_back(fmt::format("{} by {:.1f} mm", knock.cluster, 1e3 * knock.distance));
+  }
+  return Line("trials not used", refused) + Line("clusters of markers knocked", knocked);
+}
+
+std::string FeetLine(const CalibrationResult& result) {
+  std::string text;
+  if (!result.slips.empty()) {
+    const auto furthest =
+        std::max_element(result.slips.begin(), result.slips.end(),
+                         [](const Slip& a, const Slip& b) { return a.distance < b.distance; });
+    text += fmt::format("  feet slipped {} times, by at most {:.1f} mm\n", result.slips.size(),
+                        1e3 * furthest->distance);
+  }
+  if (!result.loose_footings.empty()) {
+    text += fmt::format("  the waist is not where its leg puts it in {} postures, left out\n",
+                        result.loose_footings.size());
   }
   return text;
 }
 
-/// Markers whose estimated position is far from the project's: measured roughly, on another link,
-/// or exchanged.
-std::string MarkerText(const CalibrationResult& result) {
-  constexpr double kFar = 0.02;  // m
-  std::string text;
-  const int first = result.model.parameter_count() - 3 * result.model.marker_count();
-  for (int m = 0; m < result.model.marker_count(); ++m) {
-    const double distance = result.delta.segment<3>(first + 3 * m).norm();
-    if (distance < kFar) continue;
-    text += fmt::format("{}{} {:.0f} mm", text.empty() ? "" : ", ", result.model.markers[m].name,
-                        1e3 * distance);
-  }
-  return "Markers more than 20 mm from where the project has them: " +
-         (text.empty() ? "none" : text) + "\n";
-}
-
-/// One sentence for whoever reads no table.
-std::string Conclusion(const CalibrationRun& run) {
-  if (!run.verdict.objections.empty()) return "Verdict: do not deploy (see the errors).\n";
-  if (run.held_out) {
-    const auto& mean = run.held_out->table.mean_rmse_3d;
-    return fmt::format("Verdict: deploy. Markers of held-out motions: from {} to {} mm.\n",
-                       Millimetres(mean.at(ModelKind::kUncalibrated)),
-                       Millimetres(mean.at(run.comparison.largest_kind())));
-  }
-  const bool held_out = run.cross_validation.folds > 0;
-  const auto& metrics = held_out ? run.cross_validation.metrics : run.comparison.metrics;
+std::string UncertainLine(const CalibrationRun& run) {
+  const CalibrationResult& result = run.comparison.largest();
+  const auto count = [&](ParameterStatus status) {
+    return std::count(result.status.begin(), result.status.end(), status);
+  };
+  const std::size_t weak =
+      HardlyExcited(result.model.parameters, run.base.kept, run.excitation).size();
   return fmt::format(
-      "Verdict: from {} to {} mm {}. {}\n", Millimetres(metrics[0].rmse_3d),
-      Millimetres(metrics[static_cast<int>(run.comparison.largest_kind())].rmse_3d),
-      held_out ? "on held-out postures" : "in the fit",
-      held_out ? "Before deploying, validate on another recording."
-               : "Cross-validate (--kfold 10) and validate on another recording before deploying.");
+      "  parameters left nominal: {} not identifiable, {} unsupported by the data, {} held; {} "
+      "hardly "
+      "excited\n",
+      count(ParameterStatus::kDropped), count(ParameterStatus::kUnsupported),
+      count(ParameterStatus::kHeld), weak);
 }
 
-std::string Correlations(const CalibrationResult& result) {
-  constexpr std::size_t kMost = 10;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kMost, result.correlations.size()); ++i) {
-    const Correlation& pair = result.correlations[i];
-    text += fmt::format("  {:+.3f}  {}, {}\n", pair.coefficient,
-                        result.model.parameters[pair.first].name,
-                        result.model.parameters[pair.second].name);
-  }
-  if (result.correlations.size() > kMost) {
-    text += fmt::format("  and {} more in summary.json\n", result.correlations.size() - kMost);
-  }
-  return text.empty() ? "  none\n" : text;
+std::string LookAt(const CalibrationRun& run) {
+  const CalibrationResult& result = run.comparison.largest();
+  return "\nTo look at\n" + TrialLines(run) + OutlierLine(run) + FeetLine(result) +
+         Line("markers more than 20 mm from where the project has them", DisplacedMarkers(result)) +
+         UncertainLine(run);
 }
 
 }  // namespace
 
-std::string ModelTable(const CalibrationRun& run) {
-  const bool folded = run.cross_validation.folds > 0;
-  std::vector<std::string> header = {"model", "RMSE 3-D mm", "RMSE coordinate mm", "max mm"};
-  if (folded) {
-    header.push_back(fmt::format("{}-fold 3-D mm", run.cross_validation.folds));
-    header.push_back("max mm");
-  }
-  TextTable table(header);
-  for (ModelKind kind : run.comparison.kinds) {
-    const ErrorMetrics& fit = run.comparison.metrics[static_cast<int>(kind)];
-    std::vector<std::string> row = {ModelKindName(kind), Millimetres(fit.rmse_3d),
-                                    Millimetres(fit.rmse_coordinate), Millimetres(fit.maximum)};
-    if (folded) {
-      const ErrorMetrics& held_out = run.cross_validation.metrics[static_cast<int>(kind)];
-      row.push_back(Millimetres(held_out.rmse_3d));
-      row.push_back(Millimetres(held_out.maximum));
-    }
-    table.Add(row);
-  }
-  return table.Render();
-}
-
-std::string DescribeRun(const CalibrationRun& run) {
-  const CalibrationResult& result = run.comparison.largest();
-  const Excitation& excitation = run.excitation;
-  std::string text = fmt::format(
-      "{}: {} postures, {} markers, {} equations; {} of {} parameters identifiable (theory {})\n\n",
-      result.model.tree.name, run.recording.posture_count(), run.recording.marker_count(),
-      result.equations, run.base.geometric_count, result.model.parameter_count(),
-      run.base.theoretical_count);
-  text += DescribeTrials(run);
-  text += ModelTable(run);
-  text +=
-      run.trials.empty()
-          ? "  RMSE is what remains after fitting where the waist and the markers are\n"
-          : "  RMSE of markers predicted from the standing foot, or from the waist on two feet\n";
-  text += DescribeHeldOut(run);
-  text += fmt::format(
-      "\n{} model {} after {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms\n"
-      "  noise of a marker coordinate {:.4f} mm; prior widened by {:.2f} (angles) and {:.2f} "
-      "(lengths); {:.1f} parameters determined by the data\n\n",
-      result.kind == ModelKind::kFull ? "Full" : "Geometric", TerminationName(result.termination),
-      result.iterations, result.initial_cost, result.final_cost, 1e3 * result.solve_seconds,
-      1e3 * result.marker_sd, result.prior_scale.angles, result.prior_scale.lengths,
-      result.posterior.effective_parameters);
-  text += ParameterTable(run);
-  text += DescribeElasticity(run);
-  text += DescribeFeet(run);
-  text += "\nNot identifiable with these markers, unchanged in the URDF: " +
-          Names(result, WithStatus(result, ParameterStatus::kDropped)) +
-          "\nNot supported by the data, held at nominal, not worth deploying: " +
-          Names(result, WithStatus(result, ParameterStatus::kUnsupported)) +
-          "\nHeld by the project: " + Names(result, WithStatus(result, ParameterStatus::kHeld)) +
-          "\n\n";
-  text += MarkerText(result);
-  text += OutlierText(run);
-  text += fmt::format(
-      "\nExcitation by this recording: condition number {:.3g} (before the choice of identifiable "
-      "parameters {:.3g}); O1 {:.4g}\n"
-      "  hardly excited (sd above 1 deg or 5 mm without prior): {}\n",
-      excitation.condition_base, excitation.condition_all, excitation.indices.o1,
-      Names(result, HardlyExcited(result.model.parameters, run.base.kept, excitation)));
-  text += "\nStrong correlations\n" + Correlations(result);
-  return text + "\n" + Conclusion(run);
+std::string DescribeRun(const CalibrationRun& run, bool verbose) {
+  const std::string screen = VerdictText(run) + "\n" + Overview(run) + ModelTable(run) +
+                             ParametersText(run.comparison.largest()) + LookAt(run);
+  return screen + (verbose ? "\n" + DescribeDetails(run)
+                           : "  all parameters, elasticity and correlations: --verbose\n");
 }
 
 }  // namespace elastocal::cli

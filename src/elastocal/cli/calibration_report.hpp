@@ -6,11 +6,8 @@
 
 namespace elastocal::cli {
 
-/// The models side by side, mm: one row a model.
-std::string ModelTable(const CalibrationRun& run);
-
-/// All that a person should read of a calibration: fit, parameters with their uncertainty, what was
-/// not supported, outliers, excitation, correlations.
-std::string DescribeRun(const CalibrationRun& run);
+/// A calibration on one screen: the verdict; all models side by side; the ten parameters that are
+/// furthest from nominal; what looks wrong. `verbose` adds all that DescribeDetails says.
+std::string DescribeRun(const CalibrationRun& run, bool verbose);
 
 }  // namespace elastocal::cli

@@ -26,6 +26,7 @@ struct CommonOptions {
   std::string json_file;
   std::optional<std::uint64_t> seed;  ///< given by the user
   bool quiet = false;
+  bool verbose = false;
 
   /// Whether standard output is for people: not with --quiet, nor when the JSON goes there.
   bool Silent() const { return quiet || json_file == "-"; }

@@ -34,7 +34,7 @@ int Compare(const CompareOptions& options) {
   outputs.Publish();
   Print(options.common.Silent(),
         DescribeComparison(run.a, run.b, run.comparison, options.comparison));
-  PrintWarnings(run.comparison.warnings);
+  PrintWarnings(run.comparison.warnings, options.common.verbose);
   return kFine;
 }
 

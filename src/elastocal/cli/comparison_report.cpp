@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/robot/parameter_names.hpp"
@@ -28,10 +29,6 @@ UserScale ScaleOf(const std::string& unit) {
   return {1.0, unit};
 }
 
-std::string Shown(double value, const std::string& unit) {
-  return fmt::format("{:.4f}", value * ScaleOf(unit).factor);
-}
-
 std::string Probability(double p) {
   if (p < 1e-16) return "<1e-16";
   return p < 1e-4 ? fmt::format("{:.0e}", p) : fmt::format("{:.4f}", p);
@@ -50,14 +47,16 @@ std::string JointTable(const CalibrationComparison& comparison) {
 
 /// Joint by joint, the most significant first, and so within each.
 std::string ParameterTable(const CalibrationComparison& comparison) {
-  TextTable table({"parameter", "unit", "A", "B", "B - A", "95 % interval", ""});
+  TextTable table({"parameter", "unit", "A", "B", "B - A", "sd", "95 % interval", ""});
   for (const JointDifference& joint : comparison.joints) {
     for (const int i : joint.parameters) {
       const ParameterDifference& one = comparison.parameters[i];
-      table.Add({one.name + (one.weights_b.empty() ? "" : " (sum)"), ScaleOf(one.unit).unit,
-                 Shown(one.a, one.unit), Shown(one.b, one.unit), Shown(one.difference, one.unit),
-                 "[" + Shown(one.difference - one.half_width, one.unit) + ", " +
-                     Shown(one.difference + one.half_width, one.unit) + "]",
+      const auto& [factor, unit] = ScaleOf(one.unit);
+      const double sd = factor * one.sd;
+      table.Add({one.name + (one.weights_b.empty() ? "" : " (sum)"), unit,
+                 RoundedTo(factor * one.a, sd), RoundedTo(factor * one.b, sd),
+                 RoundedTo(factor * one.difference, sd), RoundedSd(sd),
+                 RoundedInterval(factor * one.difference, factor * one.half_width, sd),
                  std::string(one.significant() ? "*" : "") + (joint.moved ? " moved" : "")});
     }
   }

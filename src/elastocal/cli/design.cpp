@@ -84,8 +84,8 @@ int Design(const DesignCommand& command) {
                            design.posture_count(), design.posture_count() * 5.0 / 60.0,
                            files.postures.string(), files.summary.string(), files.curves.string(),
                            files.picture.string()));
-  PrintWarnings(design.warnings());
-  PrintWarnings(report.warnings);
+  PrintWarnings(design.warnings(), command.common.verbose);
+  PrintWarnings(report.warnings, command.common.verbose);
   PrintReportPlace(report.folder, report.why_none, quiet);
   return kFine;
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/report/error_table_json.hpp"
 
@@ -35,10 +36,6 @@ std::vector<ModelKind> KindsOf(const ErrorTable& table) {
   return {kinds.rbegin(), kinds.rend()};
 }
 
-std::string Millimetres(double metres) {
-  return std::isfinite(metres) ? fmt::format("{:.2f}", 1e3 * metres) : "-";
-}
-
 std::vector<std::string> Row(const ErrorTableRow& row, const std::string& name,
                              const std::vector<ModelKind>& kinds) {
   std::vector<std::string> cells = {row.group, name, std::to_string(row.trials)};
@@ -47,8 +44,8 @@ std::vector<std::string> Row(const ErrorTableRow& row, const std::string& name,
   for (const ModelKind kind : kinds) {
     const auto metrics = row.metrics.find(kind);
     const bool known = metrics != row.metrics.end() && metrics->second.observations > 0;
-    cells.push_back(known ? Millimetres(metrics->second.rmse_3d) : "-");
-    largest.push_back(known ? Millimetres(metrics->second.maximum) : "-");
+    cells.push_back(known ? Millimetres(metrics->second.rmse_3d, 2) : "-");
+    largest.push_back(known ? Millimetres(metrics->second.maximum, 2) : "-");
     if (known) observations = metrics->second.observations;
   }
   cells.insert(cells.end(), largest.begin(), largest.end());
@@ -70,7 +67,7 @@ std::string DescribeErrorTable(const ErrorTable& table) {
   std::vector<std::string> mean = {"mean of the cases", "", ""};
   for (const ModelKind kind : kinds) {
     const auto value = table.mean_rmse_3d.find(kind);
-    mean.push_back(value == table.mean_rmse_3d.end() ? "-" : Millimetres(value->second));
+    mean.push_back(value == table.mean_rmse_3d.end() ? "-" : Millimetres(value->second, 2));
   }
   text.Add(mean);
   return text.Render() +

@@ -21,7 +21,7 @@ struct InspectOptions {
   bool regrouping = false;
 };
 
-constexpr double kDegrees = 180.0 / M_PI;
+constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 /// Without the minus of a negative zero and of what rounds to zero.
 std::string Fixed(double value, int digits) {
@@ -38,10 +38,11 @@ std::string MdhTable(const RobotTree& tree, const std::vector<JointPlacement>& p
     const JointPlacement& p = placements[k];
     const std::string parent =
         joint.parent_body == 0 ? "waist" : tree.joints[joint.parent_body - 1].name;
-    table.Add({joint.name, parent, p.general ? Fixed(p.gamma * kDegrees, 3) : "",
-               p.general ? Fixed(1e3 * p.b, 3) : "", p.parallel ? Fixed(p.beta * kDegrees, 3) : "",
-               Fixed(p.alpha * kDegrees, 3), Fixed(1e3 * p.d, 3), Fixed(p.theta * kDegrees, 3),
-               Fixed(1e3 * p.r, 3)});
+    table.Add({joint.name, parent, p.general ? Fixed(p.gamma * kDegreesPerRadian, 3) : "",
+               p.general ? Fixed(1e3 * p.b, 3) : "",
+               p.parallel ? Fixed(p.beta * kDegreesPerRadian, 3) : "",
+               Fixed(p.alpha * kDegreesPerRadian, 3), Fixed(1e3 * p.d, 3),
+               Fixed(p.theta * kDegreesPerRadian, 3), Fixed(1e3 * p.r, 3)});
   }
   return table.Render();
 }
@@ -83,8 +84,9 @@ std::string RegroupingText(const ChainInspection& chain) {
   return text;
 }
 
-void PrintInspection(const Project& project, const RobotInspection& inspection, bool regrouping,
-                     bool quiet) {
+void PrintInspection(const Project& project, const RobotInspection& inspection,
+                     const InspectOptions& options) {
+  const bool quiet = options.common.Silent();
   Print(quiet,
         fmt::format("Robot {}: {} links, {} movable joints, {:.3f} kg\n\n", project.tree.name,
                     project.tree.links.size(), project.tree.joints.size(), inspection.mass));
@@ -98,9 +100,9 @@ void PrintInspection(const Project& project, const RobotInspection& inspection, 
   for (const ChainInspection& chain : inspection.chains) {
     Print(quiet, fmt::format("\n{}: not identifiable beside the others: {}\n", chain.name,
                              JoinNames(chain.model.parameters, chain.base.dropped)));
-    if (regrouping) Print(quiet, RegroupingText(chain));
+    if (options.regrouping) Print(quiet, RegroupingText(chain));
   }
-  PrintWarnings(inspection.warnings);
+  PrintWarnings(inspection.warnings, options.common.verbose);
 }
 
 int Inspect(const InspectOptions& options) {
@@ -116,7 +118,7 @@ int Inspect(const InspectOptions& options) {
   const RobotInspection inspection = InspectRobot(project, inspect);
   outputs.Set(options.common.json_file, MakeInspectionJson(project, inspection));
   outputs.Publish();
-  PrintInspection(project, inspection, options.regrouping, options.common.Silent());
+  PrintInspection(project, inspection, options);
   return kFine;
 }
 

@@ -118,7 +118,7 @@ int Plan(const PlanCommand& command) {
                               ? PlanMotion(project, postures, options, progress)
                               : PlanValidationMotion(project, KindNamed(command.validation),
                                                      tries.seed, options, progress);
-  PrintWarnings(plan.left_out);
+  PrintWarnings(plan.left_out, command.common.verbose);
   Print(quiet, SetTable(plan));
   if (plan.impossible.empty()) {
     Print(quiet, "\n" + LimitTable(plan.limits) +
@@ -140,7 +140,7 @@ int Plan(const PlanCommand& command) {
                         project, outputs);
   outputs.Publish();
   Print(quiet, fmt::format("\nWritten: {}\n", command.output));
-  PrintWarnings(report.warnings);
+  PrintWarnings(report.warnings, command.common.verbose);
   PrintReportPlace(report.folder, report.why_none, quiet);
   return kFine;
 }

@@ -6,6 +6,7 @@
 
 #include "elastocal/cli/calibration_run.hpp"
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/posture_table.hpp"
@@ -20,10 +21,10 @@ std::string TruthTable(const std::vector<FoundParameter>& found) {
   int inside = 0;
   for (const auto& [parameter, truth, estimate, sd, is_inside] : found) {
     inside += is_inside ? 1 : 0;
+    const double user_sd = InUserUnits(parameter, sd);
     table.Add({parameter.name, UserUnit(parameter),
-               fmt::format("{:.4f}", InUserUnits(parameter, truth)),
-               fmt::format("{:.4f}", InUserUnits(parameter, estimate)),
-               fmt::format("{:.4f}", InUserUnits(parameter, sd)),
+               RoundedTo(InUserUnits(parameter, truth), user_sd),
+               RoundedTo(InUserUnits(parameter, estimate), user_sd), RoundedSd(user_sd),
                fmt::format("{:+.2f}", (estimate - truth) / sd)});
   }
   return "\nTruth against estimate\n" + table.Render() +

@@ -10,6 +10,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/report/page.hpp"
+#include "elastocal/report/version.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -35,7 +36,7 @@ int Report(const ReportOptions& options) {
   outputs.Declare(output);
   outputs.Declare(options.common.json_file);
   outputs.Prepare();
-  const std::string page = MakeFolderPage(folder, ELASTOCAL_VERSION, earlier);
+  const std::string page = MakeFolderPage(folder, ProgramVersion(), earlier);
   outputs.Set(output, page);
   const nlohmann::ordered_json json = {{"report", output.string()}, {"bytes", page.size()}};
   outputs.Set(options.common.json_file,

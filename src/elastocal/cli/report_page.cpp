@@ -9,6 +9,7 @@
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/pipeline/robot_views.hpp"
 #include "elastocal/report/page.hpp"
+#include "elastocal/report/version.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -33,7 +34,7 @@ void SetCommandLine(int argc, char** argv) {
 
 RunRecord MakeRunRecord(const std::string& command, const CommonOptions& options,
                         std::vector<InputRecord> inputs) {
-  return {command, QuoteCommandLine(CommandLine()), ELASTOCAL_VERSION, options.seed,
+  return {command, QuoteCommandLine(CommandLine()), ProgramVersion(), options.seed,
           std::move(inputs)};
 }
 

@@ -1,16 +1,16 @@
 #include "elastocal/cli/session.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
+#include "elastocal/cli/warning_groups.hpp"
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal::cli {
+
 void CheckOutputs(const std::vector<std::filesystem::path>& outputs,
                   const std::vector<std::filesystem::path>& inputs) {
   for (const std::filesystem::path& output : outputs) {
@@ -22,27 +22,16 @@ void CheckOutputs(const std::vector<std::filesystem::path>& outputs,
   }
 }
 
-Progress TerminalProgress(const std::string& what, bool quiet) {
-  if (quiet || isatty(STDERR_FILENO) == 0) return {};
-  return [what](int done, int total) {
-    fmt::print(stderr, "\r{} {}/{}", what, done, total);
-    if (done == total) fmt::print(stderr, "\r{:{}}\r", "", what.size() + 20);
-    std::fflush(stderr);
-  };
-}
-
-StepProgress TerminalSteps(bool quiet) {
-  return [quiet](const std::string& step, int done, int total) {
-    if (const Progress progress = TerminalProgress(step, quiet)) progress(done, total);
-  };
-}
-
 void Print(bool quiet, const std::string& text) {
-  if (!quiet) fmt::print("{}", text);
+  if (quiet) return;
+  EraseProgressLine();
+  fmt::print("{}", text);
 }
 
-void PrintWarnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) spdlog::warn("{}", warning);
+void PrintWarnings(const std::vector<std::string>& warnings, bool verbose) {
+  for (const std::string& warning : verbose ? warnings : GroupWarnings(warnings)) {
+    spdlog::warn("{}", warning);
+  }
 }
 
 double InUserUnits(const Parameter& parameter, double value) {

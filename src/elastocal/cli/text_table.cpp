@@ -30,4 +30,11 @@ std::string TextTable::Render() const {
   return text;
 }
 
+std::string FirstOf(const std::vector<std::string>& words, std::size_t most) {
+  const std::size_t shown = std::min(most, words.size());
+  const auto end = words.begin() + static_cast<std::ptrdiff_t>(shown);
+  const std::string text = fmt::format("{}", fmt::join(words.begin(), end, ", "));
+  return words.size() > shown ? fmt::format("{} and {} more", text, words.size() - shown) : text;
+}
+
 }  // namespace elastocal::cli

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,5 +17,8 @@ class TextTable {
  private:
   std::vector<std::vector<std::string>> rows_;
 };
+
+/// "a, b and 3 more": the first `most` of these words.
+std::string FirstOf(const std::vector<std::string>& words, std::size_t most);
 
 }  // namespace elastocal::cli

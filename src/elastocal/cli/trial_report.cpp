@@ -7,6 +7,7 @@
 
 #include "elastocal/calibration/leg_stiffness.hpp"
 #include "elastocal/cli/error_table_report.hpp"
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
@@ -57,9 +58,9 @@ std::string DescribeElasticity(const CalibrationRun& run) {
     }
     if (result.status[i] != ParameterStatus::kEstimated) continue;
     const double half = result.interval_factor * result.sd[i];
+    const double sd = InUserUnits(parameter, result.sd[i]);
     table.Add({parameter.name, UserUnit(parameter),
-               fmt::format("{:.4f}", InUserUnits(parameter, result.delta[i])),
-               fmt::format("{:.4f}", InUserUnits(parameter, result.sd[i])),
+               RoundedTo(InUserUnits(parameter, result.delta[i]), sd), RoundedSd(sd),
                StiffnessOf(parameter, result.delta[i]),
                fmt::format("{} to {}", StiffnessOf(parameter, result.delta[i] + half),
                            StiffnessOf(parameter, result.delta[i] - half))});

@@ -38,7 +38,8 @@ std::string Table(const TransferValidation& validation) {
   return table.Render();
 }
 
-void PrintRun(const ValidationRun& run, bool quiet) {
+void PrintRun(const ValidationRun& run, const CommonOptions& options) {
+  const bool quiet = options.Silent();
   Print(quiet, fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
                            run.recording.source, run.calibration.recording,
                            run.recording.posture_count(), run.recording.marker_count()) +
@@ -50,7 +51,7 @@ void PrintRun(const ValidationRun& run, bool quiet) {
                       DescribeObservation(run.recording, outliers[i].posture, outliers[i].marker),
                       1e3 * outliers[i].residual));
   }
-  PrintWarnings(run.warnings);
+  PrintWarnings(run.warnings, options.verbose);
   if (!run.converged()) spdlog::error("the fit of waist and markers has not converged");
   if (!run.better()) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
 }
@@ -79,7 +80,7 @@ int Validate(const ValidateOptions& options) {
   }
   outputs.Publish();
 
-  PrintRun(run, quiet);
+  PrintRun(run, options.common);
   if (!folder.empty()) PrintReportPlace(folder, no_report, quiet);
   return run.converged() && run.better() ? kFine : kNotConverged;
 }

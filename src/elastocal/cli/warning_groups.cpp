@@ -1,0 +1,110 @@
+#include "elastocal/cli/warning_groups.hpp"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "elastocal/cli/text_table.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+constexpr std::size_t kMostLikewise = 6;
+
+/// A word without the punctuation around it.
+std::string Core(const std::string& word) {
+  constexpr const char* kPunctuation = ":,;.()?'";
+  const std::size_t begin = word.find_first_not_of(kPunctuation);
+  if (begin == std::string::npos) return "";
+  return word.substr(begin, word.find_last_not_of(kPunctuation) - begin + 1);
+}
+
+bool NamesAnother(const std::string& before) {
+  constexpr std::array kKinds = {"trial", "marker", "cluster", "chain", "joint"};
+  return std::find(kKinds.begin(), kKinds.end(), before) != kKinds.end();
+}
+
+bool IsNumber(const std::string& core) {
+  return core.find_first_not_of("0123456789.+-e") == std::string::npos;
+}
+
+/// A warning as what it says and what it says it of.
+struct Parsed {
+  std::string pattern;             ///< with "*" for what may differ, a list being one "*"
+  std::vector<std::string> names;  ///< what stood there, but for numbers
+};
+
+Parsed Parse(const std::string& warning) {
+  Parsed parsed;
+  std::vector<std::string> pattern;
+  std::istringstream words(warning);
+  std::string before;
+  for (std::string word; words >> word;) {
+    const std::string core = Core(word);
+    const bool varies =
+        core.find_first_of("0123456789_") != std::string::npos || NamesAnother(before);
+    before = core;
+    if (!varies) {
+      pattern.push_back(word);
+      continue;
+    }
+    if (!IsNumber(core)) parsed.names.push_back(core);
+    word.replace(word.find(core), core.size(), "*");
+    // "*, *", and "* and * more" of a longer list: the same as "*".
+    if (!pattern.empty() && pattern.back() == "*,") pattern.pop_back();
+    pattern.push_back(word);
+  }
+  parsed.pattern = fmt::format("{}", fmt::join(pattern, " "));
+  for (std::size_t at = 0; (at = parsed.pattern.find("* and * more")) != std::string::npos;) {
+    parsed.pattern.replace(at, 12, "*");
+  }
+  return parsed;
+}
+
+/// Warnings of one pattern.
+struct Group {
+  std::string pattern, first;
+  std::vector<std::string> known;   ///< names in the first
+  std::vector<std::string> others;  ///< of each further one the names that are new
+  int count = 0;
+};
+
+void Add(const Parsed& parsed, Group& group) {
+  ++group.count;
+  std::string other;
+  for (const std::string& name : parsed.names) {
+    if (std::find(group.known.begin(), group.known.end(), name) != group.known.end()) continue;
+    other += (other.empty() ? "" : " ") + name;
+  }
+  const bool is_new =
+      std::find(group.others.begin(), group.others.end(), other) == group.others.end();
+  if (!other.empty() && is_new) group.others.push_back(other);
+}
+
+std::string Sentence(const Group& group) {
+  if (group.count == 1) return group.first;
+  if (group.others.empty()) return fmt::format("{} ({} times)", group.first, group.count);
+  return fmt::format("{} (likewise {})", group.first, FirstOf(group.others, kMostLikewise));
+}
+
+}  // namespace
+
+std::vector<std::string> GroupWarnings(const std::vector<std::string>& warnings) {
+  std::vector<Group> groups;
+  for (const std::string& warning : warnings) {
+    const Parsed parsed = Parse(warning);
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const Group& known) { return known.pattern == parsed.pattern; });
+    if (group == groups.end()) {
+      group = groups.insert(groups.end(), {parsed.pattern, warning, parsed.names, {}, 0});
+    }
+    Add(parsed, *group);
+  }
+  std::vector<std::string> sentences;
+  for (const Group& group : groups) sentences.push_back(Sentence(group));
+  return sentences;
+}
+
+}  // namespace elastocal::cli

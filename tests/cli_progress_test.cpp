@@ -1,0 +1,106 @@
+// The progress line on a terminal: a pseudo-terminal stands for standard error.
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "elastocal/cli/progress.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+/// Standard error of this process goes to a terminal of 40 columns as long as this lives.
+class Terminal {
+ public:
+  Terminal() : screen_(posix_openpt(O_RDWR | O_NOCTTY)), before_(dup(STDERR_FILENO)) {
+    grantpt(screen_);
+    unlockpt(screen_);
+    const int line = open(ptsname(screen_), O_RDWR | O_NOCTTY);
+    winsize size{};
+    size.ws_col = 40;
+    ioctl(line, TIOCSWINSZ, &size);
+    dup2(line, STDERR_FILENO);
+    close(line);
+  }
+  ~Terminal() {
+    dup2(before_, STDERR_FILENO);
+    close(before_);
+    close(screen_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  /// What was written since the last call.
+  std::string Read() {
+    std::string text(4096, '\0');
+    fcntl(screen_, F_SETFL, O_NONBLOCK);
+    const ssize_t count = read(screen_, text.data(), text.size());
+    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+    return text;
+  }
+
+ private:
+  int screen_, before_;
+};
+
+const std::string kErase = "\r\033[K";
+
+TEST(ProgressLine, IsErasedBeforeAnythingElseIsPrinted) {
+  Terminal terminal;
+  const Progress progress = TerminalProgress("trial", false);
+  ASSERT_TRUE(progress);
+  progress(1, 3);
+  EXPECT_EQ(terminal.Read(), kErase + "trial 1/3");
+  EraseProgressLine();
+  EXPECT_EQ(terminal.Read(), kErase);
+  EraseProgressLine();  // nothing stands there
+  EXPECT_EQ(terminal.Read(), "");
+  progress(2, 3);
+  EXPECT_EQ(terminal.Read(), kErase + "trial 2/3");
+  progress(3, 3);  // done
+  EXPECT_EQ(terminal.Read(), kErase);
+}
+
+TEST(ProgressLine, IsErasedWhereTheWorkEndsEarly) {
+  Terminal terminal;
+  {
+    const auto progress = TerminalSteps("reading", false);
+    progress("fit", 0, 0);
+    EXPECT_EQ(terminal.Read(), kErase + "fit");
+    progress("a step with a name that is longer than the line", 1, 2);
+    EXPECT_EQ(terminal.Read(), kErase + "a step with a name that is longer than ");  // 39 of 40
+  }
+  EXPECT_EQ(terminal.Read(), kErase);
+}
+
+TEST(ProgressLine, TellsTheTimeOfWorkWithoutSteps) {
+  Terminal terminal;
+  const ProgressLine line("fit of all models", false);
+  EXPECT_EQ(terminal.Read(), "");  // work of less than a second needs no line
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_EQ(terminal.Read(), kErase + "fit of all models, 1 s");
+}
+
+TEST(ProgressLine, IsNotDrawnWhereNobodyLooks) {
+  {
+    const int before = dup(STDERR_FILENO);
+    const int file = open("/dev/null", O_WRONLY);
+    dup2(file, STDERR_FILENO);
+    EXPECT_FALSE(TerminalProgress("trial", false));
+    dup2(before, STDERR_FILENO);
+    close(file);
+    close(before);
+  }
+  Terminal terminal;
+  EXPECT_FALSE(TerminalProgress("trial", true));
+  EXPECT_FALSE(TerminalSteps("reading", true));
+}
+
+}  // namespace
+}  // namespace elastocal::cli
