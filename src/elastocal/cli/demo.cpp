@@ -1,6 +1,11 @@
+#include <chrono>
 #include <filesystem>
+#include <future>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +14,8 @@
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/quick_demo.hpp"
 #include "elastocal/cli/session.hpp"
+#include "elastocal/cli/simulation_report.hpp"
+#include "elastocal/planning/simulate_experiment.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -31,42 +38,108 @@ std::filesystem::path ModelsFolder() {
 
 using CommandLine = std::vector<std::string>;
 
-/// From the robot's description to a calibrated one: the commands that a user would give.
-std::vector<CommandLine> CompleteChain(const std::string& project, const DemoOptions& options) {
-  const auto in = [&](const char* name) {
+/// Prints a command as a user would give it, and does it.
+int RunShown(CommandLine command, const DemoOptions& options) {
+  const bool silent = options.common.Silent();
+  Print(silent, fmt::format("\n$ elastocal {}\n", fmt::join(command, " ")));
+  if (silent) command.push_back("--quiet");
+  return RunCommandLine(command);
+}
+
+/// Simulations that run while the next motions are planned, as `simulate --motion` would run them.
+class Simulations {
+ public:
+  Simulations(const std::string& project, std::uint64_t seed) : project_(project), seed_(seed) {}
+
+  void Start(const std::string& motion, const std::string& kind, const std::string& folder) {
+    const std::size_t own = runs_.size();
+    CommandLine words = {"simulate", project_, "--motion", motion};
+    if (!kind.empty()) words.insert(words.end(), {"--kind", kind});
+    words.insert(words.end(), {"-o", folder, "--seed", std::to_string(seed_)});
+    const auto play = [this, own, motion, kind, folder] {
+      const Project project = ReadProject(project_);
+      return SimulateExperiment(project,
+                                SimulationOfMotion(motion, project, TrialKindNamed(kind), seed_),
+                                folder, [this, own](int done, int total) {
+                                  const std::lock_guard lock(guard_);
+                                  counts_[own] = {done, total};
+                                });
+    };
+    runs_.push_back({std::move(words), folder, std::async(std::launch::async, play)});
+  }
+
+  /// Waits for all, and prints what each command would have printed, in turn.
+  void Finish(bool silent) {
+    const Progress progress = TerminalProgress("simulated trial", silent);
+    for (Run& run : runs_) {
+      while (run.result.wait_for(std::chrono::milliseconds(200)) != std::future_status::ready) {
+        if (progress) Report(progress);
+      }
+    }
+    if (progress) Report(progress);
+    for (Run& run : runs_) {
+      Print(silent, fmt::format("\n$ elastocal {}\n", fmt::join(run.words, " ")) +
+                        DescribeSimulation(run.result.get()) + WrittenRecording(run.folder));
+    }
+  }
+
+ private:
+  struct Run {
+    CommandLine words;
+    std::string folder;
+    std::future<SimulationRun> result;
+  };
+
+  void Report(const Progress& progress) {
+    int done = 0, total = 0;
+    {
+      const std::lock_guard lock(guard_);
+      for (const auto& [own, count] : counts_) {
+        done += count.first;
+        total += count.second;
+      }
+    }
+    if (total > 0) progress(done, total);
+  }
+
+  std::string project_;
+  std::uint64_t seed_;
+  std::mutex guard_;
+  std::map<std::size_t, std::pair<int, int>> counts_;  ///< trials done and in all, by run
+  std::vector<Run> runs_;  ///< last: their threads end before the rest goes
+};
+
+/// From the robot's description to a calibrated one: the commands that a user would give. Each
+/// simulation begins when its motion is planned, and runs beside what comes next.
+int RunCompleteChain(const std::string& project, const DemoOptions& options) {
+  const auto in = [&](const std::string& name) {
     return (std::filesystem::path(options.output) / name).string();
   };
-  const std::string seed = std::to_string(options.common.seed.value_or(1));
-  CommandLine design = {"design", project, "-o", in("postures.yaml"), "--seed", seed};
+  const std::uint64_t seed = options.common.seed.value_or(1);
+  const std::string seed_text = std::to_string(seed);
+  CommandLine design = {"design", project, "-o", in("postures.yaml"), "--seed", seed_text};
   if (options.postures > 0) {
     design.insert(design.end(), {"--postures", std::to_string(options.postures)});
   }
-  std::vector<CommandLine> chain = {
-      design,
-      {"plan", project, "--postures", in("postures.yaml"), "-o", in("motion.csv")},
-      {"simulate", project, "--motion", in("motion.csv"), "-o", in("recording"), "--seed", seed}};
+  int exit_code = RunShown(design, options);
+  if (exit_code != kFine) return exit_code;
   CommandLine calibrate = {"calibrate",    project,       "-o",
                            options.output, "--recording", in("recording")};
-  for (const char* kind : {"sine", "random"}) {
-    const std::string motion = in((std::string(kind) + ".csv").c_str());
-    const std::string recording = in((std::string("recording_") + kind).c_str());
-    chain.push_back({"plan", project, "--validation", kind, "-o", motion, "--seed", seed});
-    chain.push_back(
-        {"simulate", project, "--motion", motion, "--kind", kind, "-o", recording, "--seed", seed});
-    calibrate.push_back(recording);
-  }
-  chain.push_back(calibrate);
-  return chain;
-}
-
-int RunCompleteChain(const std::string& project, const DemoOptions& options) {
-  for (CommandLine command : CompleteChain(project, options)) {
-    if (options.common.Silent()) command.push_back("--quiet");
-    Print(options.common.Silent(), fmt::format("\n$ elastocal {}\n", fmt::join(command, " ")));
-    const int exit_code = RunCommandLine(command);
+  Simulations simulations(project, seed);
+  exit_code = RunShown({"plan", project, "--postures", in("postures.yaml"), "-o", in("motion.csv")},
+                       options);
+  if (exit_code != kFine) return exit_code;
+  simulations.Start(in("motion.csv"), "", in("recording"));
+  for (const std::string kind : {"sine", "random"}) {
+    exit_code = RunShown(
+        {"plan", project, "--validation", kind, "-o", in(kind + ".csv"), "--seed", seed_text},
+        options);
     if (exit_code != kFine) return exit_code;
+    simulations.Start(in(kind + ".csv"), kind, in("recording_" + kind));
+    calibrate.push_back(in("recording_" + kind));
   }
-  return kFine;
+  simulations.Finish(options.common.Silent());
+  return RunShown(calibrate, options);
 }
 
 /// The last line: what to look at.

@@ -80,9 +80,7 @@ int Simulate(const SimulateCommand& command) {
                                            TerminalProgress("played trial", quiet));
   outputs.Set(command.common.json_file, FormatSimulationSummary(run));
   outputs.Publish();
-  Print(quiet,
-        DescribeSimulation(run) +
-            fmt::format("\nWritten: {} with experiment.yaml and truth.yaml\n", command.output));
+  Print(quiet, DescribeSimulation(run) + WrittenRecording(command.output));
   return kFine;
 }
 

@@ -40,4 +40,8 @@ std::string DescribeSimulation(const SimulationRun& run) {
          StiffnessTable(run.legs);
 }
 
+std::string WrittenRecording(const std::string& folder) {
+  return fmt::format("\nWritten: {} with experiment.yaml and truth.yaml\n", folder);
+}
+
 }  // namespace elastocal::cli

@@ -1,6 +1,7 @@
 #include "elastocal/planning/simulate_experiment.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/io/joint_log.hpp"
@@ -67,6 +68,18 @@ WaistGive LargestDeflection(const Simulation& simulation, std::size_t trial,
                             : LargestWaistDeflection(simulation.experiment, trial, motion);
 }
 
+/// Entries of Simulation::chosen, so that no thread is left with a long trial at the end.
+std::vector<std::size_t> LongestFirst(const Simulation& simulation) {
+  std::vector<std::size_t> order(simulation.chosen.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto duration = [&](std::size_t i) {
+    return simulation.experiment.trials[simulation.chosen[i]].motion.duration_s();
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return duration(a) > duration(b); });
+  return order;
+}
+
 /// The files where they are written before they are published.
 TrialFiles Staged(const TrialFiles& files, OutputSet& outputs) {
   TrialFiles staged = files;
@@ -115,7 +128,9 @@ SimulationRun PlaySimulation(const Project& project, const Simulation& simulatio
                      planned.postures, trial.motion.frame_count(),
                      trial.raw.truth,  LargestDeflection(simulation, index, trial.motion)};
   };
-  ForAll(run.trials.size(), threads, play, progress);
+  const std::vector<std::size_t> order = LongestFirst(simulation);
+  ForAll(
+      order.size(), threads, [&](std::size_t i) { play(order[i]); }, progress);
 
   std::vector<SensorTruth> sensors;
   for (const PlayedTrial& trial : run.trials) sensors.push_back(trial.sensors);
@@ -164,6 +179,16 @@ DescribedRobot DescribeRobot(const Project& project) {
     robot.clusters.push_back({cluster.name, cluster.markers});
   }
   return robot;
+}
+
+SimulationOptions SimulationOfMotion(const std::filesystem::path& file, const Project& project,
+                                     std::optional<TrialKind> kind, std::uint64_t seed) {
+  SimulationOptions options;
+  options.experiment.seed = seed;
+  options.motion = ReadMotion(file, project);
+  options.given.name = TrialNameOf(file);
+  options.given.kind = kind;
+  return options;
 }
 
 JointMotion ReadPosturesToPlay(const std::filesystem::path& file, const Project& project) {

@@ -96,6 +96,10 @@ DescribedRobot DescribeRobot(const Project& project);
 /// is no letter, digit, '_', '.' or '-' as '_'. It is part of file names.
 std::string TrialNameOf(const std::filesystem::path& file);
 
+/// Options that play the trajectory of a file (CSV; docs/formats.md, Motion).
+SimulationOptions SimulationOfMotion(const std::filesystem::path& file, const Project& project,
+                                     std::optional<TrialKind> kind, std::uint64_t seed);
+
 /// Postures to be played one after the other: of a posture file (YAML) or a table (CSV).
 JointMotion ReadPosturesToPlay(const std::filesystem::path& file, const Project& project);
 
