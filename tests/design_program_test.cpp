@@ -1,4 +1,5 @@
 // Commands `design` and `assess` as their users run them.
+#include <chrono>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -6,6 +7,8 @@
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/posture_file.hpp"
+#include "elastocal/io/posture_table.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/run_program.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -101,6 +104,40 @@ TEST_F(DesignProgram, NamesWhatIsWrongInAPostureFile) {
   expect("chains: [{name: leg_left, postures: [{leg_left_4_joint: -1}]}]", "limits");
   expect("chains: [{name: leg_left, postures: [{leg_left_9_joint: 0}]}]", "leg_left_9_joint");
   expect("chains: [{name: leg_left}]", "postures");
+}
+
+TEST_F(DesignProgram, DoesNotReplaceWhatItReadsNorItsOwnFiles) {
+  const Project project = ReadProject(Talos());
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const Recording recording = MakeSyntheticRecording(
+      model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 12});
+  const std::string table = File("recording.csv");
+  WritePostureTable(table, recording, project.tree);
+  const std::string before = ReadFile(table);
+  const ProgramResult assessed = RunProgram("assess " + Talos() + " --recording " + table +
+                                            " --chain head_trunk --json " + table);
+  EXPECT_EQ(assessed.exit_code, 3) << assessed.err;
+  EXPECT_NE(assessed.err.find("this is an input"), std::string::npos) << assessed.err;
+  EXPECT_EQ(ReadFile(table), before);
+
+  for (const char* name : {"postures.yaml", "postures_summary.json", "postures_curves.csv"}) {
+    const ProgramResult designed =
+        RunProgram("design " + Talos() + " --chain head_trunk --postures 4 -o " +
+                   File("postures.yaml") + " --json " + File(name));
+    EXPECT_EQ(designed.exit_code, 3) << name;
+    EXPECT_NE(designed.err.find(name), std::string::npos) << designed.err;
+    EXPECT_FALSE(std::filesystem::exists(File("postures.yaml")));
+  }
+}
+
+TEST_F(DesignProgram, SaysAtOnceWhereItCannotWrite) {
+  const std::string file = scratch_.Write("file", "");
+  const auto begin = std::chrono::steady_clock::now();
+  const ProgramResult result = RunProgram("design " + Talos() + " -o " + file + "/postures.yaml");
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_EQ(result.out, "");
+  // All chains take ten seconds and more.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
 }
 
 TEST_F(DesignProgram, AProjectWithoutDesignSaysSo) {

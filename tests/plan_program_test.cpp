@@ -38,6 +38,18 @@ class Plan : public testing::Test {
                       Path("motion.csv") + " " + more);
   }
 
+  /// The TALOS project without the design of legs.
+  std::string WithoutLegs() {
+    std::string text = ReadFile(SourceFile("models/talos/project.yaml"));
+    const auto begin = text.find("    - chain: leg_left"), end = text.find("    - chain: arm_left");
+    EXPECT_LT(begin, end);
+    text.erase(begin, end - begin);
+    const std::string urdf = "urdf: talos.urdf";
+    text.replace(text.find(urdf), urdf.size(),
+                 "urdf: " + SourceFile("models/talos/talos.urdf").string());
+    return scratch_.Write("project.yaml", text);
+  }
+
   ScratchFolder scratch_;
 };
 
@@ -72,6 +84,58 @@ TEST_F(Plan, SaysWhichConstraintMakesItImpossible) {
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_NE(result.err.find("joint torque limit"), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(Path("motion.csv")));
+}
+
+TEST_F(Plan, WritesNoMotionThatBreaksItsLimitsAndSaysWhich) {
+  // Every sine is left out, and the robot at rest needs 19 % of the torque of a wrist. Legs aside,
+  // because they could not even be lifted.
+  const ProgramResult refused = RunProgram("plan " + WithoutLegs() + " -o " + Path("motion.csv") +
+                                           " --validation sine --torque-share 0.1");
+  EXPECT_EQ(refused.exit_code, 4) << refused.out;
+  EXPECT_NE(refused.err.find("the motion breaks a limit: torque, % of limit: 19 at 0.00 s (arm_"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_NE(refused.err.find("the limit is 10"), std::string::npos) << refused.err;
+  EXPECT_EQ(refused.out.find("Written"), std::string::npos) << refused.out;
+  for (const char* name : {"motion.csv", "motion_margins.json", "report.html"}) {
+    EXPECT_FALSE(std::filesystem::exists(Path(name))) << name;
+  }
+}
+
+TEST_F(Plan, RefusesSharesAboveOneAndOutputsThatMeet) {
+  const std::string postures = scratch_.Write("postures.yaml", kPostures);
+  const auto refused = [&](const std::string& more, int exit_code, const std::string& part) {
+    const ProgramResult result = Run("--postures " + postures + " " + more);
+    EXPECT_EQ(result.exit_code, exit_code) << more << "\n" << result.out;
+    EXPECT_NE((result.out + result.err).find(part), std::string::npos) << result.out << result.err;
+    EXPECT_FALSE(std::filesystem::exists(Path("motion.csv")));
+  };
+  refused("--torque-share 80", 2, "--torque-share");
+  refused("--velocity-share 0", 2, "--velocity-share");
+  refused("--zmp-margin -0.01", 2, "--zmp-margin");
+  refused("--json " + postures, 3, "postures.yaml");
+  refused("--json " + Path("motion.csv"), 3, "motion.csv");
+  refused("--json " + Path("motion_margins.json"), 3, "motion_margins.json");
+  refused("--trajectory " + Path("motion.csv"), 3, "motion.csv");
+  EXPECT_EQ(ReadFile(postures), kPostures);
+}
+
+// simulate writes the joint log of the trial `leg_left` to leg_left.csv.
+TEST_F(Plan, MotionsOfChainsAreNotNamedLikeJointLogs) {
+  const std::string postures = scratch_.Write("postures.yaml", kPostures);
+  std::filesystem::create_directory(Path("chains"));
+  const std::string log = scratch_.Write("chains/leg_left.csv", "t,leg_left_1_joint\n0,0\n");
+  const std::string more = "--postures " + postures + " --chains " + Path("chains");
+  ASSERT_EQ(Run(more).exit_code, 0);
+  EXPECT_EQ(ReadFile(log), "t,leg_left_1_joint\n0,0\n");
+  EXPECT_TRUE(std::filesystem::exists(Path("chains/leg_left_motion.csv")));
+  EXPECT_EQ(Run(more).exit_code, 0) << "an earlier motion is replaced";
+
+  const std::string other = scratch_.Write("chains/arm_left_motion.csv", "t,leg\n0,0\n");
+  const ProgramResult refused = Run(more);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("arm_left_motion.csv"), std::string::npos) << refused.err;
+  EXPECT_EQ(ReadFile(other), "t,leg\n0,0\n");
 }
 
 TEST_F(Plan, RefusesBadInput) {

@@ -1,10 +1,13 @@
 // The command `simulate`: a recording folder as a laboratory would fill it.
 
+#include <set>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "elastocal/io/experiment.hpp"
 #include "elastocal/io/output_files.hpp"
+#include "elastocal/planning/simulate_experiment.hpp"
 #include "tests/run_program.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -85,6 +88,69 @@ TEST_F(Simulate, DoesNotReplaceTheMotionThatItPlays) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_NE(result.err.find("motion.csv"), std::string::npos) << result.err;
   EXPECT_EQ(ReadFile(motion), "turret_joint\n0\n0.3\n");
+}
+
+// A laboratory's recording, named as the simulation names its own.
+TEST_F(Simulate, DoesNotReplaceRecordingsThatItDidNotMake) {
+  ASSERT_EQ(Run("lab", "--quiet --trials upper_random").exit_code, 0);
+  std::filesystem::remove(Folder("lab/truth.yaml"));
+  const std::string experiment = ReadFile(Folder("lab/experiment.yaml"));
+  const std::string markers = ReadFile(Folder("lab/upper_random.tsv"));
+  const ProgramResult refused = Run("lab", "--seed 2 --trials upper_random");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("experiment.yaml"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
+  EXPECT_EQ(ReadFile(Folder("lab/experiment.yaml")), experiment);
+  EXPECT_EQ(ReadFile(Folder("lab/upper_random.tsv")), markers);
+  // One file of the name of a trial is enough.
+  std::filesystem::create_directory(Folder("other"));
+  const std::string alone = scratch_.Write("other/upper_random.tsv", "the laboratory's");
+  EXPECT_EQ(Run("other", "--trials upper_random").exit_code, 3);
+  EXPECT_EQ(ReadFile(alone), "the laboratory's");
+
+  EXPECT_EQ(Run("lab", "--quiet --seed 2 --trials upper_random --force").exit_code, 0);
+  EXPECT_NE(ReadFile(Folder("lab/upper_random.tsv")), markers);
+}
+
+TEST_F(Simulate, ReplacesAnEarlierSimulationAsAWhole) {
+  ASSERT_EQ(Run("one", "--quiet").exit_code, 0);
+  const std::string notes = scratch_.Write("one/notes.txt", "mine");
+  ASSERT_EQ(Run("one", "--quiet --seed 2 --trials upper_random").exit_code, 0);
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(Folder("one"))) {
+    names.insert(entry.path().filename());
+  }
+  EXPECT_EQ(names,
+            (std::set<std::string>{"experiment.yaml", "notes.txt", "truth.yaml", "upper_random.csv",
+                                   "upper_random.tsv", "upper_random_waist.csv"}));
+  // What the earlier simulation did not write is not replaced either.
+  const std::string other = scratch_.Write("one/arm.csv", "mine");
+  const ProgramResult result = Run("one", "--trials arm");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("arm.csv"), std::string::npos) << result.err;
+  EXPECT_EQ(ReadFile(other), "mine");
+}
+
+TEST_F(Simulate, KeepsItsOutputsApart) {
+  const ProgramResult result = Run("one", "--trials arm --json " + Folder("one/arm.csv"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("arm.csv"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(Folder("one")));
+}
+
+TEST_F(Simulate, NamesOfTrialsAreNoPathsAndNotThoseOfMotions) {
+  EXPECT_EQ(TrialNameOf("chains/arm_left_motion.csv"), "arm_left");
+  EXPECT_EQ(TrialNameOf("motion.csv"), "motion");
+  EXPECT_EQ(TrialNameOf("_motion.csv"), "_motion");
+  EXPECT_EQ(TrialNameOf("my motion: \xc3\xa4.csv"), "my_motion____");
+  EXPECT_EQ(TrialNameOf("...csv"), "_..");
+  // A motion of plan --chains can be played into the folder where it lies.
+  std::filesystem::create_directory(Folder("here"));
+  const std::string motion =
+      scratch_.Write("here/arm_motion.csv", "time,turret_joint,support\n0,0,none\n2,0.3,none\n");
+  ASSERT_EQ(Run("here", "--quiet --motion " + motion).exit_code, 0);
+  EXPECT_TRUE(ReadFile(motion).starts_with("time,turret_joint"));
+  EXPECT_TRUE(std::filesystem::exists(Folder("here/arm.tsv")));
 }
 
 // What is left is the micrometre to which marker files are written.
