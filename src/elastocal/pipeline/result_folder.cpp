@@ -57,6 +57,16 @@ std::set<std::string> RegularFiles(const fs::path& folder) {
   return names;
 }
 
+/// The records so far; empty where there are none that can be read, which is no reason to lose a
+/// result.
+std::string EarlierRuns(const fs::path& folder) {
+  try {
+    return FolderAfter(folder, nullptr).Text(kRuns).value_or("");
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
 /// The folder's calibration; nothing where there is none.
 std::optional<LabelledCalibration> CalibrationOf(const fs::path& folder, const FolderAfter& after) {
   const auto text = after.Text("calibration.yaml");
@@ -111,8 +121,7 @@ std::string SetResults(const fs::path& folder, const std::map<std::string, std::
     outputs.Set(folder / name, contents);
     names.insert(name);
   }
-  const auto runs = FolderAfter(folder, nullptr).Text(kRuns);
-  outputs.Set(folder / kRuns, UpdateRuns(runs.value_or(""), record));
+  outputs.Set(folder / kRuns, UpdateRuns(EarlierRuns(folder), record));
   names.insert(kRuns);
   if (PageTemplate().empty()) return kNoPage;
   try {

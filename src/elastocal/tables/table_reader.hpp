@@ -23,8 +23,8 @@ class TextStream : private std::streambuf, public std::istream {
   explicit TextStream(std::string_view text);
 };
 
-/// The lines of a text, one by one. A line ends with \n or \r\n or, where the first line does so,
-/// with \r. A byte-order mark is passed over. Reads on as lines are asked for, so that a file that
+/// The lines of a text, one by one. A line ends with LF or CR LF or, where the first line does so,
+/// with CR. A byte-order mark is passed over. Reads on as lines are asked for, so that a file that
 /// is something else is refused by its first lines, whatever its size.
 class LineReader {
  public:
