@@ -7,7 +7,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <iostream>
 #include <map>
+#include <regex>
 #include <sstream>
 
 #include <fcntl.h>
@@ -55,53 +57,34 @@ pid_t Start(const std::string& arguments) {
   _exit(127);
 }
 
-/// Every file below a folder, by its name.
-std::map<std::string, std::string> FilesOf(const fs::path& folder) {
-  std::map<std::string, std::string> files;
+/// A text without the durations in it, the one thing in which two runs of one command differ.
+std::string WithoutDurations(const std::string& text) {
+  static const std::regex duration("\\\"(time_s|seconds|solve_seconds)\\\": ?[-+.e0-9]+");
+  return std::regex_replace(text, duration, "");
+}
+
+using Files = std::map<std::string, std::string>;
+
+/// Every file in a folder, by its name.
+Files FilesOf(const fs::path& folder) {
+  Files files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     EXPECT_TRUE(entry.is_regular_file()) << entry.path();
-    files[entry.path().filename()] = ReadFile(entry.path());
+    files[entry.path().filename()] = WithoutDurations(ReadFile(entry.path()));
   }
   return files;
 }
 
-/// Whose files these are, of two runs: by their bytes where these do not depend on how long a run
-/// took, else by the name of the run's input in them.
-class Owner {
- public:
-  Owner(std::map<std::string, std::string> first, std::map<std::string, std::string> second)
-      : runs_{std::move(first), std::move(second)} {}
-
-  /// 0 or 1; -1 where they are of both or of none.
-  int Of(const std::map<std::string, std::string>& files, std::string* why) const {
-    for (int run = 0; run < 2; ++run) {
-      if (IsOf(files, run, why)) return run;
-    }
-    return -1;
+/// Names of the files in which two folders differ.
+std::string Differences(const Files& a, const Files& b) {
+  std::string names;
+  for (const auto& [name, text] : a) {
+    const auto other = b.find(name);
+    if (other == b.end() || other->second != text) names += name + " ";
   }
-
- private:
-  bool IsOf(const std::map<std::string, std::string>& files, int run, std::string* why) const {
-    if (files.size() != runs_[run].size()) {
-      *why += std::to_string(files.size()) + " files; ";
-      return false;
-    }
-    const char* other = run == 0 ? "second_input" : "first_input";
-    for (const auto& [name, text] : files) {
-      const auto expected = runs_[run].find(name);
-      const bool same = expected != runs_[run].end() && expected->second == text;
-      const bool named = text.find(other) == std::string::npos &&
-                         text.find(run == 0 ? "first_input" : "second_input") != std::string::npos;
-      if (!same && !named) {
-        *why += name + "; ";
-        return false;
-      }
-    }
-    return true;
-  }
-
-  std::map<std::string, std::string> runs_[2];
-};
+  for (const auto& [name, text] : b) names += a.contains(name) ? "" : name + " ";
+  return names;
+}
 
 class Killed : public Program {
  protected:
@@ -112,30 +95,33 @@ class Killed : public Program {
 
   /// Both commands write into FOLDER and differ in their input or seed.
   void TryKills(const std::string& first, const std::string& second) {
-    const fs::path earlier = scratch_.path() / "earlier", later = scratch_.path() / "later";
-    const fs::path folder = scratch_.path() / "folder";
+    const fs::path copy = scratch_.path() / "earlier", folder = scratch_.path() / "folder";
     Finish(first, folder);
-    fs::copy(folder, earlier);
+    fs::copy(folder, copy);
+    const Files earlier = FilesOf(folder);
     const auto begin = std::chrono::steady_clock::now();
     Finish(second, folder);
     const double duration = Seconds(std::chrono::steady_clock::now() - begin).count();
-    fs::copy(folder, later);
-    const Owner owner(FilesOf(earlier), FilesOf(later));
+    const Files later = FilesOf(folder);
+    ASSERT_NE(Differences(earlier, later), "");
     Random random(1);
     int left_earlier = 0;
     for (int i = 0; i < Kills(); ++i) {
       fs::remove_all(folder);
-      fs::copy(earlier, folder);
+      fs::copy(copy, folder);
       const pid_t child = Start(With(second, folder));
       usleep(static_cast<useconds_t>(1e6 * random.Uniform(0.0, 1.1 * duration)));
       kill(child, SIGKILL);
       waitpid(child, nullptr, 0);
       RecoverOutputs(folder);
-      std::string why;
-      const int run = owner.Of(FilesOf(folder), &why);
-      ASSERT_GE(run, 0) << "kill " << i << ", files of two runs: " << why;
-      left_earlier += run == 0 ? 1 : 0;
+      const Files left = FilesOf(folder);
+      const std::string new_ones = Differences(earlier, left), old_ones = Differences(later, left);
+      ASSERT_TRUE(new_ones.empty() || old_ones.empty())
+          << "kill " << i << " left files of two runs; not of the earlier: " << new_ones
+          << "; not of the later: " << old_ones;
+      left_earlier += new_ones.empty() ? 1 : 0;
     }
+    std::cout << left_earlier << " of " << Kills() << " kills left the earlier run's files\n";
     EXPECT_GT(left_earlier, 0) << "no kill came in time";
   }
 
