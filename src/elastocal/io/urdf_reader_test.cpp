@@ -261,6 +261,10 @@ TEST(UrdfReader, NamesWrongNumbers) {
   };
   ExpectError(inertial("-1", "1"), {"r.urdf:3: ", "mass of -1 kg"});
   ExpectError(inertial("heavy", "1"), {"r.urdf:3: ", "'heavy'"});
+  ExpectError(
+      "<link name='a'><inertial><mass value='1'/>\n<inertia ixx='1' ixy='0' ixz='0' iyy='1' "
+      "iyz='0'/></inertial></link>",
+      {"r.urdf:3: ", "no attribute 'izz'"});
   ExpectError(inertial("1", "nan"), {"r.urdf:4: ", "'ixx'", "link 'a'", "'nan'"});
 }
 
