@@ -39,7 +39,7 @@ TEST_F(Program, NamesThatAreNotUtf8AreRefused) {
   project.replace(project.find("name: WRIST"), 11, "name: caf\xe9");
   project.insert(project.find("not_recorded_mm"),
                  "columns: {markers: {caf\xe9: [WRIST_x, WRIST_y, WRIST_z]}}\n  ");
-  ExpectRefused(Calibrate(scratch_.Write("p.yaml", project), recording_), {"p.yaml:14: ", "UTF-8"});
+  ExpectRefused(Calibrate(scratch_.Write("p.yaml", project), recording_), {"p.yaml:15: ", "UTF-8"});
   ExpectRefused(Calibrate(project_, WithCell(0, 2, "caf\xe9")), {"changed.csv:1: ", "UTF-8"});
 }
 

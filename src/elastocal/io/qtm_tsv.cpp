@@ -8,6 +8,7 @@
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/utf8.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -167,6 +168,7 @@ class HeaderReader {
     std::set<std::string> seen;
     for (const std::string& name : names) {
       if (name.empty()) lines_.Fail("a marker without a name");
+      RequireUtf8(name, lines_.reader.source(), lines_.reader.line());
       if (!seen.insert(name).second) lines_.Fail("two markers of the name " + Quote(name));
     }
     header_.names = std::move(names);

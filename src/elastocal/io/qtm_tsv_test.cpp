@@ -51,8 +51,9 @@ TEST(QtmTsv, ReadsWhatQtmWrites) {
 }
 
 TEST(QtmTsv, RefusesNamesThatAreNotUtf8) {
-  ExpectError("FREQUENCY\t100\nMARKER_NAMES\tcaf\xe9\n", {"t.tsv:2: ", "UTF-8"});
-  ExpectError("FREQUENCY\t100\nFrame\tTime\tcaf\xe9 X\n", {"t.tsv:2: ", "UTF-8"});
+  ExpectTsvError("FREQUENCY\t100\nMARKER_NAMES\tcaf\xe9\n", {"t.tsv:2: ", "UTF-8"});
+  ExpectTsvError("FREQUENCY\t100\nFrame\tTime\tcaf\xe9 X\tcaf\xe9 Y\tcaf\xe9 Z\n",
+                 {"t.tsv:2: ", "UTF-8"});
 }
 
 TEST(QtmTsv, InfersTheColumnsFromTheirNumber) {

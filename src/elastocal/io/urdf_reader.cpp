@@ -38,12 +38,12 @@ Link ReadLink(const UrdfLink& source) {
     mass.Fail("found a mass of " + FormatNumber(link.mass) + " kg; at least 0 was expected");
   }
   const XmlElement entries = inertial->Get("inertia");
-  const double ixy = entries.Number("ixy"), ixz = entries.Number("ixz"),
-               iyz = entries.Number("iyz");
+  // Numbers may throw, which Eigen does not stand in the middle of a list.
+  const double ixx = entries.Number("ixx"), ixy = entries.Number("ixy"),
+               ixz = entries.Number("ixz"), iyy = entries.Number("iyy"),
+               iyz = entries.Number("iyz"), izz = entries.Number("izz");
   Eigen::Matrix3d inertia;
-  inertia << entries.Number("ixx"), ixy, ixz,  //
-      ixy, entries.Number("iyy"), iyz,         //
-      ixz, iyz, entries.Number("izz");
+  inertia << ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz;
   link.com = T_link_inertial.translation();
   link.inertia = T_link_inertial.linear() * inertia * T_link_inertial.linear().transpose();
   return link;

@@ -22,22 +22,22 @@ std::string Joint(const std::string& name, const std::string& type, const std::s
 }
 
 /// `contents` begins on line 2.
-RobotTree Parse(const std::string& contents) {
+RobotTree ParseLinks(const std::string& contents) {
   return ParseUrdf("<robot name=\"r\">\n" + contents + "</robot>\n", "r.urdf");
 }
 
-void ExpectError(const std::string& contents, std::initializer_list<std::string> parts) {
-  ExpectInputError([&] { Parse(contents); }, parts);
+void ExpectLinksError(const std::string& contents, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { ParseLinks(contents); }, parts);
 }
 
 /// A robot of two links whose joint has `more` in it; the joint is on line 4.
 void ExpectJointError(const std::string& type, const std::string& more,
                       std::initializer_list<std::string> parts) {
-  ExpectError(Link("a") + Link("b") + Joint("j", type, "a", "b", more), parts);
+  ExpectLinksError(Link("a") + Link("b") + Joint("j", type, "a", "b", more), parts);
 }
 
 TEST(UrdfReader, ReadsJoint) {
-  const RobotTree tree = Parse(
+  const RobotTree tree = ParseLinks(
       Link("a") + Link("b") +
       Joint("j", "revolute", "a", "b",
             std::string(kLimit) + "<origin xyz='1 2\t3' rpy=\"0 0 0.5\"/><axis xyz='0 0 -2'/>"));
@@ -61,8 +61,8 @@ TEST(UrdfReader, ReadsJoint) {
 TEST(UrdfReader, ContinuousJointHasNoPositionLimits) {
   const double infinity = std::numeric_limits<double>::infinity();
   const RobotTree tree =
-      Parse(Link("a") + Link("b") + Link("c") + Joint("with", "continuous", "a", "b") +
-            Joint("without", "continuous", "b", "c", ""));
+      ParseLinks(Link("a") + Link("b") + Link("c") + Joint("with", "continuous", "a", "b") +
+                 Joint("without", "continuous", "b", "c", ""));
   EXPECT_EQ(tree.joints[0].limits.lower, -infinity);
   EXPECT_EQ(tree.joints[0].limits.upper, infinity);
   EXPECT_EQ(tree.joints[0].limits.velocity, 4.0);
@@ -73,7 +73,7 @@ TEST(UrdfReader, ContinuousJointHasNoPositionLimits) {
 }
 
 TEST(UrdfReader, TurnsInertiaIntoTheLinksAxes) {
-  const RobotTree tree = Parse(
+  const RobotTree tree = ParseLinks(
       "<link name='a'><inertial><origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/>"
       "<mass value='5'/><inertia ixx='1' iyy='2' izz='3' ixy='0.1' ixz='0.2' iyz='0.3'/>"
       "</inertial></link>");
@@ -88,11 +88,11 @@ TEST(UrdfReader, TurnsInertiaIntoTheLinksAxes) {
 
 TEST(UrdfReader, LinksOnFixedJointsAreOneBody) {
   const RobotTree tree =
-      Parse(Link("tip") + Link("flange") + Link("arm") + Link("mount") + Link("base") +
-            Joint("tip_j", "fixed", "flange", "tip", "<origin xyz='0 0 2'/>") +
-            Joint("flange_j", "fixed", "arm", "flange", "<origin xyz='0 0 1'/>") +
-            Joint("arm_j", "revolute", "mount", "arm") +
-            Joint("mount_j", "fixed", "base", "mount", "<origin xyz='1 0 0' rpy='0 0 1'/>"));
+      ParseLinks(Link("tip") + Link("flange") + Link("arm") + Link("mount") + Link("base") +
+                 Joint("tip_j", "fixed", "flange", "tip", "<origin xyz='0 0 2'/>") +
+                 Joint("flange_j", "fixed", "arm", "flange", "<origin xyz='0 0 1'/>") +
+                 Joint("arm_j", "revolute", "mount", "arm") +
+                 Joint("mount_j", "fixed", "base", "mount", "<origin xyz='1 0 0' rpy='0 0 1'/>"));
   ASSERT_EQ(tree.body_count(), 2);
   EXPECT_EQ(tree.links[0].name, "base");
   const auto link = [&](const std::string& name) { return tree.links[FindLink(tree, name)]; };
@@ -108,9 +108,9 @@ TEST(UrdfReader, LinksOnFixedJointsAreOneBody) {
 TEST(UrdfReader, JointsFollowTheFileAsFarAsTheTreeAllows) {
   // b2 stands before the joint that carries it; z before a: neither alphabetical nor by depth.
   const RobotTree tree =
-      Parse(Link("root") + Link("l1") + Link("l2") + Link("l3") + Link("l4") +
-            Joint("b2", "revolute", "l1", "l2") + Joint("z", "revolute", "root", "l3") +
-            Joint("b1", "revolute", "root", "l1") + Joint("a", "revolute", "l3", "l4"));
+      ParseLinks(Link("root") + Link("l1") + Link("l2") + Link("l3") + Link("l4") +
+                 Joint("b2", "revolute", "l1", "l2") + Joint("z", "revolute", "root", "l3") +
+                 Joint("b1", "revolute", "root", "l1") + Joint("a", "revolute", "l3", "l4"));
   std::vector<std::string> names;
   for (const elastocal::Joint& joint : tree.joints) names.push_back(joint.name);
   EXPECT_EQ(names, (std::vector<std::string>{"z", "b1", "b2", "a"}));
@@ -119,13 +119,13 @@ TEST(UrdfReader, JointsFollowTheFileAsFarAsTheTreeAllows) {
 }
 
 TEST(UrdfReader, MimicJointsShareACoordinate) {
-  const RobotTree tree =
-      Parse(Link("a") + Link("b") + Link("c") + Link("d") +
-            Joint("second", "revolute", "a", "b",
-                  std::string(kLimit) + "<mimic joint='first' multiplier='3' offset='0.5'/>") +
-            Joint("first", "prismatic", "b", "c",
-                  std::string(kLimit) + "<mimic joint='driver' multiplier='-2' offset='0.25'/>") +
-            Joint("driver", "revolute", "c", "d"));
+  const RobotTree tree = ParseLinks(
+      Link("a") + Link("b") + Link("c") + Link("d") +
+      Joint("second", "revolute", "a", "b",
+            std::string(kLimit) + "<mimic joint='first' multiplier='3' offset='0.5'/>") +
+      Joint("first", "prismatic", "b", "c",
+            std::string(kLimit) + "<mimic joint='driver' multiplier='-2' offset='0.25'/>") +
+      Joint("driver", "revolute", "c", "d"));
   ASSERT_EQ(tree.coordinate_count(), 1);
   EXPECT_EQ(tree.coordinate_joint[0], 2);
   // second = 3 (-2 q + 0.25) + 0.5
@@ -137,9 +137,9 @@ TEST(UrdfReader, MimicJointsShareACoordinate) {
 }
 
 TEST(UrdfReader, FloatingRootIsLeftOut) {
-  const RobotTree tree = Parse(Link("world") + Link("waist") + Link("leg") +
-                               Joint("free", "floating", "world", "waist", "") +
-                               Joint("hip", "revolute", "waist", "leg"));
+  const RobotTree tree = ParseLinks(Link("world") + Link("waist") + Link("leg") +
+                                    Joint("free", "floating", "world", "waist", "") +
+                                    Joint("hip", "revolute", "waist", "leg"));
   EXPECT_EQ(tree.links[0].name, "waist");
   EXPECT_EQ(tree.links.size(), 2u);
   ASSERT_EQ(tree.joints.size(), 1u);
@@ -148,10 +148,12 @@ TEST(UrdfReader, FloatingRootIsLeftOut) {
 
 TEST(UrdfReader, FloatingOrPlanarElsewhereIsAnError) {
   const std::string links = Link("a") + Link("b") + Link("c");
-  ExpectError(links + Joint("hip", "revolute", "a", "b") + Joint("free", "floating", "b", "c", ""),
-              {"r.urdf:6: ", "'free'", "floating"});
-  ExpectError(links + Joint("hip", "revolute", "a", "b") + Joint("free", "floating", "a", "c", ""),
-              {"r.urdf:6: ", "'free'", "floating"});
+  ExpectLinksError(
+      links + Joint("hip", "revolute", "a", "b") + Joint("free", "floating", "b", "c", ""),
+      {"r.urdf:6: ", "'free'", "floating"});
+  ExpectLinksError(
+      links + Joint("hip", "revolute", "a", "b") + Joint("free", "floating", "a", "c", ""),
+      {"r.urdf:6: ", "'free'", "floating"});
   ExpectJointError("planar", "", {"r.urdf:4: ", "'j'", "planar"});
 }
 
@@ -182,7 +184,7 @@ TEST(UrdfReader, RefusesHostileBytes) {
                    {"r.urdf", "16 MiB"});
   const std::string utf16 = {'\xff', '\xfe', '<', '\0', 'r', '\0'};
   ExpectInputError([&] { ParseUrdf(utf16, "r.urdf"); }, {"r.urdf:1: ", "NUL", "UTF-8"});
-  ExpectError(Link("a\xe9"), {"r.urdf:2: ", "'name' of link", "text in UTF-8 was expected"});
+  ExpectLinksError(Link("a\xe9"), {"r.urdf:2: ", "'name' of link", "text in UTF-8 was expected"});
 }
 
 /// Parsing, searching and destroying take no stack that grows with the depth.
@@ -192,8 +194,8 @@ TEST(UrdfReader, PassesOverDeepNesting) {
     open += "<a>";
     close += "</a>";
   }
-  EXPECT_EQ(Parse(Link("a") + open + close).links.size(), 1u);
-  ExpectError(Link("a") + open, {"r.urdf:3: ", "malformed XML"});
+  EXPECT_EQ(ParseLinks(Link("a") + open + close).links.size(), 1u);
+  ExpectLinksError(Link("a") + open, {"r.urdf:3: ", "malformed XML"});
 }
 
 TEST(UrdfReader, ReadsWhateverXmlMayHoldAroundTheRobot) {
@@ -208,25 +210,27 @@ TEST(UrdfReader, ReadsWhateverXmlMayHoldAroundTheRobot) {
 TEST(UrdfReader, RefusesMoreLinksThanAnyRobotHas) {
   std::string links;
   for (int i = 0; i <= 5000; ++i) links += Link(std::to_string(i));
-  ExpectError(links, {"r.urdf:5002: ", "more than 5000 links"});
+  ExpectLinksError(links, {"r.urdf:5002: ", "more than 5000 links"});
 }
 
 TEST(UrdfReader, NamesWrongStructure) {
-  ExpectError(Link("a") + Link("a"), {"r.urdf:3: ", "second link", "'a'"});
-  ExpectError(Link("a") + Link("b") + Link("c") + Joint("j", "fixed", "a", "b") +
-                  Joint("j", "fixed", "a", "c"),
-              {"r.urdf:6: ", "second joint", "'j'"});
-  ExpectError(Link("waist") + Joint("j", "fixed", "waistt", "b"),
-              {"r.urdf:3: ", "'waistt'", "did you mean 'waist'"});
-  ExpectError(Link("waist") + Joint("j", "fixed", "waist", "b"), {"r.urdf:3: ", "child", "'b'"});
-  ExpectError(Link("a") + Link("b") + Link("c") + Joint("j", "fixed", "a", "c") +
-                  Joint("k", "fixed", "b", "c"),
-              {"r.urdf:6: ", "'c'", "'j'", "'k'", "one parent"});
-  ExpectError(Link("a") + Link("b"), {"r.urdf:3: ", "'a'", "'b'", "one root"});
-  ExpectError(Link("a") + Link("b") + Joint("j", "fixed", "a", "b") + Joint("k", "fixed", "b", "a"),
-              {"r.urdf:2: ", "'a'", "loop"});
-  ExpectError(Link("root") + Link("a") + Joint("j", "fixed", "a", "a"),
-              {"r.urdf:3: ", "'a'", "loop"});
+  ExpectLinksError(Link("a") + Link("a"), {"r.urdf:3: ", "second link", "'a'"});
+  ExpectLinksError(Link("a") + Link("b") + Link("c") + Joint("j", "fixed", "a", "b") +
+                       Joint("j", "fixed", "a", "c"),
+                   {"r.urdf:6: ", "second joint", "'j'"});
+  ExpectLinksError(Link("waist") + Joint("j", "fixed", "waistt", "b"),
+                   {"r.urdf:3: ", "'waistt'", "did you mean 'waist'"});
+  ExpectLinksError(Link("waist") + Joint("j", "fixed", "waist", "b"),
+                   {"r.urdf:3: ", "child", "'b'"});
+  ExpectLinksError(Link("a") + Link("b") + Link("c") + Joint("j", "fixed", "a", "c") +
+                       Joint("k", "fixed", "b", "c"),
+                   {"r.urdf:6: ", "'c'", "'j'", "'k'", "one parent"});
+  ExpectLinksError(Link("a") + Link("b"), {"r.urdf:3: ", "'a'", "'b'", "one root"});
+  ExpectLinksError(
+      Link("a") + Link("b") + Joint("j", "fixed", "a", "b") + Joint("k", "fixed", "b", "a"),
+      {"r.urdf:2: ", "'a'", "loop"});
+  ExpectLinksError(Link("root") + Link("a") + Joint("j", "fixed", "a", "a"),
+                   {"r.urdf:3: ", "'a'", "loop"});
 }
 
 TEST(UrdfReader, NamesWrongJoint) {
@@ -240,10 +244,10 @@ TEST(UrdfReader, NamesWrongJoint) {
   ExpectJointError("revolute", std::string(kLimit) + "\n<axis xyz='0 0 0'/>",
                    {"r.urdf:5: ", "axis is zero"});
   ExpectJointError("revolute", std::string(kLimit) + kLimit, {"r.urdf:4: ", "second <limit>"});
-  ExpectError(Link("a") + "<joint name='j' type='fixed'><parent link='a'/></joint>",
-              {"r.urdf:3: ", "'j'", "<child>"});
-  ExpectError(Link("a") + "<joint type='fixed'/>", {"r.urdf:3: ", "<joint>", "'name'"});
-  ExpectError("<link name='a'\n name='b'/>", {"r.urdf:2: ", "second attribute 'name'"});
+  ExpectLinksError(Link("a") + "<joint name='j' type='fixed'><parent link='a'/></joint>",
+                   {"r.urdf:3: ", "'j'", "<child>"});
+  ExpectLinksError(Link("a") + "<joint type='fixed'/>", {"r.urdf:3: ", "<joint>", "'name'"});
+  ExpectLinksError("<link name='a'\n name='b'/>", {"r.urdf:2: ", "second attribute 'name'"});
 }
 
 TEST(UrdfReader, NamesWrongNumbers) {
@@ -259,9 +263,13 @@ TEST(UrdfReader, NamesWrongNumbers) {
     return "<link name='a'><inertial>\n<mass value='" + mass + "'/>\n<inertia ixx='" + ixx +
            "' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";
   };
-  ExpectError(inertial("-1", "1"), {"r.urdf:3: ", "mass of -1 kg"});
-  ExpectError(inertial("heavy", "1"), {"r.urdf:3: ", "'heavy'"});
-  ExpectError(inertial("1", "nan"), {"r.urdf:4: ", "'ixx'", "link 'a'", "'nan'"});
+  ExpectLinksError(inertial("-1", "1"), {"r.urdf:3: ", "mass of -1 kg"});
+  ExpectLinksError(inertial("heavy", "1"), {"r.urdf:3: ", "'heavy'"});
+  ExpectLinksError(
+      "<link name='a'><inertial><mass value='1'/>\n<inertia ixx='1' ixy='0' ixz='0' iyy='1' "
+      "iyz='0'/></inertial></link>",
+      {"r.urdf:3: ", "no attribute 'izz'"});
+  ExpectLinksError(inertial("1", "nan"), {"r.urdf:4: ", "'ixx'", "link 'a'", "'nan'"});
 }
 
 TEST(UrdfReader, NamesMimicsThatLeadNowhere) {
@@ -271,19 +279,20 @@ TEST(UrdfReader, NamesMimicsThatLeadNowhere) {
   ExpectJointError("revolute", mimic("nobody"), {"r.urdf:4: ", "'j'", "'nobody'"});
   ExpectJointError("revolute", mimic("j"), {"r.urdf:4: ", "'j'", "itself"});
   const std::string links = Link("a") + Link("b") + Link("c");
-  ExpectError(links + Joint("j", "revolute", "a", "b", mimic("k")) +
-                  Joint("k", "revolute", "b", "c", mimic("j")),
-              {"r.urdf:5: ", "'j'", "itself"});
-  ExpectError(links + Joint("j", "revolute", "a", "b", mimic("k")) + Joint("k", "fixed", "b", "c"),
-              {"r.urdf:5: ", "'j'", "'k'", "fixed"});
+  ExpectLinksError(links + Joint("j", "revolute", "a", "b", mimic("k")) +
+                       Joint("k", "revolute", "b", "c", mimic("j")),
+                   {"r.urdf:5: ", "'j'", "itself"});
+  ExpectLinksError(
+      links + Joint("j", "revolute", "a", "b", mimic("k")) + Joint("k", "fixed", "b", "c"),
+      {"r.urdf:5: ", "'j'", "'k'", "fixed"});
 }
 
 TEST(UrdfReader, SaysThatAXacroFileIsToBeExpanded) {
-  ExpectError("<xacro:include filename='x'/>", {"r.urdf:2: ", "xacro", "expand"});
+  ExpectLinksError("<xacro:include filename='x'/>", {"r.urdf:2: ", "xacro", "expand"});
 }
 
 TEST(UrdfReader, PassesOverWhatItDoesNotNeed) {
-  const RobotTree tree = Parse(
+  const RobotTree tree = ParseLinks(
       "<material name='grey'/>" + Link("a") +
       "<link name='b'><visual><origin xyz='x'/></visual><collision/></link>" +
       Joint("j", "revolute", "a", "b",
@@ -293,7 +302,7 @@ TEST(UrdfReader, PassesOverWhatItDoesNotNeed) {
 }
 
 TEST(UrdfReader, KeepsNamesWithMarkupAndAccents) {
-  const RobotTree tree = Parse(Link("a&amp;b &lt;c&gt; 'é'"));
+  const RobotTree tree = ParseLinks(Link("a&amp;b &lt;c&gt; 'é'"));
   EXPECT_EQ(tree.links[0].name, "a&b <c> 'é'");
 }
 
@@ -316,7 +325,7 @@ TEST(UrdfReader, ReadsTheLongestChain) {
     contents += Link(name) + Joint(name, "continuous", last, name,
                                    i == 1 ? "" : "<mimic joint='" + last + "'/>");
   }
-  const RobotTree tree = Parse(contents);
+  const RobotTree tree = ParseLinks(contents);
   EXPECT_EQ(tree.joints.size(), 4999u);
   EXPECT_EQ(tree.coordinate_count(), 1);
 }

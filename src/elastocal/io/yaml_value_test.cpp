@@ -109,7 +109,7 @@ TEST(YamlValue, RefusesHostileText) {
 }
 
 TEST(YamlValue, ReadsKeysIntoOptions) {
-  const YamlValue root = Parse("a: 2\nb: 7\nc: true\n");
+  const YamlValue root = ParseYaml("a: 2\nb: 7\nc: true\n");
   double number = 1.0, absent = 1.0;
   int whole = 0;
   bool flag = false;
@@ -125,14 +125,14 @@ TEST(YamlValue, ReadsKeysIntoOptions) {
 }
 
 TEST(YamlValue, NumberRangesCountTheirBoundsWhereTheySay) {
-  const YamlValue one = Parse("1");
+  const YamlValue one = ParseYaml("1");
   EXPECT_EQ(one.Number(kFractionOrOne), 1.0);
   EXPECT_EQ(one.Number({1.0, 1.0, true, true}), 1.0);
   ExpectInputError([&] { one.Number(kFraction); }, {"found '1'", "above 0 and below 1"});
   ExpectInputError([&] { one.Number({1.0}); }, {"a number above 1"});
   ExpectInputError([&] { one.Number({.lower = 2.0, .with_lower = true}); }, {"of at least 2"});
   ExpectInputError([&] { one.Number({0.0, 0.5, true, true}); }, {"from 0 to 0.5"});
-  ExpectInputError([&] { Parse(".inf").Number(kPositive); }, {"found '.inf'"});
+  ExpectInputError([&] { ParseYaml(".inf").Number(kPositive); }, {"found '.inf'"});
 }
 
 }  // namespace

@@ -29,9 +29,12 @@ void RequireUtf8(std::string_view text, const std::string& source, int first_lin
   if (place == text.size()) return;
   const std::string_view before = text.substr(0, place);
   const auto line = first_line + std::count(before.begin(), before.end(), '\n');
-  const auto column = place - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
-  throw InputError(source + ":" + std::to_string(line) + ": byte " + std::to_string(column) +
-                   " of the line is not UTF-8 (Latin-1?); save the file as UTF-8");
+  constexpr std::size_t kLongestShown = 30;
+  std::string_view shown = before.substr(before.rfind('\n') + 1);  // npos + 1 is 0
+  if (shown.size() > kLongestShown) shown.remove_prefix(shown.size() - kLongestShown);
+  while (!IsUtf8(shown)) shown.remove_prefix(1);  // the rest of a character
+  throw InputError(source + ":" + std::to_string(line) + ": what follows '" + std::string(shown) +
+                   "' is not UTF-8 (Latin-1?); save the file as UTF-8");
 }
 
 }  // namespace elastocal

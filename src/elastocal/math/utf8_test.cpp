@@ -22,8 +22,8 @@ TEST(Utf8, KnowsTextFromOtherBytes) {
 TEST(Utf8, NamesTheLine) {
   RequireUtf8("a\n\u00e9", "f.yaml");
   ExpectInputError([] { RequireUtf8("a: \u00e9\nb: caf\xe9\n", "f.yaml"); },
-                   {"f.yaml:2: ", "byte 7 of the line is not UTF-8"});
-  ExpectInputError([] { RequireUtf8("\xe9,b", "f.csv", 7); }, {"f.csv:7: byte 1 "});
+                   {"f.yaml:2: ", "what follows 'b: caf' is not UTF-8"});
+  ExpectInputError([] { RequireUtf8("\xe9,b", "f.csv", 7); }, {"f.csv:7: what follows '' "});
 }
 
 }  // namespace
