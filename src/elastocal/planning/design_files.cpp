@@ -5,6 +5,7 @@
 
 #include "elastocal/planning/curves_file.hpp"
 #include "elastocal/planning/design_postures.hpp"
+#include "elastocal/tables/table_writer.hpp"
 
 namespace elastocal {
 namespace {
@@ -24,8 +25,8 @@ std::filesystem::path Beside(const std::filesystem::path& output, const std::str
 std::string FormatCurvesTable(const std::vector<CurvePoint>& points, std::uint64_t seed) {
   std::string text = "algorithm,chain,seed,postures,o1\n";
   for (const CurvePoint& point : points) {
-    text += fmt::format("{},{},{},{},{:.9g}\n", AlgorithmName(point.algorithm), point.chain, seed,
-                        point.postures, point.index);
+    text += fmt::format("{},{},{},{},{:.9g}\n", AlgorithmName(point.algorithm),
+                        MakeCell(point.chain), seed, point.postures, point.index);
   }
   return text;
 }

@@ -13,10 +13,13 @@ namespace elastocal {
 namespace {
 
 TEST(PlannedMotionFile, IsReadAsItWasWritten) {
-  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   Random random(1);
   PlannedMotion planned;
   const int left = project.soles[0].link, right = project.soles[1].link;
+  // Names may have separators and quotes.
+  project.tree.links[static_cast<std::size_t>(left)].name = "sole, left";
+  project.tree.joints[0].name = "first; \"joint\"";
   planned.motion.time_s = Eigen::Vector3d(0.0, 10.0, 20.0);
   planned.motion.support = {{left, right}, {right}, {left}};
   planned.motion.q.resize(3, project.tree.coordinate_count());
