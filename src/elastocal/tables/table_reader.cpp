@@ -241,8 +241,16 @@ void AppendTime(const Table& table, int column, std::vector<double>& time) {
 
 Eigen::MatrixXd StackRows(const std::vector<double>& numbers, std::size_t rows) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const RowMajor>(numbers.data(), static_cast<Eigen::Index>(rows),
-                                    static_cast<Eigen::Index>(numbers.size() / rows));
+  const Eigen::Map<const RowMajor> read(numbers.data(), static_cast<Eigen::Index>(rows),
+                                        static_cast<Eigen::Index>(numbers.size() / rows));
+  // Some rows at a time stay in the cache while they become columns.
+  constexpr Eigen::Index kBlock = 64;
+  Eigen::MatrixXd stacked(read.rows(), read.cols());
+  for (Eigen::Index row = 0; row < read.rows(); row += kBlock) {
+    const Eigen::Index count = std::min(kBlock, read.rows() - row);
+    stacked.middleRows(row, count) = read.middleRows(row, count);
+  }
+  return stacked;
 }
 
 }  // namespace elastocal
