@@ -6,21 +6,8 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/warning_groups.hpp"
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/math/input_error.hpp"
 
 namespace elastocal::cli {
-
-void CheckOutputs(const std::vector<std::filesystem::path>& outputs,
-                  const std::vector<std::filesystem::path>& inputs) {
-  for (const std::filesystem::path& output : outputs) {
-    for (const std::filesystem::path& input : inputs) {
-      if (!output.empty() && SameFile(output, input)) {
-        throw InputError(output.string() + ": this is an input; choose another output");
-      }
-    }
-  }
-}
 
 void Print(bool quiet, const std::string& text) {
   if (quiet) return;

@@ -9,10 +9,6 @@
 
 namespace elastocal::cli {
 
-/// Throws InputError where an output (empty ones aside) would replace an input.
-void CheckOutputs(const std::vector<std::filesystem::path>& outputs,
-                  const std::vector<std::filesystem::path>& inputs);
-
 /// Prints to stdout unless quiet.
 void Print(bool quiet, const std::string& text);
 

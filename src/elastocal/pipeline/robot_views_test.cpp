@@ -19,7 +19,7 @@ class CommonUser {
  public:
   CommonUser() : was_root_(geteuid() == 0 && seteuid(65534) == 0) {}
   ~CommonUser() {
-    if (was_root_) EXPECT_EQ(seteuid(0), 0);
+    if (was_root_ && seteuid(0) != 0) ADD_FAILURE() << "cannot become root again";
   }
   CommonUser(const CommonUser&) = delete;
   CommonUser& operator=(const CommonUser&) = delete;
@@ -30,8 +30,8 @@ class CommonUser {
 
 TEST(RobotViews, AMeshThatCannotBeReadIsPassedOver) {
   const ScratchFolder scratch;
-  fs::permissions(scratch.path(), fs::perms::others_read | fs::perms::others_exec,
-                  fs::perm_options::add);
+  constexpr auto kEveryone = static_cast<fs::perms>(0755);
+  fs::permissions(scratch.path(), kEveryone);
   std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
   urdf.insert(urdf.rfind("</robot>"), "<!-- filename=\"fine.stl\" filename=\"secret.stl\" -->");
   scratch.Write("arm6.urdf", urdf);
