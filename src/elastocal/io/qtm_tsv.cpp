@@ -17,7 +17,7 @@ namespace {
 
 /// More lines above the frames are no header, and would only take long to read.
 constexpr int kMostHeaderLines = 10000;
-constexpr std::size_t kMostReservedFrames = 100000;
+constexpr std::size_t kMostReserved = 20000000;  // numbers: a file may claim what it does not hold
 
 /// What stands above the frames: lines `KEY<tab>value` and a row of column names `[Frame] [Time]
 /// NAME X ...`; either may be absent, but one of them has to name the markers.
@@ -203,10 +203,8 @@ class FrameReader {
     if (lines_.cells.empty()) throw InputError(source + ": no frame below the header");
     frames_.first_line = lines_.reader.line();
     FindLayout();
-    // What the file claims to hold, within reason.
-    const std::size_t claimed =
-        std::min<std::size_t>(header_.frames.value_or(0), kMostReservedFrames);
-    positions_.reserve(claimed * 3 * header_.names.size());
+    positions_.reserve(
+        std::min(kMostReserved, 3 * header_.names.size() * header_.frames.value_or(0)));
     std::size_t count = 0;
     do {
       if (lines_.blank()) break;
