@@ -2,10 +2,10 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/prediction.hpp"
+#include "elastocal/math/progress.hpp"
 #include "elastocal/validation/metrics.hpp"
 
 namespace elastocal {
@@ -28,9 +28,6 @@ struct ModelComparison {
   const CalibrationResult& largest() const { return results[static_cast<int>(largest_kind())]; }
   const ErrorMetrics& largest_metrics() const { return metrics[static_cast<int>(largest_kind())]; }
 };
-
-/// Called with the number of finished steps and of all steps; may be empty.
-using Progress = std::function<void(int done, int total)>;
 
 /// Calibrates the other models beside `largest`, the result of the largest one. That one decides
 /// which observations are outliers, so that all models are judged on the same data.
