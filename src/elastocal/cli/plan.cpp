@@ -213,7 +213,7 @@ void AddPlan(CLI::App& app, Action& action) {
   command->footer(
       "Example: elastocal plan models/talos/project.yaml --postures postures.yaml -o motion.csv");
   command->callback([&action, options] {
-    if (options->postures.empty() && options->validation.empty()) {
+    if (options->postures.empty() && options->kind.empty()) {
       throw CLI::RequiredError("--postures or --kind");
     }
     action = [options] { return Plan(*options); };
