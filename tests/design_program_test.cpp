@@ -37,7 +37,7 @@ class DesignProgram : public testing::Test {
 };
 
 TEST_F(DesignProgram, DesignsAndAssessesAndTellsTheTruthAboutBoth) {
-  const std::string options = " --chain head_trunk --postures 8 --seed 3 -q";
+  const std::string options = " --chains head_trunk --count 8 --seed 3 -q";
   const ProgramResult made =
       RunProgram("design " + Talos() + " -o " + File("postures.yaml") + options);
   ASSERT_EQ(made.exit_code, 0) << made.err;
@@ -71,7 +71,7 @@ TEST_F(DesignProgram, DesignsAndAssessesAndTellsTheTruthAboutBoth) {
 TEST_F(DesignProgram, EndsWithFourAndNamesTheLimitWhereNothingIsFeasible) {
   const std::string project = Changed("floor_mm: -1000", "floor_mm: -300");
   const ProgramResult result =
-      RunProgram("design " + project + " --chain leg_left -o " + File("postures.yaml"));
+      RunProgram("design " + project + " --chains leg_left -o " + File("postures.yaml"));
   EXPECT_EQ(result.exit_code, 4) << result.err;
   EXPECT_NE(result.err.find("above the floor"), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(File("postures.yaml")));
@@ -115,14 +115,14 @@ TEST_F(DesignProgram, DoesNotReplaceWhatItReadsNorItsOwnFiles) {
   WritePostureTable(table, recording, project.tree);
   const std::string before = ReadFile(table);
   const ProgramResult assessed = RunProgram("assess " + Talos() + " --recording " + table +
-                                            " --chain head_trunk --json " + table);
+                                            " --chains head_trunk --json " + table);
   EXPECT_EQ(assessed.exit_code, 3) << assessed.err;
   EXPECT_NE(assessed.err.find("this is an input"), std::string::npos) << assessed.err;
   EXPECT_EQ(ReadFile(table), before);
 
   for (const char* name : {"postures.yaml", "postures_summary.json", "postures_curves.csv"}) {
     const ProgramResult designed =
-        RunProgram("design " + Talos() + " --chain head_trunk --postures 4 -o " +
+        RunProgram("design " + Talos() + " --chains head_trunk --count 4 -o " +
                    File("postures.yaml") + " --json " + File(name));
     EXPECT_EQ(designed.exit_code, 3) << name;
     EXPECT_NE(designed.err.find(name), std::string::npos) << designed.err;

@@ -157,9 +157,9 @@ TEST_F(Killed, Validate) {
 }
 
 TEST_F(Killed, Design) {
-  const std::string end = " --postures 4 --no-certificate -o FOLDER/postures.yaml";
-  TryKills("design " + talos_ + " --chain head_trunk --seed 1" + end,
-           "design " + talos_ + " --chain head_trunk --seed 2" + end);
+  const std::string end = " --count 4 --no-certificate -o FOLDER/postures.yaml";
+  TryKills("design " + talos_ + " --chains head_trunk --seed 1" + end,
+           "design " + talos_ + " --chains head_trunk --seed 2" + end);
 }
 
 TEST_F(Killed, Plan) {
@@ -167,7 +167,7 @@ TEST_F(Killed, Plan) {
   const std::string first = scratch_.Write("first_input.yaml", kTalosPostures);
   const std::string second = scratch_.Write("second_input.yaml", kTalosPostures);
   TryKills("plan " + talos_ + " --postures " + first + end,
-           "plan " + talos_ + " --hold-s 1.5 --postures " + second + end);
+           "plan " + talos_ + " --rest-s 1.5 --postures " + second + end);
 }
 
 TEST_F(Killed, Simulate) {

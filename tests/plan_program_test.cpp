@@ -90,7 +90,7 @@ TEST_F(Plan, WritesNoMotionThatBreaksItsLimitsAndSaysWhich) {
   // Every sine is left out, and the robot at rest needs 19 % of the torque of a wrist. Legs aside,
   // because they could not even be lifted.
   const ProgramResult refused = RunProgram("plan " + WithoutLegs() + " -o " + Path("motion.csv") +
-                                           " --validation sine --torque-share 0.1");
+                                           " --kind sine --torque-share 0.1");
   EXPECT_EQ(refused.exit_code, 4) << refused.out;
   EXPECT_NE(refused.err.find("the motion breaks a limit: torque, % of limit: 19 at 0.00 s (arm_"),
             std::string::npos)
@@ -112,7 +112,7 @@ TEST_F(Plan, RefusesSharesAboveOneAndOutputsThatMeet) {
   };
   refused("--torque-share 80", 2, "--torque-share");
   refused("--velocity-share 0", 2, "--velocity-share");
-  refused("--zmp-margin -0.01", 2, "--zmp-margin");
+  refused("--zmp-margin-mm -10", 2, "--zmp-margin-mm");
   refused("--json " + postures, 3, "postures.yaml");
   refused("--json " + Path("motion.csv"), 3, "motion.csv");
   refused("--json " + Path("motion_margins.json"), 3, "motion_margins.json");
@@ -125,7 +125,7 @@ TEST_F(Plan, MotionsOfChainsAreNotNamedLikeJointLogs) {
   const std::string postures = scratch_.Write("postures.yaml", kPostures);
   std::filesystem::create_directory(Path("chains"));
   const std::string log = scratch_.Write("chains/leg_left.csv", "t,leg_left_1_joint\n0,0\n");
-  const std::string more = "--postures " + postures + " --chains " + Path("chains");
+  const std::string more = "--postures " + postures + " --per-chain " + Path("chains");
   ASSERT_EQ(Run(more).exit_code, 0);
   EXPECT_EQ(ReadFile(log), "t,leg_left_1_joint\n0,0\n");
   EXPECT_TRUE(std::filesystem::exists(Path("chains/leg_left_motion.csv")));
@@ -157,16 +157,16 @@ TEST_F(Plan, StandsOnOneFootAndFallsWithoutBalance) {
       "[{leg_left_1_joint: 0.2, leg_left_3_joint: -1.3, leg_left_4_joint: 1.9}]}]\n");
   const auto stands = [&](const std::string& more) {
     const ProgramResult result =
-        Run("--postures " + postures + " --try 1 --seed 4 --json " + Path("plan.json") + more);
+        Run("--postures " + postures + " --robots 1 --seed 4 --json " + Path("plan.json") + more);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return nlohmann::json::parse(ReadFile(Path("plan.json")))["tries"][0]["stood"].get<bool>();
   };
   EXPECT_TRUE(stands(""));
-  EXPECT_FALSE(stands(" --unbalanced"));
+  EXPECT_FALSE(stands(" --no-balance"));
 }
 
 TEST_F(Plan, PlansValidationMotions) {
-  const ProgramResult result = Run("--validation repeatability --json " + Path("plan.json"));
+  const ProgramResult result = Run("--kind repeatability --json " + Path("plan.json"));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto json = nlohmann::json::parse(ReadFile(Path("plan.json")));
   ASSERT_EQ(json["sets"].size(), 5u);

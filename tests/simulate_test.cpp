@@ -144,7 +144,7 @@ TEST_F(Simulate, NamesOfTrialsAreNoPathsAndNotThoseOfMotions) {
   EXPECT_EQ(TrialNameOf("_motion.csv"), "_motion");
   EXPECT_EQ(TrialNameOf("my motion: \xc3\xa4.csv"), "my_motion____");
   EXPECT_EQ(TrialNameOf("...csv"), "_..");
-  // A motion of plan --chains can be played into the folder where it lies.
+  // A motion of plan --per-chain can be played into the folder where it lies.
   std::filesystem::create_directory(Folder("here"));
   const std::string motion =
       scratch_.Write("here/arm_motion.csv", "time,turret_joint,support\n0,0,none\n2,0.3,none\n");

@@ -7,6 +7,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/figures.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/io/experiment.hpp"
 #include "elastocal/io/output_set.hpp"
@@ -24,7 +25,7 @@ struct AssessCommand {
   std::string project, postures;
   std::vector<std::filesystem::path> recordings;
   std::vector<std::string> chains;
-  double marker_sd_mm = 0.2;
+  double marker_noise_mm = 0.2;
   int weakest = 5;
   bool elastic = false;
 };
@@ -98,7 +99,7 @@ int Assess(const AssessCommand& command) {
   PostureAssessmentOptions options;
   options.chains = command.chains;
   options.elastic = command.elastic;
-  options.assess.marker_sd = 1e-3 * command.marker_sd_mm;
+  options.assess.marker_sd = 1e-3 * command.marker_noise_mm;
   options.assess.seed = command.common.seed.value_or(1);
   options.assess.certificate.seed = options.assess.seed;
   const bool quiet = command.common.Silent();
@@ -120,17 +121,21 @@ void AddAssess(CLI::App& app, Action& action) {
       app.add_subcommand("assess", "Say what a set of calibration postures is worth");
   command->add_option("project", options->project, "Project file (YAML) with a section 'design'")
       ->required();
-  auto* postures = command->add_option("--postures", options->postures, "Posture file (YAML)");
+  auto* postures = command->add_option("--postures", options->postures, "Posture file (YAML)")
+                       ->type_name("FILE");
   command
       ->add_option("--recording", options->recordings,
                    "Instead: a posture table (CSV), or recording folders")
       ->excludes(postures)
       ->expected(-1);
-  command->add_option("--chain", options->chains, "Only these chains")->expected(-1);
+  command->add_option("--chains", options->chains, "Only these chains")
+      ->expected(-1)
+      ->type_name("NAME");
   command
-      ->add_option("--marker-sd", options->marker_sd_mm,
+      ->add_option("--marker-noise-mm", options->marker_noise_mm,
                    "Noise of a marker coordinate that the standard deviations are for, mm")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-3, 100.0))
+      ->check(IsNumber)
       ->capture_default_str();
   command->add_option("--weakest", options->weakest, "How many of the weakest parameters to show")
       ->check(CLI::Range(0, 1000))

@@ -7,6 +7,7 @@
 
 #include "elastocal/cli/calibration_report.hpp"
 #include "elastocal/cli/calibration_run.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
@@ -61,19 +62,19 @@ void AddCalibrate(CLI::App& app, Action& action) {
   command
       ->add_option("--recording", options->recordings,
                    "Table of static postures (CSV), or folders with experiment.yaml")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   command->add_option("-o,--output", options->output, "Folder for the results")
       ->required()
-      ->check([](const std::string& folder) {
-        return folder.empty() ? std::string("the folder needs a name") : std::string();
-      });
+      ->check(IsNamed)
+      ->type_name("DIR");
   command->add_option("--kfold", options->folds, "Also cross-validate with this many folds")
       ->check(CLI::Range(2, 100000));
   command
       ->add_option("--zero-offsets", options->zero_offsets,
                    "Where the joints' zero offsets go: into the URDF's joint origins (origin) or "
                    "apart, to be added to the encoders (encoder)")
-      ->check(CLI::IsMember({"origin", "encoder"}))
+      ->transform(CLI::IsMember({"origin", "encoder"}, CLI::ignore_case))
       ->capture_default_str();
   AddCommonOptions(*command, options->common);
   command->footer(

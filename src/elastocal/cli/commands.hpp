@@ -21,7 +21,7 @@ enum ExitCode {
   kInternal = 1,      ///< a defect of the program
 };
 
-/// Options that every command has.
+/// Options that every command has, but for the seed of those that draw nothing.
 struct CommonOptions {
   std::string json_file;
   std::optional<std::uint64_t> seed;  ///< given by the user
@@ -32,7 +32,9 @@ struct CommonOptions {
   bool Silent() const { return quiet || json_file == "-"; }
 };
 
+/// All of them, or all but the seed.
 void AddCommonOptions(CLI::App& command, CommonOptions& options);
+void AddOutputOptions(CLI::App& command, CommonOptions& options);
 
 /// What a parsed command line is to do; the result is the exit code.
 using Action = std::function<int()>;

@@ -52,7 +52,7 @@ void AddCompare(CLI::App& app, Action& action) {
                    "Chance that any joint of an unchanged robot is called moved all the same")
       ->check(CLI::Range(1e-9, 0.5))
       ->capture_default_str();
-  AddCommonOptions(*command, options->common);
+  AddOutputOptions(*command, options->common);
   command->footer(
       "Ends with 0 whether joints moved or not; the JSON's status tells.\n"
       "Example: elastocal compare out_spring out_autumn");

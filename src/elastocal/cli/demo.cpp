@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/quick_demo.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/simulation_report.hpp"
@@ -23,7 +24,7 @@ namespace {
 struct DemoOptions {
   CommonOptions common;
   std::string output = "elastocal_demo";
-  int postures = 0;  ///< of each chain; 0: as many as it takes
+  int count = 0;  ///< postures of each chain; 0: as many as it takes
   bool quick = false;
 };
 
@@ -118,8 +119,8 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   const std::uint64_t seed = options.common.seed.value_or(1);
   const std::string seed_text = std::to_string(seed);
   CommandLine design = {"design", project, "-o", in("postures.yaml"), "--seed", seed_text};
-  if (options.postures > 0) {
-    design.insert(design.end(), {"--postures", std::to_string(options.postures)});
+  if (options.count > 0) {
+    design.insert(design.end(), {"--count", std::to_string(options.count)});
   }
   int exit_code = RunShown(design, options);
   if (exit_code != kFine) return exit_code;
@@ -132,8 +133,7 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   simulations.Start(in("motion.csv"), "", in("recording"));
   for (const std::string kind : {"sine", "random"}) {
     exit_code = RunShown(
-        {"plan", project, "--validation", kind, "-o", in(kind + ".csv"), "--seed", seed_text},
-        options);
+        {"plan", project, "--kind", kind, "-o", in(kind + ".csv"), "--seed", seed_text}, options);
     if (exit_code != kFine) return exit_code;
     simulations.Start(in(kind + ".csv"), kind, in("recording_" + kind));
     calibrate.push_back(in("recording_" + kind));
@@ -154,7 +154,7 @@ void PointToReport(const DemoOptions& options) {
 int Demo(const DemoOptions& options) {
   const std::string project = (ModelsFolder() / "talos" / "project.yaml").string();
   QuickDemoOptions quick{options.common, project, options.output};
-  if (options.postures > 0) quick.postures = options.postures;
+  if (options.count > 0) quick.postures = options.count;
   const int exit_code = options.quick ? QuickDemo(quick) : RunCompleteChain(project, options);
   PointToReport(options);
   return exit_code;
@@ -168,9 +168,11 @@ void AddDemo(CLI::App& app, Action& action) {
       "demo",
       "The complete chain on a virtual humanoid: design, plan, simulate, calibrate, validate");
   command->add_option("-o,--output", options->output, "Folder for all files")
+      ->check(IsNamed)
+      ->type_name("DIR")
       ->capture_default_str();
   command
-      ->add_option("--postures", options->postures,
+      ->add_option("--count", options->count,
                    "Postures of each chain; default: as many as it takes (--quick: 60 in all)")
       ->check(CLI::Range(4, 10000));
   command->add_flag("--quick", options->quick,

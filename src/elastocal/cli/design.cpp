@@ -8,6 +8,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/design_report.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/io/output_set.hpp"
@@ -20,7 +21,7 @@ struct DesignCommand {
   CommonOptions common;
   std::string project, output, criterion = "O1", algorithm = "nocp";
   std::vector<std::string> chains;
-  int postures = 0, max_postures = PlateauRule().max_postures, block = 4;
+  int count = 0, max_count = PlateauRule().max_postures, block = 4;
   double plateau = PlateauRule().tolerance;
   bool elastic = false, no_certificate = false, curves = false;
 };
@@ -43,11 +44,11 @@ PostureDesignOptions MakeOptions(const DesignCommand& command) {
   }
   design.nocp.block = command.block;
   design.nocp.plateau.tolerance = command.plateau;
-  design.nocp.plateau.max_postures = command.max_postures;
-  if (command.postures > 0) {
+  design.nocp.plateau.max_postures = command.max_count;
+  if (command.count > 0) {
     design.nocp.plateau.tolerance = -1.0;
-    design.nocp.plateau.max_postures = command.postures;
-    design.postures = command.postures;
+    design.nocp.plateau.max_postures = command.count;
+    design.postures = command.count;
   }
   return options;
 }
@@ -98,13 +99,18 @@ void AddDesign(CLI::App& app, Action& action) {
       app.add_subcommand("design", "Find the smallest set of calibration postures that tell most");
   command->add_option("project", options->project, "Project file (YAML) with a section 'design'")
       ->required();
-  command->add_option("-o,--output", options->output, "Posture file to write (YAML)")->required();
-  command->add_option("--chain", options->chains, "Only these chains")->expected(-1);
+  command->add_option("-o,--output", options->output, "Posture file to write (YAML)")
+      ->required()
+      ->check(IsNamed)
+      ->type_name("FILE");
+  command->add_option("--chains", options->chains, "Only these chains")
+      ->expected(-1)
+      ->type_name("NAME");
   command
-      ->add_option("--postures", options->postures,
-                   "Exactly so many for each chain instead of as many as it takes")
+      ->add_option("--count", options->count,
+                   "Exactly so many postures for each chain instead of as many as it takes")
       ->check(CLI::Range(1, 1000));
-  command->add_option("--max-postures", options->max_postures, "At most so many for each chain")
+  command->add_option("--max-count", options->max_count, "At most so many postures for each chain")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command
@@ -117,11 +123,11 @@ void AddDesign(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--algorithm", options->algorithm,
-                   "nocp finds out how many postures it takes; the others take --postures (24)")
-      ->check(CLI::IsMember({"nocp", "cocp", "ioops", "exchange", "random"}))
+                   "nocp finds out how many postures it takes; the others take --count (24)")
+      ->transform(CLI::IsMember({"nocp", "cocp", "ioops", "exchange", "random"}, CLI::ignore_case))
       ->capture_default_str();
   command->add_option("--criterion", options->criterion, "Observability index")
-      ->check(CLI::IsMember({"O1", "O2", "O3", "O4", "O5"}))
+      ->transform(CLI::IsMember({"O1", "O2", "O3", "O4", "O5"}, CLI::ignore_case))
       ->capture_default_str();
   command->add_flag(
       "--elastic", options->elastic,

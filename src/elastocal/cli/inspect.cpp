@@ -138,7 +138,7 @@ void AddInspect(CLI::App& app, Action& action) {
       ->add_option("--external", options->external,
                    "Whether waist and marker positions come before the joints' parameters (first) "
                    "or after them, as printed in the paper (last)")
-      ->check(CLI::IsMember({"first", "last"}))
+      ->transform(CLI::IsMember({"first", "last"}, CLI::ignore_case))
       ->capture_default_str();
   command->add_flag("--regrouping", options->regrouping,
                     "Show what each dropped parameter is regrouped into");

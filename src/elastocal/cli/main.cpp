@@ -21,8 +21,7 @@
 namespace elastocal::cli {
 
 void AddCommonOptions(CLI::App& command, CommonOptions& options) {
-  command.add_option("--json", options.json_file,
-                     "Also write the results to this file, as JSON (- for standard output)");
+  AddOutputOptions(command, options);
   command
       .add_option("--seed", options.seed,
                   "Seed of all that is drawn at random (postures for identifiability, folds, the "
@@ -30,6 +29,13 @@ void AddCommonOptions(CLI::App& command, CommonOptions& options) {
       ->check([](const std::string& text) {
         return text.starts_with('-') ? std::string("a seed is 0 or above") : std::string();
       });
+}
+
+void AddOutputOptions(CLI::App& command, CommonOptions& options) {
+  command
+      .add_option("--json", options.json_file,
+                  "Also write the results to this file, as JSON (- for standard output)")
+      ->type_name("FILE");
   command.add_flag("--quiet,-q", options.quiet, "Print nothing but warnings and errors");
   command.add_flag("--verbose,-v", options.verbose,
                    "Print all tables, and each warning by itself instead of those that say the "

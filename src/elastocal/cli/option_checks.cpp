@@ -1,13 +1,19 @@
 #include "elastocal/cli/option_checks.hpp"
 
+#include <cmath>
+
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal::cli {
 
-std::string IsShare(const std::string& text) {
+std::string IsNumber(const std::string& text) {
   const auto number = ParseNumber(text);
-  if (number && *number > 0.0 && *number <= 1.0) return "";
-  return "found " + Quote(text) + "; a share above 0 and up to 1 was expected";
+  if (number && std::isfinite(*number)) return "";
+  return "found " + Quote(text) + "; a number was expected";
+}
+
+std::string IsNamed(const std::string& text) {
+  return text.empty() ? "the output needs a name" : "";
 }
 
 }  // namespace elastocal::cli

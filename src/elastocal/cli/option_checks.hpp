@@ -4,8 +4,12 @@
 
 namespace elastocal::cli {
 
-/// For CLI::Option::check: what is wrong with the text as a share above 0 and up to 1; empty where
-/// nothing is.
-std::string IsShare(const std::string& text);
+// For CLI::Option::check: what is wrong with the text; empty where nothing is.
+
+/// A finite number. CLI::Range alone takes NaN.
+std::string IsNumber(const std::string& text);
+
+/// The name of an output: not empty.
+std::string IsNamed(const std::string& text);
 
 }  // namespace elastocal::cli

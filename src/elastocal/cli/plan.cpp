@@ -21,7 +21,8 @@ namespace {
 struct PlanCommand {
   CommonOptions common;
   std::string project, postures, output, trajectory, folder;
-  std::string validation;
+  std::string kind;  ///< of a validation motion; empty: postures are given
+  double zmp_margin_mm = 1e3 * MotionLimits().zmp_margin;
   bool unbalanced = false, unstabilised = false;
   MotionPlanOptions options;
   MotionTrialOptions tries{.robots = 0};
@@ -88,7 +89,7 @@ int Plan(const PlanCommand& command) {
   const Project project = ReadProject(command.project);
   std::vector<ChainPostures> postures;
   std::vector<std::string> chains;
-  if (command.validation.empty()) {
+  if (command.kind.empty()) {
     postures = ReadPostureFile(command.postures, project);
     for (const ChainPostures& chain : postures) chains.push_back(chain.chain);
   } else {
@@ -109,15 +110,16 @@ int Plan(const PlanCommand& command) {
   const bool quiet = command.common.Silent();
   const Progress progress = TerminalProgress("planned chain", quiet);
   MotionPlanOptions options = command.options;
+  options.limits.zmp_margin = 1e-3 * command.zmp_margin_mm;
   options.plan.balanced = !command.unbalanced;
   MotionTrialOptions tries = command.tries;
   tries.seed = command.common.seed.value_or(1);
   tries.stabilised = !command.unstabilised;
   tries.threads = options.threads;
-  const MotionPlan plan = command.validation.empty()
-                              ? PlanMotion(project, postures, options, progress)
-                              : PlanValidationMotion(project, KindNamed(command.validation),
-                                                     tries.seed, options, progress);
+  const MotionPlan plan =
+      command.kind.empty()
+          ? PlanMotion(project, postures, options, progress)
+          : PlanValidationMotion(project, KindNamed(command.kind), tries.seed, options, progress);
   PrintWarnings(plan.left_out, command.common.verbose);
   Print(quiet, SetTable(plan));
   if (plan.impossible.empty()) {
@@ -152,58 +154,67 @@ void AddPlan(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "plan", "Plan a motion through calibration postures that the robot does standing by itself");
   command->add_option("project", options->project, "Project file (YAML)")->required();
-  auto* postures = command->add_option("--postures", options->postures,
-                                       "Posture file (YAML; docs/formats.md), as design writes it");
+  auto* postures = command
+                       ->add_option("--postures", options->postures,
+                                    "Posture file (YAML; docs/formats.md), as design writes it")
+                       ->type_name("FILE");
   command
-      ->add_option("--validation", options->validation,
-                   "Plan a validation motion of all chains instead")
-      ->check(CLI::IsMember({"sine", "random", "repeatability"}))
+      ->add_option("--kind", options->kind,
+                   "Plan a validation motion of this kind, of all chains, instead")
+      ->transform(CLI::IsMember({"sine", "random", "repeatability"}, CLI::ignore_case))
       ->excludes(postures);
   command->add_option("-o,--output", options->output, "Motion (CSV; docs/formats.md, Motion)")
-      ->required();
-  command->add_option("--trajectory", options->trajectory,
-                      "Also as a ROS trajectory_msgs/JointTrajectory (YAML)");
-  command->add_option("--chains", options->folder,
-                      "Also a motion a chain in this folder, without the changes of support: what "
-                      "simulate --motion plays as a trial");
-  const auto number = [&](const char* name, double& value, const char* help) {
-    return command->add_option(name, value, help)->capture_default_str();
+      ->required()
+      ->check(IsNamed)
+      ->type_name("FILE");
+  command
+      ->add_option("--trajectory", options->trajectory,
+                   "Also as a ROS trajectory_msgs/JointTrajectory (YAML)")
+      ->type_name("FILE");
+  command
+      ->add_option("--per-chain", options->folder,
+                   "Also a motion for each chain in this folder, without the changes of support: "
+                   "what simulate --motion plays as a trial")
+      ->type_name("DIR");
+  const auto number = [&](const char* name, double& value, double least, double most,
+                          const char* help) {
+    command->add_option(name, value, help)
+        ->check(CLI::Range(least, most))
+        ->check(IsNumber)
+        ->capture_default_str();
   };
   MotionPlanOptions& plan = options->options;
-  number("--move-s", plan.plan.path.duration_s, "Time between two postures, s")
-      ->check(CLI::PositiveNumber);
-  number("--hold-s", plan.plan.hold_s, "At rest in each posture, s (at least 1)")
-      ->check(CLI::Range(1.0, 1e6));
-  number("--zmp-margin", plan.limits.zmp_margin,
-         "Least distance of the zero-moment point to the edge of the support, m")
-      ->check(CLI::NonNegativeNumber);
-  number("--torque-share", plan.limits.torque_share, "Share of the torque limits to be used")
-      ->check(IsShare);
-  number("--velocity-share", plan.limits.velocity_share, "Share of the velocity limits to be used")
-      ->check(IsShare);
-  number("--friction", options->tries.floor_friction, "Friction of the floor that --try plays on")
-      ->check(CLI::PositiveNumber);
+  number("--move-s", plan.plan.path.duration_s, 0.1, 1000.0, "Time between two postures, s");
+  number("--rest-s", plan.plan.hold_s, 1.0, 1000.0, "At rest in each posture, s");
+  number("--zmp-margin-mm", options->zmp_margin_mm, 0.0, 1000.0,
+         "Least distance of the zero-moment point to the edge of the support, mm");
+  number("--torque-share", plan.limits.torque_share, 0.01, 1.0,
+         "Share of the torque limits to be used");
+  number("--velocity-share", plan.limits.velocity_share, 0.01, 1.0,
+         "Share of the velocity limits to be used");
+  number("--floor-friction", options->tries.floor_friction, 0.0, 10.0,
+         "Friction of the floor that --robots stand on");
   command->add_option("--threads", plan.threads, "Chains planned, and robots tried, at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command
-      ->add_option("--try", options->tries.robots,
+      ->add_option("--robots", options->tries.robots,
                    "Play the motion on as many robots with errors, standing free")
       ->check(CLI::Range(0, 1000));
-  number("--leg-errors", options->tries.leg_errors, "Factor on the errors of their legs' geometry")
-      ->check(CLI::NonNegativeNumber);
+  number("--leg-geometry-scale", options->tries.leg_errors, 0.0, 100.0,
+         "Factor on the errors of their legs' geometry");
   command->add_flag("--no-stabiliser", options->unstabilised,
                     "They follow the motion blindly: nothing corrects it by what the feet and the "
                     "inertial unit feel");
-  command->add_flag("--unbalanced", options->unbalanced,
+  command->add_flag("--no-balance", options->unbalanced,
                     "Do not balance, to see what comes of it: the motion is written although it "
                     "breaks its limits");
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal plan models/talos/project.yaml --postures postures.yaml -o motion.csv");
   command->callback([&action, options] {
-    if (options->postures.empty() && options->validation.empty()) {
-      throw CLI::RequiredError("--postures or --validation");
+    if (options->postures.empty() && options->kind.empty()) {
+      throw CLI::RequiredError("--postures or --kind");
     }
     action = [options] { return Plan(*options); };
   });

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/report/page.hpp"
@@ -56,12 +57,14 @@ void AddReport(CLI::App& app, Action& action) {
       "report", "One page with all results of a folder: HTML that needs no network");
   command->add_option("folder", options->folder, "Folder that calibrate, design or plan wrote to")
       ->required();
-  command->add_option("-o,--output", options->output,
-                      "The page; default: report.html in the folder");
+  command
+      ->add_option("-o,--output", options->output, "The page; default: report.html in the folder")
+      ->check(IsNamed)
+      ->type_name("FILE");
   command->add_option("--earlier", options->earlier,
                       "Earlier calibrations of this robot, the oldest first: output folders of "
                       "calibrate, or calibration.yaml files");
-  AddCommonOptions(*command, options->common);
+  AddOutputOptions(*command, options->common);
   command->footer(
       "calibrate -o and validate -o end with this report by themselves. A program that was built\n"
       "without Node.js has no page: it says so and ends with 4.\n"

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/simulation_report.hpp"
 #include "elastocal/io/motion_file.hpp"
@@ -91,30 +92,42 @@ void AddSimulate(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "simulate", "Simulate a whole calibration experiment: a recording folder with known truth");
   command->add_option("project", options->project, "Project file (YAML)")->required();
-  command->add_option("-o,--output", options->output, "Folder for the recording")->required();
+  command->add_option("-o,--output", options->output, "Folder for the recording")
+      ->required()
+      ->check(IsNamed)
+      ->type_name("DIR");
   command
       ->add_option("--trials", options->trials,
                    "Which are played: all, calibration, validation, or the name of one")
       ->capture_default_str();
-  auto* postures = command->add_option(
-      "--postures", options->postures,
-      "Plays these postures instead, move_s + rest_s apart (CSV or a posture file, YAML)");
+  auto* postures =
+      command
+          ->add_option(
+              "--postures", options->postures,
+              "Plays these postures instead, move_s + rest_s apart (CSV or a posture file, YAML)")
+          ->type_name("FILE");
   command
       ->add_option("--motion", options->motion,
                    "Plays this joint trajectory instead (CSV with time)")
-      ->excludes(postures);
-  command->add_option("--chains", options->chains,
-                      "Chains that they exercise; default: those that move");
+      ->excludes(postures)
+      ->type_name("FILE");
+  command
+      ->add_option("--chains", options->chains,
+                   "Chains that they exercise; default: those that move")
+      ->type_name("NAME");
   command
       ->add_option("--kind", options->kind,
                    "What they are for: calibration, sine, random or repeatability; default: "
                    "calibration where the robot rests, else sine")
-      ->check(CLI::IsMember({"calibration", "sine", "random", "repeatability"}));
+      ->transform(
+          CLI::IsMember({"calibration", "sine", "random", "repeatability"}, CLI::ignore_case));
   command->add_option("--threads", options->threads, "Trials played at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  command->add_option("--settings", options->settings,
-                      "File with any of the options below (YAML; docs/formats.md)");
+  command
+      ->add_option("--settings", options->settings,
+                   "File with any of the options below (YAML; docs/formats.md)")
+      ->type_name("FILE");
   command->add_flag("--nominal", options->nominal,
                     "Begin with a robot and sensors without any imperfection");
   command->add_flag(

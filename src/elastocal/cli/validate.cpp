@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
@@ -93,17 +94,24 @@ void AddValidate(CLI::App& app, Action& action) {
       "validate",
       "Apply a calibration to another recording: waist and markers refitted, joints not");
   command->add_option("project", options->project, "Project file (YAML)")->required();
-  command->add_option("--calibration", options->calibration, "calibration.yaml of a calibration")
-      ->required();
+  command
+      ->add_option("--calibration", options->calibration,
+                   "Output folder of calibrate, or a calibration.yaml")
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option("--recording", options->recording,
                    "Table of static postures (CSV), or a folder with experiment.yaml")
-      ->required();
-  command->add_option("-o,--output", options->output,
-                      "Folder for validation.json and a report with it: that of the calibration");
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("-o,--output", options->output,
+                   "Folder for validation.json and a report with it: that of the calibration")
+      ->check(IsNamed)
+      ->type_name("DIR");
   AddCommonOptions(*command, options->common);
   command->footer(
-      "Example: elastocal validate project.yaml --calibration out/calibration.yaml "
+      "Example: elastocal validate project.yaml --calibration out "
       "--recording other_day.csv -o out");
   command->callback([&action, options] { action = [options] { return Validate(*options); }; });
 }

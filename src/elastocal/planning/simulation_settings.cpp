@@ -53,7 +53,7 @@ void AddTruth(TruthOptions& truth, Settings& list) {
        {e, "hip_link_compliance", &truth.hip_link_compliance, 1, 0, 1,
         "Of each link in a leg's first half"},
        {e, "shank_link_compliance", &truth.shank_link_compliance, 1, 0, 1, "In its second half"},
-       {e, "link_compliance_spread", &truth.link_compliance_spread, 1, 0, 1,
+       {e, "link_compliance_spread_share", &truth.link_compliance_spread, 1, 0, 1,
         "By which each of these is drawn larger or smaller, as a share"}});
   const std::string o = "True inertia, friction and torque sensors";
   list.insert(list.end(),
@@ -110,7 +110,7 @@ void AddPlay(PhysicsOptions& physics, MotionOptions& motion, Settings& list) {
        {m, "move_s", &motion.move_s, 1, 0.1, 1000, "From one posture to the next"},
        {m, "rest_s", &motion.rest_s, 1, 0.05, 1000, "In a posture"},
        {m, "lead_in_s", &motion.lead_in_s, 1, 0, 1000, "At rest before the first motion"},
-       {m, "counterweight", &motion.counterweight, 1, 0, 1,
+       {m, "counterweight_share", &motion.counterweight, 1, 0, 1,
         "How far the upper body moves to load the supporting leg"}});
 }
 
