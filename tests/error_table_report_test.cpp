@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/report/error_table_json.hpp"
+
 namespace elastocal::cli {
 namespace {
 

@@ -13,13 +13,13 @@ namespace {
 constexpr int kPostures = 16;  // a trial
 const Eigen::Vector3d kPush(3e-3, 0.0, -4e-3);
 
-struct Experiment {
+struct KnockExperiment {
   const StandingRobot& robot;
   Eigen::VectorXd truth;
   StandingOptions options;
   std::vector<LabelCluster> clusters;
 
-  explicit Experiment(std::uint64_t seed) : robot(Robot()), truth(robot.DrawTruth(seed)) {
+  explicit KnockExperiment(std::uint64_t seed) : robot(Robot()), truth(robot.DrawTruth(seed)) {
     options.marker_sd = 0.05e-3;
     options.torque_sensors = robot.project.torque_sensors;
     options.seed = seed;
@@ -85,7 +85,7 @@ void ExpectOneKnock(const std::vector<Knock>& knocks, const std::string& cluster
 
 // The left arm is seen in its own trial only, the second of five.
 TEST(Knock, OfAHandInTheMiddleOfItsTrialIsFound) {
-  const Experiment experiment(11);
+  const KnockExperiment experiment(11);
   Recording recording = experiment.Clean();
   const int middle = kPostures + kPostures / 2;
   experiment.Push("LHAND", middle, recording);
@@ -94,7 +94,7 @@ TEST(Knock, OfAHandInTheMiddleOfItsTrialIsFound) {
 
 // The trunk is seen in the first three trials.
 TEST(Knock, OfTheTrunkBetweenTrialsIsFound) {
-  const Experiment experiment(12);
+  const KnockExperiment experiment(12);
   Recording recording = experiment.Clean();
   experiment.Push("TRUNK", 2 * kPostures, recording);
   ExpectOneKnock(experiment.Find(recording), "TRUNK", 2 * kPostures - 1, 2 * kPostures);
@@ -102,7 +102,7 @@ TEST(Knock, OfTheTrunkBetweenTrialsIsFound) {
 
 // All other markers seem to move with it, against the waist.
 TEST(Knock, OfTheWaistIsNotTakenForOneOfTheOthers) {
-  const Experiment experiment(13);
+  const KnockExperiment experiment(13);
   Recording recording = experiment.Clean();
   const int middle = 3 * kPostures + kPostures / 2;
   experiment.Push("WAIST", middle, recording);
@@ -110,7 +110,7 @@ TEST(Knock, OfTheWaistIsNotTakenForOneOfTheOthers) {
 }
 
 TEST(Knock, OfTwoClustersAreBothFound) {
-  const Experiment experiment(14);
+  const KnockExperiment experiment(14);
   Recording recording = experiment.Clean();
   experiment.Push("LTHIGH", 3 * kPostures + 5, recording);
   experiment.Push("RHAND", 2 * kPostures + 6, recording);
@@ -125,7 +125,7 @@ TEST(Knock, OfTwoClustersAreBothFound) {
 
 TEST(Knock, IsNotSeenWhereThereWasNone) {
   for (std::uint64_t seed = 20; seed < 26; ++seed) {
-    const Experiment experiment(seed);
+    const KnockExperiment experiment(seed);
     const std::vector<Knock> knocks = experiment.Find(experiment.Clean());
     EXPECT_TRUE(knocks.empty()) << seed << " " << knocks[0].cluster << " " << knocks[0].distance;
   }
@@ -134,7 +134,7 @@ TEST(Knock, IsNotSeenWhereThereWasNone) {
 // With the cluster taken as two the estimates are those of the clean recording; the noise is the
 // same, so that they differ by less than their uncertainty.
 TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {
-  const Experiment experiment(15);
+  const KnockExperiment experiment(15);
   const StandingRobot& robot = experiment.robot;
   const Recording clean = experiment.Clean();
   const CalibrationResult expected =

@@ -29,7 +29,7 @@ struct PlayOptions {
 };
 
 /// A played trial and what is true of it.
-struct PlayedTrial {
+struct ScriptedTrial {
   MarkerTrajectories markers;
   JointLog log;
   Eigen::MatrixXd q;             ///< postures x coordinates, as they were held
@@ -140,9 +140,9 @@ inline JointLog PlayLog(const MarkedRobot& robot, const PlayedMotion& motion,
   return log;
 }
 
-inline PlayedTrial Play(const MarkedRobot& robot, const PlayOptions& options) {
+inline ScriptedTrial Play(const MarkedRobot& robot, const PlayOptions& options) {
   const PlayedMotion motion(robot.tree, options);
-  PlayedTrial trial;
+  ScriptedTrial trial;
   trial.markers = PlayMarkers(robot, motion, options);
   trial.log = PlayLog(robot, motion, options);
   trial.q = motion.postures();
