@@ -24,9 +24,9 @@ constexpr char kTwoTrials[] =
 class RecordingFolderTest : public testing::Test {
  protected:
   /// Plays a trial into the files NAME.tsv and NAME.csv of the folder.
-  PlayedTrial Write(const std::string& name, PlayOptions options) const {
+  ScriptedTrial Write(const std::string& name, PlayOptions options) const {
     options.standing = FindLink(project_.tree, "right_sole");
-    PlayedTrial played = Play(MakeMarkedRobot(project_), options);
+    ScriptedTrial played = Play(MakeMarkedRobot(project_), options);
     WriteQtmTsv(folder_.path() / (name + ".tsv"), played.markers);
     WriteJointLog(folder_.path() / (name + ".csv"), played.log);
     return played;
@@ -161,7 +161,7 @@ TEST_F(RecordingFolderTest, KnowsWhichAxisIsUpAndWhatLagToExpect) {
 }
 
 TEST_F(RecordingFolderTest, NeedsEveryJointThatMovesAMarker) {
-  PlayedTrial played = Write("a", {.postures = 4});
+  ScriptedTrial played = Write("a", {.postures = 4});
   Write("b", {.postures = 4});
   played.log.names.pop_back();
   const std::string missing = MakeMarkedRobot(project_).tree.joints.back().name;

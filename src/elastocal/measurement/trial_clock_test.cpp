@@ -36,7 +36,7 @@ TEST(PredictSpeeds, AreThoseThatCamerasSee) {
   const MarkedRobot robot = Leg();
   for (const int standing : {0, 6}) {
     PlayOptions options{.postures = 5, .marker_sd = 0.0, .standing = standing};
-    const PlayedTrial played = Play(robot, options);
+    const ScriptedTrial played = Play(robot, options);
     MarkerTrajectories markers = played.markers;
     SmoothTrajectories({}, markers);
     const Eigen::MatrixXd measured = MarkerSpeeds(markers);
@@ -54,7 +54,7 @@ TEST(PredictSpeeds, AreThoseThatCamerasSee) {
 
 TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {
   const MarkedRobot robot = Leg();
-  PlayedTrial played = Play(robot, {.postures = 40, .lag_s = 3.0, .drift_ppm = 20.0});
+  ScriptedTrial played = Play(robot, {.postures = 40, .lag_s = 3.0, .drift_ppm = 20.0});
   Random random(3);
   // The markers of the foot, the fastest, are gone half of the time, in the midst of motions.
   for (int begin = 0; begin + 150 < played.markers.frame_count(); begin += 300) {
@@ -72,7 +72,7 @@ TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {
 
 TEST(EstimateTrialClock, SearchesAllWaysInWhichCamerasAndLogCanHaveRunTogether) {
   const MarkedRobot robot = Leg();
-  PlayedTrial played = Play(robot, {.postures = 40, .lag_s = 1e6});
+  ScriptedTrial played = Play(robot, {.postures = 40, .lag_s = 1e6});
   SmoothTrajectories({}, played.markers);
   const Eigen::MatrixXd speeds = MarkerSpeeds(played.markers);
   const LoggedSpeeds logged = Predict(robot, played.log, 0);

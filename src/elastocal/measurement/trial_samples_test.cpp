@@ -49,26 +49,26 @@ Trial Standing(TrialKind kind = TrialKind::kCalibration) {
   return {.name = "stand", .kind = kind, .chains = {"leg"}, .support = {kFoot}};
 }
 
-TrialSamples Sample(const PlayedTrial& played, const MeasurementOptions& options = {},
+TrialSamples Sample(const ScriptedTrial& played, const MeasurementOptions& options = {},
                     const Trial& trial = Standing()) {
   const MarkedRobot robot = WaistAndLeg();
   return SampleTrial(robot, trial, AllMarkers(robot), played.markers, played.log, options);
 }
 
-PlayedTrial PlayStanding(PlayOptions options = {}) {
+ScriptedTrial PlayStanding(PlayOptions options = {}) {
   options.standing = kFoot;
   return Play(WaistAndLeg(), options);
 }
 
 // The posture that is held at a time, or nearly so.
-Eigen::Index PostureAt(const PlayedTrial& played, double time_s) {
+Eigen::Index PostureAt(const ScriptedTrial& played, double time_s) {
   Eigen::Index posture = 0;
   (played.rest_begin_s.array() + 0.75 - time_s).abs().minCoeff(&posture);
   return posture;
 }
 
 // Each sample is of a posture of its own that was played, and within the noise.
-void ExpectTrue(const TrialSamples& samples, const PlayedTrial& played, int standing = kFoot) {
+void ExpectTrue(const TrialSamples& samples, const ScriptedTrial& played, int standing = kFoot) {
   const MarkedRobot robot = WaistAndLeg();
   Eigen::Index last = -1;
   for (Eigen::Index i = 0; i < samples.time_s.size(); ++i) {
@@ -99,7 +99,7 @@ bool Names(const TrialSummary& summary, std::initializer_list<const char*> parts
 }
 
 TEST(SampleTrial, TakesEveryRestOfACleanTrial) {
-  const PlayedTrial played = PlayStanding();
+  const ScriptedTrial played = PlayStanding();
   const TrialSamples samples = Sample(played);
   EXPECT_EQ(samples.summary.refused, "");
   EXPECT_EQ(samples.summary.postures, 24);
@@ -111,7 +111,7 @@ TEST(SampleTrial, TakesEveryRestOfACleanTrial) {
 }
 
 TEST(SampleTrial, HoldsTheRootWhereThereIsNoSupport) {
-  const PlayedTrial played = Play(WaistAndLeg(), {});
+  const ScriptedTrial played = Play(WaistAndLeg(), {});
   const Trial trial{.name = "swing", .chains = {"leg"}};
   const TrialSamples samples = Sample(played, {}, trial);
   EXPECT_EQ(samples.summary.postures, 24) << samples.summary.refused;
@@ -121,7 +121,7 @@ TEST(SampleTrial, HoldsTheRootWhereThereIsNoSupport) {
 TEST(SampleTrial, FindsLagAndDriftOfTheClock) {
   for (const auto& [lag, drift] : {std::pair{4.0, 20.0}, std::pair{-4.0, -20.0}}) {
     PlayOptions options{.postures = 60, .lag_s = lag, .drift_ppm = drift};
-    PlayedTrial played = PlayStanding(options);
+    ScriptedTrial played = PlayStanding(options);
     // The robot's log begins 4 s late: its time begins at 0 as the cameras' does.
     const Eigen::Index late = 800;
     const Eigen::Index left = played.log.time_s.size() - late;
@@ -140,7 +140,7 @@ TEST(SampleTrial, FindsLagAndDriftOfTheClock) {
 }
 
 TEST(SampleTrial, BearsFivePerCentOfSamplesMissing) {
-  PlayedTrial played = PlayStanding();
+  ScriptedTrial played = PlayStanding();
   Random random(5);
   const auto frames = static_cast<int>(played.markers.positions.rows());
   for (int marker = 0; marker < 12; ++marker) {
@@ -167,7 +167,7 @@ TEST(SampleTrial, BearsFivePerCentOfSamplesMissing) {
 }
 
 TEST(SampleTrial, BearsAMarkerLostForHalfOfTheTrial) {
-  PlayedTrial played = PlayStanding();
+  ScriptedTrial played = PlayStanding();
   const Eigen::Index half = played.markers.positions.rows() / 2;
   Hide(played.markers, 4, half, half);
   const TrialSamples samples = Sample(played);
@@ -179,7 +179,7 @@ TEST(SampleTrial, BearsAMarkerLostForHalfOfTheTrial) {
 }
 
 TEST(SampleTrial, PutsExchangedLabelsRight) {
-  PlayedTrial played = PlayStanding();
+  ScriptedTrial played = PlayStanding();
   const Eigen::MatrixXd first = played.markers.positions.block(3000, 3 * 6, 2000, 3);
   played.markers.positions.block(3000, 3 * 6, 2000, 3) =
       played.markers.positions.block(3000, 3 * 8, 2000, 3).eval();
@@ -192,7 +192,7 @@ TEST(SampleTrial, PutsExchangedLabelsRight) {
 }
 
 TEST(SampleTrial, RemovesOutliers) {
-  PlayedTrial played = PlayStanding();
+  ScriptedTrial played = PlayStanding();
   Random random(9);
   for (int i = 0; i < 100; ++i) {
     const int frame = random.Index(static_cast<int>(played.markers.positions.rows()));
@@ -205,7 +205,7 @@ TEST(SampleTrial, RemovesOutliers) {
 }
 
 TEST(SampleTrial, LeavesBadTorqueSensorsOut) {
-  PlayedTrial played = PlayStanding();
+  ScriptedTrial played = PlayStanding();
   played.log.torques.col(3).setZero();
   played.log.torques.col(1) = played.log.torques.col(1).cwiseMin(15.0);
   played.log.torques.col(4).tail(played.log.torques.rows() / 3).setConstant(1.5);
@@ -220,7 +220,7 @@ TEST(SampleTrial, LeavesBadTorqueSensorsOut) {
 }
 
 TEST(SampleTrial, UsesWhatALogThatEndsEarlyCovers) {
-  PlayedTrial played = PlayStanding();
+  ScriptedTrial played = PlayStanding();
   const Eigen::Index kept = 200 * 71;  // within the 15th posture's rest, from 70 s
   played.log.time_s.conservativeResize(kept);
   played.log.positions.conservativeResize(kept, Eigen::NoChange);
@@ -238,7 +238,7 @@ TEST(SampleTrial, TakesMomentsOfASineMotion) {
   options.standing = kFoot;
   const MarkedRobot robot = WaistAndLeg();
   const PlayedMotion motion(robot.tree, options);
-  const PlayedTrial played = Play(robot, options);
+  const ScriptedTrial played = Play(robot, options);
   const TrialSamples samples = Sample(played, {}, Standing(TrialKind::kSine));
   ASSERT_EQ(samples.summary.refused, "");
   EXPECT_NEAR(samples.summary.postures, 220, 5);
@@ -254,7 +254,7 @@ TEST(SampleTrial, TakesMomentsOfASineMotion) {
 }
 
 TEST(SampleTrial, RefusesAnotherRobotsLog) {
-  PlayedTrial played = PlayStanding();
+  ScriptedTrial played = PlayStanding();
   played.log = PlayStanding({.seed = 77}).log;
   played.log.positions = played.log.positions.rowwise().reverse().eval() * 0.01;
   const TrialSamples samples = Sample(played);
@@ -266,14 +266,14 @@ TEST(SampleTrial, RefusesAnotherRobotsLog) {
 
 TEST(SampleTrial, RefusesRatesThatTheFilterCannotTake) {
   const MarkedRobot robot = WaistAndLeg();
-  PlayedTrial slow = PlayStanding({.postures = 3, .frame_rate_hz = 9.0});
+  ScriptedTrial slow = PlayStanding({.postures = 3, .frame_rate_hz = 9.0});
   ExpectInputError([&] { Sample(slow); }, {"played.tsv", "9 frames a second", "10"});
-  PlayedTrial slow_log = PlayStanding({.postures = 3, .log_rate_hz = 20.0});
+  ScriptedTrial slow_log = PlayStanding({.postures = 3, .log_rate_hz = 20.0});
   EXPECT_NO_THROW(Sample(slow_log));
 }
 
 TEST(SampleTrial, ReportsMarkersItDoesNotFindOrKnow) {
-  PlayedTrial played = PlayStanding();
+  ScriptedTrial played = PlayStanding();
   played.markers.names[7] = "NEW_0001";
   Hide(played.markers, 11, 0, played.markers.positions.rows());
   const TrialSamples samples = Sample(played);
@@ -287,7 +287,7 @@ TEST(SampleTrial, ReportsMarkersItDoesNotFindOrKnow) {
 
 TEST(MergeTrials, PutsTrialsBelowEachOther) {
   const MarkedRobot robot = WaistAndLeg();
-  const PlayedTrial played = PlayStanding({.postures = 6});
+  const ScriptedTrial played = PlayStanding({.postures = 6});
   TrialSamples first =
       SampleTrial(robot, Standing(), {0, 1, 2, 9, 10, 11}, played.markers, played.log, {});
   TrialSamples second = SampleTrial(robot, Standing(TrialKind::kRandom), {0, 1, 2, 3},

@@ -18,7 +18,7 @@ namespace {
 class MeasurementsTest : public testing::Test {
  protected:
   void SetUp() override {
-    const PlayedTrial played =
+    const ScriptedTrial played =
         Play(MakeMarkedRobot(project_),
              {.postures = 8, .standing = FindLink(project_.tree, "right_sole")});
     WriteQtmTsv(folder_.path() / "a.tsv", played.markers);
