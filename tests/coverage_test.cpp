@@ -45,7 +45,7 @@ Eigen::VectorXd DrawFromPrior(const StandingRobot& robot, std::uint64_t seed) {
 /// Both legs and one arm, to be done in a minute: each leg while the other one carries.
 StandingRobot LegsAndArm(int postures) {
   StandingRobot robot(postures);
-  std::erase_if(robot.trials, [](const ScriptedTrial& played) {
+  std::erase_if(robot.trials, [](const PlayedTrial& played) {
     return played.trial.name == "head_trunk" || played.trial.name == "torso_arm_right";
   });
   const Recording seen = robot.Record(Eigen::VectorXd::Zero(robot.model.parameter_count()), {});

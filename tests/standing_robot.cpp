@@ -39,8 +39,8 @@ std::vector<double> Swinging(Random& random, double outwards) {
           random.Uniform(-0.7, 0.4), random.Uniform(-0.35, 0.35)};
 }
 
-ScriptedTrial Play(const RobotTree& tree, const std::string& chain, int postures, Random& random) {
-  ScriptedTrial played;
+PlayedTrial Play(const RobotTree& tree, const std::string& chain, int postures, Random& random) {
+  PlayedTrial played;
   played.trial.name = chain;
   played.trial.chains = {chain};
   const bool left = chain == "leg_left";

@@ -15,7 +15,7 @@ struct StandingRobot {
   Project project;
   ErrorModel model;  ///< torsion of the trunk and the arms, both legs elastic
   BaseParameters base;
-  std::vector<ScriptedTrial> trials;
+  std::vector<PlayedTrial> trials;
 
   /// The robot with `postures` a trial: head and trunk, left and right arm, left and right leg.
   explicit StandingRobot(int postures, std::uint64_t seed = 1, bool torque_bias = false);

@@ -33,7 +33,7 @@ TEST(Threads, TrialsAreSimulatedTogetherAndReadTogether) {
   const SimulationRun together = SimulateArm(project, 3, scratch.path() / "three");
   SimulateArm(project, 1, scratch.path() / "one");
   ASSERT_GT(together.trials.size(), 2u);
-  for (const PlayedTrial& trial : together.trials) {
+  for (const TrialOutcome& trial : together.trials) {
     const std::string name = trial.name + ".tsv";
     EXPECT_EQ(ReadFile(scratch.path() / "three" / name), ReadFile(scratch.path() / "one" / name));
   }

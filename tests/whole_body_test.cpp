@@ -170,7 +170,7 @@ TEST_F(StandingTest, StraightKneesAreReportedAndTheirLoadsTakenFromStatics) {
     const auto coordinate = [&](const char* joint) {
       return robot_.project.tree.joints[FindJoint(robot_.project.tree, leg + joint)].coordinate;
     };
-    for (ScriptedTrial& played : robot_.trials) {
+    for (PlayedTrial& played : robot_.trials) {
       if (played.trial.name == leg) continue;
       played.q.col(coordinate("_3_joint")).setConstant(-0.01);
       played.q.col(coordinate("_4_joint")).setConstant(0.02);

@@ -9,9 +9,9 @@
 namespace elastocal::cli {
 namespace {
 
-std::string TrialTable(const std::vector<PlayedTrial>& trials) {
+std::string TrialTable(const std::vector<TrialOutcome>& trials) {
   TextTable table({"trial", "kind", "postures", "frames", "lag s", "waist gives way mm", "deg"});
-  for (const PlayedTrial& trial : trials) {
+  for (const TrialOutcome& trial : trials) {
     table.Add({trial.name, TrialKindName(trial.kind), std::to_string(trial.postures),
                std::to_string(trial.frames), fmt::format("{:.3f}", trial.sensors.lag_s),
                fmt::format("{:.2f}", 1e3 * trial.waist.translation),

@@ -133,7 +133,7 @@ SimulationRun PlaySimulation(const Project& project, const Simulation& simulatio
       order.size(), threads, [&](std::size_t i) { play(order[i]); }, progress);
 
   std::vector<SensorTruth> sensors;
-  for (const PlayedTrial& trial : run.trials) sensors.push_back(trial.sensors);
+  for (const TrialOutcome& trial : run.trials) sensors.push_back(trial.sensors);
   outputs.Set(files.truth, simulation.matched
                                ? FormatMatchedTruth(*simulation.matched, simulation.chosen, sensors)
                                : FormatTruth(simulation.experiment, simulation.chosen, sensors));

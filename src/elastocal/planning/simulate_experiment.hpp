@@ -60,7 +60,7 @@ TrialFiles FilesOfTrial(const PlannedTrial& plan, const std::filesystem::path& f
 void WriteSimulatedTrial(const TrialFiles& files, const SimulatedTrial& trial);
 
 /// What is kept of a trial once its files are written.
-struct PlayedTrial {
+struct TrialOutcome {
   std::string name;
   TrialKind kind = TrialKind::kCalibration;
   int postures = 0, frames = 0;
@@ -70,7 +70,7 @@ struct PlayedTrial {
 
 /// What a simulation played.
 struct SimulationRun {
-  std::vector<PlayedTrial> trials;
+  std::vector<TrialOutcome> trials;
   std::vector<LegCompliance> legs;  ///< stiffness as the waist feels it
 };
 

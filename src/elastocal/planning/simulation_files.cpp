@@ -103,7 +103,7 @@ SimulationFiles FilesOfSimulation(const Simulation& simulation, const fs::path& 
 std::string FormatSimulationSummary(const SimulationRun& run) {
   nlohmann::ordered_json json;
   json["trials"] = nlohmann::ordered_json::array();
-  for (const PlayedTrial& trial : run.trials) {
+  for (const TrialOutcome& trial : run.trials) {
     json["trials"].push_back({{"name", trial.name},
                               {"postures", trial.postures},
                               {"frames", trial.frames},
