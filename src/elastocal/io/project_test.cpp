@@ -203,7 +203,7 @@ TEST(Project, NamesMalformedRobot) {
   const std::filesystem::path& folder = scratch.path();
   WriteFile(folder / "bad.urdf", "<robot name='r'>\n<link>\n</robot>");
   ExpectInputError([&] { ParseProject("robot: {urdf: bad.urdf}", folder / "p.yaml"); },
-                   {"bad.urdf:2: ", "malformed XML"});
+                   {"bad.urdf:3: ", "malformed XML"});
 }
 
 TEST(Project, NamesUnknownKeysOfEverySection) {
