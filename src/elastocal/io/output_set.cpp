@@ -24,7 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kStagingPrefix = ".elastocal-";
-constexpr const char* kCommit = ".commit";  // no output has this name: it is in the staging folder
+// In a staging folder, beside the files of the run.
+constexpr const char* kCommit = ".commit";
+constexpr const char* kOwner = ".owner";  // locked while the run lives
 
 std::string SystemError() { return errno != 0 ? std::strerror(errno) : "input or output error"; }
 
@@ -135,39 +137,58 @@ class NewFolders {
   std::vector<fs::path> created_;
 };
 
-/// A staging folder, locked by its run: whoever gets the lock knows that the run is gone.
+/// Keeps others from making or judging staging folders in a folder meanwhile.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder)
+      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ >= 0) flock(descriptor_, LOCK_EX);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// A staging folder. Its run holds the lock of the owner's file in it: whoever gets that lock knows
+/// that the run is gone.
 class Staging {
  public:
   /// A new one in `folder`, for `file`.
   Staging(const fs::path& folder, const fs::path& file) {
+    const FolderLock lock(folder);
     std::string name = (folder / (std::string(kStagingPrefix) + "XXXXXX")).string();
     errno = 0;
     if (mkdtemp(name.data()) == nullptr) FailToWrite(file, SystemError());
     path_ = name;
-    Lock();
+    descriptor_ = open((path_ / kOwner).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    owned_ = true;
+    if (descriptor_ >= 0) flock(descriptor_, LOCK_EX);
   }
-  /// One that is there already; `locked()` tells whether its run is gone.
-  explicit Staging(const fs::path& path) : path_(path) { Lock(); }
+  /// One that is there already, under the lock of its folder; it is owned if its run is gone.
+  explicit Staging(const fs::path& path) : path_(path) {
+    descriptor_ = open((path_ / kOwner).c_str(), O_RDWR | O_CLOEXEC);
+    owned_ = descriptor_ < 0 ? errno == ENOENT : flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  }
   Staging(const Staging&) = delete;
   Staging& operator=(const Staging&) = delete;
   ~Staging() {
     std::error_code ignored;
-    if (locked_ && !fs::exists(path_ / kCommit, ignored)) fs::remove_all(path_, ignored);
+    if (owned_ && !fs::exists(path_ / kCommit, ignored)) fs::remove_all(path_, ignored);
     if (descriptor_ >= 0) close(descriptor_);
   }
 
   const fs::path& path() const { return path_; }
-  bool locked() const { return locked_; }
+  bool owned() const { return owned_; }
 
  private:
-  void Lock() {
-    descriptor_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    locked_ = descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
-  }
-
   fs::path path_;
   int descriptor_ = -1;
-  bool locked_ = false;
+  bool owned_ = false;
 };
 
 /// Interrupts wait while files get their names.
@@ -376,6 +397,7 @@ void OutputSet::Publish() {
 }
 
 void RecoverOutputs(const fs::path& folder) {
+  const FolderLock lock(folder.empty() ? "." : folder);
   std::error_code error;
   std::vector<fs::path> left;
   for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
@@ -384,7 +406,7 @@ void RecoverOutputs(const fs::path& folder) {
   }
   for (const fs::path& path : left) {
     const Staging staging(path);
-    if (staging.locked() && fs::exists(path / kCommit, error)) ApplyCommit(staging);
+    if (staging.owned() && fs::exists(path / kCommit, error)) ApplyCommit(staging);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -105,6 +106,18 @@ TEST_F(OutputSetTest, SetNeedsADeclaration) {
   OutputSet outputs;
   EXPECT_THROW(outputs.Set(folder_ / "a", ""), std::invalid_argument);
   EXPECT_THROW(outputs.StagingPath(folder_ / "a"), std::invalid_argument);
+}
+
+TEST_F(OutputSetTest, SeveralThreadsWriteIntoOneFolder) {
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&, i] {
+      for (int k = 0; k < 50; ++k) WriteFile(folder_ / std::to_string(i), std::to_string(k));
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(ReadFile(folder_ / std::to_string(i)), "49");
+  EXPECT_EQ(CountIn(folder_), 4);
 }
 
 /// A folder as a run leaves it that is killed right after its commit.
