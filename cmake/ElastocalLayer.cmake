@@ -49,6 +49,9 @@ function(elastocal_unity out name)
   set(${out} ${sources} PARENT_SCOPE)
 endfunction()
 
+# The layers that turn bytes into values: fuzzing is led by what it reaches in them.
+set(ELASTOCAL_FUZZED_LAYERS math tables robot measurement io)
+
 # elastocal_layer(NAME [USES layer...] [LIBS public...] [PRIVATE_LIBS private...])
 #
 # One static library elastocal::NAME from src/elastocal/NAME/*.cpp, and one test program from the
@@ -75,6 +78,9 @@ function(elastocal_layer name)
   target_compile_features(elastocal_${name} PUBLIC cxx_std_20)
   target_include_directories(elastocal_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  if(ELASTOCAL_FUZZ AND name IN_LIST ELASTOCAL_FUZZED_LAYERS)
+    target_compile_options(elastocal_${name} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
   list(TRANSFORM ARG_USES PREPEND elastocal_)
   target_link_libraries(elastocal_${name} PUBLIC ${ARG_USES} ${ARG_LIBS} PRIVATE ${ARG_PRIVATE_LIBS}
     $<BUILD_INTERFACE:elastocal_warnings>)

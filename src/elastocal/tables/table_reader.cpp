@@ -244,10 +244,10 @@ Eigen::MatrixXd StackRows(const std::vector<double>& numbers, std::size_t rows) 
   const Eigen::Map<const RowMajor> read(numbers.data(), static_cast<Eigen::Index>(rows),
                                         static_cast<Eigen::Index>(numbers.size() / rows));
   // Some rows at a time stay in the cache while they become columns.
-  constexpr Eigen::Index kBlock = 64;
+  constexpr Eigen::Index kRows = 64;
   Eigen::MatrixXd stacked(read.rows(), read.cols());
-  for (Eigen::Index row = 0; row < read.rows(); row += kBlock) {
-    const Eigen::Index count = std::min(kBlock, read.rows() - row);
+  for (Eigen::Index row = 0; row < read.rows(); row += kRows) {
+    const Eigen::Index count = std::min(kRows, read.rows() - row);
     stacked.middleRows(row, count) = read.middleRows(row, count);
   }
   return stacked;
