@@ -7,6 +7,7 @@
 #include <iostream>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <stdexcept>
 #include <system_error>
 
@@ -116,8 +117,8 @@ class NewFolders {
  public:
   ~NewFolders() {
     std::error_code ignored;
-    for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) {
-      fs::remove(*folder, ignored);
+    for (const fs::path& folder : created_ | std::views::reverse) {
+      fs::remove(folder, ignored);
     }
   }
 
