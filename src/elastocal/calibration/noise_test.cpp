@@ -23,7 +23,7 @@ class NoiseGroupsTest : public testing::Test {
     return NoiseGroups(robot_.model, recording);
   }
 
-  const StandingBiped robot_;
+  const StandingBiped robot_ = {};
 };
 
 TEST_F(NoiseGroupsTest, TrialsThatShareJointsAreOne) {

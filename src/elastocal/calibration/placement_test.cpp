@@ -17,7 +17,7 @@ class FootingsTest : public testing::Test {
     }
   }
 
-  const StandingBiped robot_;
+  const StandingBiped robot_ = {};
 };
 
 TEST_F(FootingsTest, OneForEachTrialOnOneLegOrWithItsRootHeld) {

@@ -176,7 +176,7 @@ double Table::Number(int column) const {
   if (const std::optional<double> number = ParseNumber(cell)) return *number;
   FailCell(column, "found " + (cell.empty() ? "nothing" : Quote(cell)) +
                        "; a finite number was expected" +
-                       (cell.find(',') == cell.npos ? "" : ", with a decimal point"));
+                       (cell.find(',') == std::string_view::npos ? "" : ", with a decimal point"));
 }
 
 void Table::Fail(const std::string& what) const {
