@@ -166,7 +166,7 @@ std::string OneText(const fs::path& folder) {
 
 void WriteEight(const fs::path& folder, const std::string& text) {
   std::vector<std::pair<fs::path, std::string>> files;
-  for (int i = 0; i < 8; ++i) files.push_back({folder / std::to_string(i), text});
+  for (int i = 0; i < 8; ++i) files.emplace_back(folder / std::to_string(i), text);
   WriteFiles(files);
 }
 
