@@ -7,7 +7,6 @@
 #include <iostream>
 #include <map>
 #include <optional>
-#include <ranges>
 #include <stdexcept>
 #include <system_error>
 
@@ -117,9 +116,7 @@ class NewFolders {
  public:
   ~NewFolders() {
     std::error_code ignored;
-    for (const fs::path& folder : created_ | std::views::reverse) {
-      fs::remove(folder, ignored);
-    }
+    for (; !created_.empty(); created_.pop_back()) fs::remove(created_.back(), ignored);
   }
 
   void Create(const fs::path& folder) {
