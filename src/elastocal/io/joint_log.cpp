@@ -191,7 +191,7 @@ void WriteJointLog(const std::filesystem::path& file, const JointLog& log) {
     table.Add(log.time_s[row]);
     for (double position : log.positions.row(row)) table.Add(position);
     for (Eigen::Index i : with_torque) table.Add(log.torques(row, i));
-    for (double component : log.wrenches.row(row)) table.Add(component);
+    for (Eigen::Index i = 0; i < log.wrenches.cols(); ++i) table.Add(log.wrenches(row, i));
     table.EndRow();
   }
   WriteFile(file, table.text());
