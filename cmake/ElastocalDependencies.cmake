@@ -5,7 +5,6 @@ set(ELASTOCAL_COMPONENTS calibration planning)
 set(ELASTOCAL_calibration_DEPENDENCIES
   "Eigen3 3.4"
   "Boost"
-  "Ceres 2.1"
   "pugixml"
   "OpenSSL"
   "yaml-cpp"

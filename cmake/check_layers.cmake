@@ -10,7 +10,6 @@ if(NOT RULES OR NOT IS_DIRECTORY "${SOURCES}")
 endif()
 
 set(unrestricted cli)  # the program may include everything
-set(ceres_layer optim)  # the only layer that may include Ceres
 set(ipopt_layer nlp)  # the only layer that may include Ipopt
 
 set(layers "")
@@ -57,9 +56,7 @@ foreach(file IN LISTS files)
       continue()
     endif()
     set(header "${CMAKE_MATCH_1}")
-    if(header MATCHES "^ceres/" AND NOT layer STREQUAL ceres_layer)
-      report("${layer} may not include ${header}: only ${ceres_layer} may")
-    elseif(header MATCHES "^(coin/)?Ip[A-Z]" AND NOT layer STREQUAL ipopt_layer)
+    if(header MATCHES "^(coin/)?Ip[A-Z]" AND NOT layer STREQUAL ipopt_layer)
       report("${layer} may not include ${header}: only ${ipopt_layer} may")
     elseif(header MATCHES "^elastocal/([^/]+)/")
       if(NOT CMAKE_MATCH_1 IN_LIST allowed_${layer})

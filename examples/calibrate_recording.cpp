@@ -11,10 +11,11 @@ int main(int argc, char** argv) try {
   const elastocal::Project project = elastocal::ReadProject(argv[1]);
   const elastocal::CalibrationRun run =
       elastocal::CalibrateExperiment(project, {argv + 2, argv + argc});
-  const auto& uncalibrated =
-      run.comparison.metrics[static_cast<int>(elastocal::ModelKind::kUncalibrated)];
-  std::printf("from %.2f mm to %.2f mm\n", 1e3 * uncalibrated.rmse_3d,
-              1e3 * run.comparison.largest_metrics().rmse_3d);
+  const auto rmse_mm = [&](elastocal::ModelKind kind) {
+    return 1e3 * run.comparison.metrics[static_cast<int>(kind)].rmse_3d;
+  };
+  std::printf("from %.2f mm to %.2f mm\n", rmse_mm(elastocal::ModelKind::kUncalibrated),
+              rmse_mm(run.deployment.urdf_kind));
   for (const std::string& objection : run.verdict.objections) std::puts(objection.c_str());
   return run.deployable() ? 0 : 1;
 } catch (const elastocal::InputError& error) {

@@ -55,9 +55,8 @@ class ComparisonOfCalibrations : public ::testing::Test {
         model_, truth, {.postures = postures, .seed = static_cast<std::uint64_t>(seed)});
     recording.source = "recording " + std::to_string(seed);
     const CalibrationResult result = Calibrate(model_, recording, base_, ModelKind::kGeometric, {});
-    CalibrationEstimate estimate = ReadEstimate(
-        scratch_.Write("calibration.yaml",
-                       MakeCalibrationYaml(result, base_, recording.source, ZeroOffsets::kOrigin)));
+    CalibrationEstimate estimate = ReadEstimate(scratch_.Write(
+        "calibration.yaml", MakeCalibrationYaml(result, recording.source, ZeroOffsets::kOrigin)));
     ReadCovariance(scratch_.Write("covariance.csv", MakeCovarianceCsv(result)), estimate);
     return estimate;
   }

@@ -35,9 +35,10 @@ Eigen::VectorXd DrawFromPrior(const StandingRobot& robot, std::uint64_t seed) {
   const Prior prior;
   Eigen::VectorXd truth = robot.DrawTruth(seed);
   Random random(seed + 1000);
-  for (int i : robot.base.kept) {
-    const ParameterKind kind = robot.model.parameters[i].kind;
-    if (IsCompliance(kind)) truth[i] = std::abs(random.Normal(prior[kind]));
+  for (int i = 0; i < robot.model.parameter_count(); ++i) {
+    const Parameter& parameter = robot.model.parameters[i];
+    if (!IsCompliance(parameter.kind)) continue;
+    truth[i] = std::abs(random.Normal(prior.Of(robot.model.tree, parameter)));
   }
   return truth;
 }
@@ -82,7 +83,7 @@ Coverages CalibrateOnce(const StandingRobot& robot, std::uint64_t seed) {
       Calibrate(robot.model, recording, robot.base, ModelKind::kFull, {});
   Coverages found;
   found.unsettled = result.termination == Termination::kConverged && result.settled ? 0 : 1;
-  for (int i : robot.base.kept) {
+  for (int i = 0; i < robot.model.parameter_count(); ++i) {
     const ParameterKind kind = robot.model.parameters[i].kind;
     if (IsExternal(kind)) continue;
     Coverage& counted = result.status[i] != ParameterStatus::kEstimated ? found.unsupported

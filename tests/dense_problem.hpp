@@ -13,8 +13,7 @@ inline Eigen::VectorXd AllResiduals(LeastSquaresProblem& problem, const Eigen::V
   problem.Evaluate(x, false);
   std::vector<double> all;
   for (std::size_t i = 0; i < problem.residual_blocks.size(); ++i) {
-    Eigen::VectorXd r(problem.residual_blocks[i].size);
-    problem.Residual(static_cast<int>(i), Eigen::Map<Eigen::VectorXd>(r.data(), r.size()));
+    const Eigen::VectorXd& r = problem.Residual(static_cast<int>(i));
     all.insert(all.end(), r.begin(), r.end());
   }
   return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
@@ -31,13 +30,12 @@ inline Eigen::MatrixXd DenseJacobian(LeastSquaresProblem& problem, const Eigen::
   int row = 0;
   for (std::size_t i = 0; i < problem.residual_blocks.size(); ++i) {
     const auto& shape = problem.residual_blocks[i];
-    for (std::size_t k = 0; k < shape.parameter_blocks.size(); ++k) {
-      const int block = shape.parameter_blocks[k];
-      LeastSquaresProblem::RowMajorMatrix part(shape.size, problem.parameter_blocks[block]);
-      problem.Jacobian(
-          static_cast<int>(i), static_cast<int>(k),
-          Eigen::Map<LeastSquaresProblem::RowMajorMatrix>(part.data(), part.rows(), part.cols()));
-      J.block(row, start[block], part.rows(), part.cols()) = part;
+    const auto& part = problem.Jacobian(static_cast<int>(i));
+    Eigen::Index at = 0;
+    for (int block : shape.parameter_blocks) {
+      const int width = problem.parameter_blocks[block];
+      J.block(row, start[block], shape.size, width) = part.middleCols(at, width);
+      at += width;
     }
     row += shape.size;
   }

@@ -16,19 +16,22 @@ class LinearProblem : public LeastSquaresProblem {
   LinearProblem() {
     parameter_blocks = {2, 1, 2, 2, 2};
     Random random(3);
-    const auto add = [&](std::vector<int> blocks, int size) {
-      ResidualBlock block{size, blocks, true, true};
-      int row = 0;
-      for (const RowMajorMatrix& J : all_) row += static_cast<int>(J.rows());
-      RowMajorMatrix J = RowMajorMatrix::Zero(size, 9);
+    const auto add = [&](const std::vector<int>& blocks, int size) {
+      RowMajorMatrix all = RowMajorMatrix::Zero(size, 9);
+      RowMajorMatrix own(size, 0);
       for (int k : blocks) {
+        const int width = parameter_blocks[k];
+        own.conservativeResize(size, own.cols() + width);
         for (int i = 0; i < size; ++i) {
-          for (int c = 0; c < parameter_blocks[k]; ++c) J(i, First(k) + c) = random.Normal(1.0);
+          for (int c = 0; c < width; ++c) all(i, First(k) + c) = random.Normal(1.0);
         }
+        own.rightCols(width) = all.middleCols(First(k), width);
       }
-      all_.push_back(J);
-      residual_blocks.push_back(block);
+      all_.push_back(all);
+      own_.push_back(own);
+      residual_blocks.push_back({size, blocks, true});
     };
+    nuisance_blocks = {2, 3, 4};
     for (int s = 2; s < 5; ++s) {
       for (int i = 0; i < 5; ++i) add({0, s, 1}, 3);
     }
@@ -36,17 +39,15 @@ class LinearProblem : public LeastSquaresProblem {
     add({0, 3}, 3);
     residual_blocks.back().active = false;
   }
-  void Evaluate(const Eigen::VectorXd& x, bool) override { x_ = x; }
+  void Evaluate(const Eigen::VectorXd& x, bool) override {
+    residuals_.clear();
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      residuals_.emplace_back((all_[i] * x).array() + static_cast<double>(i));
+    }
+  }
   /// J x plus the block's number, row by row.
-  void Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const override {
-    residual = (All(block) * x_).array() + block;
-  }
-  void Jacobian(int block, int k, Eigen::Map<RowMajorMatrix> jacobian) const override {
-    jacobian = Part(block, residual_blocks[block].parameter_blocks[k]);
-  }
-  RowMajorMatrix Part(int block, int k) const {
-    return all_[block].middleCols(First(k), parameter_blocks[k]);
-  }
+  const Eigen::VectorXd& Residual(int block) const override { return residuals_[block]; }
+  const RowMajorMatrix& Jacobian(int block) const override { return own_[block]; }
   int First(int k) const {
     int first = 0;
     for (int i = 0; i < k; ++i) first += parameter_blocks[i];
@@ -73,8 +74,8 @@ class LinearProblem : public LeastSquaresProblem {
   }
 
  private:
-  Eigen::VectorXd x_ = Eigen::VectorXd::Zero(9);
-  std::vector<RowMajorMatrix> all_;
+  std::vector<RowMajorMatrix> all_, own_;  // own_: side by side, as the block lists them
+  std::vector<Eigen::VectorXd> residuals_;
 };
 
 }  // namespace elastocal

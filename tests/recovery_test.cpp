@@ -7,6 +7,7 @@
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/io/project.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/test_files.hpp"
@@ -63,23 +64,26 @@ TEST_P(Recovery, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
   const ChainModel chain_model = MakeChainModel(project, chain);
   const ErrorModel truth_model = SeenFromAfar(chain_model.model);
   const Eigen::VectorXd truth =
-      DrawErrors(truth_model, chain_model.base.kept, RealisticErrors(), 7);
+      DrawErrors(truth_model, AllParameters(truth_model), RealisticErrors(), 7);
   const Recording recording =
       MakeSyntheticRecording(truth_model, truth, {.postures = 40, .marker_sd = 0.0});
   const CalibrationResult result =
       Calibrate(chain_model.model, recording, chain_model.base, ModelKind::kGeometric, {});
   EXPECT_EQ(result.termination, Termination::kConverged);
   EXPECT_TRUE(result.outliers.empty());
-  for (int i : chain_model.base.kept) {
-    if (chain_model.model.parameters[i].kind == Kind::kWaistPose)
-      continue;  // compared as a pose below
-    EXPECT_NEAR(result.delta[i], truth[i], 1e-8) << chain_model.model.parameters[i].name;
+  // Perfect data (to the micrometre that the noise is taken for at least) tell some parameters
+  // exactly; of the others they tell combinations, and the standard deviation says so.
+  int told = 0;
+  for (int i = 0; i < chain_model.model.parameter_count(); ++i) {
+    const Parameter& parameter = chain_model.model.parameters[i];
+    if (parameter.kind == Kind::kWaistPose) continue;  // counts from another registration
+    EXPECT_NEAR(result.delta[i], truth[i], 1e-8 + 5.0 * result.sd[i]) << parameter.name;
+    if (result.sd[i] < 1e-6) {
+      EXPECT_NEAR(result.delta[i], truth[i], 1e-6) << parameter.name;
+      ++told;
+    }
   }
-  const Eigen::VectorXd q = Eigen::VectorXd::Zero(chain_model.model.tree.coordinate_count());
-  const Transform estimated =
-      BodyTransforms(result.model, ApplyErrors(result.model, result.delta), q)[0];
-  const Transform expected = BodyTransforms(truth_model, ApplyErrors(truth_model, truth), q)[0];
-  EXPECT_LT((estimated.matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_GT(told, 0);
 }
 
 // With errors on every parameter, dropped ones too, what is found is the combination that the
@@ -94,14 +98,17 @@ TEST_P(Recovery, DroppedParametersAreRegroupedAsReported) {
       MakeSyntheticRecording(chain_model.model, truth, {.postures = 40, .marker_sd = 0.0});
   const CalibrationResult result =
       Calibrate(chain_model.model, recording, chain_model.base, ModelKind::kGeometric, {});
-  const Eigen::VectorXd combined =
-      truth(chain_model.base.kept) + chain_model.base.regrouping * truth(chain_model.base.dropped);
+  const BaseParameters& base = chain_model.base;
+  const auto combined = [&](const Eigen::VectorXd& delta) {
+    return Eigen::VectorXd(delta(base.kept) + base.regrouping * delta(base.dropped));
+  };
+  const Eigen::VectorXd expected = combined(truth);
+  const Eigen::VectorXd found = combined(result.delta);
   for (std::size_t i = 0; i < chain_model.base.kept.size(); ++i) {
     const Parameter& parameter = chain_model.model.parameters[chain_model.base.kept[i]];
     if (parameter.kind == Kind::kWaistPose) continue;
-    EXPECT_NEAR(result.delta[chain_model.base.kept[i]], combined[static_cast<Eigen::Index>(i)],
-                1e-8)
-        << parameter.name;
+    const auto k = static_cast<Eigen::Index>(i);
+    EXPECT_NEAR(found[k], expected[k], 3e-7) << parameter.name;
   }
 }
 
@@ -118,7 +125,58 @@ TEST_P(Recovery, ErrorsOnAllParametersAreExplainedExactly) {
                                                   {.postures = 20, .marker_sd = 0.0, .seed = 2});
   const CalibrationResult result =
       Calibrate(chain_model.model, seen, chain_model.base, ModelKind::kGeometric, {});
-  EXPECT_LT(ResidualNorms(result.model, unseen, result.delta).maxCoeff(), 1e-8);
+  EXPECT_LT(ResidualNorms(result.model, unseen, result.delta).maxCoeff(), 1e-7);
+}
+
+/// The robot with every joint's origin displaced and turned by about `size` (m and rad), or with
+/// all numbers of the origins rounded to four digits behind the point (size 0).
+ErrorModel Misaligned(const ErrorModel& model, double size, std::uint64_t seed) {
+  Random random(seed);
+  RobotTree tree = model.tree;
+  for (Joint& joint : tree.joints) {
+    Transform& T = joint.T_parent_child;
+    if (size > 0.0) {
+      const Eigen::Vector3d turn = random.NormalVector(3, size);
+      T.translation() += random.NormalVector(3, size);
+      T.linear() = T.linear() * RotationFromVector(turn);
+    } else {
+      const auto rounded = [](const Eigen::Vector3d& value) {
+        return Eigen::Vector3d((1e4 * value.array()).round() * 1e-4);
+      };
+      T = FromXyzRpy(rounded(T.translation()), rounded(ToRpy(T.linear(), Eigen::Vector3d::Zero())));
+    }
+  }
+  return MakeErrorModel(tree, model.markers);
+}
+
+// Which parameters can be identified hinges on axes being exactly parallel or meeting in a point;
+// the estimate must not. The robot is as the URDF says but for its errors, the URDF given to the
+// estimator is off by anything between rounding and half a centimetre, as a calibrated URDF is that
+// becomes the next nominal. 0.2 mm of noise.
+TEST_P(Recovery, DoesNotHingeOnExactAlignment) {
+  const auto [project, chain] = GetParam();
+  const ChainModel chain_model = MakeChainModel(project, chain);
+  const Eigen::VectorXd truth =
+      DrawErrors(chain_model.model, AllParameters(chain_model.model), RealisticErrors(), 9);
+  const Recording recording = MakeSyntheticRecording(chain_model.model, truth, {.postures = 60});
+  const Recording unseen = MakeSyntheticRecording(chain_model.model, truth,
+                                                  {.postures = 40, .marker_sd = 0.0, .seed = 2});
+  for (double size : {1e-12, 1e-9, 1e-6, 1e-4, 5e-3, 0.0}) {
+    const ErrorModel model = Misaligned(chain_model.model, size, 3);
+    const BaseParameters base = FindBaseParameters(model, {});
+    const CalibrationResult result = Calibrate(model, recording, base, ModelKind::kGeometric, {});
+    EXPECT_EQ(result.termination, Termination::kConverged) << size;
+    EXPECT_TRUE(result.settled) << size;
+    EXPECT_TRUE(result.outliers.empty()) << size;
+    const Eigen::MatrixXd distances = ResidualNorms(result.model, unseen, result.delta);
+    const double rmse = std::sqrt(distances.array().square().mean());
+    std::printf(
+        "misaligned by %g: %.3f mm rms, %.3f mm at most on unseen postures; marker noise "
+        "%.3f mm\n",
+        size, 1e3 * rmse, 1e3 * distances.maxCoeff(), 1e3 * result.marker_sd);
+    EXPECT_LT(rmse, 0.12e-3) << size;
+    EXPECT_NEAR(result.marker_sd, 0.2e-3, 0.02e-3) << size;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -150,14 +208,14 @@ TEST(Coverage, IntervalsHoldWhatTheyPromise) {
   constexpr int kSeeds = 100;
   for (int seed = 0; seed < kSeeds; ++seed) {
     const Eigen::VectorXd truth =
-        DrawErrors(chain_model.model, chain_model.base.kept, RealisticErrors(), seed);
+        DrawErrors(chain_model.model, AllParameters(chain_model.model), RealisticErrors(), seed);
     const Recording recording =
         MakeSyntheticRecording(chain_model.model, truth, {.postures = 24, .seed = 1000u + seed});
     const CalibrationResult result =
         Calibrate(chain_model.model, recording, chain_model.base, ModelKind::kGeometric, {});
     ASSERT_EQ(result.termination, Termination::kConverged) << seed;
     mean_marker_sd += result.marker_sd / kSeeds;
-    for (int i : chain_model.base.kept) {
+    for (int i = 0; i < chain_model.model.parameter_count(); ++i) {
       const Kind kind = chain_model.model.parameters[i].kind;
       if (kind == Kind::kWaistPose) continue;
       Count& count = kind == Kind::kMarker ? markers : joints;

@@ -89,7 +89,7 @@ Eigen::VectorXd StandingRobot::DrawTruth(std::uint64_t seed) const {
   const double angle = 0.5 * M_PI / 180.0;
   Random random(seed);
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
-  for (int i : base.kept) {
+  for (int i = 0; i < model.parameter_count(); ++i) {
     const Parameter& parameter = model.parameters[i];
     switch (parameter.kind) {
       case ParameterKind::kWaistPose:

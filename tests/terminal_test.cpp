@@ -59,7 +59,7 @@ TEST_F(Program, ShowsProgressAndTakesItAway) {
   const std::string text = RunOnTerminal("calibrate " + project_ + " --recording " + recording_ +
                                          " --kfold 5 -o " + out_);
   // Three models in five folds.
-  EXPECT_NE(text.find(kErase + std::string("cross-validation 1/15")), std::string::npos) << text;
+  EXPECT_NE(text.find(kErase + std::string("cross-validation 1/5")), std::string::npos) << text;
   for (const std::string& line : Screen(text)) {
     EXPECT_EQ(line.find("cross-validation 1"), std::string::npos) << line;
   }

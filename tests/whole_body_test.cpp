@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -21,18 +22,18 @@ TEST(WholeBody, JacobianEqualsDifferences) {
   const Recording recording = robot.Record(truth, {.torque_sensors = robot.project.torque_sensors});
   const Placement placement = RegisterPlacement(robot.model, recording, 1e-3);
   const std::vector<int> group = NoiseGroups(robot.model, recording);
-  const ObservationMask used = SeenMask(recording);
-  const std::vector<char> tied(recording.posture_count(), 1);
+  const Selection selection = SelectAll(robot.model, recording);
   const std::vector<PostureLoads> loads =
       ComputeLoads(robot.model, recording, truth, placement, {});
   const Prior prior;
-  const Noise noise{Eigen::Vector3d::Constant(1e-3), Eigen::Vector3d::Constant(1e-3),
-                    Eigen::Vector3d::Constant(1e-3)};
-  std::vector<int> free = robot.base.kept;
+  const Noise noise{Eigen::ArrayXXd::Constant(3, kNoiseSourceCount, 1e-3)};
+  const RobustWeights weights;
+  std::vector<int> free(robot.model.parameters.size());
+  std::iota(free.begin(), free.end(), 0);
   std::erase_if(free,
                 [&](int i) { return robot.model.parameters[i].kind == ParameterKind::kWaistPose; });
-  BodyResiduals problem({robot.model, recording, group, used, tied, loads, prior, noise}, free,
-                        truth, placement);
+  BodyResiduals problem({robot.model, recording, group, selection, loads, prior, noise, weights},
+                        free, truth, placement);
   Eigen::VectorXd x = problem.Start();
   Random random(7);
   for (double& value : x) value += random.Uniform(0.0, 0.3);
@@ -64,44 +65,44 @@ TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
   EXPECT_TRUE(result.outliers.empty());
   EXPECT_TRUE(result.loose_footings.empty());
   std::printf("%d iterations, %.2f s\n", result.iterations, result.solve_seconds);
-  double largest = 0.0;
-  for (int i : robot.base.kept) {
+  int told = 0;
+  for (int i = 0; i < robot.model.parameter_count(); ++i) {
     const Parameter& parameter = robot.model.parameters[i];
     if (parameter.kind == ParameterKind::kWaistPose) continue;
-    const double scale = ParameterScale(parameter, CalibrationOptions().prior);
-    largest = std::max(largest, std::abs(result.delta[i] - truth[i]) / scale);
+    const double scale = ParameterScale(parameter);
+    // Masses stay where the nominal link frames are, so that the choice between combinations of
+    // parameters that the markers cannot tell apart changes the loads a little: not noise, but at a
+    // noise of a micrometre a few standard deviations.
+    EXPECT_LT(std::abs(result.delta[i] - truth[i]), 1e-6 * scale + 10.0 * result.sd[i])
+        << parameter.name;
     // Turning a foot about the vertical is all but what turning the robot is: the compliance about
     // it is determined a hundred times worse.
-    const bool vertical = parameter.name.ends_with(".compliance_rz");
-    EXPECT_NEAR(result.delta[i] / scale, truth[i] / scale, vertical ? 1e-5 : 1e-7)
-        << parameter.name;
+    if (result.sd[i] < 1e-3 * scale && !parameter.name.ends_with(".compliance_rz")) {
+      EXPECT_NEAR(result.delta[i] / scale, truth[i] / scale, 5e-3) << parameter.name;
+      ++told;
+    }
   }
-  std::printf("largest error %.1e of the prior's sd\n", largest);
+  EXPECT_GT(told, 100);
 }
 
-// The constraint of eq. 14 as a penalty and rooted in the foot (as a nuisance: above): one truth,
-// if the data are perfect. What these hold as exact has a standard deviation of a micrometre, a
-// thousandth of the prior's.
-TEST(WholeBody, OtherFormsOfTheSupportConstraintGiveBackTheTruth) {
+// The constraint of eq. 14 rooted in the foot (as a nuisance: above): one truth, if the data are
+// perfect. What this form holds as exact has a standard deviation of a micrometre.
+TEST(WholeBody, RootedInTheFootGivesBackTheTruth) {
   const StandingRobot robot(10);
   const Eigen::VectorXd truth = robot.DrawTruth(3);
   const Recording recording =
       robot.Record(truth, {.marker_sd = 0.0, .torque_sensors = robot.project.torque_sensors});
-  for (SupportForm form : {SupportForm::kPenalty, SupportForm::kFootRooted}) {
-    CalibrationOptions options;
-    options.support_form = form;
-    const CalibrationResult result =
-        Calibrate(robot.model, recording, robot.base, ModelKind::kFull, options);
-    EXPECT_EQ(result.termination, Termination::kConverged) << result.message;
-    double largest = 0.0;
-    for (int i : robot.base.kept) {
-      const Parameter& parameter = robot.model.parameters[i];
-      if (parameter.kind == ParameterKind::kWaistPose) continue;
-      if (parameter.name.ends_with(".compliance_rz")) continue;  // determined 100 times worse
-      const double scale = ParameterScale(parameter, options.prior);
-      largest = std::max(largest, std::abs(result.delta[i] - truth[i]) / scale);
-    }
-    EXPECT_LT(largest, 5e-3) << "form " << static_cast<int>(form);
+  CalibrationOptions options;
+  options.support_form = SupportForm::kFootRooted;
+  const CalibrationResult result =
+      Calibrate(robot.model, recording, robot.base, ModelKind::kFull, options);
+  EXPECT_EQ(result.termination, Termination::kConverged) << result.message;
+  for (int i = 0; i < robot.model.parameter_count(); ++i) {
+    const Parameter& parameter = robot.model.parameters[i];
+    if (parameter.kind == ParameterKind::kWaistPose) continue;
+    EXPECT_LT(std::abs(result.delta[i] - truth[i]),
+              5e-3 * ParameterScale(parameter) + 5.0 * result.sd[i])
+        << parameter.name;
   }
 }
 
@@ -185,11 +186,7 @@ TEST_F(StandingTest, StraightKneesAreReportedAndTheirLoadsTakenFromStatics) {
     if (parameter.kind != ParameterKind::kLegForce && parameter.kind != ParameterKind::kLegMoment) {
       continue;
     }
-    if (result.status[i] == ParameterStatus::kUnsupported) {
-      EXPECT_EQ(result.delta[i], 0.0) << parameter.name;
-    } else {
-      EXPECT_LT(std::abs(result.delta[i] - truth_[i]), 4.0 * result.sd[i]) << parameter.name;
-    }
+    EXPECT_LT(std::abs(result.delta[i] - truth_[i]), 4.0 * result.sd[i]) << parameter.name;
   }
 }
 

@@ -1,7 +1,6 @@
 #include "elastocal/calibration/body_unknowns.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "elastocal/math/rotation_vector.hpp"
@@ -9,25 +8,20 @@
 
 namespace elastocal {
 
-double ParameterScale(const Parameter& parameter, const Prior& prior) {
-  const double sd = prior[parameter.kind];
-  return std::isfinite(sd) ? sd : 0.01;
-}
-
-BodyUnknowns::BodyUnknowns(const ErrorModel& model, const Prior& prior,
-                           const std::vector<int>& free, const Eigen::VectorXd& delta,
-                           const Placement& placement)
+BodyUnknowns::BodyUnknowns(const ErrorModel& model, const std::vector<int>& free,
+                           const Eigen::VectorXd& delta, const Placement& placement)
     : model_(model), placement_(placement), free_(free), fixed_(delta) {
-  MakeParameterBlocks(prior);
+  MakeParameterBlocks();
   first_footing_block_ = static_cast<int>(block_sizes_.size());
   block_sizes_.insert(block_sizes_.end(), placement_.footings.size(), 6);
   first_waist_block_ = static_cast<int>(block_sizes_.size());
   block_sizes_.insert(block_sizes_.end(), placement_.T_ref_waist.size(), 6);
+  is_marker_.resize(block_sizes_.size(), 0);
   first_entry_.assign(block_sizes_.size() + 1, 0);
   std::partial_sum(block_sizes_.begin(), block_sizes_.end(), first_entry_.begin() + 1);
 }
 
-void BodyUnknowns::MakeParameterBlocks(const Prior& prior) {
+void BodyUnknowns::MakeParameterBlocks() {
   scale_.resize(static_cast<Eigen::Index>(free_.size()));
   const Parameter* previous = nullptr;
   const auto same_block = [&](const Parameter& parameter) {
@@ -39,10 +33,11 @@ void BodyUnknowns::MakeParameterBlocks(const Prior& prior) {
   };
   for (std::size_t u = 0; u < free_.size(); ++u) {
     const Parameter& parameter = model_.parameters[free_[u]];
-    scale_[static_cast<Eigen::Index>(u)] = ParameterScale(parameter, prior);
+    scale_[static_cast<Eigen::Index>(u)] = ParameterScale(parameter);
     if (IsCompliance(parameter.kind)) nonnegative_.push_back(static_cast<int>(u));
     if (!same_block(parameter)) {
       block_sizes_.push_back(0);
+      is_marker_.push_back(parameter.marker >= 0 ? 1 : 0);
     }
     ++block_sizes_.back();
     block_of_.push_back(static_cast<int>(block_sizes_.size()) - 1);
@@ -54,24 +49,6 @@ std::vector<int> BodyUnknowns::WaistBlocks() const {
   std::vector<int> blocks(placement_.T_ref_waist.size());
   std::iota(blocks.begin(), blocks.end(), first_waist_block_);
   return blocks;
-}
-
-bool BodyUnknowns::IsMarkerBlock(int block) const {
-  const auto first = std::find(block_of_.begin(), block_of_.end(), block);
-  return first != block_of_.end() &&
-         model_.parameters[free_[first - block_of_.begin()]].marker >= 0;
-}
-
-std::vector<int> BodyUnknowns::EliminatedBlocks() const {
-  if (!placement_.empty()) return WaistBlocks();
-  std::vector<int> markers;
-  for (std::size_t u = 0; u < free_.size(); ++u) {
-    const bool next = markers.empty() || markers.back() != block_of_[u];
-    if (next && model_.parameters[free_[u]].marker >= 0) markers.push_back(block_of_[u]);
-  }
-  // Elimination needs something to eliminate from, and gains nothing for a single block.
-  if (markers.size() < 2 || markers.size() == block_sizes_.size()) markers.clear();
-  return markers;
 }
 
 Eigen::VectorXd BodyUnknowns::Start() const {

@@ -11,10 +11,6 @@
 
 namespace elastocal {
 
-/// Scale of each parameter in the solver: its prior standard deviation, or for one without prior
-/// 0.01 (m or rad). Of similar influence in these units, whatever the parameter.
-double ParameterScale(const Parameter& parameter, const Prior& prior);
-
 /// How the unknowns of eq. 14 stand in the solver's vector x: the free parameters in units of
 /// ParameterScale, in blocks: T0, each joint, each leg, each marker; then, of trials, the pose of
 /// each footing and that of the waist in each posture, as displacements in units of kPoseScale from
@@ -26,8 +22,8 @@ class BodyUnknowns {
 
   /// `free`: indices of the estimated parameters, ascending; all others stay as in `delta`. Keeps
   /// references to the model and the placement.
-  BodyUnknowns(const ErrorModel& model, const Prior& prior, const std::vector<int>& free,
-               const Eigen::VectorXd& delta, const Placement& placement);
+  BodyUnknowns(const ErrorModel& model, const std::vector<int>& free, const Eigen::VectorXd& delta,
+               const Placement& placement);
 
   const std::vector<int>& block_sizes() const { return block_sizes_; }
   /// First entry of a block in x; of the one behind the last: the size of x.
@@ -40,9 +36,7 @@ class BodyUnknowns {
   int FootingBlock(int footing) const { return first_footing_block_ + footing; }
   int WaistBlock(int posture) const { return first_waist_block_ + posture; }
   std::vector<int> WaistBlocks() const;
-  bool IsMarkerBlock(int block) const;
-  /// Blocks to be eliminated first: the waists or, in a table of postures, the markers.
-  std::vector<int> EliminatedBlocks() const;
+  bool IsMarkerBlock(int block) const { return block >= 0 && is_marker_[block] != 0; }
 
   Eigen::VectorXd Start() const;  ///< at `delta` and `placement`
   Eigen::VectorXd ToErrors(const Eigen::VectorXd& x) const;
@@ -70,14 +64,15 @@ class BodyUnknowns {
   Deflection MapDeflection(int leg) const;
 
  private:
-  void MakeParameterBlocks(const Prior& prior);
+  void MakeParameterBlocks();
 
   const ErrorModel& model_;
   const Placement& placement_;
   std::vector<int> free_;
   Eigen::VectorXd fixed_;
-  Eigen::VectorXd scale_;      // by unknown parameter
-  std::vector<int> block_of_;  // by unknown parameter
+  Eigen::VectorXd scale_;        // by unknown parameter
+  std::vector<int> block_of_;    // by unknown parameter
+  std::vector<char> is_marker_;  // by block
   std::vector<int> block_sizes_, first_entry_, nonnegative_;
   int first_footing_block_ = 0, first_waist_block_ = 0;
 };

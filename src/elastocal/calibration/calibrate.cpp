@@ -24,11 +24,14 @@ bool IsEstimated(ParameterKind parameter, ModelKind kind) {
          (kind == ModelKind::kOffsetsOnly && parameter == ParameterKind::kTheta);
 }
 
-/// What is estimated. In trials the waist has a pose in each posture instead of T0.
+/// What is estimated: all parameters but those held, also those that cannot be told from others:
+/// of these, the prior makes the smallest combination that explains the data. In trials the waist
+/// has a pose in each posture instead of T0.
 std::vector<int> OfKind(const ErrorModel& model, const BaseParameters& base, ModelKind kind,
                         bool waist_moves) {
   std::vector<int> free;
-  for (int i : base.kept) {
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (std::binary_search(base.held.begin(), base.held.end(), i)) continue;
     const ParameterKind parameter = model.parameters[i].kind;
     if (waist_moves && parameter == ParameterKind::kWaistPose) continue;
     if (IsEstimated(parameter, kind)) free.push_back(i);
@@ -36,20 +39,13 @@ std::vector<int> OfKind(const ErrorModel& model, const BaseParameters& base, Mod
   return free;
 }
 
-std::vector<int> Without(const std::vector<int>& all, const std::vector<int>& removed) {
-  std::vector<int> rest;
-  std::set_difference(all.begin(), all.end(), removed.begin(), removed.end(),
-                      std::back_inserter(rest));
-  return rest;
-}
-
-Selection Without(const Recording& recording, const OutlierVerdict& verdict) {
-  Selection selection = SelectAll(recording);
-  for (const Outlier& outlier : verdict.markers) {
-    selection.markers(outlier.posture, outlier.marker) = false;
-  }
-  for (const LooseFooting& footing : verdict.footings) selection.tied[footing.posture] = 0;
-  return selection;
+Selection Without(const ErrorModel& model, const Recording& recording,
+                  const OutlierVerdict& verdict) {
+  ObservationMask markers = SeenMask(recording);
+  std::vector<char> tied(static_cast<std::size_t>(recording.posture_count()), 1);
+  for (const Outlier& outlier : verdict.markers) markers(outlier.posture, outlier.marker) = false;
+  for (const LooseFooting& footing : verdict.footings) tied[footing.posture] = 0;
+  return Select(model, recording, std::move(markers), std::move(tied));
 }
 
 bool Same(const OutlierVerdict& a, const OutlierVerdict& b) {
@@ -62,11 +58,15 @@ bool Same(const OutlierVerdict& a, const OutlierVerdict& b) {
              [](const LooseFooting& x, const LooseFooting& y) { return x.posture == y.posture; });
 }
 
+/// The prior makes any number of equations enough; fewer than what could be identified are refused
+/// all the same.
 void CheckEquations(const Recording& recording, const Placement& placement,
-                    const Selection& selection, const std::vector<int>& free,
-                    std::size_t outliers) {
+                    const Selection& selection, const BaseParameters& base,
+                    const std::vector<int>& free, std::size_t outliers) {
   auto equations = 3 * selection.markers.count();
-  auto unknowns = static_cast<Eigen::Index>(free.size());
+  Eigen::Index unknowns = std::count_if(free.begin(), free.end(), [&](int i) {
+    return std::binary_search(base.kept.begin(), base.kept.end(), i);
+  });
   for (int i = 0; i < static_cast<int>(placement.T_ref_waist.size()); ++i) {
     unknowns += 6;
     if (placement.footing[i] >= 0 && selection.tied[i] != 0) equations += 6;
@@ -83,13 +83,17 @@ void CheckEquations(const Recording& recording, const Placement& placement,
                    "; record more postures or hold parameters");
 }
 
-void FillStatus(const BaseParameters& base, const std::vector<int>& free,
-                const std::vector<int>& unsupported, CalibrationResult& result) {
+void FillStatus(const BaseParameters& base, const CalibrationOptions& options,
+                const Posterior& posterior, CalibrationResult& result) {
   result.status.assign(result.model.parameters.size(), ParameterStatus::kNotInModel);
   for (int i : base.held) result.status[i] = ParameterStatus::kHeld;
-  for (int i : base.dropped) result.status[i] = ParameterStatus::kDropped;
-  for (int i : free) result.status[i] = ParameterStatus::kEstimated;
-  for (int i : unsupported) result.status[i] = ParameterStatus::kUnsupported;
+  Prior prior = options.prior;
+  prior.scale = result.prior_scale;
+  for (int i : posterior.parameters) {
+    const bool told = result.sd[i] < options.support_threshold *
+                                         prior.Of(result.model.tree, result.model.parameters[i]);
+    result.status[i] = told ? ParameterStatus::kEstimated : ParameterStatus::kUnsupported;
+  }
 }
 
 /// Root mean square of the groups' over the observations.
@@ -98,16 +102,16 @@ double PooledMarkerSd(const ObservationMask& used, const std::vector<int>& group
   double squares = 0.0;
   double count = 0.0;
   for (Eigen::Index i = 0; i < used.rows(); ++i) {
-    const double sd = noise.marker_sd[group[static_cast<std::size_t>(i)]];
+    const int g = group[static_cast<std::size_t>(i)];
     const auto seen = static_cast<double>(used.row(i).count());
-    squares += seen * sd * sd;
+    squares += seen * (noise.Variance(g, NoiseSource::kMarker) +
+                       noise.Variance(g, NoiseSource::kBodyPosition));
     count += seen;
   }
   return std::sqrt(squares / std::max(1.0, count));
 }
 
-void FillResult(const BaseParameters& base, const std::vector<int>& free,
-                const std::vector<int>& unsupported, const CalibrationOptions& options, Fit fit,
+void FillResult(const BaseParameters& base, const CalibrationOptions& options, Fit fit,
                 CalibrationResult& result) {
   result.equations = static_cast<int>(3 * result.used.count());
   result.marker_sd = PooledMarkerSd(result.used, result.group, fit.noise);
@@ -125,63 +129,51 @@ void FillResult(const BaseParameters& base, const std::vector<int>& free,
   result.initial_cost = fit.initial_cost;
   result.final_cost = fit.final_cost;
   result.delta = std::move(fit.delta);
+  FillStatus(base, options, fit.posterior, result);
   result.posterior = std::move(fit.posterior);
-  FillStatus(base, free, unsupported, result);
 }
 
-/// Step 4: the fit without parameters that the data do not support; their uncertainty stays in it.
-std::vector<int> HoldUnsupported(const FitProblem& problem, const Selection& selection,
-                                 const std::vector<int>& free, Fit& fit) {
-  const std::vector<int> unsupported = UnsupportedParameters(problem, fit);
-  if (!unsupported.empty()) {
-    for (int i : unsupported) fit.delta[i] = 0.0;
-    fit = FitParameters(problem, selection, Without(free, unsupported), fit, false);
-  }
-  UpdatePosterior(problem, selection, free, fit);
-  return unsupported;
-}
-
-/// Steps 2 to 4 of Calibrate: from a fit of the externals to the result.
+/// Steps 2 to 4, from an estimate of waist and markers.
 void EstimateAll(const FitProblem& problem, const BaseParameters& base,
                  const std::vector<int>& free, const Selection* fixed, Fit fit,
                  CalibrationResult& result) {
   const Recording& recording = problem.recording;
   const double probability = problem.options.outlier_probability;
-  Selection selection = fixed != nullptr ? *fixed : SelectAll(recording);
+  const bool remove = fixed == nullptr && problem.options.outliers == OutlierPolicy::kRemove;
+  Selection selection = fixed != nullptr ? *fixed : SelectAll(problem.model, recording);
   OutlierVerdict verdict;
-  CheckEquations(recording, fit.placement, selection, free, 0);
+  CheckEquations(recording, fit.placement, selection, base, free, 0);
   if (fixed == nullptr) {
-    fit = FitParameters(problem, selection, free, fit, true);
-    verdict = FindOutliers(fit, problem.group, selection, probability);
-    selection = Without(recording, verdict);
+    fit = FitParameters(problem, selection, free, fit, Robustness::kMedians);
+    verdict = FindOutliers(problem, selection, free, fit, probability);
+    if (remove) selection = Without(problem.model, recording, verdict);
   }
-  std::vector<int> unsupported;
   for (int round = 1;; ++round) {
-    CheckEquations(recording, fit.placement, selection, free, verdict.markers.size());
-    fit = FitParameters(problem, selection, free, fit, false);
-    unsupported = HoldUnsupported(problem, selection, free, fit);
+    CheckEquations(recording, fit.placement, selection, base, free, verdict.markers.size());
+    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
     if (fixed != nullptr) break;
-    OutlierVerdict next = FindOutliers(fit, problem.group, selection, probability);
+    OutlierVerdict next = FindOutliers(problem, selection, free, fit, probability);
     const bool stands = Same(next, verdict);
-    if (!stands && round == kMaxVerdicts) {  // keeps the verdict that the fit was made with
+    if (!stands && remove && round == kMaxVerdicts) {  // keeps the one that the fit was made with
       fit.settled = false;
       break;
     }
     verdict = std::move(next);
-    if (stands) break;
-    selection = Without(recording, verdict);
+    if (stands || !remove) break;
+    selection = Without(problem.model, recording, verdict);
   }
-  Polish(problem, selection, Without(free, unsupported), fit);
+  Polish(problem, selection, free, fit);
   UpdatePosterior(problem, selection, free, fit);
   result.outliers = std::move(verdict.markers);
   result.loose_footings = std::move(verdict.footings);
+  result.short_models = FindShortModels(problem, selection, fit);
   result.used = std::move(selection.markers);
   result.tied = std::move(selection.tied);
   if (!fit.placement.empty() && result.kind == ModelKind::kFull) {
     ComputeLoads(problem.model, recording, fit.delta, fit.placement, problem.options.load,
                  &result.loads);
   }
-  FillResult(base, free, unsupported, problem.options, std::move(fit), result);
+  FillResult(base, problem.options, std::move(fit), result);
 }
 
 /// Step 1, and the others: with the joints' errors as in `delta` where they are not estimated.
@@ -194,13 +186,14 @@ void Estimate(const ErrorModel& model, const Recording& recording, const BasePar
   if (!waist_moves) result.model.T_ref_waist = RegisterWaist(model, recording);
   result.group = NoiseGroups(model, recording);
   const FitProblem problem{result.model, recording, options, result.group};
-  const Selection selection = fixed != nullptr ? *fixed : SelectAll(recording);
+  const Selection selection = fixed != nullptr ? *fixed : SelectAll(model, recording);
   const std::vector<int> externals = OfKind(model, base, ModelKind::kUncalibrated, waist_moves);
   const Fit start = StartFit(problem, selection, delta);
   if (waist_moves) FindFootings(model, recording, options.slip, &result.slips);
-  CheckEquations(recording, start.placement, selection, externals, 0);
+  CheckEquations(recording, start.placement, selection, base, externals, 0);
   const Fit fit =
-      FitParameters(problem, selection, externals, start, fixed == nullptr, kFewUpdates);
+      FitParameters(problem, selection, externals, start,
+                    fixed == nullptr ? Robustness::kMedians : Robustness::kMoments, kFewUpdates);
   EstimateAll(problem, base, OfKind(model, base, result.kind, waist_moves), fixed, fit, result);
 }
 
@@ -225,6 +218,8 @@ const char* ModelKindName(ModelKind kind) {
       return "offsets_only";
     case ModelKind::kGeometric:
       return "geometric";
+    case ModelKind::kRigid:
+      return "rigid";
     default:
       return "full";
   }
@@ -235,7 +230,7 @@ std::vector<ModelKind> ModelKinds(const ErrorModel& model) {
                                   ModelKind::kGeometric};
   const auto elastic = [](const Parameter& parameter) { return IsElastic(parameter.kind); };
   if (std::any_of(model.parameters.begin(), model.parameters.end(), elastic)) {
-    kinds.push_back(ModelKind::kFull);
+    kinds.insert(kinds.end(), {ModelKind::kRigid, ModelKind::kFull});
   }
   return kinds;
 }
@@ -246,8 +241,6 @@ const char* StatusName(ParameterStatus status) {
       return "estimated";
     case ParameterStatus::kUnsupported:
       return "unsupported";
-    case ParameterStatus::kDropped:
-      return "dropped";
     case ParameterStatus::kHeld:
       return "held";
     default:
@@ -277,6 +270,19 @@ CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recor
   return Timed(ModelKind::kUncalibrated, [&](CalibrationResult& result) {
     Estimate(model, recording, base, options, fixed, delta, result);
   });
+}
+
+CalibrationResult WithoutSprings(const CalibrationResult& full, const ErrorModel& model,
+                                 const Recording& recording, const BaseParameters& base,
+                                 const CalibrationOptions& options, const Selection& fixed) {
+  std::map<std::string, double> geometry;
+  for (int i = 0; i < full.model.parameter_count(); ++i) {
+    const Parameter& parameter = full.model.parameters[i];
+    if (!IsElastic(parameter.kind)) geometry[parameter.name] = full.delta[i];
+  }
+  CalibrationResult rigid = RefitExternals(model, recording, base, options, geometry, &fixed);
+  rigid.kind = ModelKind::kRigid;
+  return rigid;
 }
 
 bool Significant(const CalibrationResult& result, int parameter) {

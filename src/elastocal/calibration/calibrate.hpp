@@ -18,28 +18,30 @@ namespace elastocal {
 enum class ModelKind {
   kUncalibrated,  ///< waist and marker positions only (NCM)
   kOffsetsOnly,   ///< and joint offsets theta
-  kGeometric,     ///< all identifiable geometric parameters (GCM)
-  kFull,          ///< and the elastic ones (FCM)
+  kGeometric,     ///< all geometric parameters (GCM)
+  kRigid,         ///< the geometry of kFull without its springs: what a URDF can carry of it
+  kFull,          ///< geometric and elastic ones (FCM)
 };
 
-inline constexpr int kModelKindCount = 4;
+inline constexpr int kModelKindCount = 5;
 
-/// uncalibrated, offsets_only, geometric, full
+/// uncalibrated, offsets_only, geometric, rigid, full
 const char* ModelKindName(ModelKind kind);
 
-/// The kinds that mean something for a model: all, or all but kFull where nothing is elastic.
+/// The kinds that mean something for a model: all, or the first three where nothing is elastic.
 std::vector<ModelKind> ModelKinds(const ErrorModel& model);
 
 /// What became of a parameter.
 enum class ParameterStatus {
   kEstimated,
-  kUnsupported,  ///< the data hardly tell more than the prior: held at nominal
-  kDropped,      ///< not identifiable beside others, into which it is regrouped
-  kHeld,         ///< held at nominal by the user's setting
-  kNotInModel,   ///< not of the kinds that this ModelKind estimates
+  /// The data tell hardly more than the prior, or tell it only together with others: the value is
+  /// the most probable one.
+  kUnsupported,
+  kHeld,        ///< held at nominal by the user's setting
+  kNotInModel,  ///< not of the kinds that this ModelKind estimates
 };
 
-/// estimated, unsupported, dropped, held, not_in_model
+/// estimated, unsupported, held, not_in_model
 const char* StatusName(ParameterStatus status);
 
 struct CalibrationResult {
@@ -51,25 +53,27 @@ struct CalibrationResult {
   Placement placement;                  ///< where the robot stood; empty for a table of postures
   std::vector<Slip> slips;              ///< of feet
   std::vector<ParameterStatus> status;  ///< one a parameter
-  /// Posterior standard deviation, one a parameter; for an unsupported one it says how little is
-  /// known; NaN where none applies.
+  /// Posterior standard deviation, one a parameter; NaN where none applies.
   Eigen::VectorXd sd;
   /// Half width of a 95 % interval in standard deviations (Student's t; normal where the noise is
   /// given).
   double interval_factor = 1.96;
-  Posterior posterior;  ///< of estimated and unsupported parameters together
+  Posterior posterior;  ///< of estimated and unsupported parameters
   std::vector<Correlation> correlations;
 
   ObservationMask used;                      ///< observations that took part
   std::vector<Outlier> outliers;             ///< those that did not, and why
   std::vector<char> tied;                    ///< postures whose support constraint took part
   std::vector<LooseFooting> loose_footings;  ///< those on one foot whose did not, and why
+  std::vector<ShortModel> short_models;      ///< bodies that count less, the furthest off first
   LoadReport loads;                          ///< loads that were not measured
   std::vector<int> group;                    ///< noise group of each posture
   Noise noise;                               ///< by group; estimated unless given
-  double marker_sd = 0.0;                    ///< of one coordinate, over all groups, m
-  PriorScale prior_scale;                    ///< factors by which the prior was widened
-  int equations = 0;                         ///< 3 a used observation
+  /// Of one coordinate, over all groups, by all that markers do not share a posture's waist for:
+  /// noise of the cameras and displacement of the body, m.
+  double marker_sd = 0.0;
+  PriorScale prior_scale;  ///< factors by which the prior was widened
+  int equations = 0;       ///< 3 a used observation
 
   /// Of the last solve; and whether noise, prior and the verdict on outliers came to rest.
   Termination termination = Termination::kFailure;
@@ -84,16 +88,17 @@ struct CalibrationResult {
 ///
 /// 1. waist pose by registration (of trials: in each posture), then waist and marker positions
 /// alone;
-/// 2. all parameters of the kind under Cauchy's loss; observations beyond what noise and
-///    uncertainty explain are named outliers and left out;
-/// 3. least squares with Gaussian prior on the rest; the noise of a marker coordinate (unless it is
-///    given) follows from the residuals, and the factors that widen the prior from the estimates;
-/// 4. parameters that the data do not support are held at nominal, and the others estimated again.
-///    Their uncertainty is still counted in that of the others.
+/// 2. all parameters of the kind, with the noise by medians; measurements gone wrong are named and
+///    left out (FindOutliers);
+/// 3. least squares with Gaussian prior on the rest. The sources of noise (NoiseSource) follow from
+///    the residuals, the factors that widen the prior from the estimates, and a body that is
+///    further off than the noise explains counts less.
 ///
-/// Steps 3 and 4 are repeated until the verdict on outliers stands.
+/// Step 3 is repeated until the verdict on outliers stands. All parameters are estimated together,
+/// also those that cannot be told from others: the prior makes the result unique, and it changes
+/// continuously with the nominal geometry.
 ///
-/// `base` holds the identifiable parameters of `model` for this kind. `fixed`, where given, says
+/// `base`: which parameters are held, and how many could be identified. `fixed`, where given, says
 /// which observations and constraints to use, instead of looking for outliers.
 /// Of trials, all are estimated together (eq. 14): see BodyResiduals.
 /// Throws InputError when there are fewer equations than parameters. Non-convergence is told by
@@ -110,6 +115,12 @@ CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recor
                                  const BaseParameters& base, const CalibrationOptions& options,
                                  const std::map<std::string, double>& joint_errors,
                                  const Selection* fixed = nullptr);
+
+/// The geometry of a full model without its springs, waist and markers refitted to the observations
+/// in `fixed`: what is left when the estimate is used as a URDF. Of kind kRigid.
+CalibrationResult WithoutSprings(const CalibrationResult& full, const ErrorModel& model,
+                                 const Recording& recording, const BaseParameters& base,
+                                 const CalibrationOptions& options, const Selection& fixed);
 
 /// Whether an estimated parameter differs from nominal by more than its 95 % interval.
 bool Significant(const CalibrationResult& result, int parameter);

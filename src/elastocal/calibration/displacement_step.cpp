@@ -7,9 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "elastocal/calibration/residuals.hpp"
 #include "elastocal/math/statistics.hpp"
-#include "elastocal/optim/linearisation.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
@@ -17,26 +15,24 @@ namespace {
 
 constexpr int kLeastPostures = 3;    // on either side
 constexpr double kLargestSd = 5e-4;  // m, of a displacement that is believed
-constexpr double kVague = 1e-4;  // information that keeps free unknowns from being divided by zero
-
 /// What a displacement of one cluster, in the axes of its link, does in one posture.
-struct Push {
+struct ShiftEffect {
   Eigen::Vector3d score = Eigen::Vector3d::Zero();        ///< A' Q r
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< A' Q A
   Eigen::Matrix3Xd cross;                                 ///< A' Q J, 3 x unknowns
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();        ///< sum over its markers, m
-  int markers = 0;
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();        ///< mean over its markers, m
 };
 
 /// Of one cluster, by posture in which it was seen.
-using Pushes = std::map<int, Push>;
+using ShiftEffects = std::map<int, ShiftEffect>;
 
 /// A fit, linearised: the waist of each posture is eliminated by Q.
 struct Linearised {
-  std::vector<Pushes> pushes;          ///< by cluster
+  std::vector<ShiftEffects> effects;   ///< by cluster
   Eigen::LLT<Eigen::MatrixXd> factor;  ///< of the information about all other unknowns
   Eigen::VectorXd gradient;            ///< of these, J' Q r
   double squares = 0.0;                ///< sum of squared residuals
+  double freedom = 0.0;                ///< rows less unknowns, at least
 };
 
 /// Axes of the links in each posture, in the cameras' frame.
@@ -51,84 +47,50 @@ std::vector<std::vector<Transform>> LinkPoses(const FitProblem& problem, const F
   return poses;
 }
 
-std::vector<int> ClusterOfMarkers(const std::vector<LabelCluster>& clusters, int markers) {
-  std::vector<int> cluster_of(markers, -1);
-  for (std::size_t c = 0; c < clusters.size(); ++c) {
-    for (int m : clusters[c].markers) cluster_of[m] = static_cast<int>(c);
+Linearised Linearise(const FitProblem& problem, const Selection& selection,
+                     const std::vector<int>& free, const Fit& fit,
+                     const std::vector<LabelCluster>& clusters) {
+  FitResiduals residuals(problem, selection, free, fit);
+  residuals.body.Evaluate(residuals.body.Start(), true);
+  const NormalEquations equations(residuals.body);
+  const std::vector<std::vector<Transform>> poses = LinkPoses(problem, fit);
+  Linearised linear;
+  linear.effects.resize(clusters.size());
+  linear.factor.compute(equations.information());
+  linear.gradient = equations.gradient();
+  linear.squares = 2.0 * CostOf(residuals.body);
+  for (const auto& block : residuals.body.residual_blocks) {
+    if (block.active) linear.freedom += block.size;
   }
-  return cluster_of;
-}
-
-class Lineariser {
- public:
-  Lineariser(const FitProblem& problem, const Fit& fit, const std::vector<LabelCluster>& clusters)
-      : problem_(problem),
-        fit_(fit),
-        cluster_of_(ClusterOfMarkers(clusters, problem.recording.marker_count())),
-        poses_(LinkPoses(problem, fit)) {
-    result_.pushes.resize(clusters.size());
-  }
-
-  Linearised Run(const Selection& selection, const std::vector<int>& free) {
-    const Prior prior = problem_.options.prior.Scaled(fit_.prior_scale);
-    const std::vector<PostureLoads> loads = ComputeLoads(
-        problem_.model, problem_.recording, fit_.delta, fit_.placement, problem_.options.load);
-    BodyResiduals body({problem_.model, problem_.recording, problem_.group, selection.markers,
-                        selection.tied, loads, prior, fit_.noise, problem_.options.support_form},
-                       free, fit_.delta, fit_.placement);
-    const Linearisation linear = Linearise(body, body.Start(), body.WaistBlocks());
-    Eigen::MatrixXd information = linear.information;
-    information.diagonal().array() += kVague;
-    result_.factor.compute(information);
-    result_.gradient.setZero(information.rows());
-    for (const Linearisation::Group& group : linear.groups) AddGroup(body, group);
-    return std::move(result_);
-  }
-
- private:
-  void AddGroup(const BodyResiduals& body, const Linearisation::Group& group) {
-    Eigen::VectorXd r(group.jacobian.rows());
-    std::map<std::pair<int, int>, Eigen::MatrixXd> by_push;  // cluster and posture: A
-    for (std::size_t b = 0; b < group.blocks.size(); ++b) {
-      const int block = group.blocks[b];
-      const int row = group.first_row[b];
-      body.Residual(block,
-                    Eigen::Map<Eigen::VectorXd>(r.data() + row, body.residual_blocks[block].size));
-      if (block >= static_cast<int>(body.meanings().size())) continue;
-      const auto [posture, marker] = body.meanings()[block];
-      if (marker < 0 || cluster_of_[marker] < 0) continue;
-      const double sd = fit_.noise.marker_sd[problem_.group[posture]];
-      const Eigen::Matrix3d R = poses_[posture][problem_.model.markers[marker].link].linear();
-      const int cluster = cluster_of_[marker];
-      const auto [A, added] = by_push.try_emplace({cluster, posture});
-      if (added) A->second.setZero(r.size(), 3);
-      A->second.middleRows<3>(row) = R / sd;
-      Push& push = result_.pushes[cluster][posture];
-      push.shift += sd * R.transpose() * r.segment<3>(row);
-      ++push.markers;
+  for (int size : residuals.body.parameter_blocks) linear.freedom -= size;
+  for (int b = 0; b < residuals.body.body_count(); ++b) {
+    const BodyObservation& body = selection.bodies[b];
+    if (!body.used) continue;
+    const Eigen::VectorXd raw =
+        body.basis * residuals.body.Residual(b).cwiseProduct(residuals.body.Sds(b));
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(raw.size(), 3);
+      Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+      int markers = 0;
+      for (std::size_t n = 0; n < body.markers.size(); ++n) {
+        const int m = body.markers[n];
+        const std::vector<int>& of = clusters[c].markers;
+        if (std::find(of.begin(), of.end(), m) == of.end()) continue;
+        const Eigen::Matrix3d R = poses[body.posture][problem.model.markers[m].link].linear();
+        const auto row = 3 * static_cast<Eigen::Index>(n);
+        displacement.middleRows<3>(row) = R;
+        shift += R.transpose() * raw.segment<3>(row);
+        ++markers;
+      }
+      if (markers == 0) continue;
+      const NormalEquations::Score score =
+          equations.Project(b, residuals.body.Whiten(b, displacement));
+      linear.effects[c][body.posture] = {score.residual, score.information, score.cross,
+                                         shift / markers};
     }
-    result_.squares += r.squaredNorm();
-    result_.gradient(group.columns) += group.jacobian.transpose() * r;
-    for (const auto& [which, A] : by_push)
-      AddPush(group, r, A, result_.pushes[which.first][which.second]);
   }
-
-  void AddPush(const Linearisation::Group& group, const Eigen::VectorXd& r,
-               const Eigen::MatrixXd& A, Push& push) const {
-    const Eigen::MatrixXd QA =
-        group.nuisance.size() > 0 ? Eigen::MatrixXd(A - group.nuisance * A) : A;
-    push.score += QA.transpose() * r;
-    push.information += QA.transpose() * A;
-    if (push.cross.size() == 0) push.cross.setZero(3, result_.gradient.size());
-    push.cross(Eigen::all, group.columns) += A.transpose() * group.jacobian;
-  }
-
-  const FitProblem& problem_;
-  const Fit& fit_;
-  std::vector<int> cluster_of_;
-  std::vector<std::vector<Transform>> poses_;
-  Linearised result_;
-};
+  return linear;
+}
 
 /// The displacement in those directions in which it is known; elsewhere none.
 Eigen::Vector3d KnownDisplacement(const Eigen::Matrix3d& information,
@@ -147,14 +109,14 @@ Eigen::Vector3d KnownDisplacement(const Eigen::Matrix3d& information,
 /// The best step of one cluster; counts those tried.
 DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::VectorXd& explained,
                           int& tried) {
-  const Pushes& pushes = linear.pushes[cluster];
+  const ShiftEffects& effects = linear.effects[cluster];
   DisplacementStep best;
   best.cluster = cluster;
-  Push after;
+  ShiftEffect after;
   after.cross.setZero(3, explained.size());
-  const int count = static_cast<int>(pushes.size());
+  const int count = static_cast<int>(effects.size());
   int seen = 0;
-  for (auto at = pushes.rbegin(); at != pushes.rend(); ++at) {
+  for (auto at = effects.rbegin(); at != effects.rend(); ++at) {
     after.score += at->second.score;
     after.information += at->second.information;
     after.cross += at->second.cross;
@@ -173,25 +135,25 @@ DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::Ve
 }
 
 /// Of the cluster about its mean before and that after the step, m per axis.
-double Scatter(const Pushes& pushes, const DisplacementStep& step) {
+double Scatter(const ShiftEffects& effects, const DisplacementStep& step) {
   Eigen::Vector3d mean[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   double count[2] = {0.0, 0.0};
-  for (const auto& [posture, push] : pushes) {
+  for (const auto& [posture, effect] : effects) {
     const int side = posture < step.posture ? 0 : 1;
-    mean[side] += push.shift / push.markers;
+    mean[side] += effect.shift;
     count[side] += 1.0;
   }
   double squares = 0.0;
-  for (const auto& [posture, push] : pushes) {
+  for (const auto& [posture, effect] : effects) {
     const int side = posture < step.posture ? 0 : 1;
-    squares += (push.shift / push.markers - mean[side] / count[side]).squaredNorm();
+    squares += (effect.shift - mean[side] / count[side]).squaredNorm();
   }
   return std::sqrt(squares / (3.0 * (count[0] + count[1] - 2.0)));
 }
 
 /// Of the three numbers of a step among `tried` ones.
-double Significance(const Linearised& linear, double gain, double freedom, double level) {
-  if (std::isinf(freedom)) return gain / ChiSquareQuantile(level, 3.0);
+double Significance(const Linearised& linear, double gain, double level) {
+  const double freedom = linear.freedom - 3.0;
   if (freedom < 1.0) return 0.0;
   const double rest = std::max(linear.squares - gain, 1e-12 * linear.squares);
   return gain / 3.0 / (rest / freedom) / FisherQuantile(level, 3.0, freedom);
@@ -202,7 +164,7 @@ double Significance(const Linearised& linear, double gain, double freedom, doubl
 DisplacementStep FindLargestStep(const FitProblem& problem, const Selection& selection,
                                  const std::vector<int>& free, const Fit& fit,
                                  const std::vector<LabelCluster>& clusters, double probability) {
-  const Linearised linear = Lineariser(problem, fit, clusters).Run(selection, free);
+  const Linearised linear = Linearise(problem, selection, free, fit, clusters);
   const Eigen::VectorXd explained = linear.factor.matrixL().solve(linear.gradient);
   DisplacementStep best;
   int tried = 0;
@@ -211,9 +173,8 @@ DisplacementStep FindLargestStep(const FitProblem& problem, const Selection& sel
     if (step.gain > best.gain) best = step;
   }
   if (best.cluster < 0) return best;
-  best.scatter = Scatter(linear.pushes[best.cluster], best);
-  best.significance =
-      Significance(linear, best.gain, fit.degrees_of_freedom - 3.0, 1.0 - probability / tried);
+  best.scatter = Scatter(linear.effects[best.cluster], best);
+  best.significance = Significance(linear, best.gain, 1.0 - probability / tried);
   return best;
 }
 

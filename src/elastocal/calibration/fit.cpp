@@ -2,42 +2,42 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "elastocal/calibration/fit_residuals.hpp"
-#include "elastocal/calibration/outliers.hpp"
 #include "elastocal/calibration/variances.hpp"
 #include "elastocal/math/statistics.hpp"
-#include "elastocal/optim/normal_equations.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kCauchyScale = 3.0;      // of a residual in standard deviations of the noise
-constexpr double kAbsurdSd = 0.1;         // rad or m
-constexpr double kRoughTolerance = 1e-8;  // of the cost, while noise and prior are being found
-constexpr double kSlightDecrease = 1e-6;  // likewise, of a step ...
-constexpr double kRobustDecrease = 1e-3;  // ... and of the robust fit to trials
-constexpr double kHyperTolerance = 1e-3;  // of noise and prior scale, relative ...
-constexpr double kTrialTolerance = 1e-2;  // ... and of trials, whose constraints take longer
-constexpr int kTrialIterations = 3;       // of a solve whose weights will change anyway
+constexpr double kSlightDecrease = 1e-6;     // of the cost by a step, while noise is being found
+constexpr double kVarianceTolerance = 3e-3;  // relative, of a standard deviation, by its share
+constexpr double kWeightTolerance = 1e-2;
+constexpr int kRoughIterations = 5;  // of a solve whose weights will change anyway
+constexpr double kLeastLeft = 0.05;  // of the variance of a row
 constexpr int kMaxPolishing = 6;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 
-void SolveOnce(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
-               bool robust, double tolerance, Fit& fit) {
-  FitResiduals residuals(problem, selection, free, fit);
-  LeastSquaresOptions solver;
-  solver.function_tolerance = tolerance;
-  solver.cauchy_scale = robust ? kCauchyScale : 0.0;
-  solver.max_iterations = problem.options.max_iterations;
-  const bool rough = tolerance > LeastSquaresOptions().function_tolerance;
-  if (rough && !fit.placement.empty()) {
-    solver.max_iterations = std::min(solver.max_iterations, kTrialIterations);
+/// Whether any elastic parameter is estimated or known: else loads do not matter.
+bool IsElasticFit(const ErrorModel& model, const std::vector<int>& free,
+                  const Eigen::VectorXd& delta) {
+  const auto elastic = [&](int i) { return IsElastic(model.parameters[i].kind); };
+  if (std::any_of(free.begin(), free.end(), elastic)) return true;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (elastic(i) && delta[i] != 0.0) return true;
   }
-  const LeastSquaresResult solved = Solve(residuals.body, residuals.body.Start(), solver);
-  fit.delta = residuals.body.ToErrors(solved.x);
-  fit.placement = residuals.body.ToPlacement(solved.x);
+  return false;
+}
+
+void Take(const BodyResiduals& body, const Eigen::VectorXd& x, Fit& fit) {
+  fit.delta = body.ToErrors(x);
+  fit.placement = body.ToPlacement(x);
+}
+
+void SolveOnce(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
+               const LeastSquaresOptions& options, Fit& fit) {
+  FitResiduals residuals(problem, selection, free, fit);
+  const LeastSquaresResult solved = Solve(residuals.body, residuals.body.Start(), options);
+  Take(residuals.body, solved.x, fit);
   fit.termination = solved.termination;
   fit.message = solved.message;
   fit.iterations += solved.iterations;
@@ -45,99 +45,164 @@ void SolveOnce(const FitProblem& problem, const Selection& selection, const std:
   fit.final_cost = solved.final_cost;
 }
 
-/// At which change noise and prior have come to rest. The robust fit to trials, which costs most,
-/// only has to find what lies far off.
-double Tolerance(const Fit& fit, bool robust) {
-  if (fit.placement.empty()) return kHyperTolerance;
-  return robust ? 10.0 * kTrialTolerance : kTrialTolerance;
+/// Covariance of the unknowns in the units of the solver; that of the parameters goes into the
+/// fit's posterior.
+Eigen::MatrixXd TakeCovariance(const FitProblem& problem, const std::vector<int>& parameters,
+                               const NormalEquations& equations, Fit& fit) {
+  const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
+  fit.posterior.parameters = parameters;
+  fit.posterior.covariance = ParameterCovariance(problem.model, parameters, covariance);
+  return covariance;
 }
 
-/// The residuals as last evaluated; gives the number of those that take part.
-double TakeResiduals(const BodyResiduals& body, Fit& fit) {
-  fit.meanings = body.meanings();
-  fit.residuals.clear();
-  double rows = 0.0;
-  for (std::size_t block = 0; block < fit.meanings.size(); ++block) {
-    const auto& shape = body.residual_blocks[block];
-    Eigen::VectorXd& residual = fit.residuals.emplace_back(shape.size);
-    body.Residual(static_cast<int>(block),
-                  Eigen::Map<Eigen::VectorXd>(residual.data(), residual.size()));
-    if (shape.active) rows += shape.size;
+/// The largest relative change of a source's standard deviation, by how much it matters.
+double NoiseChange(const Noise& before, const Noise& after, const VarianceComponents& components) {
+  double change = 0.0;
+  for (int g = 0; g < before.group_count(); ++g) {
+    for (int s = 0; s < kNoiseSourceCount; ++s) {
+      const VarianceComponent& component = components[g][s];
+      if (component.rows <= 0.0) continue;
+      const double share = component.weight / component.rows;
+      change = std::max(change, share * std::abs(std::log(after.sd(g, s) / before.sd(g, s))));
+    }
   }
-  return rows;
+  return change;
 }
 
-void UpdateResiduals(const FitProblem& problem, const Selection& selection,
-                     const std::vector<int>& free, Fit& fit) {
-  FitResiduals residuals(problem, selection, free, fit);
-  residuals.body.Evaluate(residuals.body.Start(), false);
-  TakeResiduals(residuals.body, fit);
+double ScaleChange(const PriorScale& before, const PriorScale& after) {
+  double change = 0.0;
+  for (int g = 0; g < kPriorGroupCount; ++g) {
+    change = std::max(change, std::abs(std::log(after.factor[g] / before.factor[g])));
+  }
+  return change;
 }
 
-void TakeFreedom(const FitProblem& problem, double rows_left, Fit& fit) {
-  fit.degrees_of_freedom = problem.options.marker_sd > 0.0 ? std::numeric_limits<double>::infinity()
-                                                           : std::max(1.0, rows_left);
+double WeightChange(const RobustWeights& before, const RobustWeights& after) {
+  if (before.bodies.size() != after.bodies.size()) return 1.0;
+  double change = 0.0;
+  for (std::size_t b = 0; b < after.bodies.size(); ++b) {
+    change = std::max({change, std::abs(after.bodies[b].shared - before.bodies[b].shared),
+                       std::abs(after.bodies[b].own - before.bodies[b].own)});
+  }
+  for (std::size_t i = 0; i < after.ties.size(); ++i) {
+    change = std::max(change, std::abs(after.ties[i] - before.ties[i]));
+  }
+  return change;
 }
 
-/// Takes noise and, if asked to, prior scale from the residuals and the posterior of the fit.
-/// Whether they have come to rest.
-bool UpdateVariances(const FitProblem& problem, const std::vector<VarianceComponent>& components,
-                     bool robust, Fit& fit) {
-  const Noise noise = EstimateNoise(problem.options, fit.noise, components, robust);
-  const PriorScale scale =
-      problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
-  const double change = LargestChange(fit.noise, fit.prior_scale, noise, scale);
-  fit.noise = noise;
-  fit.prior_scale = scale;
-  return change < Tolerance(fit, robust);
-}
-
-/// One Gauss-Newton step and, from the same linearisation, noise and prior scale: they converge
-/// together, instead of the one waiting for the other. Whether they have.
+/// One Gauss-Newton step and, from the same linearisation, noise, weights and prior scale: they
+/// converge together, instead of the one waiting for the other. Whether they have.
 bool UpdateByStep(const FitProblem& problem, const Selection& selection,
-                  const std::vector<int>& free, bool robust, Fit& fit) {
-  const double cauchy_scale = robust ? kCauchyScale : 0.0;
+                  const std::vector<int>& free, Robustness robustness, Fit& fit) {
   FitResiduals residuals(problem, selection, free, fit);
   BodyResiduals& body = residuals.body;
   const Eigen::VectorXd x = body.Start();
-  const NormalEquations equations(body, x, body.WaistBlocks(), RowComponents(body, problem.group),
-                                  cauchy_scale);
-  const Eigen::MatrixXd information =
-      WithVaguePrior(problem.model, free, residuals.prior, equations.information());
-  const Eigen::MatrixXd covariance =
-      TakeCovariance(problem.model, free, residuals.prior, information, fit.posterior);
+  body.Evaluate(x, true);
+  const double cost = CostOf(body);
+  const NormalEquations equations(body);
+  const Eigen::MatrixXd covariance = TakeCovariance(problem, free, equations, fit);
+  const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
   const Eigen::VectorXd step =
-      BoundedStep(information, equations.gradient(), x(equations.unknowns()), body.nonnegative);
+      BoundedStep(equations.information(), equations.gradient(), x(equations.unknowns()),
+                  equations.Positions(body.nonnegative));
   const Eigen::VectorXd next = x + equations.Expand(step);
   ++fit.iterations;
   body.Evaluate(next, false);
-  const double slight = robust && !fit.placement.empty() ? kRobustDecrease : kSlightDecrease;
-  const bool small = -equations.gradient().dot(step) < slight * (1.0 + equations.cost());
-  if (!small &&
-      !(CostOf(body, cauchy_scale) <= equations.cost())) {  // far from the solution: damped steps
-    SolveOnce(problem, selection, free, robust, kRoughTolerance, fit);
-    UpdateResiduals(problem, selection, free, fit);
-  } else {
-    fit.delta = body.ToErrors(next);
-    fit.placement = body.ToPlacement(next);
-    TakeResiduals(body, fit);
+  const bool small = -equations.gradient().dot(step) < kSlightDecrease * (1.0 + cost);
+  if (!small && !(CostOf(body) <= cost)) {  // far from the solution: damped steps
+    SolveOnce(problem, selection, free,
+              {.max_iterations = kRoughIterations, .function_tolerance = 1e-8}, fit);
+    body.Evaluate(x, false);  // noise by the residuals before: it will be found from the next ones
+    fit.weights = EstimateWeights(problem, selection, fit.noise, body, robustness);
+    return false;
   }
-  std::vector<VarianceComponent> components = ComponentsOf(problem, selection, fit);
-  const Eigen::VectorXd explained = equations.Explained(covariance);
-  double rows = 0.0;
-  for (Eigen::Index k = 0; k < explained.size(); ++k) {
-    components[k].explained = explained[k];
-    rows += components[k].rows;
+  Take(body, next, fit);
+  const VarianceComponents components =
+      CollectComponents(problem, selection, fit.noise, body, explained);
+  fit.degrees_of_freedom = DegreesOfFreedom(problem.options, components);
+  const Noise noise = EstimateNoise(problem.options, fit.noise, components, robustness);
+  const RobustWeights weights = EstimateWeights(problem, selection, noise, body, robustness);
+  const PriorScale scale =
+      problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
+  const bool settled = NoiseChange(fit.noise, noise, components) < kVarianceTolerance &&
+                       ScaleChange(fit.prior_scale, scale) < kVarianceTolerance &&
+                       WeightChange(fit.weights, weights) < kWeightTolerance;
+  fit.noise = noise;
+  fit.weights = weights;
+  fit.prior_scale = scale;
+  return settled && small;
+}
+
+/// The posture of each residual block; -1 of priors.
+std::vector<int> PostureOfBlocks(const Selection& selection, const BodyResiduals& body) {
+  std::vector<int> posture;
+  for (const BodyObservation& of : selection.bodies) posture.push_back(of.posture);
+  for (int i : body.tied_postures()) posture.push_back(i);
+  posture.resize(body.residual_blocks.size(), -1);
+  return posture;
+}
+
+/// Compares the covariance with that of the cluster-robust (sandwich) estimator, whose clusters are
+/// the postures: residuals r over the root of what the fit leaves of their variance (HC2), and
+/// C (sum J' r r' J) C beside C J' J C. Where the postures scatter more than the noise model says,
+/// on average over the robot's parameters, the data's part of the covariance is widened.
+void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
+                     const Selection& selection, const NormalEquations& equations,
+                     const Eigen::MatrixXd& covariance,
+                     const std::vector<Eigen::VectorXd>& explained, Fit& fit) {
+  const BodyResiduals& body = residuals.body;
+  std::vector<Eigen::VectorXd> raised;
+  for (std::size_t block = 0; block < explained.size(); ++block) {
+    const Eigen::ArrayXd left = (1.0 - explained[block].array()).max(kLeastLeft);
+    raised.emplace_back(body.Residual(static_cast<int>(block)).array() / left.sqrt());
   }
-  TakeFreedom(problem, rows - explained.sum(), fit);
-  return UpdateVariances(problem, components, robust, fit) && small;
+  const Eigen::MatrixXd scores =
+      equations.Scores(raised, PostureOfBlocks(selection, body), problem.recording.posture_count());
+  const std::vector<int>& parameters = fit.posterior.parameters;
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  Eigen::VectorXd prior = Eigen::VectorXd::Constant(
+      covariance.rows(), BodyResiduals::kPoseScale * BodyResiduals::kPoseScale);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Parameter& parameter = problem.model.parameters[parameters[i]];
+    prior[i] =
+        std::pow(ParameterScale(parameter) / residuals.prior.Of(problem.model.tree, parameter), 2);
+  }
+  const Eigen::MatrixXd by_data = covariance - covariance * prior.asDiagonal() * covariance;
+  const Eigen::VectorXd by_clusters = (covariance * scores).rowwise().squaredNorm();
+  double expected = 0.0;
+  double found = 0.0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (IsExternal(problem.model.parameters[parameters[i]].kind)) continue;
+    expected += by_data(i, i) / covariance(i, i);
+    found += by_clusters[i] / covariance(i, i);
+  }
+  fit.posterior.cluster_factor = expected > 0.0 ? found / expected : 1.0;
+  if (!(fit.posterior.cluster_factor > 1.0)) return;
+  fit.posterior.covariance += ParameterCovariance(problem.model, parameters,
+                                                  (fit.posterior.cluster_factor - 1.0) * by_data);
 }
 
 }  // namespace
 
-Selection SelectAll(const Recording& recording) {
-  return {SeenMask(recording), std::vector<char>(recording.posture_count(), 1)};
+Prior WidenedPrior(const FitProblem& problem, const Fit& fit) {
+  Prior prior = problem.options.prior;
+  prior.scale = fit.prior_scale;
+  return prior;
 }
+
+FitResiduals::FitResiduals(const FitProblem& problem, const Selection& selection,
+                           const std::vector<int>& free, const Fit& fit)
+    : prior(WidenedPrior(problem, fit)),
+      noise(fit.noise),
+      weights(fit.weights.bodies.size() == selection.bodies.size() ? fit.weights : RobustWeights()),
+      placement(fit.placement),
+      loads(IsElasticFit(problem.model, free, fit.delta)
+                ? ComputeLoads(problem.model, problem.recording, fit.delta, fit.placement,
+                               problem.options.load)
+                : std::vector<PostureLoads>()),
+      body({problem.model, problem.recording, problem.group, selection, loads, prior, noise,
+            weights, problem.options.support_form},
+           free, fit.delta, placement) {}
 
 Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen::VectorXd& delta) {
   Fit fit;
@@ -145,52 +210,53 @@ Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen:
   fit.placement = RegisterPlacement(problem.model, problem.recording, problem.options.slip);
   const int groups =
       problem.group.empty() ? 1 : 1 + *std::max_element(problem.group.begin(), problem.group.end());
-  fit.noise.marker_sd.setOnes(groups);
-  fit.noise.waist_position_sd.setOnes(groups);
-  fit.noise.waist_rotation_sd.setOnes(groups);
+  fit.noise.sd.setOnes(groups, kNoiseSourceCount);
   FitResiduals residuals(problem, selection, {}, fit);
   residuals.body.Evaluate(residuals.body.Start(), false);
-  std::vector<std::vector<double>> norms(groups);
-  for (std::size_t block = 0; block < residuals.body.meanings().size(); ++block) {
-    const auto [posture, marker] = residuals.body.meanings()[block];
-    if (marker < 0 || !selection.markers(posture, marker)) continue;
-    Eigen::Vector3d residual;
-    residuals.body.Residual(static_cast<int>(block),
-                            Eigen::Map<Eigen::VectorXd>(residual.data(), 3));
-    norms[problem.group[posture]].push_back(residual.norm());
+  std::vector<std::vector<double>> distances(groups);
+  std::vector<char> several(groups, 0);  // whether any body of the group has several markers
+  for (int b = 0; b < residuals.body.body_count(); ++b) {
+    const BodyObservation& body = selection.bodies[b];
+    if (!body.used) continue;
+    const Eigen::VectorXd& residual = residuals.body.Residual(b);
+    const double norm = (residual.array() * residuals.body.Sds(b).array()).matrix().norm() /
+                        std::sqrt(static_cast<double>(body.markers.size()));
+    distances[problem.group[body.posture]].push_back(norm);
+    if (body.markers.size() > 1) several[problem.group[body.posture]] = 1;
   }
   for (int g = 0; g < groups; ++g) {
-    const Eigen::Map<const Eigen::VectorXd> all(norms[g].data(),
-                                                static_cast<Eigen::Index>(norms[g].size()));
-    const double sd = norms[g].empty() ? 1.0 : std::max(kSmallestMarkerSd, Median(all));
-    fit.noise.marker_sd[g] = problem.options.marker_sd > 0.0 ? problem.options.marker_sd : sd;
-    fit.noise.waist_position_sd[g] = fit.noise.waist_rotation_sd[g] = sd;
+    const Eigen::Map<const Eigen::VectorXd> all(distances[g].data(),
+                                                static_cast<Eigen::Index>(distances[g].size()));
+    const double sd = distances[g].empty() ? 1.0 : std::max(kSmallestMarkerSd, Median(all));
+    const bool given = problem.options.marker_sd > 0.0;
+    const double shared = several[g] != 0 || given ? sd : 1e-3 * sd;
+    fit.noise(g, NoiseSource::kMarker) = given ? problem.options.marker_sd : sd;
+    fit.noise(g, NoiseSource::kBodyPosition) = shared;
+    fit.noise(g, NoiseSource::kWaistPosition) = fit.noise(g, NoiseSource::kWaistRotation) = sd;
   }
   return fit;
 }
 
 Fit FitParameters(const FitProblem& problem, const Selection& selection,
-                  const std::vector<int>& free, const Fit& start, bool robust, int updates) {
+                  const std::vector<int>& free, const Fit& start, Robustness robustness,
+                  int updates) {
   Fit fit = start;
   bool settled = false;
   const int most = std::min(updates, problem.options.max_iterations);
   for (int update = 0; update < most && !settled; ++update) {
-    settled = UpdateByStep(problem, selection, free, robust, fit);
+    settled = UpdateByStep(problem, selection, free, robustness, fit);
   }
   if (!settled) fit.settled = fit.settled && updates < kMaxUpdates;
-  if (robust) UpdatePosterior(problem, selection, free, fit);
   return fit;
 }
 
 void Polish(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
             Fit& fit) {
   Eigen::VectorXd scale(problem.model.parameter_count());
-  for (int i = 0; i < scale.size(); ++i) {
-    scale[i] = ParameterScale(problem.model.parameters[i], problem.options.prior);
-  }
+  for (int i = 0; i < scale.size(); ++i) scale[i] = ParameterScale(problem.model.parameters[i]);
   for (int round = 0; round < kMaxPolishing; ++round) {
     const Eigen::VectorXd before = fit.delta;
-    SolveOnce(problem, selection, free, false, LeastSquaresOptions().function_tolerance, fit);
+    SolveOnce(problem, selection, free, {.max_iterations = problem.options.max_iterations}, fit);
     const double change = (fit.delta - before).cwiseQuotient(scale).cwiseAbs().maxCoeff();
     if (!IsElasticFit(problem.model, free, fit.delta) || change < kLoadTolerance) break;
   }
@@ -204,38 +270,21 @@ void Polish(const FitProblem& problem, const Selection& selection, const std::ve
 void UpdatePosterior(const FitProblem& problem, const Selection& selection,
                      const std::vector<int>& parameters, Fit& fit) {
   FitResiduals residuals(problem, selection, parameters, fit);
-  fit.posterior = ComputePosterior(problem.model, residuals.body, parameters,
-                                   residuals.body.Start(), residuals.prior);
-  const double rows = TakeResiduals(residuals.body, fit);
-  TakeFreedom(problem, rows - fit.posterior.effective_parameters, fit);
-}
-
-std::vector<int> UnsupportedParameters(const FitProblem& problem, const Fit& fit) {
-  const Prior prior = WidenedPrior(problem, fit);
-  const std::vector<int>& parameters = fit.posterior.parameters;
-  Eigen::VectorXd limits(static_cast<Eigen::Index>(parameters.size()));
-  for (Eigen::Index i = 0; i < limits.size(); ++i) {
-    const ParameterKind kind = problem.model.parameters[parameters[i]].kind;
-    limits[i] = IsExternal(kind)             ? std::numeric_limits<double>::infinity()
-                : std::isfinite(prior[kind]) ? problem.options.support_threshold * prior[kind]
-                                             : kAbsurdSd;
+  BodyResiduals& body = residuals.body;
+  body.Evaluate(body.Start(), true);
+  const NormalEquations equations(body);
+  const Eigen::MatrixXd covariance = TakeCovariance(problem, parameters, equations, fit);
+  const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
+  fit.degrees_of_freedom = DegreesOfFreedom(
+      problem.options, CollectComponents(problem, selection, fit.noise, body, explained));
+  fit.posterior.effective_parameters = 0.0;
+  const int observations = body.body_count() + static_cast<int>(body.tied_postures().size());
+  for (int block = 0; block < observations; ++block) {
+    if (body.residual_blocks[block].active) {
+      fit.posterior.effective_parameters += explained[block].sum();
+    }
   }
-  std::vector<int> unsupported;
-  Eigen::MatrixXd covariance = fit.posterior.covariance;
-  while (limits.size() > 0) {
-    Eigen::Index worst = 0;
-    const double ratio =
-        (covariance.diagonal().cwiseMax(0.0).cwiseSqrt().array() / limits.array()).maxCoeff(&worst);
-    if (!(ratio > 1.0)) break;
-    unsupported.push_back(parameters[worst]);
-    // Conditional covariance of the others once it is held.
-    const Eigen::VectorXd column = covariance.col(worst);
-    covariance -= column * column.transpose() / column[worst];
-    covariance.row(worst).setZero();
-    covariance.col(worst).setZero();
-  }
-  std::sort(unsupported.begin(), unsupported.end());
-  return unsupported;
+  WidenByClusters(problem, residuals, selection, equations, covariance, explained, fit);
 }
 
 }  // namespace elastocal

@@ -16,8 +16,9 @@ constexpr double kLeastScatters = 3.0;
 
 std::vector<int> Estimated(const ErrorModel& model, const BaseParameters& base) {
   std::vector<int> free;
-  for (int i : base.kept) {
-    if (model.parameters[i].kind != ParameterKind::kWaistPose) free.push_back(i);
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const bool held = std::binary_search(base.held.begin(), base.held.end(), i);
+    if (!held && model.parameters[i].kind != ParameterKind::kWaistPose) free.push_back(i);
   }
   return free;
 }
@@ -104,11 +105,12 @@ std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recordin
   quick.support_form = SupportForm::kNuisance;
   const FitProblem problem{split_model, split, quick, NoiseGroups(model, recording)};
   std::vector<int> free = Estimated(model, base);
-  Fit fit = StartFit(problem, SelectAll(split), Eigen::VectorXd::Zero(model.parameter_count()));
+  Fit fit = StartFit(problem, SelectAll(split_model, split),
+                     Eigen::VectorXd::Zero(model.parameter_count()));
   std::vector<Knock> knocks;
   for (;;) {
-    const Selection selection = SelectAll(split);
-    fit = FitParameters(problem, selection, free, fit, false, kKnockUpdates);
+    const Selection selection = SelectAll(split_model, split);
+    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments, kKnockUpdates);
     const DisplacementStep step =
         FindLargestStep(problem, selection, free, fit, sets, options.outlier_probability);
     if (!IsKnock(step)) break;

@@ -4,7 +4,8 @@
 
 namespace elastocal {
 
-MeasuredLoads FeltIn(const ErrorModel& model, const Recording& recording, int posture, int leg) {
+MeasuredLoads MeasuredLoadsOf(const ErrorModel& model, const Recording& recording, int posture,
+                              int leg) {
   MeasuredLoads measured;
   if (recording.torques.rows() > 0) measured.torques = recording.torques.row(posture).transpose();
   if (leg < 0) return measured;
@@ -30,7 +31,8 @@ std::vector<PostureLoads> ComputeLoads(const ErrorModel& model, const Recording&
     const int footing = placement.empty() ? -1 : placement.footing[i];
     const int leg = footing < 0 ? -1 : placement.footings[footing].leg;
     loads.push_back(LoadPosture(model, geometry, recording.q.row(i).transpose(), leg,
-                                FeltIn(model, recording, i, leg), recording.gravity, options));
+                                MeasuredLoadsOf(model, recording, i, leg), recording.gravity,
+                                options));
     if (report == nullptr) continue;
     if (loads.back().badly_conditioned) report->badly_conditioned.push_back(i);
     for (int joint : loads.back().without_torques) {

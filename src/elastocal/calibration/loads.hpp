@@ -16,7 +16,8 @@ struct LoadReport {
 };
 
 /// What the robot felt in a posture of a recording, standing on a leg of the model (-1: on none).
-MeasuredLoads FeltIn(const ErrorModel& model, const Recording& recording, int posture, int leg);
+MeasuredLoads MeasuredLoadsOf(const ErrorModel& model, const Recording& recording, int posture,
+                              int leg);
 
 /// Loads in every posture, for a model with errors `delta` that stands as `placement` says (of a
 /// table of postures: upright, T0 being part of `delta`). One entry a posture.

@@ -29,6 +29,12 @@ std::set<int> ExercisedJoints(const ErrorModel& model, const Recording& recordin
 
 }  // namespace
 
+const char* NoiseSourceName(NoiseSource source) {
+  static constexpr const char* kNames[] = {"marker", "body_position", "waist_position",
+                                           "waist_rotation"};
+  return kNames[static_cast<int>(source)];
+}
+
 std::vector<int> NoiseGroups(const ErrorModel& model, const Recording& recording) {
   if (recording.trials.empty()) return std::vector<int>(recording.posture_count(), 0);
   std::vector<std::set<int>> joints_of_group;

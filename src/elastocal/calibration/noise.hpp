@@ -9,15 +9,37 @@
 
 namespace elastocal {
 
-/// Standard deviations of what the model leaves unexplained, by group of postures: chains differ in
-/// how well the model fits them, and a badly fitting leg shall not blur an arm.
-struct Noise {
-  Eigen::VectorXd marker_sd;  ///< of a marker coordinate, m
-  /// Between the waist as the markers see it and as the elastic leg on its foot gives it (the
-  /// constraint of eq. 14), m and rad.
-  Eigen::VectorXd waist_position_sd, waist_rotation_sd;
+/// What the model leaves unexplained comes from several sources, and each has its own standard
+/// deviation (variance components).
+enum class NoiseSource {
+  kMarker,         ///< of each marker coordinate by itself: cameras, and rotations of a body; m
+  kBodyPosition,   ///< displacement that all markers of a body share in a posture; m
+  kWaistPosition,  ///< between the waist as the markers see it and as the elastic leg on its foot
+                   ///< gives it (the constraint of eq. 14); m
+  kWaistRotation,  ///< likewise; rad
+};
+inline constexpr int kNoiseSourceCount = 4;
 
-  int group_count() const { return static_cast<int>(marker_sd.size()); }
+/// marker, body_position, waist_position, waist_rotation
+const char* NoiseSourceName(NoiseSource source);
+
+/// Standard deviations by group of postures and source: chains differ in how well the model fits
+/// them, and a badly fitting leg shall not blur an arm. Errors of the model, which all markers of a
+/// body share, are told from the noise of the cameras, which averages out: on real robots they are
+/// most of what is left, and counting the markers of a body as independent would make standard
+/// deviations too small.
+struct Noise {
+  Eigen::ArrayXXd sd;  ///< groups x sources
+
+  double& operator()(int group, NoiseSource source) { return sd(group, static_cast<int>(source)); }
+  double operator()(int group, NoiseSource source) const {
+    return sd(group, static_cast<int>(source));
+  }
+  double Variance(int group, NoiseSource source) const {
+    const double value = (*this)(group, source);
+    return value * value;
+  }
+  int group_count() const { return static_cast<int>(sd.rows()); }
 };
 
 /// Group of each posture: trials whose chains share a joint (head and both arms: the trunk's) are

@@ -1,35 +1,82 @@
 #include "elastocal/calibration/options.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace elastocal {
+namespace {
 
-Prior::Prior() {
-  sd.fill(std::numeric_limits<double>::infinity());
-  const double angle = 0.5 * M_PI / 180.0;
-  const double length = 1e-3;
-  for (ParameterKind kind : {ParameterKind::kTheta, ParameterKind::kAlpha, ParameterKind::kBeta,
-                             ParameterKind::kGamma}) {
-    (*this)[kind] = angle;
+constexpr double kExternalScale = 0.01;  // m and rad
+constexpr double kUnknown = 1e3;         // times the unit of a parameter: nothing is known
+
+/// Of a parameter of a robot as it leaves the bench, SI.
+double TypicalError(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::kTorsion:
+    case ParameterKind::kBending:
+    case ParameterKind::kLegMoment:
+      return 5e-5;
+    case ParameterKind::kLegForce:
+      return 1e-5;
+    case ParameterKind::kTorqueBias:
+      return 2.0;
+    default:
+      return IsAngle(kind) ? 0.5 * M_PI / 180.0 : 1e-3;
   }
-  for (ParameterKind kind : {ParameterKind::kR, ParameterKind::kD, ParameterKind::kB}) {
-    (*this)[kind] = length;
-  }
-  (*this)[ParameterKind::kTorsion] = 5e-5;
-  (*this)[ParameterKind::kBending] = 5e-5;
-  (*this)[ParameterKind::kLegForce] = 1e-5;
-  (*this)[ParameterKind::kLegMoment] = 5e-5;
-  (*this)[ParameterKind::kTorqueBias] = 2.0;
 }
 
-Prior Prior::Scaled(const PriorScale& scale) const {
-  Prior scaled = *this;
-  for (int kind = 0; kind < kParameterKindCount; ++kind) {
-    if (IsElastic(static_cast<ParameterKind>(kind))) continue;
-    const bool angle = IsAngle(static_cast<ParameterKind>(kind));
-    scaled.sd[kind] *= angle ? scale.angles : scale.lengths;
+}  // namespace
+
+const char* PriorGroupName(PriorGroup group) {
+  static constexpr const char* kNames[] = {"angles",     "lengths",     "torsion",    "bending",
+                                           "base_force", "base_moment", "torque_bias"};
+  return kNames[static_cast<int>(group)];
+}
+
+PriorGroup GroupOf(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::kTorsion:
+      return PriorGroup::kTorsion;
+    case ParameterKind::kBending:
+      return PriorGroup::kBending;
+    case ParameterKind::kLegForce:
+      return PriorGroup::kLegForce;
+    case ParameterKind::kLegMoment:
+      return PriorGroup::kLegMoment;
+    case ParameterKind::kTorqueBias:
+      return PriorGroup::kTorqueBias;
+    default:
+      return IsAngle(kind) ? PriorGroup::kAngles : PriorGroup::kLengths;
   }
-  return scaled;
+}
+
+double MostWidening(PriorGroup group) {
+  return group == PriorGroup::kAngles || group == PriorGroup::kLengths ? 10.0 : 100.0;
+}
+
+Prior::Prior() {
+  sd.fill(1.0);
+  for (int i = 0; i < kParameterKindCount; ++i) {
+    const auto kind = static_cast<ParameterKind>(i);
+    if (!IsExternal(kind)) sd[i] = TypicalError(kind);
+  }
+  (*this)[ParameterKind::kTorsion] = (*this)[ParameterKind::kBending] = 0.0;
+}
+
+double Prior::Of(const RobotTree& tree, const Parameter& parameter) const {
+  double own = (*this)[parameter.kind];
+  if (own == 0.0) {
+    const Joint& joint = tree.joints[parameter.joint];
+    const double effort = joint.limits.effort;
+    const bool known = joint.type == JointType::kRevolute && std::isfinite(effort) && effort > 0.0;
+    own = known ? deflection / effort : TypicalError(parameter.kind);
+  }
+  if (!IsExternal(parameter.kind)) own *= scale[GroupOf(parameter.kind)];
+  return std::min(own, kUnknown * ParameterScale(parameter));
+}
+
+double ParameterScale(const Parameter& parameter) {
+  return IsExternal(parameter.kind) ? kExternalScale : TypicalError(parameter.kind);
 }
 
 }  // namespace elastocal

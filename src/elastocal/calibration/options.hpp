@@ -1,35 +1,60 @@
 #pragma once
 
 #include <array>
-#include <limits>
 
 #include "elastocal/robot/parameters.hpp"
 #include "elastocal/robot/posture_loads.hpp"
+#include "elastocal/robot/robot_tree.hpp"
 
 namespace elastocal {
 
-/// Factors by which a prior is widened.
-struct PriorScale {
-  double angles = 1.0, lengths = 1.0;
-};
+/// Kinds of parameters whose prior is widened together.
+enum class PriorGroup { kAngles, kLengths, kTorsion, kBending, kLegForce, kLegMoment, kTorqueBias };
+inline constexpr int kPriorGroupCount = 7;
 
-/// The prior is widened no further than this: what lies beyond is no error of a robot.
-inline constexpr double kMaxPriorScale = 10.0;
+/// angles, lengths, torsion, bending, base_force, base_moment, torque_bias
+const char* PriorGroupName(PriorGroup group);
+
+/// The group of a joint's or leg's parameter.
+PriorGroup GroupOf(ParameterKind kind);
+
+/// The prior of a group is widened no further than this. For geometry 10: what lies beyond is no
+/// error of a robot. For springs 100: they differ from robot to robot by far more.
+double MostWidening(PriorGroup group);
+
+/// Factors by which a prior is widened, by group.
+struct PriorScale {
+  std::array<double, kPriorGroupCount> factor;
+
+  PriorScale() { factor.fill(1.0); }
+  double& operator[](PriorGroup group) { return factor[static_cast<int>(group)]; }
+  double operator[](PriorGroup group) const { return factor[static_cast<int>(group)]; }
+};
 
 /// Standard deviation of the Gaussian prior on each kind of parameter, around nominal, in the
-/// parameter's SI unit; infinite for none. T0 and marker positions have none: nobody knows them
-/// beforehand.
+/// parameter's SI unit. All parameters have one, so that all can be estimated together: what the
+/// data do not tell apart is shared out as the priors say. docs/formats.md gives the reasons.
 struct Prior {
+  /// By kind. 0.5 degrees and 1 mm on joints; 1 rad and 1 m on T0 and markers, about which nobody
+  /// knows anything beforehand; legs about an axis 5e-5 rad/(N.m), along an axis 1e-5 m/N; torque
+  /// sensors 2 N.m. Torsion and bending 0: by `deflection`.
   std::array<double, kParameterKindCount> sd;
+  /// How far a revolute joint gives way, about and across its axis, under its largest torque (the
+  /// URDF's effort), rad: strong joints are stiff.
+  double deflection = 0.01;
+  PriorScale scale = {};  ///< by which all are multiplied
 
-  /// 0.5 degrees and 1 mm on joints, none on T0 and markers; torsion, bending and legs about an
-  /// axis 5e-5 rad/(N.m), legs along an axis 1e-5 m/N, torque sensors 2 N.m.
   Prior();
-  /// The prior with the standard deviations of angles and of lengths multiplied; elastic ones stay.
-  Prior Scaled(const PriorScale& scale) const;
   double& operator[](ParameterKind kind) { return sd[static_cast<int>(kind)]; }
   double operator[](ParameterKind kind) const { return sd[static_cast<int>(kind)]; }
+
+  /// That of a parameter of the robot, widened; never more than what counts as unknown.
+  double Of(const RobotTree& tree, const Parameter& parameter) const;
 };
+
+/// Unit of each parameter in the solver: of similar influence whatever the parameter. 0.5 degrees,
+/// 1 mm, 5e-5 rad/(N.m), ...; of T0 and markers 0.01 (m or rad).
+double ParameterScale(const Parameter& parameter);
 
 /// How the support foot's constraint (eq. 14) enters.
 enum class SupportForm {
@@ -38,26 +63,32 @@ enum class SupportForm {
   kNuisance,
   /// The leg is taken as exact: everything hangs on the foot.
   kFootRooted,
-  /// The waist's own markers are taken as exact, as eq. 2 does; the foot may vary at a penalty.
-  kPenalty,
+};
+
+/// What happens to outliers.
+enum class OutlierPolicy {
+  kRemove,  ///< they are named and left out
+  kKeep,    ///< they are named and kept, at the weight that heavy tails give them
 };
 
 struct CalibrationOptions {
   Prior prior = {};
-  /// Widen the prior, angles by one factor and lengths by another, each at least 1 and at most 10,
-  /// where the estimates say that the robot is further from nominal than the prior expects
-  /// (evidence approximation, MacKay 1992). A prior that is too narrow biases the estimates and
-  /// makes their uncertainty too small.
+  /// Widen the prior where the estimates say that the robot is further from nominal than it expects
+  /// (evidence approximation, MacKay 1992): by one factor for each PriorGroup, at least 1 and at
+  /// most MostWidening. A prior that is too narrow biases the estimates and makes their
+  /// uncertainty too small.
   bool widen_prior = true;
-  /// Standard deviation of one marker coordinate, m. Zero: estimated from the residuals.
+  /// White noise of one marker coordinate, m. Zero: estimated from the residuals.
   double marker_sd = 0.0;
+  /// What happens to observations that contradict the others (FindOutliers).
+  OutlierPolicy outliers = OutlierPolicy::kRemove;
   /// Noise of a marker coordinate above this means that the model does not explain the recording,
   /// m.
   double plausible_marker_sd = 5e-3;
   /// Chance that a recording without a single outlier has one named all the same.
   double outlier_probability = 0.01;
-  /// A parameter whose posterior standard deviation stays above this part of its prior one is not
-  /// supported by the data: held at nominal and listed.
+  /// A parameter whose posterior standard deviation stays above this part of its prior one is
+  /// listed as not supported by the data: they tell it at best together with others.
   double support_threshold = 0.9;
   /// Correlations at or above this are reported.
   double correlation_threshold = 0.9;

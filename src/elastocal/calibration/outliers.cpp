@@ -1,7 +1,8 @@
 #include "elastocal/calibration/outliers.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 
@@ -12,28 +13,251 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastVariance = 0.05;
+constexpr double kTailFreedom = 4.0;  // of Student's distribution, beyond which an error is gross
+constexpr std::size_t kLeastMarkers = 3;  // of a body, that one of them can be said to be wrong
+constexpr double kLeastReach = 1e-3;      // of a displacement in the shape, relative, squared
+constexpr double kRoughExcess = 0.25;     // more than the fit's part in it can make of it
 
 /// Squared Mahalanobis distance, with variances no smaller than a part of the noise: an observation
 /// that alone determines a parameter has a residual of zero and a variance of zero. All in units of
 /// the noise.
 double SquaredDistance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  const Eigen::ArrayXd variances = eigen.eigenvalues().array().max(kLeastVariance);
+  const double largest = eigen.eigenvalues().tail<1>()[0];
+  const Eigen::ArrayXd variances = eigen.eigenvalues().array().max(kLeastVariance * largest);
   return ((eigen.eigenvectors().transpose() * residual).array().square() / variances).sum();
 }
 
-/// Of the squared distance of an observation of `size` numbers that the noise was estimated from,
-/// among others.
-double UsedThreshold(double level, double size, double freedom) {
-  if (std::isinf(freedom)) return ChiSquareQuantile(level, size);
-  return freedom > size ? freedom * BetaQuantile(level, 0.5 * size, 0.5 * (freedom - size))
-                        : std::numeric_limits<double>::infinity();
-}
-
-double UnusedThreshold(double level, double size, double freedom) {
+/// Of `size` numbers whose variance was estimated with `freedom` degrees of freedom.
+double Threshold(double level, double size, double freedom) {
   return std::isinf(freedom) ? ChiSquareQuantile(level, size)
                              : size * FisherQuantile(level, size, freedom);
 }
+
+class OutlierSearch {
+ public:
+  OutlierSearch(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
+                const Fit& fit, double probability)
+      : problem_(problem),
+        selection_(selection),
+        fit_(fit),
+        residuals_(problem, selection, free, fit) {
+    residuals_.body.Evaluate(residuals_.body.Start(), true);
+    equations_.emplace(residuals_.body);
+    covariance_ = InverseOfInformation(equations_->information());
+    const double tests = std::max<double>(1.0, static_cast<double>(selection.bodies.size()));
+    level_ = 1.0 - probability / tests;
+    marker_level_ = 1.0 - probability / std::max<double>(1.0, Observations());
+  }
+
+  OutlierVerdict Run() {
+    for (int b = 0; b < residuals_.body.body_count(); ++b) {
+      if (selection_.bodies[b].used) {
+        Judge(b);
+      } else {
+        JudgeLeftOut(b);
+      }
+    }
+    for (std::size_t t = 0; t < residuals_.body.tied_postures().size(); ++t) {
+      JudgeTie(residuals_.body.TieBlock(static_cast<int>(t)), residuals_.body.tied_postures()[t]);
+    }
+    std::sort(verdict_.markers.begin(), verdict_.markers.end(),
+              [](const Outlier& a, const Outlier& b) {
+                return std::pair(a.posture, a.marker) < std::pair(b.posture, b.marker);
+              });
+    return std::move(verdict_);
+  }
+
+ private:
+  double Observations() const {
+    std::size_t markers = 0;
+    for (const BodyObservation& body : selection_.bodies) markers += body.markers.size();
+    return static_cast<double>(markers);
+  }
+
+  /// Residuals of a body's markers, m.
+  Eigen::VectorXd Raw(int b) const {
+    return selection_.bodies[b].basis *
+           residuals_.body.Residual(b).cwiseProduct(residuals_.body.Sds(b));
+  }
+
+  void Name(int b, std::size_t n, double square) {
+    const BodyObservation& body = selection_.bodies[b];
+    verdict_.markers.push_back({body.posture, body.markers[n],
+                                Raw(b).segment<3>(3 * static_cast<Eigen::Index>(n)).norm(),
+                                std::sqrt(square)});
+  }
+
+  /// By the noise itself, whatever the weights.
+  double SharedSquare(int b) const {
+    const BodyObservation& body = selection_.bodies[b];
+    const Eigen::ArrayXd squares =
+        (residuals_.body.Residual(b).array() * residuals_.body.Sds(b).array()).square() /
+        body.Variances(fit_.noise, problem_.group[body.posture]);
+    return squares.head(body.shared_rows()).sum();
+  }
+
+  /// Heavy tails, and a covariance that the fit has made smaller or, of what is left out, larger.
+  bool IsGross(double square, Eigen::Index rows, double explained, bool used) const {
+    const double size = static_cast<double>(rows);
+    const double share = std::min(1.0 - kLeastVariance, explained / size);
+    const double variance = used ? 1.0 - share : 1.0 + share;
+    return square / variance > size * FisherQuantile(level_, size, kTailFreedom);
+  }
+
+  void Judge(int b) {
+    const BodyObservation& body = selection_.bodies[b];
+    const Eigen::Index shared = body.shared_rows();
+    std::vector<char> wrong(body.markers.size(), 0);
+    if (body.markers.size() >= kLeastMarkers) {
+      FindContradictions(b, wrong);
+    }
+    if (std::find(wrong.begin(), wrong.end(), 1) != wrong.end()) return;
+    const double square = SharedSquare(b);
+    if (!IsGross(square, shared, 0.0, true)) {
+      if (square < static_cast<double>(shared)) return;
+      const double explained = equations_->Explained(b, covariance_).diagonal().head(shared).sum();
+      if (!IsGross(square, shared, explained, true)) return;
+    }
+    for (std::size_t n = 0; n < body.markers.size(); ++n) Name(b, n, square);
+  }
+
+  /// The marker whose own displacement explains most of how the shape of the body has changed, then
+  /// the next beside it, and so on.
+  void FindContradictions(int b, std::vector<char>& wrong) {
+    const Eigen::Index shared = selection_.bodies[b].shared_rows();
+    const Eigen::Index own = residuals_.body.Residual(b).size() - shared;
+    Eigen::VectorXd z = residuals_.body.Residual(b).tail(own);
+    Eigen::MatrixXd P = Eigen::MatrixXd::Identity(own, own);
+    // Less than what the whole body is off anyway matters to nothing.
+    const double least =
+        fit_.noise(problem_.group[selection_.bodies[b].posture], NoiseSource::kBodyPosition);
+    bool rough = true;  // first without what the fit explains, which costs most to know
+    for (std::size_t left = wrong.size(); left >= kLeastMarkers;) {
+      std::size_t worst = wrong.size();
+      ShapeTest largest;
+      for (std::size_t n = 0; n < wrong.size(); ++n) {
+        if (wrong[n] != 0) continue;
+        const ShapeTest test = TestShape(Displacement(b, n).bottomRows(own), z, P);
+        if (!(test.excess > largest.excess) || !(test.displacement > least)) continue;
+        largest = test;
+        worst = n;
+      }
+      if (rough) {
+        if (!(largest.excess > kRoughExcess)) return;
+        rough = false;
+        P -= equations_->Explained(b, covariance_).bottomRightCorner(own, own);
+        continue;
+      }
+      if (!(largest.excess > 1.0)) return;
+      wrong[worst] = 1;
+      Name(b, worst, largest.square);
+      const Eigen::MatrixXd M = Displacement(b, worst).bottomRows(own);
+      // Singular in directions that do not change the shape.
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> reach(M.transpose() * P * M);
+      const Eigen::ArrayXd sizes = reach.eigenvalues().array();
+      const Eigen::VectorXd inverse =
+          (sizes > kLeastReach * sizes.maxCoeff()).select(sizes.inverse(), 0.0);
+      const Eigen::MatrixXd gain = reach.eigenvectors() * inverse.asDiagonal() *
+                                   reach.eigenvectors().transpose() * M.transpose();
+      z -= P * M * (gain * z);
+      P -= Eigen::MatrixXd(P * M * gain * P);
+      --left;
+    }
+  }
+
+  struct ShapeTest {
+    double square = 0.0;        ///< squared Mahalanobis distance
+    double excess = 0.0;        ///< over its threshold
+    double displacement = 0.0;  ///< of the marker in its directions, m
+  };
+
+  /// Of a displacement M in the rows z with covariance P. Displacements that do not change the
+  /// shape (of three markers: across their plane) do not count.
+  ShapeTest TestShape(const Eigen::MatrixXd& M, const Eigen::VectorXd& z,
+                      const Eigen::MatrixXd& P) const {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> reach(M.transpose() * M);
+    const Eigen::ArrayXd sizes = reach.eigenvalues().array();
+    const Eigen::Index rank = (sizes > kLeastReach * sizes.maxCoeff()).count();
+    if (rank == 0 || !(sizes.maxCoeff() > 0.0)) return {};
+    const Eigen::MatrixXd along = M * reach.eigenvectors().rightCols(rank);
+    ShapeTest test;
+    test.square = SquaredDistance(along.transpose() * z, along.transpose() * P * along);
+    test.displacement = (along.transpose() * along).ldlt().solve(along.transpose() * z).norm();
+    test.excess =
+        test.square / Threshold(marker_level_, static_cast<double>(rank), fit_.degrees_of_freedom);
+    return test;
+  }
+
+  /// Of one marker of a body, in the rows of its residual block.
+  Eigen::MatrixXd Displacement(int b, std::size_t n) const {
+    Eigen::MatrixXd at = Eigen::MatrixXd::Zero(residuals_.body.Residual(b).size(), 3);
+    at.middleRows<3>(3 * static_cast<Eigen::Index>(n)).setIdentity();
+    return residuals_.body.Whiten(b, at);
+  }
+
+  /// Whether a marker that was left out still stands out: from where the markers of its body that
+  /// take part say that it is, else from the model.
+  void JudgeLeftOut(int b) {
+    const BodyObservation& body = selection_.bodies[b];
+    const auto others = std::find_if(
+        selection_.bodies.begin(), selection_.bodies.end(), [&](const BodyObservation& other) {
+          return other.used && other.posture == body.posture && other.body == body.body;
+        });
+    const Eigen::Matrix3d explained = residuals_.body.Sds(b).asDiagonal() *
+                                      equations_->Explained(b, covariance_) *
+                                      residuals_.body.Sds(b).asDiagonal();
+    const Eigen::Vector3d raw = Raw(b);
+    if (others == selection_.bodies.end() || others->markers.size() < 2) {
+      const double variance = residuals_.body.Sds(b).array().square().mean();
+      const double square = raw.squaredNorm() / variance;
+      if (IsGross(square, 3, explained.trace() / variance, false)) Name(b, 0, square);
+      return;
+    }
+    Eigen::Vector3d expected;
+    Eigen::Matrix3d covariance;
+    Predict(static_cast<int>(others - selection_.bodies.begin()), expected, covariance);
+    const double square = SquaredDistance(raw - expected, covariance + explained);
+    if (square > Threshold(marker_level_, 3.0, fit_.degrees_of_freedom)) Name(b, 0, square);
+  }
+
+  /// Where the others of its body have a marker's residual, and the covariance of that.
+  void Predict(int others, Eigen::Vector3d& expected, Eigen::Matrix3d& covariance) const {
+    const BodyObservation& of = selection_.bodies[others];
+    const int group = problem_.group[of.posture];
+    const auto count = static_cast<Eigen::Index>(of.markers.size());
+    const double white = fit_.noise.Variance(group, NoiseSource::kMarker);
+    const double shared = fit_.noise.Variance(group, NoiseSource::kBodyPosition);
+    // The mean of the others, as far as it is a displacement of the body.
+    const double gain = shared / (shared + white / static_cast<double>(count));
+    expected = gain * Raw(others).reshaped(3, count).rowwise().mean();
+    covariance = (shared * (1.0 - gain) + white) * Eigen::Matrix3d::Identity();
+  }
+
+  void JudgeTie(int block, int posture) {
+    const bool used = selection_.tied[posture] != 0;
+    const int group = problem_.group[posture];
+    Eigen::ArrayXd sds(6);
+    sds.head<3>().setConstant(fit_.noise(group, NoiseSource::kWaistPosition));
+    sds.tail<3>().setConstant(fit_.noise(group, NoiseSource::kWaistRotation));
+    const Eigen::ArrayXd raw =
+        residuals_.body.Residual(block).array() * residuals_.body.Sds(block).array();
+    const double square = (raw / sds).square().sum();
+    if (square < 6.0) return;
+    const double explained = equations_->Explained(block, covariance_).trace();
+    if (!IsGross(square, 6, explained, used)) return;
+    verdict_.footings.push_back({posture, raw.head<3>().matrix().norm(), std::sqrt(square)});
+  }
+
+  const FitProblem& problem_;
+  const Selection& selection_;
+  const Fit& fit_;
+  FitResiduals residuals_;
+  std::optional<NormalEquations> equations_;
+  Eigen::MatrixXd covariance_;
+  double level_ = 0.0, marker_level_ = 0.0;
+  OutlierVerdict verdict_;
+};
 
 }  // namespace
 
@@ -65,40 +289,31 @@ Eigen::MatrixXd ResidualNorms(const ErrorModel& model, const Recording& recordin
   return MarkerDistances(recording, PredictedPositions(model, recording, delta, options));
 }
 
-OutlierVerdict FindOutliers(const Fit& fit, const std::vector<int>& group, const Selection& used,
-                            double probability) {
-  const double level =
-      1.0 - probability / std::max<double>(1.0, static_cast<double>(fit.meanings.size()));
-  // Quantiles of three (markers) and six numbers (constraints), not used and used.
-  double thresholds[2][2];
-  for (int tie = 0; tie < 2; ++tie) {
-    const double size = tie == 0 ? 3.0 : 6.0;
-    thresholds[tie][0] = UnusedThreshold(level, size, fit.degrees_of_freedom);
-    thresholds[tie][1] = UsedThreshold(level, size, fit.degrees_of_freedom);
+OutlierVerdict FindOutliers(const FitProblem& problem, const Selection& selection,
+                            const std::vector<int>& free, const Fit& fit, double probability) {
+  return OutlierSearch(problem, selection, free, fit, probability).Run();
+}
+
+std::vector<ShortModel> FindShortModels(const FitProblem& problem, const Selection& selection,
+                                        const Fit& fit) {
+  FitResiduals residuals(problem, selection, {}, fit);
+  residuals.body.Evaluate(residuals.body.Start(), false);
+  std::vector<ShortModel> found;
+  for (int b = 0; b < residuals.body.body_count(); ++b) {
+    const BodyObservation& body = selection.bodies[b];
+    if (!body.used || fit.weights.bodies.empty() || fit.weights.bodies[b].shared >= 1.0) continue;
+    const Eigen::ArrayXd raw = residuals.body.Residual(b).array() * residuals.body.Sds(b).array();
+    const Eigen::ArrayXd squares =
+        raw.square() / body.Variances(fit.noise, problem.group[body.posture]);
+    found.push_back({body.posture, body.body,
+                     std::sqrt(raw.square().sum() / static_cast<double>(body.markers.size())),
+                     std::sqrt(squares.head(body.shared_rows()).sum()),
+                     fit.weights.bodies[b].shared});
   }
-  OutlierVerdict verdict;
-  for (std::size_t block = 0; block < fit.meanings.size(); ++block) {
-    const auto [posture, marker] = fit.meanings[block];
-    const Eigen::VectorXd& residual = fit.residuals[block];
-    // Within three standard deviations of noise nothing can be an outlier: spare the algebra.
-    if (residual.squaredNorm() < 9.0 * kLeastVariance) continue;
-    const bool tie = marker < 0;
-    const bool in_use = tie ? used.tied[posture] != 0 : used.markers(posture, marker);
-    const Eigen::MatrixXd white = Eigen::MatrixXd::Identity(residual.size(), residual.size());
-    const Eigen::MatrixXd& explained = fit.posterior.explained[block];
-    const double distance = SquaredDistance(residual, white + (in_use ? -1.0 : 1.0) * explained);
-    if (!(distance > thresholds[tie ? 1 : 0][in_use ? 1 : 0])) continue;
-    if (tie) {
-      verdict.footings.push_back(
-          {posture, residual.head<3>().norm() * fit.noise.waist_position_sd[group[posture]],
-           std::sqrt(distance)});
-    } else {
-      verdict.markers.push_back({posture, marker,
-                                 residual.norm() * fit.noise.marker_sd[group[posture]],
-                                 std::sqrt(distance)});
-    }
-  }
-  return verdict;
+  std::stable_sort(found.begin(), found.end(), [](const ShortModel& a, const ShortModel& b) {
+    return a.normalised > b.normalised;
+  });
+  return found;
 }
 
 }  // namespace elastocal

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastocal/calibration/support_tie.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr int kWaistBlock = BodyUnknowns::kWaistBlock;
-constexpr double kExactMarker = 1e-6;  // m: "exact", yet well conditioned
-constexpr double kExactLeg = 1e-6;     // m and rad
+constexpr double kExactLeg = 1e-6;  // m and rad
 
 Eigen::Index IndexInLeg(const SupportLeg& leg, int joint) {
   return std::find(leg.joints.begin(), leg.joints.end(), joint) - leg.joints.begin();
@@ -19,22 +17,14 @@ Eigen::Index IndexInLeg(const SupportLeg& leg, int joint) {
 
 }  // namespace
 
-ObservationMask SeenMask(const Recording& recording) {
-  ObservationMask mask(recording.posture_count(), recording.marker_count());
-  for (int i = 0; i < mask.rows(); ++i) {
-    for (int m = 0; m < mask.cols(); ++m) mask(i, m) = Seen(recording, i, m);
-  }
-  return mask;
-}
-
 BodyResiduals::BodyResiduals(const ResidualInputs& inputs, const std::vector<int>& free,
                              const Eigen::VectorXd& delta, const Placement& placement)
     : in_(inputs),
       placement_(placement),
-      unknowns_(inputs.model, inputs.prior, free, delta, placement),
+      unknowns_(inputs.model, free, delta, placement),
       jacobian_(inputs.model) {
   parameter_blocks = unknowns_.block_sizes();
-  eliminated_blocks = unknowns_.EliminatedBlocks();
+  nuisance_blocks = unknowns_.WaistBlocks();
   nonnegative = unknowns_.nonnegative();
   for (int m = 0; m < in_.model.marker_count(); ++m) {
     marker_columns_.push_back(unknowns_.MapColumns(jacobian_.Columns(m)));
@@ -44,34 +34,32 @@ BodyResiduals::BodyResiduals(const ResidualInputs& inputs, const std::vector<int
     deflections_.push_back(unknowns_.MapDeflection(leg));
   }
   blocks_of_posture_.resize(in_.recording.posture_count());
-  MakeMarkerBlocks();
+  for (const BodyObservation& body : in_.selection.bodies) MakeBodyBlock(body);
   MakeTieBlocks();
-  residuals_.resize(meanings_.size());
-  jacobians_.resize(meanings_.size());
+  residuals_.resize(residual_blocks.size());
+  jacobians_.resize(residual_blocks.size());
   MakePriorBlocks();
 }
 
-void BodyResiduals::MakeMarkerBlocks() {
-  const ObservationMask seen = SeenMask(in_.recording);
-  for (int i = 0; i < seen.rows(); ++i) {
-    for (int m = 0; m < seen.cols(); ++m) {
-      if (!seen(i, m) || marker_columns_[m].empty()) continue;
-      ResidualBlock block{3, {}, true, in_.used(i, m)};
-      if (OnStandingFoot(i, m)) {
-        block.parameter_blocks = {unknowns_.FootingBlock(placement_.footing[i])};
-        const int last = marker_columns_[m].back().block;
-        if (unknowns_.IsMarkerBlock(last)) block.parameter_blocks.push_back(last);
-      } else {
-        for (const BodyUnknowns::Columns& columns : marker_columns_[m]) {
-          block.parameter_blocks.push_back(columns.block == kWaistBlock ? unknowns_.WaistBlock(i)
-                                                                        : columns.block);
-        }
-      }
-      blocks_of_posture_[i].push_back(static_cast<int>(residual_blocks.size()));
-      residual_blocks.push_back(std::move(block));
-      meanings_.push_back({i, m});
+void BodyResiduals::MakeBodyBlock(const BodyObservation& body) {
+  ResidualBlock block{static_cast<int>(body.size()), {}, body.used};
+  if (IsStandingFoot(body.posture, body.body)) {
+    block.parameter_blocks = {unknowns_.FootingBlock(placement_.footing[body.posture])};
+  } else {
+    for (const BodyUnknowns::Columns& columns : marker_columns_[body.markers.front()]) {
+      if (unknowns_.IsMarkerBlock(columns.block)) continue;
+      block.parameter_blocks.push_back(
+          columns.block == kWaistBlock ? unknowns_.WaistBlock(body.posture) : columns.block);
     }
   }
+  for (int m : body.markers) {
+    if (marker_columns_[m].empty()) continue;
+    const int last = marker_columns_[m].back().block;
+    if (unknowns_.IsMarkerBlock(last)) block.parameter_blocks.push_back(last);
+  }
+  blocks_of_posture_[body.posture].push_back(static_cast<int>(residual_blocks.size()));
+  sds_.push_back(BodySds(residual_blocks.size()));
+  residual_blocks.push_back(std::move(block));
 }
 
 void BodyResiduals::MakeTieBlocks() {
@@ -81,7 +69,7 @@ void BodyResiduals::MakeTieBlocks() {
     if (footing < 0) continue;
     const int leg = placement_.footings[footing].leg;
     ResidualBlock block{
-        6, {unknowns_.WaistBlock(i), unknowns_.FootingBlock(footing)}, true, in_.tied[i] != 0};
+        6, {unknowns_.WaistBlock(i), unknowns_.FootingBlock(footing)}, in_.selection.tied[i] != 0};
     if (leg >= 0) {
       for (const BodyUnknowns::Columns& columns : leg_columns_[leg]) {
         if (columns.block != kWaistBlock) block.parameter_blocks.push_back(columns.block);
@@ -89,34 +77,68 @@ void BodyResiduals::MakeTieBlocks() {
       if (deflections_[leg].block >= 0) block.parameter_blocks.push_back(deflections_[leg].block);
     }
     blocks_of_posture_[i].push_back(static_cast<int>(residual_blocks.size()));
+    tied_postures_.push_back(i);
+    sds_.emplace_back(TieSds(i));
     residual_blocks.push_back(std::move(block));
-    meanings_.push_back({i, -1});
   }
 }
 
 void BodyResiduals::MakePriorBlocks() {
+  const auto add = [&](int block, int first, int rows, double weight) {
+    residual_blocks.push_back({rows, {block}, true});
+    prior_unknowns_.push_back(first);
+    prior_weights_.push_back(weight);
+    residuals_.emplace_back(rows);
+    RowMajorMatrix J = RowMajorMatrix::Zero(rows, parameter_blocks[block]);
+    J.middleCols(first - unknowns_.first_entry(block), rows).diagonal().setConstant(weight);
+    jacobians_.push_back(std::move(J));
+  };
   for (std::size_t u = 0; u < unknowns_.free().size(); ++u) {
-    if (!std::isfinite(in_.prior[in_.model.parameters[unknowns_.free()[u]].kind])) continue;
-    residual_blocks.push_back({1, {unknowns_.block_of(static_cast<int>(u))}, false, true});
-    prior_unknowns_.push_back(static_cast<int>(u));
+    const Parameter& parameter = in_.model.parameters[unknowns_.free()[u]];
+    const int unknown = static_cast<int>(u);
+    add(unknowns_.block_of(unknown), unknown, 1,
+        ParameterScale(parameter) / in_.prior.Of(in_.model.tree, parameter));
+  }
+  for (std::size_t f = 0; f < placement_.footings.size(); ++f) {
+    const int block = unknowns_.FootingBlock(static_cast<int>(f));
+    add(block, unknowns_.first_entry(block), 6, BodyUnknowns::kPoseScale);
   }
 }
 
-double BodyResiduals::MarkerSd(int posture, int marker) const {
-  const bool exact = in_.form == SupportForm::kPenalty && !placement_.empty() &&
-                     placement_.footing[posture] >= 0 &&
-                     in_.model.tree.links[in_.model.markers[marker].link].body == 0;
-  return exact ? kExactMarker : in_.noise.marker_sd[in_.group[posture]];
+Eigen::VectorXd BodyResiduals::BodySds(std::size_t body) const {
+  const BodyObservation& of = in_.selection.bodies[body];
+  Eigen::ArrayXd variances = of.Variances(in_.noise, in_.group[of.posture]);
+  if (!in_.weights.bodies.empty()) {
+    const Weight& weight = in_.weights.bodies[body];
+    const Eigen::Index shared = of.shared_rows();
+    variances.head(shared) /= weight.shared;
+    variances.tail(variances.size() - shared) /= weight.own;
+  }
+  return variances.sqrt();
 }
 
-bool BodyResiduals::OnStandingFoot(int posture, int marker) const {
+Vector6d BodyResiduals::TieSds(int posture) const {
+  Vector6d sds;
+  const int group = in_.group[posture];
+  sds.head<3>().setConstant(in_.noise(group, NoiseSource::kWaistPosition));
+  sds.tail<3>().setConstant(in_.noise(group, NoiseSource::kWaistRotation));
+  if (in_.form == SupportForm::kFootRooted) sds.setConstant(kExactLeg);
+  if (!in_.weights.ties.empty()) sds /= std::sqrt(in_.weights.ties[posture]);
+  return sds;
+}
+
+bool BodyResiduals::IsStandingFoot(int posture, int body) const {
   if (placement_.empty() || placement_.footing[posture] < 0) return false;
   const int leg = placement_.footings[placement_.footing[posture]].leg;
-  const auto body = [&](int link) { return in_.model.tree.links[link].body; };
-  return leg >= 0 && body(in_.model.markers[marker].link) == body(in_.model.legs[leg].link);
+  return leg >= 0 && body == in_.model.tree.links[in_.model.legs[leg].link].body;
 }
 
-void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool /*with_jacobians*/) {
+Eigen::MatrixXd BodyResiduals::Whiten(int body, const Eigen::MatrixXd& displacement) const {
+  return sds_[body].cwiseInverse().asDiagonal() *
+         (in_.selection.bodies[body].basis.transpose() * displacement);
+}
+
+void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobians) {
   x_ = x;
   geometry_ = ApplyErrors(in_.model, unknowns_.ToErrors(x));
   for (int i = 0; i < in_.recording.posture_count(); ++i) {
@@ -128,63 +150,94 @@ void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool /*with_jacobians*/) 
     jacobian_.Evaluate(geometry_, in_.recording.q.row(i).transpose(),
                        in_.loads.empty() ? JointLoads() : in_.loads[i].joints);
     for (int block : blocks_of_posture_[i]) {
-      const int m = meanings_[block].marker;
-      if (m < 0) {
-        EvaluateTieBlock(block, i);
-      } else if (OnStandingFoot(i, m)) {
-        EvaluateFootMarker(block, i, m);
+      if (block >= body_count()) {
+        EvaluateTie(block, i);
+      } else if (IsStandingFoot(i, in_.selection.bodies[block].body)) {
+        EvaluateFoot(block, with_jacobians);
       } else {
-        EvaluateMarker(block, i, m);
+        EvaluateBody(block, with_jacobians);
       }
     }
   }
+  const std::size_t first = residuals_.size() - prior_unknowns_.size();
+  for (std::size_t p = 0; p < prior_unknowns_.size(); ++p) {
+    Eigen::VectorXd& residual = residuals_[first + p];
+    residual = prior_weights_[p] * x_.segment(prior_unknowns_[p], residual.size());
+  }
 }
 
-void BodyResiduals::EvaluateMarker(int block, int posture, int marker) {
-  const double weight = 1.0 / MarkerSd(posture, marker);
-  residuals_[block] =
-      weight * (MarkerPosition(in_.recording, posture, marker) - jacobian_.Position(marker));
-  const auto all = jacobian_.Block(marker);
-  RowMajorMatrix& J = jacobians_[block];
+void BodyResiduals::EvaluateBody(int block, bool with_jacobians) {
+  const BodyObservation& body = in_.selection.bodies[block];
+  const auto& shape = residual_blocks[block];
+  raw_.resize(shape.size);
   Eigen::Index width = 0;
-  for (const BodyUnknowns::Columns& columns : marker_columns_[marker])
-    width += columns.scale.size();
-  J.resize(3, width);
-  Eigen::Index at = 0;
-  for (const BodyUnknowns::Columns& columns : marker_columns_[marker]) {
-    for (std::size_t c = 0; c < columns.source.size(); ++c) {
-      J.col(at++) =
-          (-weight * columns.scale[static_cast<Eigen::Index>(c)]) * all.col(columns.source[c]);
+  for (int k : shape.parameter_blocks) width += parameter_blocks[k];
+  if (with_jacobians) raw_jacobian_.setZero(shape.size, width);
+  Eigen::Index own = 0;  // first column of the marker's own coordinates
+  for (std::size_t n = 0; n < body.markers.size(); ++n) {
+    const int marker = body.markers[n];
+    const auto row = 3 * static_cast<Eigen::Index>(n);
+    raw_.segment<3>(row) =
+        MarkerPosition(in_.recording, body.posture, marker) - jacobian_.Position(marker);
+    if (!with_jacobians) continue;
+    const auto all = jacobian_.Block(marker);
+    Eigen::Index at = 0;
+    for (const BodyUnknowns::Columns& columns : marker_columns_[marker]) {
+      const bool is_marker = unknowns_.IsMarkerBlock(columns.block);
+      if (is_marker) at = std::max(at, own);
+      for (std::size_t c = 0; c < columns.source.size(); ++c) {
+        raw_jacobian_.block<3, 1>(row, at++) =
+            -columns.scale[static_cast<Eigen::Index>(c)] * all.col(columns.source[c]);
+      }
+      if (is_marker) own = at;
     }
   }
+  residuals_[block].noalias() = body.basis.transpose() * raw_;
+  residuals_[block].array() /= sds_[block].array();
+  if (!with_jacobians) return;
+  jacobians_[block].noalias() = body.basis.transpose() * raw_jacobian_;
+  jacobians_[block].array().colwise() /= sds_[block].array();
 }
 
-void BodyResiduals::EvaluateFootMarker(int block, int posture, int marker) {
-  const int footing = placement_.footing[posture];
+void BodyResiduals::EvaluateFoot(int block, bool with_jacobians) {
+  const BodyObservation& body = in_.selection.bodies[block];
+  const int footing = placement_.footing[body.posture];
   const int link = in_.model.legs[placement_.footings[footing].leg].link;
-  const MarkerInLink on_foot = PlaceMarker(in_.model, geometry_, marker, link);
   const Transform T_ref_foot = unknowns_.FootingPose(x_, footing);
-  const double weight = 1.0 / MarkerSd(posture, marker);
-  residuals_[block] =
-      weight * (MarkerPosition(in_.recording, posture, marker) - T_ref_foot * on_foot.position);
-  RowMajorMatrix& J = jacobians_[block];
-  const bool estimated = residual_blocks[block].parameter_blocks.size() > 1;
-  const BodyUnknowns::Columns& own = marker_columns_[marker].back();
-  J.resize(3, estimated ? 6 + own.scale.size() : 6);
-  Eigen::Matrix<double, 3, 6> by_foot;
-  by_foot << Eigen::Matrix3d::Identity(), -Skew(on_foot.position);
-  J.leftCols(6) = -weight * T_ref_foot.linear() * by_foot * unknowns_.FootingChart(x_, footing);
-  if (!estimated) return;
-  // The marker's own coordinates are the last three columns of its block.
-  const Eigen::Matrix3d by_marker = T_ref_foot.linear() * on_foot.axes;
-  const auto first = static_cast<int>(jacobian_.Columns(marker).size()) - 3;
-  for (Eigen::Index c = 0; c < own.scale.size(); ++c) {
-    J.col(6 + c) =
-        -weight * own.scale[c] * by_marker.col(own.source[static_cast<std::size_t>(c)] - first);
+  const auto& shape = residual_blocks[block];
+  raw_.resize(shape.size);
+  Eigen::Index width = 0;
+  for (int k : shape.parameter_blocks) width += parameter_blocks[k];
+  if (with_jacobians) raw_jacobian_.setZero(shape.size, width);
+  Eigen::Index at = 6;
+  for (std::size_t n = 0; n < body.markers.size(); ++n) {
+    const int marker = body.markers[n];
+    const auto row = 3 * static_cast<Eigen::Index>(n);
+    const MarkerInLink on_foot = PlaceMarker(in_.model, geometry_, marker, link);
+    raw_.segment<3>(row) =
+        MarkerPosition(in_.recording, body.posture, marker) - T_ref_foot * on_foot.position;
+    if (!with_jacobians) continue;
+    Eigen::Matrix<double, 3, 6> by_foot;
+    by_foot << Eigen::Matrix3d::Identity(), -Skew(on_foot.position);
+    raw_jacobian_.block<3, 6>(row, 0) =
+        -T_ref_foot.linear() * by_foot * unknowns_.FootingChart(x_, footing);
+    const BodyUnknowns::Columns& own = marker_columns_[marker].back();
+    if (!unknowns_.IsMarkerBlock(own.block)) continue;
+    // The marker's own coordinates are the last three columns of its block.
+    const Eigen::Matrix3d by_marker = T_ref_foot.linear() * on_foot.axes;
+    const auto first = static_cast<int>(jacobian_.Columns(marker).size()) - 3;
+    for (Eigen::Index c = 0; c < own.scale.size(); ++c) {
+      raw_jacobian_.block<3, 1>(row, at++) =
+          -own.scale[c] * by_marker.col(own.source[static_cast<std::size_t>(c)] - first);
+    }
   }
+  residuals_[block] = (body.basis.transpose() * raw_).cwiseQuotient(sds_[block]);
+  if (!with_jacobians) return;
+  jacobians_[block] =
+      sds_[block].cwiseInverse().asDiagonal() * (body.basis.transpose() * raw_jacobian_);
 }
 
-void BodyResiduals::EvaluateTieBlock(int block, int posture) {
+void BodyResiduals::EvaluateTie(int block, int posture) {
   const int footing = placement_.footing[posture];
   const int leg = placement_.footings[footing].leg;
   const PostureLoads load = in_.loads.empty() ? PostureLoads() : in_.loads[posture];
@@ -195,13 +248,9 @@ void BodyResiduals::EvaluateTieBlock(int block, int posture) {
   tie.T_ref_foot = unknowns_.FootingPose(x_, footing);
   tie.T_ref_foot_predicted = leg < 0 ? tie.T_ref_waist : jacobian_.LegPose(leg);
   if (leg >= 0) tie.deflection = geometry_.leg_compliance[leg].cwiseProduct(wrench);
-  const TieResidual at = EvaluateTie(tie);
+  const TieResidual at = elastocal::EvaluateTie(tie);
 
-  const int group = in_.group[posture];
-  Vector6d weight;
-  weight.head<3>().setConstant(1.0 / in_.noise.waist_position_sd[group]);
-  weight.tail<3>().setConstant(1.0 / in_.noise.waist_rotation_sd[group]);
-  if (in_.form == SupportForm::kFootRooted) weight.setConstant(1.0 / kExactLeg);
+  const Vector6d weight = sds_[block].cwiseInverse();
   residuals_[block] = weight.cwiseProduct(at.residual);
 
   RowMajorMatrix& J = jacobians_[block];
@@ -243,30 +292,6 @@ void BodyResiduals::FillTieJacobian(int leg, const PostureLoads& load, const Vec
     }
     J.col(next++) = deflection.scale[static_cast<Eigen::Index>(c)] * (at.by_deflection * by);
   }
-}
-
-void BodyResiduals::Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const {
-  const auto observation_count = static_cast<int>(meanings_.size());
-  if (block < observation_count) {
-    residual = residuals_[block];
-  } else {
-    residual[0] = x_[prior_unknowns_[block - observation_count]];  // in units of the prior already
-  }
-}
-
-void BodyResiduals::Jacobian(int block, int k, Eigen::Map<RowMajorMatrix> jacobian) const {
-  const auto observation_count = static_cast<int>(meanings_.size());
-  if (block < observation_count) {
-    Eigen::Index at = 0;
-    for (int before = 0; before < k; ++before) {
-      at += parameter_blocks[residual_blocks[block].parameter_blocks[before]];
-    }
-    jacobian = jacobians_[block].middleCols(at, jacobian.cols());
-    return;
-  }
-  jacobian.setZero();
-  jacobian(0, prior_unknowns_[block - observation_count] -
-                  unknowns_.first_entry(residual_blocks[block].parameter_blocks[0])) = 1.0;
 }
 
 }  // namespace elastocal

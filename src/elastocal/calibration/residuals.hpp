@@ -7,6 +7,7 @@
 #include "elastocal/calibration/body_unknowns.hpp"
 #include "elastocal/calibration/loads.hpp"
 #include "elastocal/calibration/noise.hpp"
+#include "elastocal/calibration/observations.hpp"
 #include "elastocal/calibration/support_tie.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/optim/least_squares.hpp"
@@ -14,33 +15,39 @@
 
 namespace elastocal {
 
-/// postures x markers: which observations take part.
-using ObservationMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
+/// How much a body in a posture, or a posture's support constraint, counts: 1, or less where it is
+/// further off than the noise explains (a likelihood with heavy tails).
+struct Weight {
+  double shared = 1.0;  ///< of what the markers share; of a constraint
+  double own = 1.0;     ///< of what is left of each marker
+};
 
-/// Observations that are there at all.
-ObservationMask SeenMask(const Recording& recording);
+struct RobustWeights {
+  std::vector<Weight> bodies;  ///< by Selection::bodies; empty: all 1
+  std::vector<double> ties;    ///< by posture; empty: all 1
+};
 
 /// What the residuals are made from; keeps references.
 struct ResidualInputs {
   const ErrorModel& model;
   const Recording& recording;
-  const std::vector<int>& group;           ///< of each posture, see NoiseGroups
-  const ObservationMask& used;             ///< markers that take part
-  const std::vector<char>& tied;           ///< postures whose support constraint takes part
+  const std::vector<int>& group;  ///< of each posture, see NoiseGroups
+  const Selection& selection;
   const std::vector<PostureLoads>& loads;  ///< by posture; empty: nothing is elastic
   const Prior& prior;
   const Noise& noise;
+  const RobustWeights& weights;
   SupportForm form = SupportForm::kNuisance;
 };
 
-/// Eq. 14 as a least-squares problem: for every observation the difference between measured and
-/// predicted marker position (those on the foot that stands: from the footing, the others from the
-/// waist); for every posture on one foot what its constraint leaves (see
-/// support_tie.hpp); for every parameter with a prior its deviation from nominal; each over its
-/// standard deviation.
+/// Eq. 14 as a least-squares problem: for the markers of every body in every posture the difference
+/// between measured and predicted positions (those on the foot that stands: from the footing, the
+/// others from the waist), in the basis of BodyObservation; for every posture on one foot what its
+/// constraint leaves (see support_tie.hpp); for every parameter its deviation from nominal; for
+/// every footing (vaguely, 1 m and 1 rad) its displacement; each over its standard deviation.
 ///
-/// The unknowns are those of BodyUnknowns. An observation meets one waist (one marker in a table of
-/// postures, which has no such waists), so that these are eliminated first.
+/// The unknowns are those of BodyUnknowns. A body in a posture meets one waist (in a table of
+/// postures none), so that these are eliminated first.
 class BodyResiduals : public LeastSquaresProblem {
  public:
   /// `free`: indices of the estimated parameters, ascending; all others stay as in `delta` (one
@@ -53,30 +60,34 @@ class BodyResiduals : public LeastSquaresProblem {
   Eigen::VectorXd Start() const { return unknowns_.Start(); }
   Eigen::VectorXd ToErrors(const Eigen::VectorXd& x) const { return unknowns_.ToErrors(x); }
   Placement ToPlacement(const Eigen::VectorXd& x) const { return unknowns_.ToPlacement(x); }
-  std::vector<int> WaistBlocks() const { return unknowns_.WaistBlocks(); }
 
-  /// What a residual block is about. Marker observations come first, then ties, then priors.
-  struct Meaning {
-    int posture = -1;
-    int marker = -1;  ///< -1: the tie of the posture
-  };
-  /// By residual block; priors have none.
-  const std::vector<Meaning>& meanings() const { return meanings_; }
+  /// Residual blocks: first the bodies of the selection, then the constraints, then the priors.
+  int body_count() const { return static_cast<int>(in_.selection.bodies.size()); }
+  const std::vector<int>& tied_postures() const { return tied_postures_; }
+  int TieBlock(int tie) const { return body_count() + tie; }
+
+  /// Rows in units of the residual's standard deviation of what would displace the markers of a
+  /// body by the columns of `displacement` (3 markers x any, m).
+  Eigen::MatrixXd Whiten(int body, const Eigen::MatrixXd& displacement) const;
+  /// Standard deviations of a residual block's rows: in the basis of the body, m; of a constraint,
+  /// m and rad.
+  const Eigen::VectorXd& Sds(int block) const { return sds_[block]; }
 
   void Evaluate(const Eigen::VectorXd& x, bool with_jacobians) override;
-  void Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const override;
-  void Jacobian(int block, int k, Eigen::Map<RowMajorMatrix> jacobian) const override;
+  const Eigen::VectorXd& Residual(int block) const override { return residuals_[block]; }
+  const RowMajorMatrix& Jacobian(int block) const override { return jacobians_[block]; }
 
  private:
-  void MakeMarkerBlocks();
+  void MakeBodyBlock(const BodyObservation& body);
   void MakeTieBlocks();
   void MakePriorBlocks();
-  double MarkerSd(int posture, int marker) const;
-  /// Whether the marker is on the foot that the posture stands on.
-  bool OnStandingFoot(int posture, int marker) const;
-  void EvaluateMarker(int block, int posture, int marker);
-  void EvaluateFootMarker(int block, int posture, int marker);
-  void EvaluateTieBlock(int block, int posture);
+  Eigen::VectorXd BodySds(std::size_t body) const;
+  Vector6d TieSds(int posture) const;
+  /// Whether the body is the foot that the posture stands on.
+  bool IsStandingFoot(int posture, int body) const;
+  void EvaluateBody(int block, bool with_jacobians);
+  void EvaluateFoot(int block, bool with_jacobians);
+  void EvaluateTie(int block, int posture);
   void FillTieJacobian(int leg, const PostureLoads& load, const Vector6d& wrench,
                        const TieResidual& at, RowMajorMatrix& J) const;
 
@@ -87,13 +98,17 @@ class BodyResiduals : public LeastSquaresProblem {
   std::vector<std::vector<BodyUnknowns::Columns>> marker_columns_;  // by marker
   std::vector<std::vector<BodyUnknowns::Columns>> leg_columns_;     // by leg
   std::vector<BodyUnknowns::Deflection> deflections_;               // by leg
-  std::vector<Meaning> meanings_;
+  std::vector<int> tied_postures_;
   std::vector<std::vector<int>> blocks_of_posture_;
-  std::vector<int> prior_unknowns_;  // by prior residual block
+  std::vector<int> prior_unknowns_;    // by prior residual block: its first entry of x
+  std::vector<double> prior_weights_;  // likewise: of the entries
   Eigen::VectorXd x_;
   Geometry geometry_;
-  std::vector<Eigen::VectorXd> residuals_;  // by block, priors aside
-  std::vector<RowMajorMatrix> jacobians_;   // as they are met, side by side
+  std::vector<Eigen::VectorXd> sds_;  // by block, priors aside
+  std::vector<Eigen::VectorXd> residuals_;
+  std::vector<RowMajorMatrix> jacobians_;
+  Eigen::VectorXd raw_;  // of the body in hand, m
+  Eigen::MatrixXd raw_jacobian_;
 };
 
 }  // namespace elastocal

@@ -32,30 +32,31 @@ class Residuals : public ::testing::Test {
   Recording recording_ = RecordingWithGaps(model_);
   std::vector<int> free_ = FindBaseParameters(model_, {.postures = 100}).kept;
   Eigen::VectorXd fixed_ = Random(2).NormalVector(model_.parameter_count(), 0.01);
-  ObservationMask used_ = SeenMask(recording_);
-  std::vector<char> tied_ = std::vector<char>(4, 1);
+  Selection selection_ = SelectAll(model_, recording_);
   std::vector<int> group_ = NoiseGroups(model_, recording_);
   std::vector<PostureLoads> loads_;
   Prior prior_;
-  Noise noise_{Eigen::VectorXd::Constant(1, 0.2e-3), {}, {}};
+  Noise noise_{Eigen::ArrayXXd::Constant(1, kNoiseSourceCount, 0.2e-3)};
+  RobustWeights weights_;
   Placement placement_;
-  BodyResiduals problem_{{model_, recording_, group_, used_, tied_, loads_, prior_, noise_},
+  BodyResiduals problem_{{model_, recording_, group_, selection_, loads_, prior_, noise_, weights_},
                          free_,
                          fixed_,
                          placement_};
 };
 
 TEST_F(Residuals, UnseenMarkersTakeNoPart) {
-  int observations = 0;
-  for (const auto& block : problem_.residual_blocks) observations += block.size == 3;
-  EXPECT_EQ(observations, 4 * 9 - 1);
+  int rows = 0;
+  for (int b = 0; b < problem_.body_count(); ++b) rows += problem_.residual_blocks[b].size;
+  EXPECT_EQ(rows, 3 * (4 * 9 - 1));
 }
 
 TEST_F(Residuals, ErrorsAndUnknownsAreOneToOne) {
   const Eigen::VectorXd x = Random(3).NormalVector(static_cast<Eigen::Index>(free_.size()), 1.0);
   const Eigen::VectorXd delta = problem_.ToErrors(x);
-  const BodyResiduals again({model_, recording_, group_, used_, tied_, loads_, prior_, noise_},
-                            free_, delta, placement_);
+  const BodyResiduals again(
+      {model_, recording_, group_, selection_, loads_, prior_, noise_, weights_}, free_, delta,
+      placement_);
   EXPECT_LT((again.Start() - x).norm(), 1e-14);
   for (int i = 0; i < model_.parameter_count(); ++i) {
     if (std::binary_search(free_.begin(), free_.end(), i)) continue;
@@ -81,16 +82,31 @@ TEST_F(Residuals, JacobianEqualsDifferences) {
   }
 }
 
-TEST_F(Residuals, EveryObservationMeetsOneEliminatedBlockAtMost) {
-  const auto& eliminated = problem_.eliminated_blocks;
-  EXPECT_EQ(eliminated.size(), 9u);
-  for (const auto& block : problem_.residual_blocks) {
-    int met = 0;
-    for (int k : block.parameter_blocks) {
-      met += static_cast<int>(std::count(eliminated.begin(), eliminated.end(), k));
-    }
-    EXPECT_LE(met, 1);
+// Position of the body is shared; what is left in the basis has the variance of one marker.
+TEST_F(Residuals, RowsHaveTheVariancesOfTheirSources) {
+  const BodyObservation& body = selection_.bodies.front();
+  ASSERT_EQ(body.markers.size(), 3u);
+  EXPECT_LT((body.basis.transpose() * body.basis - Eigen::MatrixXd::Identity(9, 9)).norm(), 1e-12);
+  const Eigen::VectorXd& sds = problem_.Sds(0);
+  for (Eigen::Index row = 0; row < 9; ++row) {
+    EXPECT_NEAR(sds[row], 0.2e-3 * (row < 3 ? 2.0 : 1.0), 1e-15) << row;  // 1 + 3 variances
   }
+  // A displacement of the body shows in its first rows alone.
+  Eigen::MatrixXd shift = Eigen::MatrixXd::Zero(9, 1);
+  for (int m = 0; m < 3; ++m) shift(3 * m, 0) = 1e-3;
+  EXPECT_LT(problem_.Whiten(0, shift).bottomRows(6).norm(), 1e-12);
+  // A small rotation about the centre only in the next three.
+  Eigen::MatrixXd turn(9, 1);
+  Eigen::Matrix3d positions;
+  for (int m = 0; m < 3; ++m) {
+    positions.col(m) = MarkerPosition(recording_, body.posture, body.markers[m]);
+  }
+  for (int m = 0; m < 3; ++m) {
+    turn.middleRows<3>(3 * m) =
+        Eigen::Vector3d(1e-3, 2e-3, -1e-3).cross(positions.col(m) - positions.rowwise().mean());
+  }
+  const Eigen::VectorXd rows = problem_.Whiten(0, turn);
+  EXPECT_LT(rows.head<3>().norm() + rows.tail<3>().norm(), 1e-9 * rows.norm());
 }
 
 }  // namespace

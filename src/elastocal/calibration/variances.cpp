@@ -2,128 +2,179 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "elastocal/calibration/fit_residuals.hpp"
 #include "elastocal/math/statistics.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kLeastTieShare = 0.1;  // of the marker noise [m, rad]: no constraint is better
+constexpr double kLeastTieShare = 0.1;   // of the marker noise [m, rad]: no constraint is better
+constexpr double kLeastShare = 0.01;     // of the rows is left over where it is all but zero
+constexpr double kHuberQuantile = 0.99;  // of the distance of a body within which it counts whole
+constexpr double kLeastSharedSd = 1e-3;  // of the marker noise [m, rad]: as good as none
 
-/// Root mean square of the joints' angles or lengths in units of the prior as it is now, over as
-/// many as the data determine (MacKay's update); 1 where that is less than one.
-double RelativeDeviation(const FitProblem& problem, const Fit& fit, bool angles) {
-  const Prior prior = WidenedPrior(problem, fit);
-  double square_sum = 0.0;
-  double determined = 0.0;
-  for (std::size_t i = 0; i < fit.posterior.parameters.size(); ++i) {
-    const int index = fit.posterior.parameters[i];
-    const ParameterKind kind = problem.model.parameters[index].kind;
-    if (IsExternal(kind) || IsElastic(kind) || IsAngle(kind) != angles ||
-        !std::isfinite(prior[kind])) {
-      continue;
-    }
-    const auto diagonal = static_cast<Eigen::Index>(i);
-    const double variance = prior[kind] * prior[kind];
-    square_sum += fit.delta[index] * fit.delta[index] / variance;
-    determined += 1.0 - fit.posterior.covariance(diagonal, diagonal) / variance;
-  }
-  return determined < 1.0 ? 1.0 : std::sqrt(square_sum / determined);
+void Add(const Eigen::ArrayXd& shares, const Eigen::VectorXd& residual,
+         const Eigen::VectorXd& explained, VarianceComponent& component) {
+  const double rows = shares.sum();
+  if (rows <= 0.0) return;
+  const double squares = (shares * residual.array().square()).sum();
+  component.squares += squares;
+  component.rows += rows;
+  component.explained += (shares * explained.array()).sum();
+  component.weight += shares.square().sum();
+  component.means.push_back(squares / rows);
 }
 
-double Change(double before, double after) { return std::abs(std::log(after / before)); }
-
-double Change(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
-  return (after.array() / before.array()).log().abs().maxCoeff();
+double Huber(double square, Eigen::Index rows) {
+  if (rows == 0) return 1.0;
+  const double limit = ChiSquareQuantile(kHuberQuantile, static_cast<double>(rows));
+  return square <= limit ? 1.0 : std::sqrt(limit / square);
 }
 
 }  // namespace
 
-double VarianceComponent::Factor(bool robust) const {
-  const Eigen::Map<const Eigen::VectorXd> s(squares.data(),
-                                            static_cast<Eigen::Index>(squares.size()));
-  const double total = robust ? rows * Median(s) / ChiSquareQuantile(0.5, 3.0) : s.sum();
-  // The share that is left over is positive; a hundredth of the rows where it is all but zero.
-  return std::sqrt(total / std::max({1.0, 0.01 * rows, rows - explained}));
-}
-
-std::vector<std::vector<int>> RowComponents(const BodyResiduals& residuals,
-                                            const std::vector<int>& group) {
-  std::vector<std::vector<int>> components;
-  for (const auto& [posture, marker] : residuals.meanings()) {
-    const int g = group[posture];
-    if (marker >= 0) {
-      components.emplace_back(3, ComponentIndex(g, VariancePart::kMarkers));
-      continue;
-    }
-    std::vector<int>& rows =
-        components.emplace_back(6, ComponentIndex(g, VariancePart::kPositions));
-    std::fill(rows.begin() + 3, rows.end(), ComponentIndex(g, VariancePart::kRotations));
+double VarianceComponent::Factor(Robustness robustness) const {
+  if (means.empty()) return 1.0;
+  const double left = std::max({kLeastShare * rows, rows - explained, 1e-6});
+  double total = squares;
+  if (robustness == Robustness::kMedians) {
+    const Eigen::Map<const Eigen::VectorXd> all(means.data(),
+                                                static_cast<Eigen::Index>(means.size()));
+    total = rows * Median(all) * 3.0 / ChiSquareQuantile(0.5, 3.0);
   }
-  components.resize(residuals.residual_blocks.size(), std::vector<int>{-1});
-  return components;
+  return std::sqrt(total / left);
 }
 
-std::vector<VarianceComponent> ComponentsOf(const FitProblem& problem, const Selection& selection,
-                                            const Fit& fit) {
-  std::vector<VarianceComponent> components(kVarianceParts * fit.noise.group_count());
-  const auto add = [&](int group, VariancePart part, std::size_t block, int first) {
-    VarianceComponent& component = components[ComponentIndex(group, part)];
-    component.squares.push_back(fit.residuals[block].segment<3>(first).squaredNorm());
-    component.rows += 3.0;
-  };
-  for (std::size_t block = 0; block < fit.meanings.size(); ++block) {
-    const auto [posture, marker] = fit.meanings[block];
-    const int group = problem.group[posture];
-    if (marker >= 0) {
-      if (selection.markers(posture, marker)) add(group, VariancePart::kMarkers, block, 0);
-    } else if (selection.tied[posture] != 0) {
-      add(group, VariancePart::kPositions, block, 0);
-      add(group, VariancePart::kRotations, block, 3);
+VarianceComponents CollectComponents(const FitProblem& problem, const Selection& selection,
+                                     const Noise& noise, const BodyResiduals& residuals,
+                                     const std::vector<Eigen::VectorXd>& explained) {
+  VarianceComponents components(noise.group_count());
+  for (int b = 0; b < residuals.body_count(); ++b) {
+    const BodyObservation& body = selection.bodies[b];
+    if (!body.used) continue;
+    const int group = problem.group[body.posture];
+    for (NoiseSource source : {NoiseSource::kMarker, NoiseSource::kBodyPosition}) {
+      Add(body.Shares(noise, group, source), residuals.Residual(b), explained[b],
+          components[group][static_cast<int>(source)]);
+    }
+  }
+  for (std::size_t t = 0; t < residuals.tied_postures().size(); ++t) {
+    const int posture = residuals.tied_postures()[t];
+    if (selection.tied[posture] == 0) continue;
+    const int block = residuals.TieBlock(static_cast<int>(t));
+    auto& of_group = components[problem.group[posture]];
+    for (NoiseSource source : {NoiseSource::kWaistPosition, NoiseSource::kWaistRotation}) {
+      Eigen::ArrayXd shares = Eigen::ArrayXd::Zero(6);
+      shares.segment<3>(source == NoiseSource::kWaistPosition ? 0 : 3).setOnes();
+      Add(shares, residuals.Residual(block), explained[block], of_group[static_cast<int>(source)]);
     }
   }
   return components;
 }
 
 Noise EstimateNoise(const CalibrationOptions& options, const Noise& before,
-                    const std::vector<VarianceComponent>& components, bool robust) {
+                    const VarianceComponents& components, Robustness robustness) {
   Noise noise = before;
-  const auto of = [&](int group, VariancePart part) -> const VarianceComponent& {
-    return components[ComponentIndex(group, part)];
-  };
   for (int g = 0; g < noise.group_count(); ++g) {
-    const VarianceComponent& markers = of(g, VariancePart::kMarkers);
+    const auto of = [&](NoiseSource source) -> const VarianceComponent& {
+      return components[g][static_cast<int>(source)];
+    };
+    const auto scale = [&](NoiseSource source, double least) {
+      if (of(source).means.empty()) return;
+      noise(g, source) = std::max(least, noise(g, source) * of(source).Factor(robustness));
+    };
     if (options.marker_sd > 0.0) {
-      noise.marker_sd[g] = options.marker_sd;
-    } else if (!markers.squares.empty()) {
-      noise.marker_sd[g] = std::max(kSmallestMarkerSd, noise.marker_sd[g] * markers.Factor(robust));
+      noise(g, NoiseSource::kMarker) = options.marker_sd;
+    } else {
+      scale(NoiseSource::kMarker, kSmallestMarkerSd);
     }
-    const VarianceComponent& positions = of(g, VariancePart::kPositions);
-    if (positions.squares.empty() || options.support_form == SupportForm::kFootRooted) continue;
-    const double least = kLeastTieShare * noise.marker_sd[g];
-    noise.waist_position_sd[g] =
-        std::max(least, noise.waist_position_sd[g] * positions.Factor(robust));
-    noise.waist_rotation_sd[g] = std::max(
-        least, noise.waist_rotation_sd[g] * of(g, VariancePart::kRotations).Factor(robust));
+    const double marker_sd = noise(g, NoiseSource::kMarker);
+    scale(NoiseSource::kBodyPosition, kLeastSharedSd * marker_sd);
+    if (options.support_form == SupportForm::kFootRooted) continue;
+    scale(NoiseSource::kWaistPosition, kLeastTieShare * marker_sd);
+    scale(NoiseSource::kWaistRotation, kLeastTieShare * marker_sd);
   }
   return noise;
 }
 
-PriorScale EstimatePriorScale(const FitProblem& problem, const Fit& fit) {
-  const auto widened = [&](double scale, bool angles) {
-    return std::clamp(scale * RelativeDeviation(problem, fit, angles), 1.0, kMaxPriorScale);
-  };
-  return {widened(fit.prior_scale.angles, true), widened(fit.prior_scale.lengths, false)};
+RobustWeights EstimateWeights(const FitProblem& problem, const Selection& selection,
+                              const Noise& noise, const BodyResiduals& residuals,
+                              Robustness robustness) {
+  RobustWeights weights;
+  weights.bodies.resize(selection.bodies.size());
+  weights.ties.assign(static_cast<std::size_t>(problem.recording.posture_count()), 1.0);
+  for (int b = 0; b < residuals.body_count(); ++b) {
+    const BodyObservation& body = selection.bodies[b];
+    if (!body.used) continue;
+    // In the units that the noise gives, whatever the weights were.
+    const Eigen::ArrayXd squares =
+        (residuals.Residual(b).array() * residuals.Sds(b).array()).square() /
+        body.Variances(noise, problem.group[body.posture]);
+    const Eigen::Index shared = body.shared_rows();
+    weights.bodies[b].shared = Huber(squares.head(shared).sum(), shared);
+    if (robustness == Robustness::kMedians) {
+      const Eigen::Index own = squares.size() - shared;
+      weights.bodies[b].own = Huber(squares.tail(own).sum(), own);
+    }
+  }
+  for (std::size_t t = 0; t < residuals.tied_postures().size(); ++t) {
+    const int posture = residuals.tied_postures()[t];
+    if (selection.tied[posture] == 0 || problem.options.support_form == SupportForm::kFootRooted) {
+      continue;
+    }
+    const int block = residuals.TieBlock(static_cast<int>(t));
+    const int group = problem.group[posture];
+    Eigen::ArrayXd sds(6);
+    sds.head<3>().setConstant(noise(group, NoiseSource::kWaistPosition));
+    sds.tail<3>().setConstant(noise(group, NoiseSource::kWaistRotation));
+    weights.ties[posture] = Huber(
+        (residuals.Residual(block).array() * residuals.Sds(block).array() / sds).square().sum(), 6);
+  }
+  return weights;
 }
 
-double LargestChange(const Noise& before, const PriorScale& scale_before, const Noise& after,
-                     const PriorScale& scale_after) {
-  return std::max({Change(before.marker_sd, after.marker_sd),
-                   Change(before.waist_position_sd, after.waist_position_sd),
-                   Change(before.waist_rotation_sd, after.waist_rotation_sd),
-                   Change(scale_before.angles, scale_after.angles),
-                   Change(scale_before.lengths, scale_after.lengths)});
+PriorScale EstimatePriorScale(const FitProblem& problem, const Fit& fit) {
+  const Prior prior = WidenedPrior(problem, fit);
+  std::array<double, kPriorGroupCount> squares{}, determined{};
+  for (std::size_t i = 0; i < fit.posterior.parameters.size(); ++i) {
+    const int index = fit.posterior.parameters[i];
+    const ParameterKind kind = problem.model.parameters[index].kind;
+    if (IsExternal(kind)) continue;
+    const auto diagonal = static_cast<Eigen::Index>(i);
+    const double sd = prior.Of(problem.model.tree, problem.model.parameters[index]);
+    const double variance = sd * sd;
+    const auto group = static_cast<std::size_t>(GroupOf(kind));
+    squares[group] += fit.delta[index] * fit.delta[index] / variance;
+    determined[group] += 1.0 - fit.posterior.covariance(diagonal, diagonal) / variance;
+  }
+  PriorScale scale = fit.prior_scale;
+  for (int g = 0; g < kPriorGroupCount; ++g) {
+    if (determined[g] < 1.0) continue;
+    scale.factor[g] = std::clamp(scale.factor[g] * std::sqrt(squares[g] / determined[g]), 1.0,
+                                 MostWidening(static_cast<PriorGroup>(g)));
+  }
+  return scale;
+}
+
+double DegreesOfFreedom(const CalibrationOptions& options, const VarianceComponents& components) {
+  double total = 0.0;
+  double spread = 0.0;
+  for (const auto& group : components) {
+    for (int s = 0; s < kNoiseSourceCount; ++s) {
+      const VarianceComponent& component = group[s];
+      total += component.explained;
+      const bool given =
+          static_cast<NoiseSource>(s) == NoiseSource::kMarker && options.marker_sd > 0.0;
+      if (given || component.rows <= 0.0) continue;
+      // Of the rows that are left, each counts by the source's share in it.
+      const double left =
+          component.weight * std::max(kLeastShare, 1.0 - component.explained / component.rows);
+      spread += component.explained * component.explained / std::max(1e-9, left);
+    }
+  }
+  if (spread <= 0.0) return std::numeric_limits<double>::infinity();
+  return std::max(1.0, total * total / spread);
 }
 
 }  // namespace elastocal

@@ -1,52 +1,56 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "elastocal/calibration/fit.hpp"
 
 namespace elastocal {
 
-/// Residuals that share a standard deviation, in units of it.
-struct VarianceComponent {
-  std::vector<double> squares;  ///< of each three: a marker, a position, a rotation
-  double rows = 0.0;
-  double explained = 0.0;  ///< how many of the rows the fit explains
+inline constexpr double kSmallestMarkerSd = 1e-6;  ///< m: what a file of rounded numbers leaves
 
-  /// By how much the standard deviation has to be multiplied; by the median where outliers may be
-  /// among the residuals.
-  double Factor(bool robust) const;
+/// What the residuals of a fit say about one source of noise in one group of postures, all in units
+/// of the standard deviations that they had.
+struct VarianceComponent {
+  double squares = 0.0;       ///< of the residuals, each by the source's share in its variance
+  double rows = 0.0;          ///< sum of the shares
+  double explained = 0.0;     ///< part of `rows` that the fit explains
+  double weight = 0.0;        ///< sum of squared shares: of how many residuals it is the variance
+  std::vector<double> means;  ///< `squares` over `rows` of each body or constraint
+
+  /// By how much the standard deviation has to be multiplied; by the median over bodies where
+  /// outliers may be among the residuals.
+  double Factor(Robustness robustness) const;
 };
 
-inline constexpr double kSmallestMarkerSd = 1e-9;  ///< m: of noise-free data
+/// By group and source.
+using VarianceComponents = std::vector<std::array<VarianceComponent, kNoiseSourceCount>>;
 
-/// Components of each group of postures: its markers, the positions that its support constraints
-/// leave, and the rotations.
-enum class VariancePart { kMarkers, kPositions, kRotations };
-inline constexpr int kVarianceParts = 3;
-inline int ComponentIndex(int group, VariancePart part) {
-  return kVarianceParts * group + static_cast<int>(part);
-}
+/// Components from the residuals as last evaluated. `explained`: of the rows of each residual
+/// block.
+VarianceComponents CollectComponents(const FitProblem& problem, const Selection& selection,
+                                     const Noise& noise, const BodyResiduals& residuals,
+                                     const std::vector<Eigen::VectorXd>& explained);
 
-/// By residual block, the component of each of its rows; -1 of priors.
-std::vector<std::vector<int>> RowComponents(const BodyResiduals& residuals,
-                                            const std::vector<int>& group);
-
-/// Components by their index, as the residuals of the fit have them; what the fit explains of them
-/// is left open.
-std::vector<VarianceComponent> ComponentsOf(const FitProblem& problem, const Selection& selection,
-                                            const Fit& fit);
-
-/// The noise that components leave, which were found with the noise `before`. What the options give
-/// stays as given.
+/// The noise that components leave which were found with the noise `before`: restricted maximum
+/// likelihood, by Harville's fixed point. What the options give stays as given. A group whose
+/// bodies all have a single marker cannot tell errors of the model from noise of the cameras: all
+/// counts as the latter.
 Noise EstimateNoise(const CalibrationOptions& options, const Noise& before,
-                    const std::vector<VarianceComponent>& components, bool robust);
+                    const VarianceComponents& components, Robustness robustness);
 
-/// How far the joints' angles and lengths go beyond the prior, by the fit's estimates and their
-/// posterior covariance (MacKay's update). Never narrower than the prior that was given.
+/// Huber's weights: 1 within the distance that one body in a hundred exceeds by chance, beyond it
+/// falling with the distance.
+RobustWeights EstimateWeights(const FitProblem& problem, const Selection& selection,
+                              const Noise& noise, const BodyResiduals& residuals,
+                              Robustness robustness);
+
+/// How far the parameters go beyond the prior, by the fit's estimates and their posterior
+/// covariance (MacKay's update). Never narrower than the prior that was given.
 PriorScale EstimatePriorScale(const FitProblem& problem, const Fit& fit);
 
-/// The largest relative change of any standard deviation from one to the other.
-double LargestChange(const Noise& before, const PriorScale& scale_before, const Noise& after,
-                     const PriorScale& scale_after);
+/// Degrees of freedom of the uncertainty of the parameters, to which each source contributes by
+/// what of it the fit explains (Satterthwaite 1946); infinite where the noise is given.
+double DegreesOfFreedom(const CalibrationOptions& options, const VarianceComponents& components);
 
 }  // namespace elastocal

@@ -30,13 +30,15 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
 
   // Large recordings take a while: their checksums are made on another thread.
   auto inputs_read = std::async(std::launch::async, RecordInputs, inputs);
-  CalibrationRun run =
-      CalibrateExperiment(project, recordings,
-                          {.folds = options.folds,
-                           .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
-                                                                             : ZeroOffsets::kOrigin,
-                           .seed = options.common.seed,
-                           .progress = TerminalSteps("reading and fitting", options.common.quiet)});
+  CalibrationRun run = CalibrateExperiment(
+      project, recordings,
+      {.folds = options.folds,
+       .fold_unit = options.fold_by == "trial" ? FoldUnit::kTrial : FoldUnit::kPosture,
+       .threads = options.threads,
+       .zero_offsets =
+           options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin,
+       .seed = options.common.seed,
+       .progress = TerminalSteps("reading and fitting", options.common.quiet)});
   const auto files = MakeCalibrationFiles(project, run);
   const std::string no_report = SetResults(
       folder, files, MakeRunRecord("calibrate", options.common, inputs_read.get()), outputs);
@@ -68,8 +70,20 @@ void AddCalibrate(CLI::App& app, Action& action) {
       ->required()
       ->check(IsNamed)
       ->type_name("DIR");
-  command->add_option("--kfold", options->folds, "Also cross-validate with this many folds")
-      ->check(CLI::Range(2, 100000));
+  command
+      ->add_option(
+          "--kfold", options->folds,
+          "Cross-validate with this many folds; 0: not (default: 10 for a table of postures, "
+          "0 for trials)")
+      ->check(CLI::Range(0, 100000));
+  command
+      ->add_option("--fold-by", options->fold_by,
+                   "What a fold leaves out: postures (nearly equal ones together), or whole trials")
+      ->transform(CLI::IsMember({"posture", "trial"}, CLI::ignore_case))
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Folds estimated at a time")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   command
       ->add_option("--zero-offsets", options->zero_offsets,
                    "Where the joints' zero offsets go: into the URDF's joint origins (origin) or "

@@ -34,12 +34,22 @@ std::string More(std::size_t count) {
                              : "";
 }
 
+std::string WideningText(const PriorScale& scale) {
+  std::string text;
+  for (int g = 0; g < kPriorGroupCount; ++g) {
+    if (g >= 2 && scale.factor[g] == 1.0) continue;
+    text +=
+        fmt::format(" {:.2f} ({})", scale.factor[g], PriorGroupName(static_cast<PriorGroup>(g)));
+  }
+  return text;
+}
+
 std::string FitText(const CalibrationResult& result) {
   return fmt::format(
-      "Fit: {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms; prior widened by {:.2f} (angles) and "
-      "{:.2f} (lengths);\n  {:.1f} parameters determined by the data\n",
+      "Fit: {} iterations, cost {:.4g} -> {:.4g}, {:.1f} ms; prior widened by{};\n"
+      "  {:.1f} parameters determined by the data\n",
       result.iterations, result.initial_cost, result.final_cost, 1e3 * result.solve_seconds,
-      result.prior_scale.angles, result.prior_scale.lengths, result.posterior.effective_parameters);
+      WideningText(result.prior_scale), result.posterior.effective_parameters);
 }
 
 std::string AllEstimates(const CalibrationRun& run) {
@@ -121,9 +131,7 @@ std::string DescribeDetails(const CalibrationRun& run) {
   const std::vector<std::string> displaced = DisplacedMarkers(result);
   return DescribeTrials(run) + FitText(result) + DescribeHeldOut(run) + AllEstimates(run) +
          DescribeElasticity(run) + DescribeFeet(run) +
-         "\nNot identifiable with these markers, unchanged in the URDF: " +
-         Names(result, WithStatus(result, ParameterStatus::kDropped)) +
-         "\nNot supported by the data, held at nominal, not worth deploying: " +
+         "\nKnown hardly better than beforehand, or only together with others: " +
          Names(result, WithStatus(result, ParameterStatus::kUnsupported)) +
          "\nHeld by the project: " + Names(result, WithStatus(result, ParameterStatus::kHeld)) +
          "\nMarkers more than 20 mm from where the project has them: " +

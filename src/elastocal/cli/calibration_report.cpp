@@ -22,20 +22,21 @@ std::string VerdictText(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) {
     return "Verdict: do not deploy. " + run.verdict.objections.front() + "\n";
   }
-  if (run.held_out) {
-    const auto& mean = run.held_out->table.mean_rmse_3d;
-    return fmt::format("Verdict: deploy. Markers of held-out motions: from {} to {} mm.\n",
-                       Millimetres(mean.at(ModelKind::kUncalibrated), 3),
-                       Millimetres(mean.at(run.comparison.largest_kind()), 3));
+  const Deployment& deployment = run.deployment;
+  std::string text =
+      fmt::format("Verdict: {}from {} to {} mm by the URDF alone",
+                  run.held_out ? "deploy. On held-out motions " : "",
+                  Millimetres(deployment.uncalibrated, 3), Millimetres(deployment.urdf, 3));
+  if (std::isfinite(deployment.compensated)) {
+    text +=
+        fmt::format(", {} mm with elastic compensation", Millimetres(deployment.compensated, 3));
   }
+  if (run.held_out) return text + ".\n";
   const bool folded = run.cross_validation.folds > 0;
-  const auto& metrics = folded ? run.cross_validation.metrics : run.comparison.metrics;
-  return fmt::format(
-      "Verdict: from {} to {} mm {}. {}\n", Millimetres(metrics[0].rmse_3d, 3),
-      Millimetres(metrics[static_cast<int>(run.comparison.largest_kind())].rmse_3d, 3),
-      folded ? "on held-out postures" : "in the fit",
-      folded ? "Before deploying, validate on another recording."
-             : "Cross-validate (--kfold 10) and validate on another recording before deploying.");
+  return text +
+         (folded ? ".\n  On held-out postures. Before deploying, validate on another recording.\n"
+                 : ".\n  In the fit. Before deploying, cross-validate (--kfold 10) and validate "
+                   "on another recording.\n");
 }
 
 std::string Overview(const CalibrationRun& run) {
@@ -94,11 +95,10 @@ std::vector<int> Remarkable(const CalibrationResult& result) {
   std::vector<int> order;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[i];
-    const bool of_robot = !IsExternal(parameter.kind) && std::isfinite(usual[parameter.kind]);
-    if (of_robot && Significant(result, i)) order.push_back(i);
+    if (!IsExternal(parameter.kind) && Significant(result, i)) order.push_back(i);
   }
   const auto size = [&](int i) {
-    return std::abs(result.delta[i]) / usual[result.model.parameters[i].kind];
+    return std::abs(result.delta[i]) / usual.Of(result.model.tree, result.model.parameters[i]);
   };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size(a) > size(b); });
   return order;
@@ -172,11 +172,8 @@ std::string UncertainLine(const CalibrationRun& run) {
   const std::size_t weak =
       HardlyExcited(result.model.parameters, run.base.kept, run.excitation).size();
   return fmt::format(
-      "  parameters left nominal: {} not identifiable, {} unsupported by the data, {} held; {} "
-      "hardly "
-      "excited\n",
-      count(ParameterStatus::kDropped), count(ParameterStatus::kUnsupported),
-      count(ParameterStatus::kHeld), weak);
+      "  parameters: {} known hardly better than beforehand, {} held; {} hardly excited\n",
+      count(ParameterStatus::kUnsupported), count(ParameterStatus::kHeld), weak);
 }
 
 std::string LookAt(const CalibrationRun& run) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,9 @@ struct CalibrateOptions {
   CommonOptions common;
   std::string project, output;
   std::vector<std::string> recordings;  ///< a posture table, or recording folders
-  int folds = 0;
+  std::optional<int> folds;             ///< none: as usual, see ExperimentOptions
+  std::string fold_by = "posture";
+  int threads = 2;
   std::string zero_offsets = "origin";
 };
 

@@ -53,44 +53,13 @@ std::string ParameterTable(const CalibrationComparison& comparison) {
       const ParameterDifference& one = comparison.parameters[i];
       const auto& [factor, unit] = ScaleOf(one.unit);
       const double sd = factor * one.sd;
-      table.Add({one.name + (one.weights_b.empty() ? "" : " (sum)"), unit,
-                 RoundedTo(factor * one.a, sd), RoundedTo(factor * one.b, sd),
+      table.Add({one.name, unit, RoundedTo(factor * one.a, sd), RoundedTo(factor * one.b, sd),
                  RoundedTo(factor * one.difference, sd), RoundedSd(sd),
                  RoundedInterval(factor * one.difference, factor * one.half_width, sd),
                  std::string(one.significant() ? "*" : "") + (joint.moved ? " moved" : "")});
     }
   }
   return table.Render();
-}
-
-std::string Combination(const std::map<std::string, double>& weights) {
-  std::string text;
-  for (const auto& [name, weight] : weights) {
-    const std::string sign = weight < 0.0   ? (text.empty() ? "-" : " - ")
-                             : text.empty() ? ""
-                                            : " + ";
-    const double size = std::abs(weight);
-    text += sign + (std::abs(size - 1.0) < 1e-6 ? "" : fmt::format("{:.4g} ", size)) + name;
-  }
-  return text;
-}
-
-/// What a name does not say: combinations, and what no measurement can tell from a moved parameter.
-std::string Footnotes(const CalibrationComparison& comparison) {
-  std::string text;
-  for (const JointDifference& joint : comparison.joints) {
-    for (const int i : joint.parameters) {
-      const ParameterDifference& one = comparison.parameters[i];
-      if (!one.weights_b.empty()) {
-        text += fmt::format("  {} (sum): A's {}; B's {}\n", one.name, Combination(one.weights_a),
-                            Combination(one.weights_b));
-      }
-      if (joint.moved && one.significant() && !one.stands_for.empty()) {
-        text += fmt::format("  {} cannot be told from {}\n", one.name, Combination(one.stands_for));
-      }
-    }
-  }
-  return text;
 }
 
 /// One line a reason.
@@ -175,11 +144,6 @@ Json ParameterJson(const ParameterDifference& one) {
   json["interval_95"] = {one.difference - one.half_width, one.difference + one.half_width};
   json["p"] = one.p;
   json["significant"] = one.significant();
-  if (!one.stands_for.empty()) json["stands_also_for"] = one.stands_for;
-  if (!one.weights_b.empty()) {
-    json["combination_a"] = one.weights_a;
-    json["combination_b"] = one.weights_b;
-  }
   return json;
 }
 
@@ -196,7 +160,7 @@ std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEs
       "for their number\n\n";
   text += ParameterTable(comparison);
   text += "  * differs at 95 %, looked at alone; one in twenty does so by chance\n";
-  text += Footnotes(comparison) + NotComparedText(comparison);
+  text += NotComparedText(comparison);
   return text + "\n" + Conclusion(comparison, options.level);
 }
 

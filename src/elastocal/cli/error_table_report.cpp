@@ -21,6 +21,8 @@ const char* PaperName(ModelKind kind) {
       return "offsets";
     case ModelKind::kGeometric:
       return "GCM";
+    case ModelKind::kRigid:
+      return "FCM rigid";
     case ModelKind::kFull:
       return "FCM";
   }

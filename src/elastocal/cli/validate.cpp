@@ -24,11 +24,12 @@ struct ValidateOptions {
   CommonOptions common;
   std::string project, calibration, recording;
   std::string output;  ///< folder; empty: none
+  bool frozen = false;
 };
 
-std::string Table(const TransferValidation& validation) {
-  TextTable table({"joints (waist and markers refitted)", "RMSE 3-D mm", "RMSE coordinate mm",
-                   "max mm", "with outliers mm"});
+std::string Table(const TransferValidation& validation, bool frozen) {
+  TextTable table({frozen ? "joints (nothing fitted)" : "joints (waist and markers refitted)",
+                   "RMSE 3-D mm", "RMSE coordinate mm", "max mm", "with outliers mm"});
   const auto millimetres = [](double value) { return fmt::format("{:.3f}", 1e3 * value); };
   for (const auto& [name, refit] : {std::pair{"uncalibrated", &validation.uncalibrated},
                                     std::pair{"calibrated", &validation.calibrated}}) {
@@ -44,7 +45,7 @@ void PrintRun(const ValidationRun& run, const CommonOptions& options) {
   Print(quiet, fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
                            run.recording.source, run.calibration.recording,
                            run.recording.posture_count(), run.recording.marker_count()) +
-                   Table(run.transfer));
+                   Table(run.transfer, run.frozen));
   const std::vector<Outlier>& outliers = run.transfer.calibrated.result.outliers;
   for (std::size_t i = 0; i < std::min<std::size_t>(10, outliers.size()); ++i) {
     Print(quiet,
@@ -70,7 +71,8 @@ int Validate(const ValidateOptions& options) {
   outputs.Prepare();
 
   const ValidationRun run =
-      ValidateCalibration(project, options.calibration, options.recording, options.common.seed);
+      ValidateCalibration(project, options.calibration, options.recording,
+                          {.frozen = options.frozen, .seed = options.common.seed});
   const std::string json = MakeValidationJson(run);
   outputs.Set(options.common.json_file, json);
   std::string no_report;
@@ -90,9 +92,9 @@ int Validate(const ValidateOptions& options) {
 
 void AddValidate(CLI::App& app, Action& action) {
   auto options = std::make_shared<ValidateOptions>();
-  CLI::App* command = app.add_subcommand(
-      "validate",
-      "Apply a calibration to another recording: waist and markers refitted, joints not");
+  CLI::App* command = app.add_subcommand("validate",
+                                         "Apply a calibration to another recording: waist and "
+                                         "markers refitted (or nothing, --frozen)");
   command->add_option("project", options->project, "Project file (YAML)")->required();
   command
       ->add_option("--calibration", options->calibration,
@@ -109,6 +111,9 @@ void AddValidate(CLI::App& app, Action& action) {
                    "Folder for validation.json and a report with it: that of the calibration")
       ->check(IsNamed)
       ->type_name("DIR");
+  command->add_flag("--frozen", options->frozen,
+                    "Fit nothing: waist and markers as in the calibration (cameras and markers "
+                    "must not have been moved)");
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal validate project.yaml --calibration out "

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/SVD>
-
 #include "elastocal/math/priority_qr.hpp"
+#include "elastocal/math/singular_values.hpp"
 
 namespace elastocal {
 namespace {
@@ -22,7 +21,7 @@ double SingularFloor(const Eigen::VectorXd& sigma) {
 /// there are fewer rows than columns.
 double ConditionNumber(const Eigen::MatrixXd& A) {
   if (A.cols() == 0 || A.rows() < A.cols()) return kInfinity;
-  const Eigen::VectorXd sigma = Eigen::BDCSVD<Eigen::MatrixXd>(A).singularValues();
+  const Eigen::VectorXd sigma = SingularValues(A);
   const double smallest = sigma[sigma.size() - 1];
   return smallest > SingularFloor(sigma) ? sigma[0] / smallest : kInfinity;
 }
@@ -30,12 +29,12 @@ double ConditionNumber(const Eigen::MatrixXd& A) {
 /// Diagonal of (A^T A)^-1, by singular vectors. Entries are infinite for columns that depend on
 /// others.
 Eigen::VectorXd InverseDiagonal(const Eigen::MatrixXd& A) {
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinV);
-  const Eigen::VectorXd& sigma = svd.singularValues();
+  const SingularValueDecomposition svd = DecomposeSingular(A);
+  const Eigen::VectorXd& sigma = svd.values;
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(A.cols());
   for (Eigen::Index k = 0; k < sigma.size(); ++k) {
     for (Eigen::Index i = 0; i < A.cols(); ++i) {
-      const double v = svd.matrixV()(i, k);
+      const double v = svd.V(i, k);
       if (sigma[k] > SingularFloor(sigma)) {
         diagonal[i] += v * v / (sigma[k] * sigma[k]);
       } else if (std::abs(v) > 1e-8) {  // takes part in the dependence by more than rounding
@@ -71,8 +70,7 @@ Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int
   excitation.parameter_sd.setConstant(static_cast<Eigen::Index>(base.size()), kInfinity);
   if (base.empty() || R_base.rows() < R_base.cols()) return excitation;
 
-  excitation.indices =
-      ComputeObservability(Eigen::BDCSVD<Eigen::MatrixXd>(R_base).singularValues(), postures);
+  excitation.indices = ComputeObservability(SingularValues(R_base), postures);
   const Eigen::ArrayXd variance = InverseDiagonal(R_base * scale.asDiagonal());
   excitation.parameter_sd =
       marker_sd * variance.sqrt() / R_base.colwise().norm().transpose().array();

@@ -49,19 +49,7 @@ bool IsUnitName(const std::string& text) {
   return false;
 }
 
-/// Pairs (kept parameter, coefficient) that a dropped parameter is regrouped into.
-void EmitRegrouping(const CalibrationResult& result, const BaseParameters& base, int dropped,
-                    YAML::Emitter& yaml) {
-  yaml << YAML::Key << "regrouped_into" << YAML::Value << YAML::Flow << YAML::BeginMap;
-  for (const Share& share : RegroupedInto(base, dropped)) {
-    yaml << YAML::Key << result.model.parameters[share.parameter].name << YAML::Value
-         << FormatNumber(std::round(share.coefficient * 1e9) * 1e-9);
-  }
-  yaml << YAML::EndMap;
-}
-
-void EmitParameter(const CalibrationResult& result, const BaseParameters& base, int i,
-                   YAML::Emitter& yaml) {
+void EmitParameter(const CalibrationResult& result, int i, YAML::Emitter& yaml) {
   const Parameter& parameter = result.model.parameters[i];
   yaml << YAML::Flow << YAML::BeginMap;
   yaml << YAML::Key << "name" << YAML::Value << parameter.name;
@@ -74,15 +62,38 @@ void EmitParameter(const CalibrationResult& result, const BaseParameters& base, 
   if (result.status[i] == ParameterStatus::kEstimated) {
     yaml << YAML::Key << "significant" << YAML::Value << Significant(result, i);
   }
-  for (std::size_t d = 0; d < base.dropped.size(); ++d) {
-    if (base.dropped[d] == i) EmitRegrouping(result, base, static_cast<int>(d), yaml);
+  yaml << YAML::EndMap;
+}
+
+void EmitNumbers(const Eigen::Vector3d& numbers, YAML::Emitter& yaml) {
+  yaml << YAML::Flow << YAML::BeginSeq;
+  for (double number : numbers) yaml << FormatNumber(number);
+  yaml << YAML::EndSeq;
+}
+
+void EmitWaist(const Transform& T_ref_waist, YAML::Emitter& yaml) {
+  yaml << YAML::Key << "waist" << YAML::Value << YAML::Flow << YAML::BeginMap;
+  yaml << YAML::Key << "xyz_m" << YAML::Value;
+  EmitNumbers(T_ref_waist.translation(), yaml);
+  yaml << YAML::Key << "rpy_rad" << YAML::Value;
+  EmitNumbers(ToRpy(T_ref_waist.linear(), Eigen::Vector3d::Zero()), yaml);
+  yaml << YAML::EndMap
+       << YAML::Comment("in the frame of the recording; waist.T0 deviates from there");
+}
+
+/// Waist and markers alone, fitted to the same recording.
+void EmitUncalibrated(const CalibrationResult& result, YAML::Emitter& yaml) {
+  yaml << YAML::Key << "uncalibrated" << YAML::Value << YAML::BeginMap;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[i];
+    if (!IsExternal(parameter.kind)) continue;
+    yaml << YAML::Key << parameter.name << YAML::Value << FormatNumber(result.delta[i]);
   }
   yaml << YAML::EndMap;
 }
 
 constexpr ParameterStatus kStatuses[] = {ParameterStatus::kEstimated, ParameterStatus::kUnsupported,
-                                         ParameterStatus::kDropped, ParameterStatus::kHeld,
-                                         ParameterStatus::kNotInModel};
+                                         ParameterStatus::kHeld, ParameterStatus::kNotInModel};
 
 ParameterStatus ReadStatus(const YamlValue& value) {
   const std::string text = value.Text();
@@ -110,19 +121,13 @@ ParameterEstimate ReadParameter(const YamlValue& item) {
     parameter.sd = item.Get("sd").Number();
     item.Get("sd").Expect(parameter.sd > 0.0, "a number above 0");
   }
-  if (const auto shares = item.Find("regrouped_into")) {
-    for (const auto& [name, coefficient] : shares->Entries()) {
-      parameter.regrouped_into[name] = coefficient.Number();
-    }
-  }
   return parameter;
 }
 
-/// All keys of a mapping must be names of parameters.
-void CheckNames(const YamlValue& mapping, const std::set<std::string>& names) {
-  for (const auto& [name, coefficient] : mapping.Entries()) {
-    coefficient.Expect(names.contains(name), "a parameter of this file as key");
-  }
+Eigen::Vector3d ReadNumbers(const YamlValue& value) {
+  const std::vector<YamlValue> items = value.Items();
+  value.Expect(items.size() == 3, "three numbers");
+  return {items[0].Number(), items[1].Number(), items[2].Number()};
 }
 
 }  // namespace
@@ -149,8 +154,8 @@ std::string NominalFingerprint(const ErrorModel& model) {
   return fmt::format("{:016x}", Fnv1a(text.text()));
 }
 
-std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
-                                const std::string& recording, ZeroOffsets zero_offsets) {
+std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
+                                ZeroOffsets zero_offsets, const CalibrationResult* uncalibrated) {
   YAML::Emitter yaml;
   yaml << YAML::Comment("Written by elastocal: deviations from the nominal URDF, in SI units.");
   yaml << YAML::BeginMap;
@@ -167,12 +172,16 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParam
   yaml << YAML::Key << "termination" << YAML::Value << TerminationName(result.termination);
   yaml << YAML::Key << "marker_sd_mm" << YAML::Value << FormatNumber(1e3 * result.marker_sd);
   yaml << YAML::Key << "prior_scale" << YAML::Value << YAML::Flow << YAML::BeginMap;
-  yaml << YAML::Key << "angles" << YAML::Value << FormatNumber(result.prior_scale.angles);
-  yaml << YAML::Key << "lengths" << YAML::Value << FormatNumber(result.prior_scale.lengths);
+  for (int g = 0; g < kPriorGroupCount; ++g) {
+    yaml << YAML::Key << PriorGroupName(static_cast<PriorGroup>(g)) << YAML::Value
+         << FormatNumber(result.prior_scale.factor[g]);
+  }
   yaml << YAML::EndMap;
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(result.interval_factor);
+  if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, yaml);
+  if (uncalibrated != nullptr) EmitUncalibrated(*uncalibrated, yaml);
   yaml << YAML::Key << "parameters" << YAML::Value << YAML::BeginSeq;
-  for (int i = 0; i < result.model.parameter_count(); ++i) EmitParameter(result, base, i, yaml);
+  for (int i = 0; i < result.model.parameter_count(); ++i) EmitParameter(result, i, yaml);
   yaml << YAML::EndSeq << YAML::EndMap;
   return std::string(yaml.c_str()) + "\n";
 }
@@ -196,9 +205,6 @@ CalibrationEstimate ParseEstimate(const std::string& text, const std::string& so
     item.Get("name").Expect(names.insert(estimate.parameters.back().name).second,
                             "every parameter once");
   }
-  for (const YamlValue& item : root.Get("parameters").Items()) {
-    if (const auto shares = item.Find("regrouped_into")) CheckNames(*shares, names);
-  }
   estimate.model = root.Get("model").Text();
   const YamlValue factor = root.Get("interval_95_in_sd");
   estimate.interval_factor = factor.Number();
@@ -208,13 +214,24 @@ CalibrationEstimate ParseEstimate(const std::string& text, const std::string& so
 }
 
 StoredCalibration ReadCalibration(const std::filesystem::path& file) {
-  const CalibrationEstimate estimate = ReadEstimate(file);
+  const std::string text = ReadFile(file);
+  const CalibrationEstimate estimate = ParseEstimate(text, file.string());
+  const YamlValue root = YamlValue::Parse(text, file.string());
   StoredCalibration stored;
   stored.robot = estimate.robot;
   stored.nominal = estimate.nominal;
   stored.recording = estimate.recording;
   for (const ParameterEstimate& parameter : estimate.parameters) {
-    if (!parameter.external) stored.joint_errors[parameter.name] = parameter.value;
+    (parameter.external ? stored.externals : stored.joint_errors)[parameter.name] = parameter.value;
+  }
+  if (const auto waist = root.Find("waist")) {
+    stored.T_ref_waist =
+        FromXyzRpy(ReadNumbers(waist->Get("xyz_m")), ReadNumbers(waist->Get("rpy_rad")));
+  }
+  if (const auto uncalibrated = root.Find("uncalibrated")) {
+    for (const auto& [name, value] : uncalibrated->Entries()) {
+      stored.uncalibrated_externals[name] = value.Number();
+    }
   }
   return stored;
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "elastocal/calibration/calibrate.hpp"
@@ -18,8 +19,11 @@ std::string NominalFingerprint(const ErrorModel& model);
 
 /// calibration.yaml: every parameter with unit, value, standard deviation and status, and what is
 /// needed to judge them (docs/formats.md).
-std::string MakeCalibrationYaml(const CalibrationResult& result, const BaseParameters& base,
-                                const std::string& recording, ZeroOffsets zero_offsets);
+/// `uncalibrated`, where given: the result that has only waist and markers fitted to the same
+/// recording, for a comparison on other recordings.
+std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
+                                ZeroOffsets zero_offsets,
+                                const CalibrationResult* uncalibrated = nullptr);
 
 /// Reads all of a calibration.yaml that a comparison needs; the covariance is in another file.
 /// Throws InputError naming file, line and key.
@@ -34,6 +38,11 @@ struct StoredCalibration {
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
   std::map<std::string, double> joint_errors;  ///< by parameter name, SI
+  /// Of a table of postures: nominal pose of the waist in the frame of the recording.
+  std::optional<Transform> T_ref_waist;
+  /// Waist (deviations from there) and markers, by parameter name, SI: of the calibrated model, and
+  /// of the uncalibrated one fitted to the same recording (empty if the file does not have it).
+  std::map<std::string, double> externals, uncalibrated_externals;
 };
 
 /// Reads a calibration.yaml. Throws InputError naming file, line and key.

@@ -31,7 +31,9 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
   };
   std::vector<std::string> keys;
   for (const Entry& entry : kEntries) keys.emplace_back(entry.key);
+  keys.emplace_back("deflection_mrad");
   section.ExpectKeys(keys);
+  section.Read("deflection_mrad", prior.deflection, kPositive, 1e-3);
   for (const Entry& entry : kEntries) {
     section.Read(entry.key, prior[entry.kind], kPositiveOrInfinity, entry.unit);
   }
@@ -121,7 +123,7 @@ void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options) {
   section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "plausible_marker_sd_mm",
                       "outlier_probability", "support_threshold", "correlation_threshold",
-                      "max_iterations", "support", "load", "slip_mm"});
+                      "max_iterations", "support", "load", "slip_mm", "outliers"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
   section.Read("widen_prior", options.widen_prior);
   section.Read("marker_sd_mm", options.marker_sd, kNotNegative, kOneMm);
@@ -129,10 +131,11 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
   section.Read("outlier_probability", options.outlier_probability, kFraction);
   section.Read("support_threshold", options.support_threshold, kFractionOrOne);
   section.Read("correlation_threshold", options.correlation_threshold, kFractionOrOne);
-  ReadChoice<SupportForm>(section, "support", options.support_form,
-                          {{"nuisance", SupportForm::kNuisance},
-                           {"foot_rooted", SupportForm::kFootRooted},
-                           {"penalty", SupportForm::kPenalty}});
+  ReadChoice<SupportForm>(
+      section, "support", options.support_form,
+      {{"nuisance", SupportForm::kNuisance}, {"foot_rooted", SupportForm::kFootRooted}});
+  ReadChoice<OutlierPolicy>(section, "outliers", options.outliers,
+                            {{"remove", OutlierPolicy::kRemove}, {"keep", OutlierPolicy::kKeep}});
   ReadChoice<LoadSource>(section, "load", options.load.source,
                          {{"torques", LoadSource::kTorques},
                           {"wrench", LoadSource::kWrench},

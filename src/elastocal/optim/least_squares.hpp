@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,10 +11,10 @@ namespace elastocal {
 
 /// A nonlinear least-squares problem in blocks: minimise over x
 ///
-///   1/2 sum_i rho(|f_i(x)|^2)
+///   1/2 sum_i |f_i(x)|^2
 ///
 /// where the residual block f_i depends on few of the blocks that x is divided into. Shape is fixed
-/// at construction; Evaluate is called once for every new x, before any Residual or Jacobian.
+/// at construction; Evaluate is called for every new x, before any Residual or Jacobian.
 class LeastSquaresProblem {
  public:
   using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -23,7 +22,6 @@ class LeastSquaresProblem {
   struct ResidualBlock {
     int size = 0;
     std::vector<int> parameter_blocks;  ///< that it depends on, each once
-    bool robust = true;                 ///< whether the loss applies to it
     /// Whether it takes part in the minimum; one that does not is only evaluated.
     bool active = true;
   };
@@ -35,36 +33,35 @@ class LeastSquaresProblem {
   std::vector<ResidualBlock> residual_blocks;
   /// Blocks of x that are eliminated first (Schur complement). No two may meet in one residual
   /// block; there must be others besides them.
-  std::vector<int> eliminated_blocks;
-  /// Entries of x that may not become negative, ascending.
+  std::vector<int> nuisance_blocks;
+  /// Entries of x that may not become negative, ascending; none in a nuisance block.
   std::vector<int> nonnegative;
 
   virtual void Evaluate(const Eigen::VectorXd& x, bool with_jacobians) = 0;
-  virtual void Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const = 0;
-  /// Derivative of residual block `block` by the `k`-th of the parameter blocks that it lists.
-  virtual void Jacobian(int block, int k, Eigen::Map<RowMajorMatrix> jacobian) const = 0;
+  virtual const Eigen::VectorXd& Residual(int block) const = 0;
+  /// Derivatives of a residual block by its parameter blocks, side by side in the order in which it
+  /// lists them. Valid after Evaluate with jacobians.
+  virtual const RowMajorMatrix& Jacobian(int block) const = 0;
 };
 
 struct LeastSquaresOptions {
-  /// Scale of Cauchy's loss rho(s) = c^2 log(1 + s / c^2) in units of the residuals; 0: rho(s) = s.
-  double cauchy_scale = 0.0;
   int max_iterations = 100;
-  /// Ends when the cost changes relatively by less than this in a step ...
-  double function_tolerance = 1e-12;
-  /// ... or when the step is relatively smaller than this.
-  double parameter_tolerance = 1e-12;
+  /// Ends when a step is expected to lower the cost relatively by less than this.
+  double function_tolerance = 1e-13;
 };
 
 struct LeastSquaresResult {
   Eigen::VectorXd x;                            ///< best point found, whatever the termination
   double initial_cost = 0.0, final_cost = 0.0;  ///< NaN where x0 could not be evaluated
-  int iterations = 0;
+  int iterations = 0;                           ///< steps tried
   Termination termination = Termination::kFailure;
-  std::string message;  ///< the solver's own words
+  std::string message;  ///< why it ended, in words
 };
 
-/// Levenberg-Marquardt (Ceres Solver) from `x0`, on one thread: same input, same bits out.
+/// Levenberg-Marquardt from `x0`: Gauss-Newton steps, each the minimum of the linearised problem
+/// under the bounds (BoundedStep), damped only where one does not lower the cost. On one thread:
+/// same input, same bits out.
 LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0,
-                         const LeastSquaresOptions& options);
+                         const LeastSquaresOptions& options = {});
 
 }  // namespace elastocal

@@ -8,37 +8,43 @@
 namespace elastocal {
 namespace {
 
+/// A problem whose blocks are evaluated all at once.
+class Stored : public LeastSquaresProblem {
+ public:
+  const Eigen::VectorXd& Residual(int block) const override { return residuals_[block]; }
+  const RowMajorMatrix& Jacobian(int block) const override { return jacobians_[block]; }
+
+ protected:
+  void Resize() {
+    residuals_.resize(residual_blocks.size());
+    jacobians_.resize(residual_blocks.size());
+  }
+  std::vector<Eigen::VectorXd> residuals_;
+  std::vector<RowMajorMatrix> jacobians_;
+};
+
 /// 10 (y - x^2) and 1 - x: the minimum is 0 at (1, 1), at the end of a bent valley.
-class Rosenbrock : public LeastSquaresProblem {
+class Rosenbrock : public Stored {
  public:
   Rosenbrock() {
     parameter_blocks = {1, 1};
     residual_blocks = {{.size = 1, .parameter_blocks = {0, 1}},
                        {.size = 1, .parameter_blocks = {0}}};
+    Resize();
   }
   void Evaluate(const Eigen::VectorXd& x, bool) override {
-    x_ = x;
+    residuals_[0] = Eigen::VectorXd::Constant(1, 10.0 * (x[1] - x[0] * x[0]));
+    residuals_[1] = Eigen::VectorXd::Constant(1, 1.0 - x[0]);
+    jacobians_[0] = Eigen::RowVector2d(-20.0 * x[0], 10.0);
+    jacobians_[1] = RowMajorMatrix::Constant(1, 1, -1.0);
     ++evaluations;
   }
-  void Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const override {
-    residual[0] = block == 0 ? 10.0 * (x_[1] - x_[0] * x_[0]) : 1.0 - x_[0];
-  }
-  void Jacobian(int block, int k, Eigen::Map<RowMajorMatrix> jacobian) const override {
-    if (block == 1) {
-      jacobian(0, 0) = -1.0;
-    } else {
-      jacobian(0, 0) = k == 0 ? -20.0 * x_[0] : 10.0;
-    }
-  }
   int evaluations = 0;
-
- private:
-  Eigen::Vector2d x_;
 };
 
 /// Curves y_ij = a exp(b t_j) + c_i: block 0 is (a, b), common to all; block i + 1 is c_i. Residual
 /// block i holds the points of curve i, t_j = j / 10.
-class Curves : public LeastSquaresProblem {
+class Curves : public Stored {
  public:
   Curves(const Eigen::MatrixXd& y, bool eliminate) : y_(y) {
     parameter_blocks = {2};
@@ -46,31 +52,26 @@ class Curves : public LeastSquaresProblem {
       parameter_blocks.push_back(1);
       residual_blocks.push_back(
           {.size = static_cast<int>(y.cols()), .parameter_blocks = {0, i + 1}});
-      if (eliminate) eliminated_blocks.push_back(i + 1);
+      if (eliminate) nuisance_blocks.push_back(i + 1);
     }
+    Resize();
   }
-  void Evaluate(const Eigen::VectorXd& x, bool) override { x_ = x; }
-  void Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const override {
-    for (Eigen::Index j = 0; j < residual.size(); ++j) {
-      residual[j] = x_[0] * Growth(j) + x_[2 + block] - y_(block, j);
-    }
-  }
-  void Jacobian(int, int k, Eigen::Map<RowMajorMatrix> jacobian) const override {
-    for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
-      if (k == 1) {
-        jacobian(j, 0) = 1.0;
-      } else {
-        jacobian(j, 0) = Growth(j);
-        jacobian(j, 1) = x_[0] * 0.1 * static_cast<double>(j) * Growth(j);
+  void Evaluate(const Eigen::VectorXd& x, bool) override {
+    for (std::size_t i = 0; i < residuals_.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      residuals_[i].resize(y_.cols());
+      jacobians_[i].resize(y_.cols(), 3);
+      for (Eigen::Index j = 0; j < y_.cols(); ++j) {
+        const double t = 0.1 * static_cast<double>(j);
+        const double growth = std::exp(x[1] * t);
+        residuals_[i][j] = x[0] * growth + x[2 + row] - y_(row, j);
+        jacobians_[i].row(j) << growth, x[0] * t * growth, 1.0;
       }
     }
   }
 
  private:
-  double Growth(Eigen::Index j) const { return std::exp(x_[1] * 0.1 * static_cast<double>(j)); }
-
   Eigen::MatrixXd y_;
-  Eigen::VectorXd x_;
 };
 
 /// Four curves of a = 2, b = -1, c_i = i, with a ripple that no parameter explains.
@@ -93,23 +94,22 @@ LeastSquaresResult FitCurves(const Eigen::MatrixXd& y, bool eliminate,
 }
 
 /// Readings of one number, each a block of its own.
-class Mean : public LeastSquaresProblem {
+class Mean : public Stored {
  public:
   explicit Mean(const Eigen::VectorXd& readings) : readings_(readings) {
     parameter_blocks = {1};
     residual_blocks.assign(readings.size(), {.size = 1, .parameter_blocks = {0}});
+    Resize();
   }
-  void Evaluate(const Eigen::VectorXd& x, bool) override { x_ = x[0]; }
-  void Residual(int block, Eigen::Map<Eigen::VectorXd> residual) const override {
-    residual[0] = x_ - readings_[block];
-  }
-  void Jacobian(int, int, Eigen::Map<RowMajorMatrix> jacobian) const override {
-    jacobian(0, 0) = 1.0;
+  void Evaluate(const Eigen::VectorXd& x, bool) override {
+    for (std::size_t i = 0; i < residuals_.size(); ++i) {
+      residuals_[i] = x - readings_.segment<1>(static_cast<Eigen::Index>(i));
+      jacobians_[i] = RowMajorMatrix::Ones(1, 1);
+    }
   }
 
  private:
   Eigen::VectorXd readings_;
-  double x_ = 0.0;
 };
 
 TEST(LeastSquares, FollowsABentValley) {
@@ -123,8 +123,7 @@ TEST(LeastSquares, FollowsABentValley) {
   EXPECT_LT(result.final_cost, 1e-24);
   EXPECT_GT(result.iterations, 3);
   EXPECT_FALSE(result.message.empty());
-  // At most twice for each trial: once without, once with derivatives.
-  EXPECT_LE(problem.evaluations, 2 * (result.iterations + 1));
+  EXPECT_EQ(problem.evaluations, result.iterations + 1);
 }
 
 TEST(LeastSquares, EliminationDoesNotChangeTheAnswer) {
@@ -140,33 +139,25 @@ TEST(LeastSquares, EliminationDoesNotChangeTheAnswer) {
   EXPECT_LT((whole.x - truth).cwiseAbs().maxCoeff(), 0.02);
 }
 
-TEST(LeastSquares, CauchyLossResistsAnOutlier) {
+// A block that takes no part is evaluated all the same.
+TEST(LeastSquares, InactiveBlocksDoNotPull) {
   Eigen::VectorXd readings(5);
   readings << 0.9, 1.0, 1.1, 1.0, 11.0;
   Mean problem(readings);
-  const Eigen::VectorXd x0 = Eigen::VectorXd::Zero(1);
-  // The cost stands still to 1e-14 of itself, the solution to the root of that.
-  EXPECT_NEAR(Solve(problem, x0, {}).x[0], readings.mean(), 1e-6);
-  // The outlier still pulls, with weight 1 / (1 + (10 / 0.1)^2) = 1e-4 times 10 against some four.
-  const double robust = Solve(problem, x0, {.cauchy_scale = 0.1}).x[0];
-  EXPECT_NEAR(robust, 1.0, 1e-3);
-  EXPECT_NE(robust, 1.0);
+  problem.residual_blocks[4].active = false;
+  const LeastSquaresResult result = Solve(problem, Eigen::VectorXd::Zero(1));
+  EXPECT_NEAR(result.x[0], 1.0, 1e-12);
+  EXPECT_NEAR(result.final_cost, 0.5 * (0.01 + 0.01), 1e-12);
+  EXPECT_NEAR(problem.Residual(4)[0], -10.0, 1e-9);
 }
 
-TEST(LeastSquares, TheLossSparesBlocksThatAreNotRobust) {
-  Eigen::VectorXd readings(5);
-  readings << 0.9, 1.0, 1.1, 1.0, 11.0;
-  Mean problem(readings);
-  for (auto& block : problem.residual_blocks) block.robust = false;
-  EXPECT_NEAR(Solve(problem, Eigen::VectorXd::Zero(1), {.cauchy_scale = 0.1}).x[0], readings.mean(),
-              1e-6);
-}
-
-TEST(LeastSquares, RobustCostIsThatOfTheFormula) {
-  Mean problem(Eigen::Vector2d(-1, 1));
-  const LeastSquaresResult result = Solve(problem, Eigen::VectorXd::Zero(1), {.cauchy_scale = 2});
-  // 1/2 sum c^2 log(1 + s / c^2), at the symmetric point.
-  EXPECT_NEAR(result.initial_cost, 4.0 * std::log(1.25), 1e-14);
+// From beyond the bound, with a minimum beyond it as well.
+TEST(LeastSquares, BoundsHold) {
+  Mean problem(Eigen::Vector3d(-1.0, -2.0, 0.5));
+  problem.nonnegative = {0};
+  const LeastSquaresResult result = Solve(problem, Eigen::VectorXd::Constant(1, -3.0));
+  EXPECT_EQ(result.termination, Termination::kConverged);
+  EXPECT_EQ(result.x[0], 0.0);
 }
 
 TEST(LeastSquares, UsedUpIterationsAreNoConvergence) {
@@ -191,9 +182,8 @@ TEST(LeastSquares, AResidualThatIsNoNumberIsAFailure) {
 
 TEST(LeastSquares, SameInputSameBits) {
   for (bool eliminate : {false, true}) {
-    const LeastSquaresOptions options{.cauchy_scale = 0.01};
-    const LeastSquaresResult a = FitCurves(MakeCurves(), eliminate, options);
-    const LeastSquaresResult b = FitCurves(MakeCurves(), eliminate, options);
+    const LeastSquaresResult a = FitCurves(MakeCurves(), eliminate);
+    const LeastSquaresResult b = FitCurves(MakeCurves(), eliminate);
     EXPECT_EQ(a.x, b.x);
     EXPECT_EQ(a.final_cost, b.final_cost);
     EXPECT_EQ(a.iterations, b.iterations);

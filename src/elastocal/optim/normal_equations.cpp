@@ -1,279 +1,284 @@
 #include "elastocal/optim/normal_equations.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
-
-#include <Eigen/Cholesky>
 
 namespace elastocal {
 namespace {
 
-constexpr double kEliminationRidge = 1e-12;  // as in Linearise
+/// Keeps a nuisance that nothing determines from being divided by zero; information of the others
+/// is of the order of one or more.
+constexpr double kRidge = 1e-12;
 constexpr int kMostActiveSets = 20;
-
-/// Of a residual block's sum of squares, half the loss and the weight.
-struct Loss {
-  double cost, weight;
-};
-
-Loss LossOf(const LeastSquaresProblem::ResidualBlock& block, double squares, double cauchy_scale) {
-  if (!block.robust || cauchy_scale <= 0.0) return {0.5 * squares, 1.0};
-  const double c2 = cauchy_scale * cauchy_scale;
-  return {0.5 * c2 * std::log1p(squares / c2), 1.0 / (1.0 + squares / c2)};
-}
+constexpr double kSlightGradient = 1e-9;  // no reason to leave a bound
 
 }  // namespace
 
-/// Adds up the residual blocks that share a nuisance block (or none) and reduces them.
-class NormalEquations::Builder {
- public:
-  Builder(const LeastSquaresProblem& problem, const std::vector<std::vector<int>>& components,
-          double cauchy_scale, NormalEquations& equations)
-      : problem_(problem),
-        components_(components),
-        cauchy_scale_(cauchy_scale),
-        out_(equations),
-        first_(1, 0) {
-    for (int size : problem.parameter_blocks) first_.push_back(first_.back() + size);
-  }
-
-  int first(int parameter_block) const { return first_[parameter_block]; }
-
-  /// `position`: of each entry of x among the unknowns.
-  void Add(int nuisance, const std::vector<int>& blocks, const std::vector<int>& position) {
-    const int size = nuisance < 0 ? 0 : problem_.parameter_blocks[nuisance];
-    CollectColumns(nuisance, blocks, position);
-    const auto width = static_cast<Eigen::Index>(columns_.size());
-    A_.setZero(width, width);
-    B_.setZero(size, width);
-    g_.setZero(width);
-    own_gradient_.setZero(size);
-    own_.clear();
-    int main = -1;
-    for (int block : blocks) {
-      if (problem_.residual_blocks[block].active) AddBlock(nuisance, block, main);
-    }
-    A_.triangularView<Eigen::StrictlyUpper>() = A_.transpose();
-    if (size > 0) Eliminate(nuisance, main);
-    const auto to = static_cast<std::size_t>(main + 1);
-    Eigen::MatrixXd& total = out_.by_component_[to];
-    for (Eigen::Index c = 0; c < width; ++c) {
-      for (Eigen::Index r = 0; r < width; ++r) total(columns_[r], columns_[c]) += A_(r, c);
-      out_.gradient_[columns_[c]] += g_[c];
-    }
-  }
-
- private:
-  void CollectColumns(int nuisance, const std::vector<int>& blocks,
-                      const std::vector<int>& position) {
-    local_.assign(problem_.parameter_blocks.size(), -1);
-    columns_.clear();
-    for (int block : blocks) {
-      for (int k : problem_.residual_blocks[block].parameter_blocks) {
-        if (k == nuisance || local_[k] >= 0) continue;
-        local_[k] = static_cast<int>(columns_.size());
-        for (int i = first_[k]; i < first_[k + 1]; ++i) columns_.push_back(position[i]);
-      }
-    }
-  }
-
-  void AddBlock(int nuisance, int block, int& main) {
-    const auto& shape = problem_.residual_blocks[block];
-    Eigen::VectorXd r(shape.size);
-    problem_.Residual(block, Eigen::Map<Eigen::VectorXd>(r.data(), r.size()));
-    const Loss loss = LossOf(shape, r.squaredNorm(), cauchy_scale_);
-    const double factor = std::sqrt(loss.weight);
-    out_.cost_ += loss.cost;
-    r *= factor;
-    if (main < 0) main = components_[block][0];
-    const std::size_t count = shape.parameter_blocks.size();
-    parts_.resize(std::max(parts_.size(), count));
-    for (std::size_t k = 0; k < count; ++k) {
-      const int width = problem_.parameter_blocks[shape.parameter_blocks[k]];
-      parts_[k].resize(shape.size, width);
-      problem_.Jacobian(
-          block, static_cast<int>(k),
-          Eigen::Map<LeastSquaresProblem::RowMajorMatrix>(parts_[k].data(), shape.size, width));
-      parts_[k] *= factor;
-    }
-    const LeastSquaresProblem::RowMajorMatrix* own = nullptr;
-    for (std::size_t k = 0; k < count; ++k) {
-      if (shape.parameter_blocks[k] == nuisance) own = &parts_[k];
-    }
-    if (own != nullptr) {
-      own_.push_back({block, factor, *own});
-      own_gradient_.noalias() += own->transpose() * r;
-    }
-    for (std::size_t a = 0; a < count; ++a) {
-      const int at = local_[shape.parameter_blocks[a]];
-      if (&parts_[a] == own) continue;
-      const auto& Ja = parts_[a];
-      g_.segment(at, Ja.cols()).noalias() += Ja.transpose() * r;
-      if (own != nullptr) B_.middleCols(at, Ja.cols()) += own->transpose().lazyProduct(Ja);
-      for (std::size_t b = 0; b < count; ++b) {
-        const int under = local_[shape.parameter_blocks[b]];
-        if (&parts_[b] == own || under < at) continue;
-        A_.block(under, at, parts_[b].cols(), Ja.cols()) += parts_[b].transpose().lazyProduct(Ja);
-      }
-    }
-  }
-
-  void Eliminate(int nuisance, int main) {
-    const Eigen::Index size = B_.rows();
-    Eigen::MatrixXd D = kEliminationRidge * Eigen::MatrixXd::Identity(size, size);
-    for (const OwnColumns& own : own_) D.noalias() += own.E.transpose() * own.E;
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(D);
-    Eliminated eliminated;
-    eliminated.first = first_[nuisance];
-    eliminated.columns = columns_;
-    eliminated.gain = cholesky.solve(B_);
-    eliminated.own = cholesky.solve(own_gradient_);
-    A_.noalias() -= B_.transpose() * eliminated.gain;
-    g_.noalias() -= B_.transpose() * eliminated.own;
-    for (const auto& [block, factor, E] : own_) {
-      const Eigen::MatrixXd explained = cholesky.solve(E.transpose());
-      AddRows(block, factor, E, explained, main, eliminated.gain);
-    }
-    out_.eliminated_.push_back(std::move(eliminated));
-  }
-
-  /// What the nuisance explains of a block's rows; keeps those that are not of the main component.
-  void AddRows(int block, double factor, const Eigen::MatrixXd& E, const Eigen::MatrixXd& explained,
-               int main, const Eigen::MatrixXd& gain) {
-    const std::vector<int>& of_row = components_[block];
-    for (Eigen::Index row = 0; row < E.rows();) {
-      const int component = of_row[static_cast<std::size_t>(row)];
-      Eigen::Index end = row;
-      for (; end < E.rows() && of_row[static_cast<std::size_t>(end)] == component; ++end) {
-        if (component >= 0) {
-          out_.by_nuisance_[component] += E.row(end).dot(explained.col(end));
-        }
-      }
-      if (component != main && component >= 0) {
-        MinorRows minor{main, component, out_.eliminated_.size(), {}};
-        minor.rows = -E.middleRows(row, end - row) * gain;
-        AddJacobian(block, row, factor, minor.rows);
-        out_.minor_.push_back(std::move(minor));
-      }
-      row = end;
-    }
-  }
-
-  void AddJacobian(int block, Eigen::Index row, double factor, Eigen::MatrixXd& rows) const {
-    const auto& shape = problem_.residual_blocks[block];
-    for (std::size_t k = 0; k < shape.parameter_blocks.size(); ++k) {
-      const int parameter = shape.parameter_blocks[k];
-      if (local_[parameter] < 0) continue;
-      LeastSquaresProblem::RowMajorMatrix J(shape.size, problem_.parameter_blocks[parameter]);
-      problem_.Jacobian(
-          block, static_cast<int>(k),
-          Eigen::Map<LeastSquaresProblem::RowMajorMatrix>(J.data(), J.rows(), J.cols()));
-      rows.middleCols(local_[parameter], J.cols()) += factor * J.middleRows(row, rows.rows());
-    }
-  }
-
-  struct OwnColumns {
-    int block;
-    double factor;  // of the block's residuals and derivatives
-    LeastSquaresProblem::RowMajorMatrix E;
-  };
-
-  const LeastSquaresProblem& problem_;
-  const std::vector<std::vector<int>>& components_;
-  double cauchy_scale_;
-  NormalEquations& out_;
-  std::vector<int> first_;    // entry of x, by parameter block
-  std::vector<int> local_;    // column of the group in hand, by parameter block; -1
-  std::vector<int> columns_;  // of the group in hand, among the unknowns
-  Eigen::MatrixXd A_, B_;
-  Eigen::VectorXd g_, own_gradient_;
-  std::vector<LeastSquaresProblem::RowMajorMatrix> parts_;
-  std::vector<OwnColumns> own_;
-};
-
-NormalEquations::NormalEquations(LeastSquaresProblem& problem, const Eigen::VectorXd& x,
-                                 const std::vector<int>& nuisance_blocks,
-                                 const std::vector<std::vector<int>>& components,
-                                 double cauchy_scale)
-    : size_(x.size()) {
-  problem.Evaluate(x, true);
-  std::vector<char> is_nuisance(problem.parameter_blocks.size(), 0);
-  for (int k : nuisance_blocks) is_nuisance[k] = 1;
-  int component_count = 0;
-  for (const std::vector<int>& rows : components) {
-    for (int component : rows) component_count = std::max(component_count, component + 1);
-  }
-  Builder builder(problem, components, cauchy_scale, *this);
-  std::vector<int> position(static_cast<std::size_t>(size_), -1);
-  for (std::size_t k = 0; k < problem.parameter_blocks.size(); ++k) {
-    if (is_nuisance[k]) continue;
-    const int first = builder.first(static_cast<int>(k));
-    for (int i = 0; i < problem.parameter_blocks[k]; ++i) {
-      position[first + i] = static_cast<int>(unknowns_.size());
-      unknowns_.push_back(first + i);
-    }
-  }
+NormalEquations::NormalEquations(const LeastSquaresProblem& problem) : problem_(problem) {
+  LayOut();
   const auto size = static_cast<Eigen::Index>(unknowns_.size());
+  information_.setZero(size, size);
   gradient_.setZero(size);
-  by_nuisance_.setZero(component_count);
-  by_component_.assign(component_count + 1, Eigen::MatrixXd::Zero(size, size));
-
-  // By nuisance block; those without one by themselves.
-  std::map<int, std::vector<int>> groups;
-  for (std::size_t i = 0; i < problem.residual_blocks.size(); ++i) {
-    const auto& met = problem.residual_blocks[i].parameter_blocks;
-    const auto own =
-        std::find_if(met.begin(), met.end(), [&](int k) { return is_nuisance[k] != 0; });
-    const int block = static_cast<int>(i);
-    if (own == met.end()) {
-      builder.Add(-1, {block}, position);
-    } else {
-      groups[*own].push_back(block);
+  for (Group& group : groups_) AddGroup(group);
+  for (std::size_t block = 0; block < layout_.size(); ++block) {
+    if (layout_[block].group < 0 && problem_.residual_blocks[block].active) {
+      AddAlone(static_cast<int>(block));
     }
   }
-  for (const auto& [nuisance, blocks] : groups) builder.Add(nuisance, blocks, position);
-  information_.setZero(size, size);
-  for (const Eigen::MatrixXd& part : by_component_) information_ += part;
+  information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
 }
 
-Eigen::VectorXd NormalEquations::Explained(const Eigen::MatrixXd& covariance) const {
-  Eigen::VectorXd explained = by_nuisance_;
-  for (Eigen::Index k = 0; k < explained.size(); ++k) {
-    explained[k] += by_component_[static_cast<std::size_t>(k) + 1].cwiseProduct(covariance).sum();
+void NormalEquations::LayOut() {
+  const std::vector<int>& sizes = problem_.parameter_blocks;
+  std::vector<char> is_nuisance(sizes.size(), 0);
+  for (int k : problem_.nuisance_blocks) is_nuisance[k] = 1;
+  std::vector<int> first(1, 0);
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    for (int i = 0; i < sizes[k]; ++i) {
+      position_.push_back(is_nuisance[k] != 0 ? -1 : static_cast<int>(unknowns_.size()));
+      if (is_nuisance[k] == 0) unknowns_.push_back(first.back() + i);
+    }
+    first.push_back(first.back() + sizes[k]);
   }
-  for (const MinorRows& minor : minor_) {
-    const std::vector<int>& columns = eliminated_[minor.eliminated].columns;
-    const Eigen::MatrixXd own = covariance(columns, columns);
-    const double share = (minor.rows * own).cwiseProduct(minor.rows).sum();
-    explained[minor.component] += share;
-    explained[minor.main] -= share;
+  std::map<int, int> group_of;  // by nuisance block
+  for (std::size_t block = 0; block < problem_.residual_blocks.size(); ++block) {
+    Layout layout;
+    int column = 0;
+    for (int k : problem_.residual_blocks[block].parameter_blocks) {
+      if (is_nuisance[k] != 0) {
+        const auto [at, added] = group_of.try_emplace(k, static_cast<int>(groups_.size()));
+        if (added) {
+          groups_.emplace_back();
+          groups_.back().first = first[k];
+        }
+        layout.group = at->second;
+        layout.nuisance = column;
+        layout.width = sizes[k];
+        column += sizes[k];
+        continue;
+      }
+      for (int i = 0; i < sizes[k]; ++i) {
+        layout.columns.push_back(column++);
+        layout.unknowns.push_back(position_[first[k] + i]);
+      }
+    }
+    if (layout.group >= 0) groups_[layout.group].blocks.push_back(static_cast<int>(block));
+    layout_.push_back(std::move(layout));
   }
-  return explained;
+  std::vector<int> local(unknowns_.size(), -1);
+  for (Group& group : groups_) {
+    for (int block : group.blocks) {
+      for (int unknown : layout_[block].unknowns) {
+        if (local[unknown] < 0) {
+          local[unknown] = static_cast<int>(group.columns.size());
+          group.columns.push_back(unknown);
+        }
+        layout_[block].in_group.push_back(local[unknown]);
+      }
+    }
+    for (int unknown : group.columns) local[unknown] = -1;
+  }
+}
+
+Eigen::MatrixXd NormalEquations::OwnJacobian(int block) const {
+  const Layout& layout = layout_[block];
+  const auto& J = problem_.Jacobian(block);
+  if (layout.group < 0) return J;
+  return J(Eigen::all, layout.columns);
+}
+
+Eigen::MatrixXd NormalEquations::NuisanceJacobian(int block) const {
+  const Layout& layout = layout_[block];
+  return problem_.Jacobian(block).middleCols(layout.nuisance, layout.width);
+}
+
+void NormalEquations::AddGroup(Group& group) {
+  const auto width = static_cast<Eigen::Index>(group.columns.size());
+  const Eigen::Index size = layout_[group.blocks.front()].width;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(width, width);
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, width);
+  Eigen::MatrixXd D = kRidge * Eigen::MatrixXd::Identity(size, size);
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(width);
+  Eigen::VectorXd own_gradient = Eigen::VectorXd::Zero(size);
+  Eigen::MatrixXd part;
+  for (int block : group.blocks) {
+    if (!problem_.residual_blocks[block].active) continue;
+    const std::vector<int>& to = layout_[block].in_group;
+    const Eigen::MatrixXd J = OwnJacobian(block);
+    const Eigen::MatrixXd E = NuisanceJacobian(block);
+    const Eigen::VectorXd& r = problem_.Residual(block);
+    part.noalias() = J.transpose() * J;
+    for (std::size_t c = 0; c < to.size(); ++c) {
+      const auto column = static_cast<Eigen::Index>(c);
+      for (std::size_t row = 0; row < to.size(); ++row) {
+        A(to[row], to[c]) += part(static_cast<Eigen::Index>(row), column);
+      }
+    }
+    part.noalias() = E.transpose() * J;
+    for (std::size_t c = 0; c < to.size(); ++c) {
+      B.col(to[c]) += part.col(static_cast<Eigen::Index>(c));
+    }
+    const Eigen::VectorXd slope = J.transpose() * r;
+    for (std::size_t c = 0; c < to.size(); ++c) g[to[c]] += slope[static_cast<Eigen::Index>(c)];
+    D.noalias() += E.transpose() * E;
+    own_gradient.noalias() += E.transpose() * r;
+  }
+  group.factor.compute(D);
+  group.gain = group.factor.solve(B);
+  group.own = group.factor.solve(own_gradient);
+  nuisance_decrease_ += 0.5 * own_gradient.dot(group.own);
+  A.noalias() -= B.transpose() * group.gain;
+  g.noalias() -= B.transpose() * group.own;
+  for (Eigen::Index c = 0; c < width; ++c) {
+    gradient_[group.columns[c]] += g[c];
+    for (Eigen::Index r = 0; r < width; ++r) {
+      if (group.columns[r] >= group.columns[c]) {
+        information_(group.columns[r], group.columns[c]) += A(r, c);
+      }
+    }
+  }
+}
+
+void NormalEquations::AddAlone(int block) {
+  const std::vector<int>& to = layout_[block].unknowns;
+  const auto& J = problem_.Jacobian(block);
+  const Eigen::MatrixXd part = J.transpose() * J;
+  const Eigen::VectorXd slope = J.transpose() * problem_.Residual(block);
+  for (std::size_t c = 0; c < to.size(); ++c) {
+    const auto column = static_cast<Eigen::Index>(c);
+    gradient_[to[c]] += slope[column];
+    for (std::size_t r = 0; r < to.size(); ++r) {
+      if (to[r] >= to[c]) information_(to[r], to[c]) += part(static_cast<Eigen::Index>(r), column);
+    }
+  }
+}
+
+std::vector<int> NormalEquations::Positions(const std::vector<int>& entries) const {
+  std::vector<int> positions;
+  for (int entry : entries) positions.push_back(position_[entry]);
+  return positions;
 }
 
 Eigen::VectorXd NormalEquations::Expand(const Eigen::VectorXd& step) const {
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(size_);
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(position_.size()));
   all(unknowns_) = step;
-  for (const Eliminated& block : eliminated_) {
-    all.segment(block.first, block.own.size()) = -block.own - block.gain * step(block.columns);
+  for (const Group& group : groups_) {
+    all.segment(group.first, group.own.size()) = -group.own - group.gain * step(group.columns);
   }
   return all;
 }
 
-double CostOf(const LeastSquaresProblem& problem, double cauchy_scale) {
-  double cost = 0.0;
-  Eigen::VectorXd residual;
-  for (std::size_t block = 0; block < problem.residual_blocks.size(); ++block) {
-    const auto& shape = problem.residual_blocks[block];
-    if (!shape.active) continue;
-    residual.resize(shape.size);
-    problem.Residual(static_cast<int>(block),
-                     Eigen::Map<Eigen::VectorXd>(residual.data(), residual.size()));
-    cost += LossOf(shape, residual.squaredNorm(), cauchy_scale).cost;
+Eigen::MatrixXd NormalEquations::Explained(int block, const Eigen::MatrixXd& covariance) const {
+  const Layout& layout = layout_[block];
+  const Eigen::MatrixXd J = OwnJacobian(block);
+  Eigen::MatrixXd explained =
+      J * Eigen::MatrixXd(covariance(layout.unknowns, layout.unknowns)) * J.transpose();
+  if (layout.group < 0) return explained;
+  const Group& group = groups_[layout.group];
+  const Eigen::MatrixXd E = NuisanceJacobian(block);
+  const Eigen::MatrixXd reach =
+      covariance(Eigen::all, group.columns) * group.gain.transpose() * E.transpose();
+  const Eigen::MatrixXd both = J * reach(layout.unknowns, Eigen::all);
+  const Eigen::MatrixXd by_gain = E * group.gain * reach(group.columns, Eigen::all);
+  explained += by_gain - both - both.transpose() + E * group.factor.solve(E.transpose());
+  return explained;
+}
+
+std::vector<Eigen::VectorXd> NormalEquations::ExplainedVariances(
+    const Eigen::MatrixXd& covariance) const {
+  std::vector<Eigen::VectorXd> variances(layout_.size());
+  const auto own = [&](int block, const Eigen::MatrixXd& J) {
+    const std::vector<int>& at = layout_[block].unknowns;
+    const Eigen::MatrixXd spread = J * Eigen::MatrixXd(covariance(at, at));
+    return Eigen::VectorXd(spread.cwiseProduct(J).rowwise().sum());
+  };
+  for (std::size_t block = 0; block < layout_.size(); ++block) {
+    const int b = static_cast<int>(block);
+    if (layout_[block].group < 0) variances[block] = own(b, OwnJacobian(b));
   }
-  return cost;
+  for (const Group& group : groups_) {
+    // C gain', and gain C gain' + D^-1, once for all blocks of the group.
+    const Eigen::MatrixXd reach =
+        Eigen::MatrixXd(covariance(group.columns, group.columns)) * group.gain.transpose();
+    const Eigen::Index size = group.own.size();
+    const Eigen::MatrixXd spread =
+        group.gain * reach + group.factor.solve(Eigen::MatrixXd::Identity(size, size));
+    for (int block : group.blocks) {
+      const Eigen::MatrixXd J = OwnJacobian(block);
+      const Eigen::MatrixXd E = NuisanceJacobian(block);
+      const Eigen::MatrixXd across =
+          J * Eigen::MatrixXd(reach(layout_[block].in_group, Eigen::all));
+      variances[block] = own(block, J) - 2.0 * across.cwiseProduct(E).rowwise().sum() +
+                         (E * spread).cwiseProduct(E).rowwise().sum();
+    }
+  }
+  return variances;
+}
+
+Eigen::MatrixXd NormalEquations::Scores(const std::vector<Eigen::VectorXd>& residuals,
+                                        const std::vector<int>& cluster, int clusters) const {
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(information_.rows(), clusters);
+  const auto add_own = [&](int block) {
+    const Eigen::VectorXd slope = OwnJacobian(block).transpose() * residuals[block];
+    for (std::size_t c = 0; c < layout_[block].unknowns.size(); ++c) {
+      scores(layout_[block].unknowns[c], cluster[block]) += slope[static_cast<Eigen::Index>(c)];
+    }
+  };
+  const auto takes_part = [&](int block) {
+    return cluster[block] >= 0 && problem_.residual_blocks[block].active;
+  };
+  for (std::size_t block = 0; block < layout_.size(); ++block) {
+    const int b = static_cast<int>(block);
+    if (layout_[block].group < 0 && takes_part(b)) add_own(b);
+  }
+  for (const Group& group : groups_) {
+    Eigen::VectorXd own = Eigen::VectorXd::Zero(group.own.size());
+    int of = -1;
+    for (int block : group.blocks) {
+      if (!takes_part(block)) continue;
+      of = cluster[block];
+      add_own(block);
+      own += NuisanceJacobian(block).transpose() * residuals[block];
+    }
+    if (of < 0) continue;
+    const Eigen::VectorXd by_nuisance = group.gain.transpose() * own;
+    for (std::size_t c = 0; c < group.columns.size(); ++c) {
+      scores(group.columns[c], of) -= by_nuisance[static_cast<Eigen::Index>(c)];
+    }
+  }
+  return scores;
+}
+
+NormalEquations::Score NormalEquations::Project(int block, const Eigen::MatrixXd& A) const {
+  const Layout& layout = layout_[block];
+  Score score;
+  score.residual = A.transpose() * problem_.Residual(block);
+  score.information = A.transpose() * A;
+  score.cross.setZero(A.cols(), information_.rows());
+  const Eigen::MatrixXd by_own = A.transpose() * OwnJacobian(block);
+  for (std::size_t c = 0; c < layout.unknowns.size(); ++c) {
+    score.cross.col(layout.unknowns[c]) += by_own.col(static_cast<Eigen::Index>(c));
+  }
+  if (layout.group < 0) return score;
+  const Group& group = groups_[layout.group];
+  const Eigen::MatrixXd by_nuisance = A.transpose() * NuisanceJacobian(block);
+  score.residual -= by_nuisance * group.own;
+  score.information -= by_nuisance * group.factor.solve(by_nuisance.transpose());
+  const Eigen::MatrixXd by_gain = by_nuisance * group.gain;
+  for (std::size_t c = 0; c < group.columns.size(); ++c) {
+    score.cross.col(group.columns[c]) -= by_gain.col(static_cast<Eigen::Index>(c));
+  }
+  return score;
+}
+
+double CostOf(const LeastSquaresProblem& problem) {
+  double squares = 0.0;
+  for (std::size_t block = 0; block < problem.residual_blocks.size(); ++block) {
+    if (!problem.residual_blocks[block].active) continue;
+    squares += problem.Residual(static_cast<int>(block)).squaredNorm();
+  }
+  return 0.5 * squares;
 }
 
 Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient,
@@ -303,7 +308,7 @@ Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& information, const Eigen::Vec
     if (changed) continue;
     const Eigen::VectorXd left = gradient + information * step;
     for (int i : nonnegative) {
-      if (!held[i] || left[i] >= -1e-9) continue;
+      if (!held[i] || left[i] >= -kSlightGradient) continue;
       held[i] = 0;
       changed = true;
     }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "elastocal/optim/least_squares.hpp"
@@ -9,61 +11,85 @@
 namespace elastocal {
 
 /// The normal equations of a least-squares problem linearised at a point, its nuisance blocks
-/// eliminated (Schur complement), as H step = -gradient. Cheaper than Linearise, which gives the
-/// covariance of every single residual; here those that share a standard deviation (a component of
-/// variance) are one. Under Cauchy's loss each residual block counts with its weight at the point,
-/// 1 / (1 + |f|^2 / c^2) (iteratively reweighted least squares).
+/// eliminated (Schur complement), as H step = -gradient. With residuals in units of their standard
+/// deviations, the inverse of H is the covariance of the unknowns, the nuisance being unknown as
+/// well. The one linearisation that steps, uncertainty, variances and tests are made from.
 class NormalEquations {
  public:
-  /// `components`: by residual block, the component of each of its rows, equal ones side by side;
-  /// -1: of none. No residual block may meet two nuisance blocks.
-  NormalEquations(LeastSquaresProblem& problem, const Eigen::VectorXd& x,
-                  const std::vector<int>& nuisance_blocks,
-                  const std::vector<std::vector<int>>& components, double cauchy_scale = 0.0);
+  /// Of a problem that has just been evaluated with jacobians. Keeps a reference; what is said of
+  /// single residual blocks is read from the problem, which must not be evaluated elsewhere before.
+  explicit NormalEquations(const LeastSquaresProblem& problem);
 
   const std::vector<int>& unknowns() const { return unknowns_; }       ///< entries of x, ascending
   const Eigen::MatrixXd& information() const { return information_; }  ///< of these
   const Eigen::VectorXd& gradient() const { return gradient_; }        ///< of the cost by these
-  double cost() const { return cost_; }  ///< at the point, loss included
+  /// By how much the cost falls by the nuisance alone, the unknowns staying.
+  double NuisanceDecrease() const { return nuisance_decrease_; }
 
-  /// By component, how many of its rows the fit explains, given the covariance of the unknowns: the
-  /// trace of the covariance of what is predicted for them.
-  Eigen::VectorXd Explained(const Eigen::MatrixXd& covariance) const;
+  /// Where entries of x stand among the unknowns.
+  std::vector<int> Positions(const std::vector<int>& entries) const;
 
   /// The step of all of x: that of the unknowns, and what the nuisance makes of it.
   Eigen::VectorXd Expand(const Eigen::VectorXd& step) const;
 
- private:
-  class Builder;
+  /// Covariance of what is predicted for the rows of a residual block, given that of the unknowns:
+  /// for an active block the part of its unit covariance that the fit explains.
+  Eigen::MatrixXd Explained(int block, const Eigen::MatrixXd& covariance) const;
 
-  /// What is left of an eliminated block: its step is -(own + gain x step of `columns`).
-  struct Eliminated {
-    int first = 0;  ///< entry of x
-    std::vector<int> columns;
-    Eigen::MatrixXd gain;
+  /// Its diagonal, for all residual blocks (in less time than block by block).
+  std::vector<Eigen::VectorXd> ExplainedVariances(const Eigen::MatrixXd& covariance) const;
+
+  /// Parts of the gradient, J' Q r, that clusters of residual blocks make: unknowns x clusters.
+  /// `residuals`, by block, stand for those of the problem; `cluster`: of each block, -1: none.
+  /// Blocks that share a nuisance block belong to one cluster.
+  Eigen::MatrixXd Scores(const std::vector<Eigen::VectorXd>& residuals,
+                         const std::vector<int>& cluster, int clusters) const;
+
+  /// What is left of A, given in the rows of a residual block, beside the nuisance: with Q that
+  /// projects on what the nuisance does not explain, A' Q r, A' Q A and A' Q J.
+  struct Score {
+    Eigen::VectorXd residual;     ///< columns of A
+    Eigen::MatrixXd information;  ///< columns of A, squared
+    Eigen::MatrixXd cross;        ///< columns of A x unknowns
+  };
+  Score Project(int block, const Eigen::MatrixXd& A) const;
+
+ private:
+  /// The residual blocks that share a nuisance block.
+  struct Group {
+    std::vector<int> blocks;
+    std::vector<int> columns;  ///< among the unknowns, of all its blocks
+    Eigen::Index first = 0;    ///< entry of x of the nuisance block
+    Eigen::LLT<Eigen::MatrixXd> factor;
+    Eigen::MatrixXd gain;  ///< step of the nuisance = -(own + gain x step of `columns`)
     Eigen::VectorXd own;
   };
-  /// Rows of a component that is not the main one of those that share a nuisance block, less what
-  /// this explains.
-  struct MinorRows {
-    int main = 0, component = 0;
-    std::size_t eliminated = 0;
-    Eigen::MatrixXd rows;  ///< x columns of the eliminated block
+  /// Where the derivatives of a residual block stand.
+  struct Layout {
+    int group = -1;                        ///< -1: without nuisance
+    Eigen::Index nuisance = 0, width = 0;  ///< its columns in the block's Jacobian
+    std::vector<int> columns;              ///< of the others, in the Jacobian ...
+    std::vector<int> unknowns;             ///< ... and among the unknowns
+    std::vector<int> in_group;             ///< ... and in Group::columns
   };
 
-  std::vector<int> unknowns_;
-  Eigen::Index size_ = 0;  ///< of x
+  void LayOut();
+  void AddGroup(Group& group);
+  void AddAlone(int block);
+  Eigen::MatrixXd OwnJacobian(int block) const;
+  Eigen::MatrixXd NuisanceJacobian(int block) const;
+
+  const LeastSquaresProblem& problem_;
+  std::vector<int> unknowns_, position_;  // position_: of an entry of x among the unknowns; -1
+  std::vector<Layout> layout_;            // by residual block
+  std::vector<Group> groups_;
   Eigen::MatrixXd information_;
   Eigen::VectorXd gradient_;
-  double cost_ = 0.0;
-  std::vector<Eigen::MatrixXd> by_component_;  ///< information of the groups of each main component
-  Eigen::VectorXd by_nuisance_;                ///< rows that the nuisance explains
-  std::vector<Eliminated> eliminated_;
-  std::vector<MinorRows> minor_;
+  double nuisance_decrease_ = 0.0;
 };
 
 /// The cost of a problem as last evaluated, see LeastSquaresProblem.
-double CostOf(const LeastSquaresProblem& problem, double cauchy_scale = 0.0);
+double CostOf(const LeastSquaresProblem& problem);
 
 /// The step that minimises g'd + d'Hd/2 where the entries `nonnegative` of x + d may not become
 /// negative (an active set; `information` positive definite).

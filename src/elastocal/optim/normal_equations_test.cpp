@@ -3,84 +3,106 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "elastocal/optim/linearisation.hpp"
 #include "tests/linear_problem.hpp"
 
 namespace elastocal {
 namespace {
 
-/// Two components that share nuisance blocks, and a third for the inactive block; the one without
-/// nuisance is of none.
-std::vector<std::vector<int>> Components(const LinearProblem& problem) {
-  std::vector<std::vector<int>> components;
-  for (std::size_t i = 0; i < problem.residual_blocks.size(); ++i) {
-    components.push_back(i % 5 == 4 ? std::vector<int>{1, 1, 0} : std::vector<int>{0, 0, 0});
+class NormalEquationsTest : public ::testing::Test {
+ protected:
+  NormalEquations At(const Eigen::VectorXd& x) {
+    problem_.Evaluate(x, true);
+    return NormalEquations(problem_);
   }
-  components[15] = {-1};
-  components[16] = {2, 2, 2};
-  return components;
-}
+  int blocks() const { return static_cast<int>(problem_.residual_blocks.size()); }
+  /// Rows of a block, with all columns.
+  Eigen::MatrixXd Rows(int block) const { return problem_.All(block); }
 
-TEST(NormalEquations, StepIsThatOfTheWholeProblem) {
-  LinearProblem problem;
+  LinearProblem problem_;
+};
+
+TEST_F(NormalEquationsTest, StepIsThatOfTheWholeProblem) {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(9, -1.0, 2.0);
-  const NormalEquations equations(problem, x, {2, 3, 4}, Components(problem));
+  const NormalEquations equations = At(x);
   EXPECT_EQ(equations.unknowns(), (std::vector<int>{0, 1, 2}));
   const Eigen::VectorXd step =
       equations.Expand(-equations.information().inverse() * equations.gradient());
-  const Eigen::VectorXd whole = -problem.Information().inverse() * problem.Gradient(x);
+  const Eigen::VectorXd whole = -problem_.Information().inverse() * problem_.Gradient(x);
   // Linear: the ridge of 1e-12 on the nuisance is all that differs.
   EXPECT_LT((step - whole).norm(), 1e-9);
-  EXPECT_LT(problem.Gradient(x + step).norm(), 1e-8);
+  EXPECT_LT(problem_.Gradient(x + step).norm(), 1e-8);
 }
 
-TEST(NormalEquations, ExplainedRowsAreTheTracesOfTheirCovariances) {
-  LinearProblem problem;
-  const Eigen::VectorXd x = Eigen::VectorXd::Zero(9);
-  const auto components = Components(problem);
-  const NormalEquations equations(problem, x, {2, 3, 4}, components);
-  const Linearisation linearisation = Linearise(problem, x, {2, 3, 4});
-  EXPECT_LT((equations.information() - linearisation.information).norm(), 1e-10);
-  const Eigen::MatrixXd covariance = equations.information().inverse();
-  const auto explained = ExplainedCovariances(linearisation, covariance);
-  Eigen::VectorXd expected = Eigen::VectorXd::Zero(3);
-  for (std::size_t i = 0; i < components.size(); ++i) {
-    if (!problem.residual_blocks[i].active) continue;
-    for (std::size_t row = 0; row < components[i].size(); ++row) {
-      const auto k = static_cast<Eigen::Index>(row);
-      if (components[i][row] >= 0) expected[components[i][row]] += explained[i](k, k);
-    }
-  }
-  EXPECT_LT((equations.Explained(covariance) - expected).norm(), 1e-9);
-  EXPECT_GT(expected[1], 0.1);
-  EXPECT_EQ(expected[2], 0.0);  // inactive
-}
-
-// There are several minima under the loss; the reweighted steps end in one of them.
-TEST(NormalEquations, ReweightedStepsLeadToAMinimumUnderTheLoss) {
-  LinearProblem problem;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(9);
-  constexpr double kScale = 10.0;  // with much less than the residuals it creeps
-  double cost = 0.0;
-  for (int step = 0; step < 500; ++step) {
-    const NormalEquations equations(problem, x, {2, 3, 4}, Components(problem), kScale);
-    EXPECT_TRUE(step == 0 || equations.cost() <= cost * (1.0 + 1e-12));  // never uphill
-    cost = equations.cost();
-    x += equations.Expand(-equations.information().inverse() * equations.gradient());
-  }
-  Random random(4);
-  for (int direction = 0; direction < 50; ++direction) {
-    problem.Evaluate(x + random.NormalVector(9, 1e-3), false);
-    EXPECT_GT(CostOf(problem, kScale), cost);
-  }
-}
-
-TEST(NormalEquations, WithoutNuisanceTheyAreTheWholeProblem) {
-  LinearProblem problem;
+// The cost falls by what the step and the nuisance together promise.
+TEST_F(NormalEquationsTest, DecreaseIsThatOfTheCost) {
   const Eigen::VectorXd x = Eigen::VectorXd::Ones(9);
-  const NormalEquations equations(problem, x, {}, Components(problem));
-  EXPECT_LT((equations.information() - problem.Information()).norm(), 1e-11);
-  EXPECT_LT((equations.gradient() - problem.Gradient(x)).norm(), 1e-11);
+  const NormalEquations equations = At(x);
+  const double before = CostOf(problem_);
+  const Eigen::VectorXd step = -equations.information().inverse() * equations.gradient();
+  problem_.Evaluate(x + equations.Expand(step), false);
+  const double expected = -0.5 * equations.gradient().dot(step) + equations.NuisanceDecrease();
+  EXPECT_NEAR(before - CostOf(problem_), expected, 1e-9 * before);
+}
+
+TEST_F(NormalEquationsTest, ExplainedIsTheCovarianceOfThePrediction) {
+  const NormalEquations equations = At(Eigen::VectorXd::Zero(9));
+  const Eigen::MatrixXd covariance = equations.information().inverse();
+  const Eigen::MatrixXd whole = problem_.Information().inverse();
+  const auto variances = equations.ExplainedVariances(covariance);
+  for (int block = 0; block < blocks(); ++block) {
+    const Eigen::MatrixXd expected = Rows(block) * whole * Rows(block).transpose();
+    EXPECT_LT((equations.Explained(block, covariance) - expected).norm(), 1e-9) << block;
+    EXPECT_LT((variances[block] - expected.diagonal()).norm(), 1e-9) << block;
+  }
+}
+
+// The projection leaves of A what the nuisance does not explain of it, by the dense formula.
+TEST_F(NormalEquationsTest, ProjectionIsThatOfTheDenseProblem) {
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(9, 1.0, 0.0);
+  const NormalEquations equations = At(x);
+  constexpr int kBlock = 6;  // of the second nuisance block, 3
+  const Eigen::MatrixXd A = (Eigen::MatrixXd(3, 2) << 1, 2, -1, 0, 0.5, 3).finished();
+  Eigen::Matrix2d D = Eigen::Matrix2d::Zero();
+  Eigen::MatrixXd EJ = Eigen::MatrixXd::Zero(2, 3);
+  Eigen::Vector2d Er = Eigen::Vector2d::Zero();
+  for (int block = 5; block < 10; ++block) {
+    const Eigen::MatrixXd E = Rows(block).middleCols(5, 2);
+    D += E.transpose() * E;
+    EJ += E.transpose() * Rows(block).leftCols(3);
+    Er += E.transpose() * problem_.Residual(block);
+  }
+  const Eigen::MatrixXd AE = A.transpose() * Rows(kBlock).middleCols(5, 2);
+  const NormalEquations::Score score = equations.Project(kBlock, A);
+  EXPECT_LT(
+      (score.residual - (A.transpose() * problem_.Residual(kBlock) - AE * D.inverse() * Er)).norm(),
+      1e-9);
+  EXPECT_LT((score.information - (A.transpose() * A - AE * D.inverse() * AE.transpose())).norm(),
+            1e-9);
+  EXPECT_LT(
+      (score.cross - (A.transpose() * Rows(kBlock).leftCols(3) - AE * D.inverse() * EJ)).norm(),
+      1e-9);
+}
+
+TEST_F(NormalEquationsTest, ScoresOfAllClustersAddUpToTheGradient) {
+  const NormalEquations equations = At(Eigen::VectorXd::Ones(9));
+  std::vector<Eigen::VectorXd> residuals;
+  std::vector<int> cluster;
+  for (int block = 0; block < blocks(); ++block) {
+    residuals.push_back(problem_.Residual(block));
+    cluster.push_back(block < 15 ? block / 5 : 3);
+  }
+  const Eigen::MatrixXd scores = equations.Scores(residuals, cluster, 4);
+  EXPECT_LT((scores.rowwise().sum() - equations.gradient()).norm(), 1e-9);
+  EXPECT_GT(scores.col(1).norm(), 1e-3);
+}
+
+TEST_F(NormalEquationsTest, WithoutNuisanceTheyAreTheWholeProblem) {
+  problem_.nuisance_blocks.clear();
+  const Eigen::VectorXd x = Eigen::VectorXd::Ones(9);
+  const NormalEquations equations = At(x);
+  EXPECT_LT((equations.information() - problem_.Information()).norm(), 1e-11);
+  EXPECT_LT((equations.gradient() - problem_.Gradient(x)).norm(), 1e-11);
+  EXPECT_EQ(equations.NuisanceDecrease(), 0.0);
 }
 
 TEST(BoundedStep, StopsAtZeroAndLeavesItAgain) {

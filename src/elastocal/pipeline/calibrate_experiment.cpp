@@ -49,15 +49,22 @@ Progress OfStep(const StepProgress& progress, const std::string& step) {
   return [progress, step](int done, int total) { progress(step, done, total); };
 }
 
+/// Ten for a table of postures, unless it is small or very large.
+int UsualFolds(const Recording& recording) {
+  const int postures = recording.posture_count();
+  return recording.trials.empty() && postures >= 10 && postures <= 2000 ? 10 : 0;
+}
+
 void Append(const std::vector<std::string>& more, std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), more.begin(), more.end());
 }
 
 }  // namespace
 
-CalibrationRun CalibrateExperiment(const Project& project,
+CalibrationRun CalibrateExperiment(const Project& given,
                                    const std::vector<std::filesystem::path>& recordings,
                                    const ExperimentOptions& options) {
+  Project project = given;
   const CalibrationOptions& settings = project.calibration;
   CalibrationRun run;
 
@@ -65,6 +72,9 @@ CalibrationRun CalibrateExperiment(const Project& project,
   // get one clock, and are reduced to the samples at which the markers are stable: for every marker
   // of a posture the same ones, so that none weighs more. The trials of all chains are joined.
   Measurements measured = ReadMeasurements(project, recordings);
+
+  // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
+  run.elasticity = ChooseElasticity(measured.calibration, options.seed, options.threads, project);
 
   // Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
   // that give way under their loads (eq. 5 and 6): delta is eq. 7. A QR decomposition of the
@@ -87,25 +97,38 @@ CalibrationRun CalibrateExperiment(const Project& project,
   run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording);
 
   // Section 6.1.4, Table 2: errors on postures and on motions that took no part in the estimate.
-  if (options.folds > 0) {
+  const int folds = options.folds.value_or(UsualFolds(recording));
+  if (folds > 0) {
     run.cross_validation =
-        CrossValidate(run.comparison, robot.model, recording, robot.base, settings, options.folds,
-                      options.seed.value_or(1), OfStep(options.progress, "cross-validation"));
+        CrossValidate(run.comparison, robot.model, recording, robot.base, settings,
+                      {.folds = folds,
+                       .unit = options.fold_unit,
+                       .seed = options.seed.value_or(1),
+                       .threads = options.threads},
+                      OfStep(options.progress, "cross-validation"));
   }
   if (measured.validation.posture_count() > 0) {
     run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);
   }
   run.waist_error = WaistErrors(run.comparison, measured, settings);
 
-  // Whether all this can be trusted; if so, the robot description with delta in it.
+  // Whether all this can be trusted, as a rigid URDF and with its elasticity; if so, the robot
+  // description with delta in it.
+  run.deployment = ChooseDeployment(run.comparison, run.cross_validation,
+                                    run.held_out ? &run.held_out->table : nullptr);
   run.verdict = Judge(run.comparison, run.cross_validation, run.excitation, recording, settings);
-  if (run.held_out) JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.verdict);
+  JudgeDeployment(run.deployment, run.verdict);
+  if (run.held_out) {
+    JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
+                 run.verdict);
+  }
   run.warnings = std::move(measured.warnings);
   Append(run.verdict.remarks, run.warnings);
   run.zero_offsets = options.zero_offsets;
   if (run.deployable()) {
-    run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(),
-                                  run.comparison.largest(), options.zero_offsets);
+    run.urdf = MakeCalibratedUrdf(
+        ReadFile(project.urdf), project.urdf.string(),
+        run.comparison.results[static_cast<int>(run.deployment.urdf_kind)], options.zero_offsets);
     Append(run.urdf->warnings, run.warnings);
   }
 

@@ -10,7 +10,9 @@
 #include "elastocal/calibration/knocks.hpp"
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/validation/deployment.hpp"
 #include "elastocal/validation/held_out.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "elastocal/validation/verdict.hpp"
@@ -21,7 +23,11 @@ namespace elastocal {
 using StepProgress = std::function<void(const std::string& step, int done, int total)>;
 
 struct ExperimentOptions {
-  int folds = 0;  ///< of the cross-validation; 0: none, else 2 to the number of postures
+  /// Folds of the cross-validation, 2 to the number of postures; 0: none. By default ten for a
+  /// table of 10 to 2000 postures, and none for trials.
+  std::optional<int> folds = {};
+  FoldUnit fold_unit = FoldUnit::kPosture;  ///< what a fold leaves out together
+  int threads = 1;                          ///< on which folds are estimated
   /// Where the joints' zero offsets go in the calibrated URDF.
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
   /// Seed of the random postures that tell what is identifiable (instead of the project's) and of
@@ -32,16 +38,18 @@ struct ExperimentOptions {
 
 /// All that is known after a calibration.
 struct CalibrationRun {
-  Recording recording;               ///< that the parameters were estimated from
-  BaseParameters base;               ///< which of them can be identified
-  ModelComparison comparison;        ///< the estimates: `comparison.largest()` is the calibration
-  Excitation excitation;             ///< how well the recorded postures tell the parameters apart
-  CrossValidation cross_validation;  ///< folds 0: not asked for
-  std::vector<TrialSummary> trials;  ///< of recording folders: what was used of each trial
-  std::vector<Knock> knocks;         ///< clusters that were knocked, and are taken as two
+  Recording recording;         ///< that the parameters were estimated from
+  BaseParameters base;         ///< which of them can be identified
+  ModelComparison comparison;  ///< the estimates: `comparison.largest()` is the calibration
+  Excitation excitation;       ///< how well the recorded postures tell the parameters apart
+  std::vector<ElasticityTrial> elasticity;  ///< tried, where the project leaves it open
+  CrossValidation cross_validation;         ///< folds 0: none
+  std::vector<TrialSummary> trials;         ///< of recording folders: what was used of each trial
+  std::vector<Knock> knocks;                ///< clusters that were knocked, and are taken as two
   Recording validation;              ///< trials that took no part in the estimate; may be empty
   std::optional<HeldOut> held_out;   ///< errors on them, where there are any
   ByModel<double> waist_error = {};  ///< m, see WaistError; NaN where the truth is unknown
+  Deployment deployment;             ///< what a user takes home, and its error
   Verdict verdict;
   /// The robot description with the estimates in it; nothing where the verdict has objections.
   std::optional<CalibratedUrdf> urdf;

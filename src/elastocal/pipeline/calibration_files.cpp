@@ -40,7 +40,8 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
     const CalibrationResult& result = run.comparison.largest();
     files[UrdfName(project)] = run.urdf->text;
     files["calibration.yaml"] =
-        MakeCalibrationYaml(result, run.base, run.recording.source, run.zero_offsets);
+        MakeCalibrationYaml(result, run.recording.source, run.zero_offsets,
+                            &run.comparison.results[static_cast<int>(ModelKind::kUncalibrated)]);
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
   }

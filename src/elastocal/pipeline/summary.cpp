@@ -1,5 +1,6 @@
 #include "elastocal/pipeline/summary.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -125,11 +126,6 @@ void AddTrials(const CalibrationRun& run, Json& json) {
     if (std::isfinite(error)) json["waist_error_mm"][ModelKindName(kind)] = 1e3 * error;
   }
   const CalibrationResult& result = run.comparison.largest();
-  for (std::size_t g = 0; g < static_cast<std::size_t>(result.noise.group_count()); ++g) {
-    json["noise"].push_back({{"marker_sd_mm", 1e3 * result.noise.marker_sd[g]},
-                             {"waist_position_sd_mm", 1e3 * result.noise.waist_position_sd[g]},
-                             {"waist_rotation_sd_mrad", 1e3 * result.noise.waist_rotation_sd[g]}});
-  }
   for (const LegStiffness& leg : AssessLegs(result, run.recording)) {
     Json stiffness = Json::array();
     for (int axis = 0; axis < 6; ++axis) {
@@ -156,6 +152,55 @@ void AddTrials(const CalibrationRun& run, Json& json) {
   }
 }
 
+/// What a user takes home, and its error on data that were not used for it.
+Json DeploymentJson(const Deployment& deployment) {
+  const auto artefact = [&](double rmse) {
+    return Json{{"rmse_3d_mm", Finite(1e3 * rmse)},
+                {"uncalibrated", Finite(1e3 * deployment.uncalibrated)}};
+  };
+  Json json;
+  json["judged_on"] = deployment.judged_on;
+  json["urdf"] = artefact(deployment.urdf);
+  json["urdf"]["model"] = ModelKindName(deployment.urdf_kind);
+  json["compensated"] = artefact(deployment.compensated);
+  return json;
+}
+
+Json ElasticityJson(const std::vector<ElasticityTrial>& tried) {
+  Json json = Json::array();
+  for (const ElasticityTrial& trial : tried) {
+    json.push_back({{"kinds", trial.kinds},
+                    {"rmse_3d_mm", Finite(1e3 * trial.rmse_3d)},
+                    {"gain_mm", 1e3 * trial.gain},
+                    {"gain_sd_mm", 1e3 * trial.gain_sd},
+                    {"chosen", trial.chosen}});
+  }
+  return json;
+}
+
+/// The first link of a body, as its name.
+std::string LinkOfBody(const RobotTree& tree, int body) {
+  const auto link = std::find_if(tree.links.begin(), tree.links.end(),
+                                 [&](const Link& of) { return of.body == body; });
+  return link == tree.links.end() ? "" : link->name;
+}
+
+Json ShortModels(const CalibrationRun& run) {
+  Json json = Json::array();
+  const CalibrationResult& result = run.comparison.largest();
+  for (const ShortModel& body : result.short_models) {
+    Json item;
+    item["posture"] = body.posture;
+    if (!run.recording.line.empty()) item["line"] = run.recording.line[body.posture];
+    item["body"] = LinkOfBody(result.model.tree, body.body);
+    item["residual_mm"] = 1e3 * body.distance;
+    item["normalised"] = body.normalised;
+    item["weight"] = body.weight;
+    json.push_back(item);
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string MakeSummaryJson(const CalibrationRun& run) {
@@ -164,6 +209,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["status"] = RunStatus(run);
   json["message"] = result.message;
   json["settled"] = result.settled;
+  json["deployed"] = DeploymentJson(run.deployment);
   json["objections"] = run.verdict.objections;
   json["remarks"] = run.verdict.remarks;
   json["robot"] = result.model.tree.name;
@@ -175,8 +221,21 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["identifiable_theory"] = run.base.theoretical_count;
   json["equations"] = result.equations;
   json["marker_sd_mm"] = 1e3 * result.marker_sd;
-  json["prior_scale"] = {{"angles", result.prior_scale.angles},
-                         {"lengths", result.prior_scale.lengths}};
+  for (int g = 0; g < kPriorGroupCount; ++g) {
+    json["prior_scale"][PriorGroupName(static_cast<PriorGroup>(g))] = result.prior_scale.factor[g];
+  }
+  for (std::size_t g = 0; g < static_cast<std::size_t>(result.noise.group_count()); ++g) {
+    Json noise;
+    for (int source = 0; source < kNoiseSourceCount; ++source) {
+      const std::string name = NoiseSourceName(static_cast<NoiseSource>(source));
+      if (name.starts_with("waist") && run.trials.empty()) continue;  // it does not move
+      const bool angle = name.ends_with("rotation");
+      noise[name + (angle ? "_sd_mrad" : "_sd_mm")] =
+          1e3 * result.noise.sd(static_cast<Eigen::Index>(g), source);
+    }
+    json["noise"].push_back(noise);
+  }
+  json["cluster_factor"] = result.posterior.cluster_factor;
   json["effective_parameters"] = result.posterior.effective_parameters;
   json["rmse_3d_mm"] =
       FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::rmse_3d);
@@ -194,11 +253,16 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
     json["kfold"]["rmse_coordinate_mm"] =
         FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::rmse_coordinate);
     json["kfold"]["max_mm"] = FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::maximum);
+    json["kfold"]["rmse_3d_mm_without_outliers"] =
+        FigureByModel(run.comparison.kinds, run.cross_validation.metrics_without_outliers,
+                      &ErrorMetrics::rmse_3d);
     json["kfold"]["unconverged"] = run.cross_validation.unconverged;
     json["kfold"]["not_predicted"] = run.cross_validation.not_predicted;
   }
   AddTrials(run, json);
   json["outliers"] = Outliers(run);
+  json["short_models"] = ShortModels(run);
+  json["elasticity_tried"] = ElasticityJson(run.elasticity);
   json["excitation"] = ExcitationJson(run);
   json["iterations"] = result.iterations;
   json["initial_cost"] = result.initial_cost;

@@ -1,5 +1,6 @@
 #include "elastocal/pipeline/validate_calibration.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -15,6 +16,21 @@ using Json = nlohmann::ordered_json;
 
 bool HasConverged(const Refit& refit) {
   return refit.result.termination == Termination::kConverged;
+}
+
+/// The joints that the calibration found elastic, whatever the project would leave open.
+ElasticityChoice ElasticityOf(const StoredCalibration& calibration, const Project& project) {
+  ElasticityChoice choice = project.elasticity;
+  choice.torsion.emplace();
+  choice.bending.emplace();
+  for (const Joint& joint : project.tree.joints) {
+    const auto has = [&](const char* axis) {
+      return calibration.joint_errors.contains(joint.name + ".compliance_" + axis);
+    };
+    if (has("z")) choice.torsion->push_back(joint.name);
+    if (has("x")) choice.bending->push_back(joint.name);
+  }
+  return choice;
 }
 
 /// More than one outlier in twenty observations is worth a warning.
@@ -37,24 +53,41 @@ bool ValidationRun::better() const {
   return transfer.calibrated.metrics_all.rmse_3d < transfer.uncalibrated.metrics_all.rmse_3d;
 }
 
-ValidationRun ValidateCalibration(const Project& project, const std::filesystem::path& calibration,
+ValidationRun ValidateCalibration(const Project& given, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
-                                  std::optional<std::uint64_t> seed) {
+                                  const TransferOptions& options) {
   const std::filesystem::path file = FindCalibrationFiles(calibration).calibration;
   ValidationRun run{.calibration = ReadCalibration(file),
                     .calibration_file = file.string(),
                     .recording = {},
                     .transfer = {},
+                    .frozen = options.frozen,
                     .warnings = {}};
+  Project project = given;
+  project.elasticity = ElasticityOf(run.calibration, given);
   Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
-  const RecordedModel robot = MakeRecordedModel(project, seed, measured);
+  const RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
   if (run.calibration.nominal != NominalFingerprint(robot.model)) {
     throw InputError(file.string() + ": made for robot '" + run.calibration.robot +
                      "' with other nominal geometry than " + project.urdf.string() +
                      "; expected the URDF that was calibrated, not the calibrated one");
   }
-  run.transfer = ValidateTransfer(robot.model, measured.calibration, robot.base,
-                                  project.calibration, run.calibration.joint_errors);
+  if (options.frozen) {
+    const StoredCalibration& stored = run.calibration;
+    if (measured.calibration.trials.empty() && !stored.T_ref_waist) {
+      throw InputError(file.string() +
+                       ": no key 'waist': made from trials, it says nothing of the "
+                       "waist in a table of postures; validate it without frozen");
+    }
+    run.transfer = ValidateFrozen(robot.model, measured.calibration, project.calibration,
+                                  {.T_ref_waist = stored.T_ref_waist,
+                                   .joint_errors = stored.joint_errors,
+                                   .externals = stored.externals,
+                                   .uncalibrated_externals = stored.uncalibrated_externals});
+  } else {
+    run.transfer = ValidateTransfer(robot.model, measured.calibration, robot.base,
+                                    project.calibration, run.calibration.joint_errors);
+  }
   run.recording = std::move(measured.calibration);
   run.warnings = std::move(measured.warnings);
   WarnOfOutliers(run);
@@ -70,6 +103,7 @@ std::string MakeValidationJson(const ValidationRun& run) {
   Json json;
   json["status"] = ValidationStatus(run);
   json["calibration"] = run.calibration_file;
+  json["frozen"] = run.frozen;
   json["recording"] = run.recording.source;
   json["postures"] = run.recording.posture_count();
   json["markers"] = run.recording.marker_count();
@@ -78,8 +112,14 @@ std::string MakeValidationJson(const ValidationRun& run) {
     json["rmse_3d_mm"][name] = 1e3 * refit->metrics.rmse_3d;
     json["rmse_coordinate_mm"][name] = 1e3 * refit->metrics.rmse_coordinate;
     json["max_mm"][name] = 1e3 * refit->metrics.maximum;
-    json["rmse_3d_mm_with_outliers"][name] = 1e3 * refit->metrics_all.rmse_3d;
+    json["rmse_3d_mm_all"][name] = 1e3 * refit->metrics_all.rmse_3d;
+    for (int m = 0; m < run.recording.marker_count(); ++m) {
+      const double rmse = refit->metrics_all.marker_rmse_3d[m];
+      json["by_marker"][run.recording.marker_names[m]]["rmse_3d_mm_all"][name] =
+          std::isfinite(rmse) ? Json(1e3 * rmse) : Json(nullptr);
+    }
   }
+  json["not_predicted"] = run.transfer.not_predicted;
   json["outliers"] = Json::array();
   for (const Outlier& outlier : run.transfer.calibrated.result.outliers) {
     json["outliers"].push_back({{"posture", outlier.posture},

@@ -19,6 +19,7 @@ struct ValidationRun {
   std::string calibration_file;  ///< its calibration.yaml
   Recording recording;
   TransferValidation transfer;
+  bool frozen = false;                ///< whether nothing was fitted
   std::vector<std::string> warnings;  ///< what a user should know of, a sentence each
 
   bool converged() const;
@@ -27,16 +28,21 @@ struct ValidationRun {
   bool better() const;
 };
 
+struct TransferOptions {
+  /// Fit nothing: waist and markers are those of the calibration (see ValidateFrozen).
+  bool frozen = false;
+  std::optional<std::uint64_t> seed = {};  ///< instead of the project's
+};
+
 /// Applies a stored calibration to another recording of the same robot: only waist and markers are
-/// fitted anew, for the calibrated and for the nominal robot (paper, section 6.1.4).
+/// fitted anew, for the calibrated and for the nominal robot (paper, section 6.1.4), or nothing.
 ///
 /// `calibration`: the folder that calibrate wrote to, or its calibration.yaml. `recording`: a
-/// posture table or a recording folder; trials for validation will do. `seed` is taken instead of
-/// the project's. Throws InputError: files that cannot be read; a calibration of a robot with other
-/// nominal geometry than the project's.
+/// posture table or a recording folder; trials for validation will do. Throws InputError: files
+/// that cannot be read; a calibration of a robot with other nominal geometry than the project's.
 ValidationRun ValidateCalibration(const Project& project, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
-                                  std::optional<std::uint64_t> seed = {});
+                                  const TransferOptions& options = {});
 
 /// "better", "not better" or "not converged".
 std::string ValidationStatus(const ValidationRun& run);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/random.hpp"
+#include "elastocal/math/singular_values.hpp"
 #include "elastocal/posture/random_posture.hpp"
 #include "elastocal/robot/leg_load.hpp"
 #include "tests/leg_problem.hpp"
@@ -187,7 +188,7 @@ TEST(PostureSet, O1IsTheRootOfTheProductOfSingularValues) {
   for (int i = 0; i < 6; ++i) {
     stacked.middleRows(i * leg.problem.regressor.rows(), leg.problem.regressor.rows()) = set.psi(i);
   }
-  const Eigen::VectorXd sigma = stacked.bdcSvd().singularValues();
+  const Eigen::VectorXd sigma = SingularValues(stacked);
   const double o1 = std::exp(sigma.array().log().mean()) / std::sqrt(6.0);
   EXPECT_NEAR(set.Index(Criterion::kO1), o1, 1e-10 * o1);
 }

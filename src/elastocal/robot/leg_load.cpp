@@ -4,9 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include <Eigen/SVD>
-
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/math/singular_values.hpp"
 
 namespace elastocal {
 namespace {
@@ -87,9 +86,8 @@ LegLoad LoadFromTorques(const LegPosture& posture, const Eigen::VectorXd& leg_to
   Vector6d scale = Vector6d::Ones();
   scale.head<3>() /= options.length_scale;
   const Eigen::MatrixXd scaled_transpose = posture.J_waist_q.transpose() * scale.asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled_transpose,
-                                              Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& sigma = svd.singularValues();
+  const SingularValueDecomposition svd = DecomposeSingular(scaled_transpose);
+  const Eigen::VectorXd& sigma = svd.values;
   const double floor = kSingular * sigma[0];
   const Eigen::VectorXd inverse =
       sigma.unaryExpr([&](double s) { return s > floor ? 1.0 / s : 0.0; });
@@ -97,8 +95,7 @@ LegLoad LoadFromTorques(const LegPosture& posture, const Eigen::VectorXd& leg_to
 
   LegLoad load;
   load.condition = smallest > floor ? sigma[0] / smallest : std::numeric_limits<double>::infinity();
-  load.wrench_by_torque =
-      scale.asDiagonal() * svd.matrixV() * (-inverse).asDiagonal() * svd.matrixU().transpose();
+  load.wrench_by_torque = scale.asDiagonal() * svd.V * (-inverse).asDiagonal() * svd.U.transpose();
   load.wrench = load.wrench_by_torque * leg_torques;
   if (!leg_torques.allFinite()) {
     load.status = LegLoadStatus::kIncomplete;

@@ -19,7 +19,8 @@ struct Normal {
 };
 
 constexpr double kSameLength = 1e-9;  // m; axes closer than this meet
-constexpr double kCoaxial = 1e-3;     // m; parallel axes closer than this have no common normal
+constexpr double kCoaxial =
+    0.02;  // m; the common normal of parallel axes closer than this turns by large angles
 
 Vector3d ClosestPoint(const Axis& axis, const Vector3d& p) {
   return axis.point + axis.direction * axis.direction.dot(p - axis.point);

@@ -8,8 +8,10 @@
 namespace elastocal {
 
 struct PlacementOptions {
-  /// Consecutive axes whose angle is smaller than this need `beta` (Hayati), rad.
-  double parallel_tolerance_rad = 0.02;
+  /// Consecutive axes whose angle is smaller than this need `beta` (Hayati), rad. Well above the
+  /// errors of a robot: the common normal of nearly parallel axes is far away, and small errors
+  /// move it by much.
+  double parallel_tolerance_rad = 10.0 * M_PI / 180.0;
 };
 
 /// Nominal placement of a joint in the modified Denavit-Hartenberg convention with beta and, if
@@ -25,7 +27,7 @@ struct PlacementOptions {
 ///
 /// Eq. 1 alone has no displacement along y, so it cannot place the first joint after the waist or
 /// after a branch. It cannot place a joint either whose axis coincides with the one before it
-/// (within 1 mm): d covers only one of the two directions in which the axes can part. Such a joint
+/// (within 2 cm): d covers only one of the two directions in which the axes can part. Such a joint
 /// is `general`: T_parent_pre is a constant frame on its axis with z at right angles to it, nominal
 /// alpha is 90 degrees and the other constants are zero. The six displacements are then along and
 /// about three orthogonal axes and never singular.

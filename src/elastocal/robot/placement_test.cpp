@@ -79,18 +79,18 @@ TEST(Placement, SkewAxes) {
 TEST(Placement, BetaBelowTheToleranceOnly) {
   for (double direction : {0.0, M_PI}) {
     EXPECT_TRUE(PlaceJoints(TwoAxes(direction), {})[1].parallel);
-    EXPECT_TRUE(PlaceJoints(TwoAxes(direction + 0.019), {})[1].parallel);
-    EXPECT_FALSE(PlaceJoints(TwoAxes(direction + 0.021), {})[1].parallel);
+    EXPECT_TRUE(PlaceJoints(TwoAxes(direction + 0.17), {})[1].parallel);
+    EXPECT_FALSE(PlaceJoints(TwoAxes(direction + 0.18), {})[1].parallel);
     EXPECT_TRUE(
-        PlaceJoints(TwoAxes(direction + 0.021), {.parallel_tolerance_rad = 0.03})[1].parallel);
-    EXPECT_FALSE(PlaceJoints(TwoAxes(direction + 0.021), {})[1].general);
+        PlaceJoints(TwoAxes(direction + 0.18), {.parallel_tolerance_rad = 0.2})[1].parallel);
+    EXPECT_FALSE(PlaceJoints(TwoAxes(direction + 0.18), {})[1].general);
   }
 }
 
 TEST(Placement, TheSameAxisTwiceIsPlacedGenerally) {
   EXPECT_TRUE(PlaceJoints(TwoAxes(0.0, 0.0), {})[1].general);
-  EXPECT_TRUE(PlaceJoints(TwoAxes(M_PI + 1e-3, 0.5e-3), {})[1].general);
-  EXPECT_FALSE(PlaceJoints(TwoAxes(0.0, 2e-3), {})[1].general);
+  EXPECT_TRUE(PlaceJoints(TwoAxes(M_PI + 1e-3, 0.019), {})[1].general);
+  EXPECT_FALSE(PlaceJoints(TwoAxes(0.0, 0.021), {})[1].general);
   EXPECT_FALSE(PlaceJoints(TwoAxes(0.5, 0.0), {})[1].general);
 }
 

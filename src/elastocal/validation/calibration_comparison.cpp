@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -16,72 +17,37 @@ double DegreesOfFreedom(const CalibrationEstimate& estimate) {
   return StudentDegreesOfFreedom(0.975, estimate.interval_factor);
 }
 
-/// Covariance of all parameters of an estimate; zero for those without an entry in the covariance.
-Eigen::MatrixXd FullCovariance(const CalibrationEstimate& estimate, bool from_file,
-                               const Eigen::VectorXd& used) {
-  const auto size = static_cast<Eigen::Index>(estimate.parameters.size());
-  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(size, size);
+/// Covariance of some parameters of an estimate; without a file of it, of their variances alone.
+Eigen::MatrixXd CovarianceOf(const CalibrationEstimate& estimate, bool from_file,
+                             const std::vector<int>& parameters) {
   if (!from_file) {
-    for (Eigen::Index i = 0; i < size; ++i) {
-      if (used[i] != 0.0) full(i, i) = std::pow(estimate.parameters[i].sd, 2);
+    Eigen::VectorXd variances(static_cast<Eigen::Index>(parameters.size()));
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      variances[static_cast<Eigen::Index>(i)] = std::pow(estimate.parameters[parameters[i]].sd, 2);
     }
-    return full;
+    return variances.asDiagonal();
   }
-  std::map<std::string, Eigen::Index> row;
+  std::map<std::string, int> row;
   for (const std::string& name : estimate.covariance_names) {
-    row.emplace(name, static_cast<Eigen::Index>(row.size()));
+    row.emplace(name, static_cast<int>(row.size()));
   }
-  std::vector<Eigen::Index> here, there;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    if (used[i] == 0.0) continue;
-    const auto at = row.find(estimate.parameters[i].name);
+  std::vector<int> rows;
+  for (int parameter : parameters) {
+    const auto at = row.find(estimate.parameters[parameter].name);
     if (at == row.end()) {
       throw InputError(estimate.source + ": its covariance has no parameter '" +
-                       estimate.parameters[i].name + "'");
+                       estimate.parameters[parameter].name + "'");
     }
-    here.push_back(i);
-    there.push_back(at->second);
+    rows.push_back(at->second);
   }
-  full(here, here) = estimate.covariance(there, there);
-  return full;
-}
-
-Eigen::VectorXd Values(const CalibrationEstimate& estimate) {
-  Eigen::VectorXd values(static_cast<Eigen::Index>(estimate.parameters.size()));
-  for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = estimate.parameters[i].value;
-  return values;
-}
-
-/// Weights of one calibration, quantities x parameters.
-Eigen::MatrixXd Weights(const std::vector<CommonParameter>& common,
-                        Eigen::VectorXd CommonParameter::*weights) {
-  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(common.size()), (common[0].*weights).size());
-  for (std::size_t i = 0; i < common.size(); ++i) {
-    matrix.row(static_cast<Eigen::Index>(i)) = common[i].*weights;
-  }
-  return matrix;
-}
-
-Eigen::MatrixXd Propagated(const CalibrationEstimate& estimate, bool from_file,
-                           const Eigen::MatrixXd& weights) {
-  const Eigen::VectorXd used = weights.cwiseAbs().colwise().sum();
-  return weights * FullCovariance(estimate, from_file, used) * weights.transpose();
-}
-
-std::map<std::string, double> NamedWeights(const CalibrationEstimate& estimate,
-                                           const Eigen::VectorXd& weights) {
-  std::map<std::string, double> named;
-  for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    if (weights[i] != 0.0) named[estimate.parameters[i].name] = weights[i];
-  }
-  return named;
+  return estimate.covariance(rows, rows);
 }
 
 ParameterDifference MakeDifference(const CommonParameter& common, const CalibrationEstimate& a,
                                    const CalibrationEstimate& b, const Differences& all, int i) {
   ParameterDifference one{.name = common.name, .joint = common.joint, .unit = common.unit};
-  one.a = common.weights_a.dot(Values(a));
-  one.b = common.weights_b.dot(Values(b));
+  one.a = a.parameters[common.in_a].value;
+  one.b = b.parameters[common.in_b].value;
   one.difference = all.values[i];
   const double variance_a = all.covariance_a(i, i);
   const double variance = variance_a + all.covariance_b(i, i);
@@ -89,15 +55,6 @@ ParameterDifference MakeDifference(const CommonParameter& common, const Calibrat
   one.degrees_of_freedom = PooledFreedom(all, variance_a / variance);
   one.half_width = one.sd * StudentQuantile(0.975, one.degrees_of_freedom);
   one.p = StudentTwoSidedTail(one.difference / one.sd, one.degrees_of_freedom);
-  one.stands_for = common.stands_for;
-  one.weights_a = NamedWeights(a, common.weights_a);
-  one.weights_b = NamedWeights(b, common.weights_b);
-  const bool plain =
-      one.weights_a.size() == 1 && one.weights_a.contains(one.name) && one.weights_b.size() == 1;
-  if (plain) {
-    one.weights_a.clear();
-    one.weights_b.clear();
-  }
   return one;
 }
 
@@ -242,7 +199,7 @@ CalibrationComparison CompareCalibrations(const CalibrationEstimate& a,
   CalibrationComparison comparison;
   const bool full = a.has_covariance() && b.has_covariance();
   comparison.with_covariance = full;
-  CommonParameters common = FindCommonParameters(a, b, full);
+  CommonParameters common = FindCommonParameters(a, b);
   if (common.common.empty()) {
     throw InputError(
         a.source + " and " + b.source +
@@ -251,11 +208,18 @@ CalibrationComparison CompareCalibrations(const CalibrationEstimate& a,
   comparison.not_compared = std::move(common.not_compared);
   AddWarnings(a, b, comparison);
 
-  const Eigen::MatrixXd weights_a = Weights(common.common, &CommonParameter::weights_a);
-  const Eigen::MatrixXd weights_b = Weights(common.common, &CommonParameter::weights_b);
-  Differences all{.values = weights_b * Values(b) - weights_a * Values(a),
-                  .covariance_a = Propagated(a, full, weights_a),
-                  .covariance_b = Propagated(b, full, weights_b)};
+  std::vector<int> in_a, in_b;
+  Differences all{.values = Eigen::VectorXd(static_cast<Eigen::Index>(common.common.size())),
+                  .covariance_a = {},
+                  .covariance_b = {}};
+  for (const CommonParameter& one : common.common) {
+    all.values[static_cast<Eigen::Index>(in_a.size())] =
+        b.parameters[one.in_b].value - a.parameters[one.in_a].value;
+    in_a.push_back(one.in_a);
+    in_b.push_back(one.in_b);
+  }
+  all.covariance_a = CovarianceOf(a, full, in_a);
+  all.covariance_b = CovarianceOf(b, full, in_b);
   all.freedom_a = DegreesOfFreedom(a);
   all.freedom_b = DegreesOfFreedom(b);
   for (std::size_t i = 0; i < common.common.size(); ++i) {

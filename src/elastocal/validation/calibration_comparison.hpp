@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,7 @@ struct ComparisonOptions {
   double level = 0.05;
 };
 
-/// A quantity that both calibrations determine, in rad, m or the unit of the parameter.
+/// A parameter that both calibrations tell, in rad, m or its other SI unit.
 struct ParameterDifference {
   std::string name, joint, unit;
   double a = 0.0, b = 0.0;
@@ -24,9 +23,6 @@ struct ParameterDifference {
   double degrees_of_freedom = 0.0;  ///< of its Student's t; infinite for the normal distribution
   double half_width = 0.0;          ///< half width of its 95 % interval, for this parameter alone
   double p = 1.0;                   ///< probability of a difference as large without a change
-  std::map<std::string, double> stands_for = {};  ///< see CommonParameter
-  /// For a combination, the parameters of A and B with their weights; otherwise empty.
-  std::map<std::string, double> weights_a = {}, weights_b = {};
 
   bool significant() const { return p < 0.05; }
 };
@@ -74,7 +70,7 @@ struct CalibrationComparison {
 /// Satterthwaite for two different noises, from the files' interval factors). **Over the joints**
 /// Holm's step-down procedure keeps the probability of any false alarm at the level, whatever their
 /// correlation. If a covariance is missing, the p value of a joint is the smallest one of its
-/// parameters times their number (Bonferroni), and combinations are not compared.
+/// parameters times their number (Bonferroni).
 ///
 /// The uncertainty is only that of noise. Effects that neither model has (for example elasticity)
 /// make two recordings of different postures differ by more.

@@ -118,32 +118,6 @@ TEST_F(CalibrationComparisonTest, WithoutCovarianceBonferroniWithinAJoint) {
   EXPECT_NEAR(comparison.overall.p, 6.0 * comparison.parameters[5].p, 1e-15);
 }
 
-// The sum of two lengths: one name in A, both in B. Variances add with the correlation.
-TEST_F(CalibrationComparisonTest, CombinationsHaveTheirOwnUncertainty) {
-  a_.parameters[3] = {.name = "j2.d",
-                      .unit = "m",
-                      .status = ParameterStatus::kDropped,
-                      .value = 0.0,
-                      .sd = NAN,
-                      .regrouped_into = {{"j1.d", 1.0}}};
-  a_.covariance_names[3] = "unused";
-  a_.parameters[1].value = 0.05;
-  b_.covariance(1, 3) = b_.covariance(3, 1) = -0.5e-6;
-  const CalibrationComparison comparison = Compared();
-  ASSERT_EQ(comparison.parameters.size(), 5u);
-  const ParameterDifference& sum = comparison.parameters[4];
-  EXPECT_EQ(sum.name, "j2.d");
-  EXPECT_NEAR(sum.a, 0.05, 1e-12);
-  EXPECT_NEAR(sum.b, 0.04, 1e-12);
-  EXPECT_NEAR(sum.difference, -0.01, 1e-12);
-  EXPECT_NEAR(sum.sd, std::sqrt(1e-6 + 2e-6 - 1e-6), 1e-12);
-  EXPECT_EQ(sum.weights_a.size(), 1u);
-  EXPECT_NEAR(sum.weights_a.at("j1.d"), 1.0, 1e-12);
-  EXPECT_NEAR(sum.weights_b.at("j1.d"), 1.0, 1e-12);
-  EXPECT_NEAR(sum.weights_b.at("j2.d"), 1.0, 1e-12);
-  EXPECT_TRUE(comparison.parameters[0].weights_a.empty());
-}
-
 TEST_F(CalibrationComparisonTest, Warnings) {
   b_.recording = a_.recording;
   b_.model = "offsets_only";

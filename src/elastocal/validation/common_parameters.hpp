@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -19,8 +18,6 @@ struct ParameterEstimate {
   ParameterStatus status = ParameterStatus::kEstimated;
   double value = 0.0;  ///< deviation from nominal
   double sd = 0.0;     ///< NaN where none applies
-  /// For a dropped parameter, its shares in the kept ones, by name.
-  std::map<std::string, double> regrouped_into = {};
 };
 
 /// A calibration as read back from its files.
@@ -44,17 +41,12 @@ struct CalibrationEstimate {
 /// bias of a torque sensor is its own owner, because it drifts even if the joint has not moved.
 std::string OwnerName(const std::string& parameter);
 
-/// One quantity of the robot that two calibrations A and B both determine. Usually it is a
-/// parameter kept by both. If the two keep different ones of the same dependent parameters, it is a
-/// combination: weights_a . values of A and weights_b . values of B estimate the same quantity.
+/// A parameter of the robot that two calibrations A and B both tell.
 struct CommonParameter {
-  std::string name;   ///< of the parameter of B that has weight 1
+  std::string name;
   std::string joint;  ///< OwnerName of `name`
   std::string unit;
-  Eigen::VectorXd weights_a, weights_b;  ///< one entry for each parameter of A, of B
-  /// What the quantity contains besides the parameter `name`: dropped parameters that no
-  /// measurement can tell from it, with their coefficients.
-  std::map<std::string, double> stands_for = {};
+  int in_a = 0, in_b = 0;  ///< indices into the parameters of A and B
 };
 
 struct NotCompared {
@@ -67,17 +59,9 @@ struct CommonParameters {
   std::vector<NotCompared> not_compared;
 };
 
-/// Finds the quantities of the robot that both calibrations determine. External parameters are not
-/// compared.
-///
-/// An estimate of a kept parameter stands for a combination: the parameter itself and its shares of
-/// the dropped ones (section 2.1). It is the same quantity in A and B only if the combinations are
-/// equal, which depends on the joints that move a marker, on the priority and on the held
-/// parameters. Beyond equal ones, linear algebra finds combinations of several parameters
-/// (`with_combinations`; their uncertainty needs the covariance). A combination with external
-/// parameters is never compared, because these differ between experiments. Parameters held in one
-/// calibration are taken as nominal there.
-CommonParameters FindCommonParameters(const CalibrationEstimate& a, const CalibrationEstimate& b,
-                                      bool with_combinations);
+/// Finds the parameters of the robot about which the data of both calibrations tell more than the
+/// prior, in the order of B. External parameters are not compared: these differ between
+/// experiments. Parameters held in either calibration are not compared.
+CommonParameters FindCommonParameters(const CalibrationEstimate& a, const CalibrationEstimate& b);
 
 }  // namespace elastocal

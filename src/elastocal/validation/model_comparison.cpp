@@ -1,36 +1,128 @@
 #include "elastocal/validation/model_comparison.hpp"
 
+#include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/parallel.hpp"
 #include "elastocal/math/random.hpp"
 
 namespace elastocal {
 namespace {
 
-/// The fold of each posture: a random permutation is cut into equal parts.
-std::vector<int> DealFolds(int postures, int folds, std::uint64_t seed) {
-  std::vector<int> order(postures);
+constexpr double kSamePosture = 0.02;  // rad or m, of every joint
+
+/// The unit of each posture: those that are left out together.
+std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
+  if (unit == FoldUnit::kTrial) return recording.trial;
+  const int postures = recording.posture_count();
+  // Nearly equal ones, looked for among neighbours in the order of the sum of their joints.
+  std::vector<int> order(postures), units(postures);
   std::iota(order.begin(), order.end(), 0);
-  Random random(seed);
-  for (int i = postures - 1; i > 0; --i) std::swap(order[i], order[random.Index(i + 1)]);
-  std::vector<int> fold(postures);
-  for (int i = 0; i < postures; ++i) fold[order[i]] = i % folds;
+  const Eigen::VectorXd sums = recording.q.rowwise().sum();
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return std::pair(sums[a], a) < std::pair(sums[b], b); });
+  std::iota(units.begin(), units.end(), 0);
+  const double window = kSamePosture * static_cast<double>(recording.q.cols());
+  for (int k = 0; k < postures; ++k) {
+    for (int l = k + 1; l < postures && sums[order[l]] - sums[order[k]] <= window; ++l) {
+      if (l - k > 200) break;
+      const auto apart = (recording.q.row(order[k]) - recording.q.row(order[l])).cwiseAbs();
+      if (apart.maxCoeff() > kSamePosture) continue;
+      const int from = std::max(units[order[k]], units[order[l]]);
+      const int to = std::min(units[order[k]], units[order[l]]);
+      if (from != to) std::replace(units.begin(), units.end(), from, to);
+    }
+  }
+  return units;
+}
+
+/// The fold of each posture: a random permutation of the units is cut into equal parts.
+std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options) {
+  const std::vector<int> unit_of = UnitOfPosture(recording, options.unit);
+  std::vector<int> units = unit_of;
+  std::sort(units.begin(), units.end());
+  units.erase(std::unique(units.begin(), units.end()), units.end());
+  const int count = static_cast<int>(units.size());
+  if (count == 0) {
+    throw InputError(recording.source +
+                     ": cross-validation by trials needs a recording of trials; "
+                     "this is a table of postures");
+  }
+  if (options.folds < 2 || options.folds > count) {
+    throw InputError("cross-validation needs 2 to " + std::to_string(count) +
+                     " folds for as many " +
+                     (options.unit == FoldUnit::kTrial ? "trials" : "different postures") +
+                     ", not " + std::to_string(options.folds));
+  }
+  Random random(options.seed);
+  for (int i = count - 1; i > 0; --i) std::swap(units[i], units[random.Index(i + 1)]);
+  std::vector<int> fold;
+  for (int unit : unit_of) {
+    const auto at = std::find(units.begin(), units.end(), unit) - units.begin();
+    fold.push_back(static_cast<int>(at) % options.folds);
+  }
   return fold;
 }
 
-CalibrationResult CalibrateFold(const ErrorModel& model, const Recording& recording,
-                                const BaseParameters& base, ModelKind kind,
-                                const CalibrationOptions& options, const Selection& selection,
-                                int fold, int folds) {
-  try {
-    return Calibrate(model, recording, base, kind, options, &selection);
-  } catch (const InputError& error) {
-    throw InputError("cross-validation, without fold " + std::to_string(fold) + " of " +
-                     std::to_string(folds) + ": " + error.what());
+/// Distances of held-out observations from their predictions, by model.
+struct FoldResult {
+  std::vector<int> held_out;
+  ByModel<Eigen::MatrixXd> distances;
+  int unconverged = 0;
+};
+
+FoldResult PredictFold(const std::vector<ModelKind>& kinds, const ErrorModel& model,
+                       const Recording& recording, const BaseParameters& base,
+                       const CalibrationOptions& options, const std::vector<int>& fold_of,
+                       int fold) {
+  FoldResult result;
+  std::vector<int> training;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    (fold_of[i] == fold ? result.held_out : training).push_back(i);
   }
+  const Recording training_data = SelectPostures(recording, training);
+  const Recording held_out_data = SelectPostures(recording, result.held_out);
+  // The largest model decides what is an outlier of the other postures; each model its own weights.
+  std::optional<Selection> selection;
+  std::optional<CalibrationResult> largest;
+  for (auto kind = kinds.rbegin(); kind != kinds.rend(); ++kind) {
+    const CalibrationResult estimate =
+        *kind == ModelKind::kRigid
+            ? WithoutSprings(*largest, model, training_data, base, options, *selection)
+            : Calibrate(model, training_data, base, *kind, options,
+                        selection ? &*selection : nullptr);
+    if (!selection) {
+      selection = Select(model, training_data, estimate.used, estimate.tied);
+      largest = estimate;
+    }
+    result.unconverged += estimate.termination == Termination::kConverged ? 0 : 1;
+    Eigen::MatrixXd& distances = result.distances[static_cast<int>(*kind)];
+    distances = Predict(estimate.model, estimate.delta, held_out_data, options, &estimate.placement)
+                    .distances;
+    // A marker that is in no other fold has no estimated position.
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      if (!estimate.used.col(m).any()) distances.col(m).setConstant(kNaN);
+    }
+  }
+  return result;
+}
+
+/// Observations that a prediction can be judged by. On two feet the waist's own markers place it.
+ObservationMask Judged(const ErrorModel& model, const Recording& recording) {
+  ObservationMask judged = SeenMask(recording);
+  if (recording.trials.empty()) return judged;
+  for (int i = 0; i < judged.rows(); ++i) {
+    if (recording.trials[recording.trial[i]].support.size() < 2) continue;
+    for (int m = 0; m < judged.cols(); ++m) {
+      if (model.tree.links[model.markers[m].link].body == 0) judged(i, m) = false;
+    }
+  }
+  return judged;
 }
 
 }  // namespace
@@ -42,13 +134,16 @@ ModelComparison CompareModels(CalibrationResult largest, const ErrorModel& model
   comparison.kinds = ModelKinds(model);
   const auto total = static_cast<int>(comparison.kinds.size());
   comparison.results[static_cast<int>(comparison.largest_kind())] = std::move(largest);
-  const Selection used{comparison.largest().used, comparison.largest().tied};
+  const Selection used =
+      Select(model, recording, comparison.largest().used, comparison.largest().tied);
   int done = 0;
   for (ModelKind kind : comparison.kinds) {
     const auto k = static_cast<int>(kind);
     CalibrationResult& result = comparison.results[k];
     if (kind != comparison.largest_kind()) {
-      result = Calibrate(model, recording, base, kind, options, &used);
+      result = kind == ModelKind::kRigid
+                   ? WithoutSprings(comparison.largest(), model, recording, base, options, used)
+                   : Calibrate(model, recording, base, kind, options, &used);
     }
     if (progress) progress(++done, total);
     comparison.predictions[k] = Predict(result.model, result.delta, recording, options);
@@ -67,49 +162,54 @@ ModelComparison CompareModels(const ErrorModel& model, const Recording& recordin
 
 CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
-                              const CalibrationOptions& options, int folds, std::uint64_t seed,
+                              const CalibrationOptions& options, const FoldOptions& folds,
                               const Progress& progress) {
-  const int postures = recording.posture_count();
-  if (folds < 2 || folds > postures) {
-    throw InputError("cross-validation needs 2 to " + std::to_string(postures) +
-                     " folds for as many postures, not " + std::to_string(folds));
-  }
-  const std::vector<int> fold_of = DealFolds(postures, folds, seed);
-  const int steps = folds * static_cast<int>(comparison.kinds.size());
-  ObservationMask predicted = comparison.largest().used;
-  ByModel<Eigen::MatrixXd> distances;
-  distances.fill(Eigen::MatrixXd::Zero(postures, recording.marker_count()));
-  int done = 0;
-  CrossValidation validation;
-  validation.folds = folds;
-  for (int fold = 0; fold < folds; ++fold) {
-    std::vector<int> training, held_out;
-    for (int i = 0; i < postures; ++i) (fold_of[i] == fold ? held_out : training).push_back(i);
-    const Recording training_data = SelectPostures(recording, training);
-    const Recording held_out_data = SelectPostures(recording, held_out);
-    Selection selection{comparison.largest().used(training, Eigen::all), {}};
-    for (int i : training) selection.tied.push_back(comparison.largest().tied[i]);
-    for (ModelKind kind : comparison.kinds) {
-      const CalibrationResult result =
-          CalibrateFold(model, training_data, base, kind, options, selection, fold + 1, folds);
-      validation.unconverged += result.termination == Termination::kConverged ? 0 : 1;
-      distances[static_cast<int>(kind)](held_out, Eigen::all) =
-          Predict(result.model, result.delta, held_out_data, options, &result.placement).distances;
-      if (progress) progress(++done, steps);
-    }
-    // A marker that is in no other fold has no estimated position, so it cannot be predicted.
-    for (int m = 0; m < recording.marker_count(); ++m) {
-      if (selection.markers.col(m).any()) continue;
-      for (int i : held_out) {
-        validation.not_predicted += predicted(i, m) ? 1 : 0;
-        predicted(i, m) = false;
-      }
-    }
-  }
+  CrossValidation validation =
+      CrossValidate(comparison.kinds, model, recording, base, options, folds, progress);
   for (ModelKind kind : comparison.kinds) {
     const auto k = static_cast<int>(kind);
-    validation.metrics[k] = ComputeMetrics(distances[k], predicted);
+    validation.metrics_without_outliers[k] =
+        ComputeMetrics(validation.distances[k], comparison.largest().used);
   }
+  return validation;
+}
+
+CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
+                              const Recording& recording, const BaseParameters& base,
+                              const CalibrationOptions& options, const FoldOptions& folds,
+                              const Progress& progress) {
+  const std::vector<int> fold_of = DealFolds(recording, folds);
+  std::vector<FoldResult> results(static_cast<std::size_t>(folds.folds));
+  ForAll(
+      results.size(), folds.threads,
+      [&](std::size_t fold) {
+        try {
+          results[fold] =
+              PredictFold(kinds, model, recording, base, options, fold_of, static_cast<int>(fold));
+        } catch (const InputError& error) {
+          throw InputError("cross-validation, without fold " + std::to_string(fold + 1) + " of " +
+                           std::to_string(folds.folds) + ": " + error.what());
+        }
+      },
+      progress);
+  const ObservationMask judged = Judged(model, recording);
+  CrossValidation validation;
+  validation.folds = folds.folds;
+  for (const FoldResult& result : results) validation.unconverged += result.unconverged;
+  for (ModelKind kind : kinds) {
+    const auto k = static_cast<int>(kind);
+    Eigen::MatrixXd& distances = validation.distances[k];
+    distances.setConstant(judged.rows(), judged.cols(), kNaN);
+    for (const FoldResult& result : results) {
+      distances(result.held_out, Eigen::all) = result.distances[k];
+    }
+    for (Eigen::Index i = 0; i < distances.size(); ++i) {
+      if (!judged.data()[i]) distances.data()[i] = kNaN;
+    }
+    validation.metrics[k] = ComputeMetrics(distances, judged);
+  }
+  validation.not_predicted = static_cast<int>(judged.count()) -
+                             validation.metrics[static_cast<int>(kinds.back())].observations;
   return validation;
 }
 

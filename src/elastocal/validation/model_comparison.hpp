@@ -39,21 +39,45 @@ ModelComparison CompareModels(CalibrationResult largest, const ErrorModel& model
 ModelComparison CompareModels(const ErrorModel& model, const Recording& recording,
                               const BaseParameters& base, const CalibrationOptions& options);
 
-struct CrossValidation {
-  int folds = 0;
-  ByModel<ErrorMetrics> metrics;  ///< over held-out observations
-  int unconverged = 0;            ///< fits that did not converge
-  int not_predicted =
-      0;  ///< held-out observations without prediction: their marker is in no other fold
+/// What is left out together.
+enum class FoldUnit {
+  kPosture,  ///< postures, nearly equal ones together
+  kTrial,    ///< whole trials
 };
 
-/// k-fold cross-validation by posture. Every posture is predicted once, by models calibrated
-/// without it (waist and markers included). Only the observations that `comparison` kept are used.
-/// `seed` deals the postures to the folds at random. Throws InputError for fewer than 2 folds, or
-/// more folds than postures.
+struct FoldOptions {
+  int folds = 10;  ///< 2 to the number of units
+  FoldUnit unit = FoldUnit::kPosture;
+  std::uint64_t seed = 1;  ///< deals the units to the folds at random
+  int threads = 1;
+};
+
+struct CrossValidation {
+  int folds = 0;
+  /// Over all held-out observations that could be predicted. Of a posture on two feet, the waist's
+  /// own markers are not counted: they place it.
+  ByModel<ErrorMetrics> metrics;
+  /// Over those of them that the estimate from all postures does not call outliers.
+  ByModel<ErrorMetrics> metrics_without_outliers;
+  int unconverged = 0;  ///< fits that did not converge
+  /// Held-out observations that no model could predict: their marker is in no other fold, or the
+  /// waist could not be placed.
+  int not_predicted = 0;
+  ByModel<Eigen::MatrixXd> distances;  ///< postures x markers, m; NaN where not counted
+};
+
+/// k-fold cross-validation. Every posture is predicted once, by models estimated without it; with
+/// it everything is decided anew that an estimate decides (outliers, priors, noise, footings).
+/// Throws InputError for a number of folds that the recording does not allow.
+CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
+                              const Recording& recording, const BaseParameters& base,
+                              const CalibrationOptions& options, const FoldOptions& folds,
+                              const Progress& progress = {});
+
+/// The same for the kinds of a comparison, whose largest model says what is an outlier.
 CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
-                              const CalibrationOptions& options, int folds, std::uint64_t seed,
+                              const CalibrationOptions& options, const FoldOptions& folds,
                               const Progress& progress = {});
 
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 #include "elastocal/validation/transfer.hpp"
 
 #include "elastocal/calibration/prediction.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
@@ -16,7 +17,52 @@ Refit MakeRefit(CalibrationResult result, const Recording& recording,
   return refit;
 }
 
+/// Errors of the model by name; those of markers that are not named are unknown.
+Eigen::VectorXd ErrorsByName(const ErrorModel& model, const std::map<std::string, double>& joints,
+                             const std::map<std::string, double>& externals) {
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const Parameter& parameter = model.parameters[i];
+    const auto& errors = IsExternal(parameter.kind) ? externals : joints;
+    const auto error = errors.find(parameter.name);
+    if (error != errors.end()) delta[i] = error->second;
+  }
+  return delta;
+}
+
+Refit PredictFrozen(const ErrorModel& model, const Recording& recording,
+                    const CalibrationOptions& options, const std::map<std::string, double>& joints,
+                    const std::map<std::string, double>& externals) {
+  Refit refit;
+  refit.result.model = model;
+  refit.result.delta = ErrorsByName(model, joints, externals);
+  refit.result.used = SeenMask(recording);
+  refit.result.termination = Termination::kConverged;
+  Eigen::MatrixXd distances = Predict(model, refit.result.delta, recording, options).distances;
+  for (int m = 0; m < recording.marker_count(); ++m) {
+    if (externals.contains("marker." + recording.marker_names[m] + ".x")) continue;
+    distances.col(m).setConstant(kNaN);
+  }
+  refit.metrics = refit.metrics_all = ComputeMetrics(distances, refit.result.used);
+  return refit;
+}
+
 }  // namespace
+
+TransferValidation ValidateFrozen(const ErrorModel& model, const Recording& recording,
+                                  const CalibrationOptions& options,
+                                  const FrozenCalibration& calibration) {
+  ErrorModel placed = model;
+  if (calibration.T_ref_waist) placed.T_ref_waist = *calibration.T_ref_waist;
+  TransferValidation validation;
+  validation.calibrated =
+      PredictFrozen(placed, recording, options, calibration.joint_errors, calibration.externals);
+  validation.uncalibrated =
+      PredictFrozen(placed, recording, options, {}, calibration.uncalibrated_externals);
+  validation.not_predicted = static_cast<int>(validation.calibrated.result.used.count()) -
+                             validation.calibrated.metrics.observations;
+  return validation;
+}
 
 TransferValidation ValidateTransfer(const ErrorModel& model, const Recording& recording,
                                     const BaseParameters& base, const CalibrationOptions& options,
@@ -24,7 +70,8 @@ TransferValidation ValidateTransfer(const ErrorModel& model, const Recording& re
   TransferValidation validation;
   validation.calibrated =
       MakeRefit(RefitExternals(model, recording, base, options, joint_errors), recording, options);
-  const Selection used{validation.calibrated.result.used, validation.calibrated.result.tied};
+  const Selection used = Select(model, recording, validation.calibrated.result.used,
+                                validation.calibrated.result.tied);
   validation.uncalibrated =
       MakeRefit(RefitExternals(model, recording, base, options, {}, &used), recording, options);
   return validation;

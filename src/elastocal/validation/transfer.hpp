@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "elastocal/calibration/calibrate.hpp"
@@ -18,6 +19,7 @@ struct Refit {
 /// Errors of a calibration on a recording that was not used for it.
 struct TransferValidation {
   Refit uncalibrated, calibrated;
+  int not_predicted = 0;  ///< observations
 };
 
 /// Refits waist and markers of the nominal and of the calibrated robot (errors of joint parameters
@@ -26,5 +28,20 @@ struct TransferValidation {
 TransferValidation ValidateTransfer(const ErrorModel& model, const Recording& recording,
                                     const BaseParameters& base, const CalibrationOptions& options,
                                     const std::map<std::string, double>& joint_errors);
+
+/// Everything of a calibration that a prediction needs, by parameter name, SI.
+struct FrozenCalibration {
+  std::optional<Transform> T_ref_waist;  ///< of a table of postures
+  std::map<std::string, double> joint_errors, externals, uncalibrated_externals;
+};
+
+/// Errors of a calibration on another recording to which nothing is fitted: waist pose and marker
+/// positions are those of the calibration (of trials, each footing is placed anew: the robot stands
+/// elsewhere). The cameras must not have been moved between two tables of postures, nor the
+/// markers. `metrics` and `metrics_all` are the same, over all observations; an observation of a
+/// marker that the calibration does not have is not predicted.
+TransferValidation ValidateFrozen(const ErrorModel& model, const Recording& recording,
+                                  const CalibrationOptions& options,
+                                  const FrozenCalibration& calibration);
 
 }  // namespace elastocal

@@ -9,6 +9,7 @@ namespace {
 constexpr double kMostOutliers = 0.25;     // from this part of all observations on, an objection
 constexpr double kManyOutliers = 0.05;     // from this part on, a remark
 constexpr double kSuspectedMarker = 0.25;  // part of the observations of a marker or posture
+constexpr double kWorse = 1.05;            // times as large: more than chance makes an error
 constexpr const char* kAdvice =
     " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
     "on.";
@@ -38,11 +39,10 @@ void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options
         "to be measured with a noise of " +
         Number(1e3 * result.marker_sd, "mm") + "." + kAdvice);
   }
-  for (const auto& [scale, what] : {std::pair{result.prior_scale.angles, "angles"},
-                                    std::pair{result.prior_scale.lengths, "lengths"}}) {
-    if (scale < kMaxPriorScale) continue;
+  for (const PriorGroup group : {PriorGroup::kAngles, PriorGroup::kLengths}) {
+    if (result.prior_scale[group] < MostWidening(group)) continue;
     verdict.objections.push_back(
-        std::string("the estimated ") + what +
+        std::string("the estimated ") + PriorGroupName(group) +
         " are more than ten times what the prior expects, which is not an error "
         "of a robot." +
         kAdvice);
@@ -55,7 +55,7 @@ void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& v
   double furthest = 0.0;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[i];
-    const double deviation = std::abs(result.delta[i]) / prior[parameter.kind];
+    const double deviation = std::abs(result.delta[i]) / prior.Of(result.model.tree, parameter);
     if (parameter.joint < 0 || IsElastic(parameter.kind) || !(deviation > furthest)) continue;
     furthest = deviation;
     largest = i;
@@ -106,11 +106,6 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   }
   JudgeOutliers(result, recording, verdict);
   if (validation.folds > 0) {
-    if (validation.metrics[static_cast<int>(comparison.largest_kind())].rmse_3d >=
-        validation.metrics[0].rmse_3d) {
-      verdict.objections.push_back(
-          "on held-out postures the calibrated model is no better than the uncalibrated one");
-    }
     if (validation.unconverged > 0) {
       verdict.remarks.push_back(std::to_string(validation.unconverged) +
                                 " fits of the cross-validation have not converged");
@@ -118,26 +113,49 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
     if (validation.not_predicted > 0) {
       verdict.remarks.push_back(
           std::to_string(validation.not_predicted) +
-          " held-out observations could not be predicted: their marker is in no other fold");
+          " held-out observations could not be predicted: their marker is in no other fold, or the "
+          "waist could not be placed");
     }
   }
   if (!verdict.objections.empty()) NameLargest(result, options.prior, verdict);
   return verdict;
 }
 
-void JudgeHeldOut(const ErrorTable& table, ModelKind model, Verdict& verdict) {
+void JudgeDeployment(const Deployment& deployment, Verdict& verdict) {
+  if (deployment.judged_on == "the fit" || deployment.urdf < deployment.uncalibrated) return;
+  const bool worse = deployment.urdf > kWorse * deployment.uncalibrated;
+  (worse ? verdict.objections : verdict.remarks)
+      .push_back("on " + deployment.judged_on + " the calibrated robot description is " +
+                 (worse ? "worse" : "no better") +
+                 " than the uncalibrated one: " + Number(1e3 * deployment.urdf, "mm") +
+                 " against " + Number(1e3 * deployment.uncalibrated, "mm"));
+}
+
+void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verdict& verdict) {
   for (const ErrorTableRow& row : table.groups) {
     const auto calibrated = row.metrics.find(model);
     if (calibrated == row.metrics.end() || !std::isfinite(calibrated->second.rmse_3d)) continue;
     const double rmse = calibrated->second.rmse_3d;
     for (const auto& [kind, metrics] : row.metrics) {
-      if (kind == model || !(rmse >= metrics.rmse_3d)) continue;
+      if (kind == model || kind == ModelKind::kRigid || !(rmse >= metrics.rmse_3d)) continue;
       const std::string text = "on held-out trials of " + row.group + " the " +
                                ModelKindName(model) + " model errs by " + Number(1e3 * rmse, "mm") +
                                ", the " + ModelKindName(kind) + " one by " +
                                Number(1e3 * metrics.rmse_3d, "mm");
-      (kind == ModelKind::kUncalibrated ? verdict.objections : verdict.remarks).push_back(text);
+      const bool worse = kind == ModelKind::kUncalibrated && rmse > kWorse * metrics.rmse_3d;
+      (worse ? verdict.objections : verdict.remarks).push_back(text);
     }
+    const auto alone = row.metrics.find(urdf);
+    const auto nominal = row.metrics.find(ModelKind::kUncalibrated);
+    if (urdf == model || alone == row.metrics.end() || nominal == row.metrics.end() ||
+        alone->second.rmse_3d < nominal->second.rmse_3d) {
+      continue;
+    }
+    verdict.remarks.push_back("on held-out trials of " + row.group +
+                              " the URDF alone, without compensation of elasticity, errs by " +
+                              Number(1e3 * alone->second.rmse_3d, "mm") +
+                              ", the uncalibrated one by " +
+                              Number(1e3 * nominal->second.rmse_3d, "mm"));
   }
 }
 

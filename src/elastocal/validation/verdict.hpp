@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "elastocal/identifiability/observability.hpp"
+#include "elastocal/validation/deployment.hpp"
 #include "elastocal/validation/error_table.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 
@@ -20,15 +21,20 @@ struct Verdict {
 
 /// Judges a calibration. Objections are: no convergence; noise above
 /// CalibrationOptions::plausible_marker_sd; a prior that would have to be widened beyond
-/// kMaxPriorScale; dependent columns; more than a quarter of the observations outliers; held-out
-/// errors no better than uncalibrated. `validation` may have no folds.
+/// MostWidening; dependent columns; more than a quarter of the observations outliers. `validation`
+/// may have no folds.
 Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options);
 
+/// Adds an objection where the URDF alone is worse than the uncalibrated robot (by 5 % or more, on
+/// data not used for it), and a remark where it is about as good: there is nothing to correct.
+void JudgeDeployment(const Deployment& deployment, Verdict& verdict);
+
 /// Adds the judgement by held-out trials on the calibrated model `model`: an objection for each
-/// group of chains whose markers it does not predict better than the uncalibrated robot does, and a
-/// remark for each group that it predicts worse than a simpler model does.
-void JudgeHeldOut(const ErrorTable& table, ModelKind model, Verdict& verdict);
+/// group of chains whose markers it predicts worse than the uncalibrated robot does (by 5 %), and a
+/// remark for each group that it predicts worse than a simpler model does, or where the URDF alone
+/// (`urdf`) is no better than the uncalibrated robot.
+void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verdict& verdict);
 
 }  // namespace elastocal

@@ -66,7 +66,7 @@ TEST_F(VerdictTest, ImplausibleNoiseNamesTheFurthestParameter) {
 }
 
 TEST_F(VerdictTest, PriorAtItsLimit) {
-  comparison_.results[2].prior_scale.lengths = kMaxPriorScale;
+  comparison_.results[2].prior_scale[PriorGroup::kLengths] = MostWidening(PriorGroup::kLengths);
   ExpectObjection("lengths are more than ten times");
 }
 
@@ -86,11 +86,25 @@ TEST_F(VerdictTest, OutliersByNumberAndByMarker) {
   ExpectObjection("outliers");
 }
 
-TEST_F(VerdictTest, HeldOutErrorsNoBetter) {
-  validation_.metrics[2].rmse_3d = 3.1e-3;
-  ExpectObjection("held-out");
-  validation_.folds = 0;
-  EXPECT_TRUE(Judged().objections.empty());
+TEST(JudgeDeployment, ObjectsToAUrdfThatIsWorse) {
+  Deployment deployment{.judged_on = "held-out postures",
+                        .uncalibrated = 3e-3,
+                        .urdf = 3.2e-3,
+                        .compensated = 1e-3};  // which the user of a URDF does not have
+  Verdict verdict;
+  JudgeDeployment(deployment, verdict);
+  ASSERT_EQ(verdict.objections.size(), 1u);
+  EXPECT_NE(verdict.objections[0].find("3.2 mm against 3 mm"), std::string::npos);
+  verdict = {};
+  deployment.urdf = 3.01e-3;  // a robot that was calibrated before
+  JudgeDeployment(deployment, verdict);
+  EXPECT_TRUE(verdict.objections.empty());
+  EXPECT_EQ(verdict.remarks.size(), 1u);
+  verdict = {};
+  deployment.urdf = 4e-3;
+  deployment.judged_on = "the fit";
+  JudgeDeployment(deployment, verdict);
+  EXPECT_TRUE(verdict.objections.empty());
 }
 
 ErrorTable HeldOutTable(const std::map<ModelKind, double>& rmse) {
@@ -106,27 +120,31 @@ TEST(JudgeHeldOut, ObjectsToWhatErrsNoLessThanTheUncalibratedRobot) {
   using enum ModelKind;
   Verdict verdict;
   JudgeHeldOut(HeldOutTable({{kUncalibrated, 2e-3}, {kGeometric, 1.5e-3}, {kFull, 1e-3}}), kFull,
-               verdict);
+               kGeometric, verdict);
   EXPECT_TRUE(verdict.objections.empty());
   EXPECT_TRUE(verdict.remarks.empty());
   JudgeHeldOut(HeldOutTable({{kUncalibrated, 2e-3}, {kGeometric, 0.5e-3}, {kFull, 1e-3}}), kFull,
-               verdict);
+               kGeometric, verdict);
   EXPECT_TRUE(verdict.objections.empty());
   ASSERT_EQ(verdict.remarks.size(), 1u);  // a simpler model does better: worth knowing, deployable
   EXPECT_NE(verdict.remarks[0].find("leg_left"), std::string::npos);
   EXPECT_NE(verdict.remarks[0].find("geometric"), std::string::npos);
-  JudgeHeldOut(HeldOutTable({{kUncalibrated, 1e-3}, {kGeometric, 2e-3}, {kFull, 1e-3}}), kFull,
-               verdict);
-  ASSERT_EQ(verdict.objections.size(), 1u);  // as good is not enough
-  EXPECT_NE(verdict.objections[0].find("1 mm"), std::string::npos) << verdict.objections[0];
+  verdict = {};
+  JudgeHeldOut(HeldOutTable({{kUncalibrated, 1e-3}, {kGeometric, 2e-3}, {kFull, 1.1e-3}}), kFull,
+               kGeometric, verdict);
+  ASSERT_EQ(verdict.objections.size(), 1u);
+  EXPECT_NE(verdict.objections[0].find("1.1 mm"), std::string::npos) << verdict.objections[0];
+  ASSERT_EQ(verdict.remarks.size(), 1u);  // the URDF alone is worse than nominal
+  EXPECT_NE(verdict.remarks[0].find("URDF alone"), std::string::npos) << verdict.remarks[0];
 }
 
 TEST(JudgeHeldOut, SaysNothingWithoutObservations) {
   Verdict verdict;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   JudgeHeldOut(HeldOutTable({{ModelKind::kUncalibrated, nan}, {ModelKind::kFull, nan}}),
-               ModelKind::kFull, verdict);
-  JudgeHeldOut(HeldOutTable({{ModelKind::kUncalibrated, 1e-3}}), ModelKind::kFull, verdict);
+               ModelKind::kFull, ModelKind::kGeometric, verdict);
+  JudgeHeldOut(HeldOutTable({{ModelKind::kUncalibrated, 1e-3}}), ModelKind::kFull,
+               ModelKind::kGeometric, verdict);
   EXPECT_TRUE(verdict.objections.empty());
   EXPECT_TRUE(verdict.remarks.empty());
 }

@@ -1,4 +1,3 @@
 #include <IpTNLP.hpp>
-#include <ceres/ceres.h>
 
 #include "elastocal/low/upwards.hpp"

@@ -9,6 +9,7 @@ export const MODEL_COLOURS = {
   uncalibrated: OKABE_ITO.vermillion,
   offsets_only: OKABE_ITO.orange,
   geometric: OKABE_ITO.sky,
+  rigid: OKABE_ITO.green,
   full: OKABE_ITO.blue,
   calibrated: OKABE_ITO.blue,
 };

@@ -87,6 +87,7 @@ const MODEL_NAMES = {
   uncalibrated: 'uncalibrated',
   offsets_only: 'offsets only',
   geometric: 'geometric',
+  rigid: 'rigid',
   full: 'full',
   calibrated: 'calibrated',
 };

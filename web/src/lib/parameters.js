@@ -52,8 +52,7 @@ export function kindsOf(joints) {
 
 export const STATUS_WORDS = {
   estimated: 'estimated',
-  unsupported: 'kept at nominal: this recording hardly determines it',
-  dropped: 'kept at nominal: no recording can tell it from other parameters',
+  unsupported: 'the most probable value: this recording tells it hardly, or only together with others',
   held: 'kept at nominal by the project file',
   not_in_model: 'not in this model',
 };

@@ -7,8 +7,19 @@ export function bestModel(summary) {
   return ['full', 'geometric', 'offsets_only'].find((model) => models.includes(model)) ?? 'geometric';
 }
 
-/** What the verdict stands on: {before, after, on}, mm, the most independent of what there is. */
+const JUDGED_ON = {
+  'held-out trials': 'on motions that took no part in the estimate',
+  'held-out postures': 'on held-out postures',
+  'the fit': 'on the calibration postures themselves',
+};
+
+/** What the verdict on the robot description (URDF) stands on: {before, after, on}, mm, the most independent of what there is. */
 export function judgedErrors(summary) {
+  const urdf = summary.deployed?.urdf;
+  if (typeof urdf?.rmse_3d_mm === 'number' && typeof urdf?.uncalibrated === 'number') {
+    const on = JUDGED_ON[summary.deployed.judged_on] ?? JUDGED_ON['the fit'];
+    return {before: urdf.uncalibrated, after: urdf.rmse_3d_mm, on, best: urdf.model};
+  }
   const best = bestModel(summary);
   const sources = [
     [summary.held_out_rmse_3d_mm, 'on motions that took no part in the estimate'],

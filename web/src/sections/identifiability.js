@@ -2,12 +2,12 @@ import {correlationFigure} from './correlation.js';
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure, section} from '../lib/figure.js';
-import {count, list, plural, significant} from '../lib/format.js';
+import {count, list, significant} from '../lib/format.js';
 import {byJoint, kindsOf, STATUS_WORDS} from '../lib/parameters.js';
 import {table} from '../lib/table.js';
 
-const MARKS = {estimated: '●', unsupported: '◐', dropped: '○', held: '×', not_in_model: '–'};
-const SHORT = {estimated: 'estimated', unsupported: 'hardly determined by this recording', dropped: 'dependent on other parameters', held: 'kept at nominal by the project file', not_in_model: 'not in the model'};
+const MARKS = {estimated: '●', unsupported: '◐', held: '×', not_in_model: '–'};
+const SHORT = {estimated: 'estimated', unsupported: 'told hardly, or only together with others', held: 'kept at nominal by the project file', not_in_model: 'not in the model'};
 
 function statusTable(summary) {
   const joints = byJoint(summary.parameters, (summary.legs ?? []).map((leg) => leg.name));
@@ -45,10 +45,8 @@ export function identifiabilitySection(report) {
   if (!summary?.parameters?.length) return null;
   const hardly = summary.excitation?.hardly_excited ?? [];
   const pairs = summary.correlations ?? [];
-  const dropped = summary.parameters.filter((p) => p.status === 'dropped').length;
   const lead = [
     hardly.length > 0 && `The postures hardly excite ${list(hardly, 5)}.`,
-    dropped > 0 && `${plural(dropped, 'parameter depends', 'parameters depend')} on others, whatever is measured; ${dropped === 1 ? 'its effect is' : 'their effects are'} in the estimates of those.`,
   ].filter(Boolean).join(' ');
   return section('identifiability', 'Identifiability', 'What the recording could tell', lead,
     excitationFacts(summary), statusTable(summary),

@@ -10,6 +10,7 @@ const PAPER = {full: 'FCM', geometric: 'GCM', uncalibrated: 'NCM'};
 const MODEL_WORDS = {
   uncalibrated: '“uncalibrated” is the nominal robot', offsets_only: '“offsets only” corrects the joint offsets',
   geometric: '“geometric” corrects all geometric errors', full: '“full” also models elasticity',
+  rigid: '“rigid” is the geometry of “full” without its springs, as a URDF can carry it',
 };
 
 /** What the cells of the tables are, and the models of their columns. */

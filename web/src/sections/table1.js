@@ -20,7 +20,7 @@ export function valueCell(parameter) {
   const {unit, factor} = userUnit(parameter.unit);
   const words = `${parameter.name}: ${STATUS_WORDS[parameter.status] ?? parameter.status}`;
   if (parameter.status !== 'estimated') {
-    const short = {dropped: '·', not_in_model: '–', held: 'held'}[parameter.status] ?? '0';
+    const short = {not_in_model: '–', held: 'held'}[parameter.status] ?? '0';
     return h('span', {class: 'held', title: words, 'data-parameter': parameter.name}, short,
              h('span', {class: 'sr-only'}, ` ${STATUS_WORDS[parameter.status] ?? ''}`));
   }
@@ -39,8 +39,7 @@ function geometryNote(joints) {
   const kinds = kindsOf(joints).filter(({kind}) => !kind.startsWith('compliance'));
   const statuses = new Set([...joints.values()].flatMap((kindsOfJoint) => [...kindsOfJoint.values()].map((p) => p.status)));
   return [`${kinds.map(({symbol, what}) => `${symbol}: ${what}`).join('; ')}.`,
-    statuses.has('dropped') && ' A dot marks a parameter that no recording can tell from others of the chain; its effect is in their estimates.',
-    statuses.has('unsupported') && ' 0 marks one that this recording hardly determines; it stays at nominal.',
+    statuses.has('unsupported') && ' 0 marks one that this recording tells hardly, or only together with others.',
     statuses.has('held') && ' “held” marks one that the project file keeps at nominal.',
     h('span', {class: 'on-screen'}, ' Point at a value to see more digits.')].filter(Boolean);
 }

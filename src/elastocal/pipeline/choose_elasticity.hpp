@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/measurement/recording.hpp"
+
+namespace elastocal {
+
+/// A choice of elastic parameters that was tried, and what it brings on postures that were left
+/// out.
+struct ElasticityTrial {
+  std::string kinds;     ///< "none", "torsion", "torsion and bending"
+  double rmse_3d = 0.0;  ///< of the left-out postures, m
+  /// By how much the mean error of a posture is less than with the choice before, m, and the
+  /// standard error of that.
+  double gain = 0.0, gain_sd = 0.0;
+  bool chosen = false;
+};
+
+/// Decides on the elasticity of the joints in a table of postures where the project leaves it open:
+/// torsion, then bending, enters when it lowers the error of left-out postures (ten folds, on at
+/// most 300 postures) by more than the standard error of that gain, and by more than 2 %. Sets
+/// `project.elasticity`; returns what was tried, nothing where there was nothing to decide: trials,
+/// whose joints are all elastic anyway; a choice in the project; a robot without masses; fewer than
+/// ten postures.
+std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
+                                              std::optional<std::uint64_t> seed, int threads,
+                                              Project& project);
+
+}  // namespace elastocal

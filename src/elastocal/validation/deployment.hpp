@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "elastocal/validation/error_table.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+
+namespace elastocal {
+
+/// What a user takes home, and how well it predicts markers that were not used for it: the 3-D
+/// RMSE [m] of the URDF alone, which is rigid, and of the URDF with elastic compensation. NaN where
+/// there is none.
+struct Deployment {
+  /// Whose geometry the URDF has: kGeometric, or kRigid where leaving out the springs of the full
+  /// model predicts better than a geometry that was fitted without them.
+  ModelKind urdf_kind = ModelKind::kGeometric;
+  std::string judged_on;  ///< "held-out trials", "held-out postures" or "the fit"
+  double uncalibrated = 0.0, urdf = 0.0, compensated = 0.0;
+};
+
+/// Judges by held-out trials where there are any (`table` is not null), else by the folds of the
+/// cross-validation, else by the fit itself.
+Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValidation& validation,
+                            const ErrorTable* table);
+
+}  // namespace elastocal
