@@ -59,7 +59,7 @@ void EstimateGeometric(benchmark::State& state) {
   const Experiment e = OpenExperiment(state);
   std::vector<double> seconds;
   CalibrationResult result;
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     seconds.push_back(TimeOnce([&] {
       result =
           Calibrate(e.model, e.recording, e.base, ModelKind::kGeometric, e.project.calibration);

@@ -96,12 +96,13 @@ Matrix6d BodyUnknowns::FootingChart(const Eigen::VectorXd& x, int footing) const
   return kPoseScale * chart;
 }
 
-std::vector<BodyUnknowns::Columns> BodyUnknowns::MapColumns(const std::vector<int>& columns) const {
+std::vector<BodyUnknowns::Columns> BodyUnknowns::MapColumns(
+    const std::vector<int>& parameters) const {
   std::vector<Columns> blocks;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    const bool waist = !placement_.empty() && columns[c] < kWaistParameterCount;
-    const auto found = std::lower_bound(free_.begin(), free_.end(), columns[c]);
-    if (!waist && (found == free_.end() || *found != columns[c])) continue;
+  for (std::size_t c = 0; c < parameters.size(); ++c) {
+    const bool waist = !placement_.empty() && parameters[c] < kWaistParameterCount;
+    const auto found = std::lower_bound(free_.begin(), free_.end(), parameters[c]);
+    if (!waist && (found == free_.end() || *found != parameters[c])) continue;
     const auto unknown = found - free_.begin();
     const int block = waist ? kWaistBlock : block_of_[unknown];
     if (blocks.empty() || blocks.back().block != block) blocks.push_back({block, {}, {}});

@@ -99,7 +99,7 @@ class OutlierSearch {
 
   /// Heavy tails, and a covariance that the fit has made smaller or, of what is left out, larger.
   bool IsGross(double square, Eigen::Index rows, double explained, bool used) const {
-    const double size = static_cast<double>(rows);
+    const auto size = static_cast<double>(rows);
     const double share = std::min(1.0 - kLeastVariance, explained / size);
     const double variance = used ? 1.0 - share : 1.0 + share;
     return square / variance > size * FisherQuantile(level_, size, kTailFreedom);

@@ -90,18 +90,19 @@ FoldResult PredictFold(const std::vector<ModelKind>& kinds, const ErrorModel& mo
   // The largest model decides what is an outlier of the other postures; each model its own weights.
   std::optional<Selection> selection;
   std::optional<CalibrationResult> largest;
-  for (auto kind = kinds.rbegin(); kind != kinds.rend(); ++kind) {
+  const std::vector<ModelKind> largest_first(kinds.rbegin(), kinds.rend());
+  for (ModelKind kind : largest_first) {
     const CalibrationResult estimate =
-        *kind == ModelKind::kRigid
+        kind == ModelKind::kRigid
             ? WithoutSprings(*largest, model, training_data, base, options, *selection)
-            : Calibrate(model, training_data, base, *kind, options,
+            : Calibrate(model, training_data, base, kind, options,
                         selection ? &*selection : nullptr);
     if (!selection) {
       selection = Select(model, training_data, estimate.used, estimate.tied);
       largest = estimate;
     }
     result.unconverged += estimate.termination == Termination::kConverged ? 0 : 1;
-    Eigen::MatrixXd& distances = result.distances[static_cast<int>(*kind)];
+    Eigen::MatrixXd& distances = result.distances[static_cast<int>(kind)];
     distances = Predict(estimate.model, estimate.delta, held_out_data, options, &estimate.placement)
                     .distances;
     // A marker that is in no other fold has no estimated position.
