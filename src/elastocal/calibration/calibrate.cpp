@@ -89,9 +89,11 @@ void FillStatus(const BaseParameters& base, const CalibrationOptions& options,
   for (int i : base.held) result.status[i] = ParameterStatus::kHeld;
   Prior prior = options.prior;
   prior.scale = result.prior_scale;
+  result.prior_sd.setConstant(result.model.parameter_count(),
+                              std::numeric_limits<double>::quiet_NaN());
   for (int i : posterior.parameters) {
-    const bool told = result.sd[i] < options.support_threshold *
-                                         prior.Of(result.model.tree, result.model.parameters[i]);
+    result.prior_sd[i] = prior.Of(result.model.tree, result.model.parameters[i]);
+    const bool told = result.sd[i] < options.support_threshold * result.prior_sd[i];
     result.status[i] = told ? ParameterStatus::kEstimated : ParameterStatus::kUnsupported;
   }
 }

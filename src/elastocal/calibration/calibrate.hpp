@@ -55,6 +55,8 @@ struct CalibrationResult {
   std::vector<ParameterStatus> status;  ///< one a parameter
   /// Posterior standard deviation, one a parameter; NaN where none applies.
   Eigen::VectorXd sd;
+  /// That of the prior, as wide as it came out; NaN where none applies.
+  Eigen::VectorXd prior_sd;
   /// Half width of a 95 % interval in standard deviations (Student's t; normal where the noise is
   /// given).
   double interval_factor = 1.96;

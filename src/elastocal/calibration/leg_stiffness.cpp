@@ -1,14 +1,49 @@
 #include "elastocal/calibration/leg_stiffness.hpp"
 
+#include <limits>
+
 #include "elastocal/robot/lumped_compliance.hpp"
 
 namespace elastocal {
+namespace {
+
+/// The six compliances along and about the axes of the foot, of a leg in a posture.
+Vector6d Compliances(const CalibrationResult& result, const Eigen::VectorXd& delta,
+                     const Eigen::VectorXd& q, int leg) {
+  return LumpedCompliance(result.model, ApplyErrors(result.model, delta), q, leg).diagonal();
+}
+
+/// Standard deviations of the compliances, by those of the parameters that they are made of. They
+/// are linear in them, so that one difference each is exact.
+Vector6d CompliancesSd(const CalibrationResult& result, const Eigen::VectorXd& q, int leg) {
+  const std::vector<int>& parameters = result.posterior.parameters;
+  const Vector6d at = Compliances(result, result.delta, q, leg);
+  Eigen::MatrixXd by_parameter =
+      Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const Parameter& parameter = result.model.parameters[parameters[k]];
+    if (!IsCompliance(parameter.kind)) continue;
+    Eigen::VectorXd beside = result.delta;
+    const double step = ParameterScale(parameter);
+    beside[parameters[k]] += step;
+    by_parameter.col(static_cast<Eigen::Index>(k)) =
+        (Compliances(result, beside, q, leg) - at) / step;
+  }
+  return (by_parameter * result.posterior.covariance)
+      .cwiseProduct(by_parameter)
+      .rowwise()
+      .sum()
+      .cwiseSqrt();
+}
+
+}  // namespace
 
 std::vector<LegStiffness> AssessLegs(const CalibrationResult& result, const Recording& recording) {
   std::vector<LegStiffness> legs;
-  const Geometry geometry = ApplyErrors(result.model, result.delta);
   for (int leg = 0; leg < result.model.leg_count(); ++leg) {
-    LegStiffness entry{result.model.legs[leg].name, Eigen::VectorXd::Zero(recording.q.cols())};
+    LegStiffness entry;
+    entry.leg = result.model.legs[leg].name;
+    entry.q.setZero(recording.q.cols());
     int postures = 0;
     for (const Footing& footing : result.placement.footings) {
       if (footing.leg != leg) continue;
@@ -17,8 +52,14 @@ std::vector<LegStiffness> AssessLegs(const CalibrationResult& result, const Reco
     }
     if (postures == 0) continue;
     entry.q /= postures;
-    entry.stiffness =
-        LumpedCompliance(result.model, geometry, entry.q, leg).diagonal().cwiseInverse();
+    const Vector6d compliance = Compliances(result, result.delta, entry.q, leg);
+    const Vector6d half = result.interval_factor * CompliancesSd(result, entry.q, leg);
+    entry.stiffness = compliance.cwiseInverse();
+    entry.low = (compliance + half).cwiseInverse();
+    for (int axis = 0; axis < 6; ++axis) {
+      const double least = compliance[axis] - half[axis];
+      entry.high[axis] = least > 0.0 ? 1.0 / least : std::numeric_limits<double>::infinity();
+    }
     legs.push_back(std::move(entry));
   }
   return legs;

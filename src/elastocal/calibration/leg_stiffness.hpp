@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@ struct LegStiffness {
   /// Along x, y, z of the foot [N/m] and about them [N.m/rad]: a force (moment) over the
   /// displacement (rotation) along the same axis; infinite for a rigid leg.
   Vector6d stiffness = Vector6d::Zero();
+  /// Its 95 % interval, from the covariance of all compliances of the leg; the upper end may be
+  /// infinite.
+  Vector6d low = Vector6d::Zero(), high = Vector6d::Zero();
+
+  /// Whether the data tell the stiffness along an axis: its compliance differs from zero at 95 %.
+  bool known(int axis) const { return std::isfinite(high[axis]); }
 };
 
 /// One entry a leg of the model that stood alone.

@@ -21,12 +21,24 @@ TEST(AssessLegs, TheStiffnessIsThatOfItsCompliancesInTheMeanPosture) {
     if (parameter.kind == ParameterKind::kLegMoment) result.delta[i] = 1e-5 * (1 + parameter.axis);
   }
   result.placement.footings = {{0, 0, {0, 2}}};
+  // Known to a tenth along x, hardly along y; nothing else is uncertain.
+  const auto find = [&](const char* name) {
+    return FindParameter(robot.model.parameters, robot.model.legs[0].name + name);
+  };
+  result.posterior.parameters = {find(".compliance_x"), find(".compliance_y")};
+  result.posterior.covariance = Eigen::Vector2d(1e-14, 4e-12).asDiagonal();
+  result.interval_factor = 2.0;
   const std::vector<LegStiffness> legs = AssessLegs(result, recording);
   ASSERT_EQ(legs.size(), 1u);  // the right one never stood
   EXPECT_EQ(legs[0].leg, "left");
   EXPECT_DOUBLE_EQ(legs[0].q[0], 0.35);
   Vector6d expected;
   expected << 1e6, 1e6 / 2, 1e6 / 3, 1e5, 1e5 / 2, 1e5 / 3;
+  EXPECT_NEAR(legs[0].low[0], 1.0 / 1.2e-6, 1e-3);
+  EXPECT_NEAR(legs[0].high[0], 1.0 / 0.8e-6, 1e-3);
+  EXPECT_TRUE(legs[0].known(0));
+  EXPECT_NEAR(legs[0].low[1], 1.0 / 6e-6, 1e-3);
+  EXPECT_FALSE(legs[0].known(1));
   EXPECT_LT((legs[0].stiffness - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-9);
 }
 

@@ -26,14 +26,15 @@ std::string StiffnessOf(const Parameter& parameter, double compliance) {
   return Stiffness(compliance, linear ? "N/mm" : "N.m/rad", linear ? 1e-3 : 1.0);
 }
 
-/// Why the data say little about a compliance.
-std::string Reason(const CalibrationRun& run, const Parameter& parameter) {
-  if (parameter.leg < 0) return "its load varies too little in this recording";
-  const std::vector<int>& bad = run.comparison.largest().loads.badly_conditioned;
-  if (!bad.empty()) {
-    return fmt::format("the knee was straight in {} postures: loads by statics there", bad.size());
-  }
-  return "the leg's load about this axis varies too little in this recording";
+/// What the recording adds to what was assumed beforehand.
+std::string LittleTold(const CalibrationResult& result, int i) {
+  const Parameter& parameter = result.model.parameters[i];
+  const auto figure = [&](double value) {
+    return fmt::format("{:.2g}", InUserUnits(parameter, value));
+  };
+  return fmt::format("  {}: {} +- {} {}, beforehand +- {}\n", parameter.name,
+                     figure(result.delta[i]), figure(result.sd[i]), UserUnit(parameter),
+                     figure(result.prior_sd[i]));
 }
 
 }  // namespace
@@ -54,7 +55,7 @@ std::string DescribeElasticity(const CalibrationRun& run) {
     const Parameter& parameter = result.model.parameters[i];
     if (!IsCompliance(parameter.kind)) continue;
     if (result.status[i] == ParameterStatus::kUnsupported) {
-      unsupported += fmt::format("  {}: {}\n", parameter.name, Reason(run, parameter));
+      unsupported += LittleTold(result, i);
     }
     if (result.status[i] != ParameterStatus::kEstimated) continue;
     const double half = result.interval_factor * result.sd[i];
@@ -65,17 +66,23 @@ std::string DescribeElasticity(const CalibrationRun& run) {
                fmt::format("{} to {}", StiffnessOf(parameter, result.delta[i] + half),
                            StiffnessOf(parameter, result.delta[i] - half))});
   }
-  TextTable legs({"leg as felt at the waist", "Kx N/mm", "Ky", "Kz", "Krx N.m/rad", "Kry", "Krz"});
+  TextTable legs({"leg at the waist (95 %)", "Kx N/mm", "Ky", "Kz", "Krx N.m/rad", "Kry", "Krz"});
   for (const LegStiffness& leg : AssessLegs(result, run.recording)) {
     std::vector<std::string> row = {leg.leg};
     for (int axis = 0; axis < 6; ++axis) {
-      row.push_back(fmt::format("{:.3g}", (axis < 3 ? 1e-3 : 1.0) * leg.stiffness[axis]));
+      const double unit = axis < 3 ? 1e-3 : 1.0;
+      row.push_back(leg.known(axis)
+                        ? fmt::format("{:.3g} ({:.3g}-{:.3g})", unit * leg.stiffness[axis],
+                                      unit * leg.low[axis], unit * leg.high[axis])
+                        : fmt::format("unknown (> {:.3g})", unit * leg.low[axis]));
     }
     legs.Add(row);
   }
   return "\nElasticity\n" + table.Render() + legs.Render() +
          (unsupported.empty() ? ""
-                              : "Not determined by these data, held at rigid:\n" + unsupported);
+                              : "Compliances of which this recording tells hardly more than was "
+                                "assumed (one sd):\n" +
+                                    unsupported);
 }
 
 std::string DescribeFeet(const CalibrationRun& run) {

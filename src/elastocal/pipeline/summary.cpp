@@ -128,10 +128,16 @@ void AddTrials(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
   for (const LegStiffness& leg : AssessLegs(result, run.recording)) {
     Json stiffness = Json::array();
+    Json interval = Json::array();
+    Json known = Json::array();
     for (int axis = 0; axis < 6; ++axis) {
-      stiffness.push_back(Finite((axis < 3 ? 1e-3 : 1.0) * leg.stiffness[axis]));
+      const double unit = axis < 3 ? 1e-3 : 1.0;
+      stiffness.push_back(Finite(unit * leg.stiffness[axis]));
+      interval.push_back({Finite(unit * leg.low[axis]), Finite(unit * leg.high[axis])});
+      known.push_back(leg.known(axis));
     }
-    json["legs"].push_back({{"name", leg.leg}, {"stiffness", stiffness}});
+    json["legs"].push_back(
+        {{"name", leg.leg}, {"stiffness", stiffness}, {"interval_95", interval}, {"known", known}});
   }
   json["loose_footings"] = Json::array();
   for (const LooseFooting& footing : result.loose_footings) {
