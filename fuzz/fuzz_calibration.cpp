@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const elastocal::ParameterEstimate& parameter : estimate.parameters) {
       if (parameter.name.empty() || parameter.unit.empty()) std::abort();
     }
-    elastocal::FindCommonParameters(estimate, estimate, false);
+    elastocal::FindCommonParameters(estimate, estimate);
   } catch (const elastocal::InputError&) {
     return 0;
   }
