@@ -155,7 +155,7 @@ TEST_F(LegEstimation, PriorIsWidenedForARobotFarFromNominal) {
   truth_[Find("leg_4.theta")] = -0.08;
   const Recording recording = Record(truth_, 20);
   const CalibrationResult result = Estimate(recording);
-  EXPECT_GT(result.prior_scale[PriorGroup::kAngles], 1.5);
+  EXPECT_GT(result.prior_scale[PriorGroup::kAngles], 2.0);
   EXPECT_LT(result.prior_scale[PriorGroup::kLengths], 2.0);
   for (const char* name : {"leg_3.theta", "leg_4.theta"}) {
     EXPECT_LT(std::abs(result.delta[Find(name)] - truth_[Find(name)]), 3.0 * result.sd[Find(name)])

@@ -12,7 +12,7 @@ namespace elastocal {
 namespace {
 
 // Roundings along up to nine joints, some with common normals of 10 m.
-constexpr double kKinematicsRounding = 5e-13;
+constexpr double kKinematicsRounding = 1e-13;
 
 /// Value of the error called `name`; zero where the model has none.
 double Error(const ErrorModel& model, const Eigen::VectorXd& delta, const std::string& name) {

@@ -19,8 +19,8 @@ struct Normal {
 };
 
 constexpr double kSameLength = 1e-9;  // m; axes closer than this meet
-constexpr double kCoaxial =
-    0.02;  // m; the common normal of parallel axes closer than this turns by large angles
+// m; small errors turn the perpendicular between parallel axes that are closer than this by much.
+constexpr double kCoaxial = 0.02;
 
 Vector3d ClosestPoint(const Axis& axis, const Vector3d& p) {
   return axis.point + axis.direction * axis.direction.dot(p - axis.point);
@@ -36,19 +36,16 @@ bool Parallel(const Axis& a, const Axis& b, double tolerance_rad) {
   return a.direction.cross(b.direction).norm() < std::sin(tolerance_rad);
 }
 
-bool Coaxial(const Axis& a, const Axis& b, double tolerance_rad) {
-  return Parallel(a, b, tolerance_rad) && (ClosestPoint(b, a.point) - a.point).norm() < kCoaxial;
-}
+bool Coaxial(const Normal& between) { return (between.end - between.start).norm() < kCoaxial; }
 
-/// Hayati: the perpendicular from `start`, a point of the first axis, to the second axis. `x_in` is
-/// its direction if the two axes coincide.
+/// Hayati: the perpendicular from `start`, a point of the first axis, to the second axis. If the
+/// two axes coincide, `x_in` gives its direction.
 Normal PerpendicularFrom(const Vector3d& start, const Axis& to, const Vector3d& x_in) {
-  const Vector3d end = ClosestPoint(to, start);
-  const Vector3d offset = end - start;
-  const Vector3d x = offset.norm() > kSameLength
-                         ? Vector3d(offset.normalized())
-                         : Vector3d((x_in - to.direction * to.direction.dot(x_in)).normalized());
-  return {start, end, x};
+  Normal normal{start, ClosestPoint(to, start), {}};
+  normal.x = normal.end - normal.start;
+  if (Coaxial(normal)) normal.x = x_in - to.direction * to.direction.dot(x_in);
+  normal.x.normalize();
+  return normal;
 }
 
 Normal CommonNormal(const Axis& from, const Axis& to) {
@@ -123,10 +120,11 @@ std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOp
     const int parent = tree.joints[k].parent_body;
     const Axis& axis = zero.axes[k];
     JointPlacement& placement = placements[k];
-    placement.general = zero.main_child[parent] != static_cast<int>(k) ||
-                        Coaxial(zero.axes[parent - 1], axis, options.parallel_tolerance_rad);
-    placement.parallel =
-        !placement.general && Parallel(zero.axes[parent - 1], axis, options.parallel_tolerance_rad);
+    const bool continues = zero.main_child[parent] == static_cast<int>(k);
+    const bool parallel =
+        continues && Parallel(zero.axes[parent - 1], axis, options.parallel_tolerance_rad);
+    placement.general = !continues || (parallel && Coaxial(outgoing[parent]));
+    placement.parallel = parallel && !placement.general;
 
     // The normals by which the chain arrives on this axis and leaves it again.
     const Normal incoming = placement.general

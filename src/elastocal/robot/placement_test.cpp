@@ -141,8 +141,9 @@ TEST_P(RandomRobots, FramesFollowTheConvention) {
       EXPECT_TRUE(p.T_parent_pre.matrix().isIdentity(0.0));
       EXPECT_EQ(p.gamma, 0.0);
       EXPECT_EQ(p.b, 0.0);
-      EXPECT_GE(p.d, -1e-9);  // axes that are no further apart meet
-      EXPECT_LE(std::abs(p.beta), p.parallel ? 0.02 : 0.0);
+      // Axes that are no further apart coincide, or meet.
+      EXPECT_GE(p.d, p.parallel ? 0.02 : -1e-9);
+      EXPECT_LE(std::abs(p.beta), p.parallel ? PlacementOptions{}.parallel_tolerance_rad : 0.0);
     }
   }
 }
