@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/leg_stiffness.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/dense_problem.hpp"
@@ -152,6 +153,40 @@ TEST_F(StandingTest, AFootThatSlippedIsNamedAndStandsElsewhereFromThereOn) {
   const CalibrationResult without = Estimate(clean);
   EXPECT_TRUE(without.slips.empty());
   EXPECT_LT(LargestDifference(result, without), 3.0);
+}
+
+// Support is data: what carries the robot does so whether it gives way or not.
+TEST_F(StandingTest, RigidLegsCarryTheRobotToo) {
+  for (int i = 0; i < robot_.model.parameter_count(); ++i) {
+    if (robot_.model.parameters[i].leg >= 0) truth_[i] = 0.0;
+  }
+  const Recording recording = Record();
+  Elasticity rigid_legs = robot_.model.elasticity;
+  rigid_legs.base = false;
+  const ErrorModel model = MakeErrorModel(robot_.project.tree, robot_.model.markers,
+                                          robot_.project.placement, rigid_legs);
+  EXPECT_EQ(model.leg_count(), 2);
+  for (const Parameter& parameter : model.parameters) EXPECT_LT(parameter.leg, 0);
+  const CalibrationResult result =
+      Calibrate(model, recording, FindBaseParameters(model, robot_.project.identifiability),
+                ModelKind::kFull, {});
+  EXPECT_EQ(result.placement.footings.size(), 2u);
+  EXPECT_TRUE(result.outliers.empty());
+  EXPECT_TRUE(result.loose_footings.empty());
+  EXPECT_TRUE(AssessLegs(result, recording).empty());
+  // The standing leg tells where its joints are: as well as with compliances that are not there.
+  const CalibrationResult elastic = Estimate(recording);
+  int compared = 0;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const Parameter& parameter = model.parameters[i];
+    if (parameter.joint < 0 || result.status[i] != ParameterStatus::kEstimated) continue;
+    for (int k = 0; k < robot_.model.parameter_count(); ++k) {
+      if (robot_.model.parameters[k].name != parameter.name) continue;
+      EXPECT_LT(result.sd[i], 1.02 * elastic.sd[k]) << parameter.name;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 50);
 }
 
 TEST_F(StandingTest, ATorqueSensorLeftOutIsReplacedByStatics) {

@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kMaxVerdicts = 5;
+constexpr std::size_t kMaxVerdicts = 5;
 constexpr int kFewUpdates = 2;  // of the noise, for a start
 
 bool IsEstimated(ParameterKind parameter, ModelKind kind) {
@@ -56,6 +56,21 @@ bool Same(const OutlierVerdict& a, const OutlierVerdict& b) {
          std::equal(
              a.footings.begin(), a.footings.end(), b.footings.begin(), b.footings.end(),
              [](const LooseFooting& x, const LooseFooting& y) { return x.posture == y.posture; });
+}
+
+/// Adds what `others` names.
+void Join(OutlierVerdict& into, const OutlierVerdict& others) {
+  const auto add = [](auto& to, const auto& from, const auto& place) {
+    for (const auto& found : from) {
+      const auto at =
+          std::lower_bound(to.begin(), to.end(), found,
+                           [&](const auto& a, const auto& b) { return place(a) < place(b); });
+      if (at == to.end() || place(found) < place(*at)) to.insert(at, found);
+    }
+  };
+  add(into.markers, others.markers,
+      [](const Outlier& at) { return std::pair(at.posture, at.marker); });
+  add(into.footings, others.footings, [](const LooseFooting& at) { return at.posture; });
 }
 
 /// The prior makes any number of equations enough; fewer than what could be identified are refused
@@ -135,6 +150,39 @@ void FillResult(const BaseParameters& base, const CalibrationOptions& options, F
   result.posterior = std::move(fit.posterior);
 }
 
+/// Fits without the outliers of a verdict and judges anew, until the verdict stands. An observation
+/// at the edge may be left out and taken back by turns: it stays out then.
+OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& base,
+                              const std::vector<int>& free, OutlierVerdict verdict,
+                              Selection& selection, Fit& fit) {
+  const auto fit_to = [&](const OutlierVerdict& without) {
+    if (problem.options.outliers == OutlierPolicy::kRemove) {
+      selection = Without(problem.model, problem.recording, without);
+    }
+    CheckEquations(problem.recording, fit.placement, selection, base, free, without.markers.size());
+    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
+  };
+  std::vector<OutlierVerdict> earlier;
+  for (;;) {
+    fit_to(verdict);
+    OutlierVerdict next =
+        FindOutliers(problem, selection, free, fit, problem.options.outlier_probability);
+    if (problem.options.outliers == OutlierPolicy::kKeep || Same(next, verdict)) return next;
+    if (earlier.size() == kMaxVerdicts) {
+      fit.settled = false;
+      return verdict;  // the one that the fit was made with
+    }
+    if (std::any_of(earlier.begin(), earlier.end(),
+                    [&](const OutlierVerdict& before) { return Same(next, before); })) {
+      Join(next, verdict);
+      fit_to(next);
+      return next;
+    }
+    earlier.push_back(std::move(verdict));
+    verdict = std::move(next);
+  }
+}
+
 /// Steps 2 to 4, from an estimate of waist and markers.
 void EstimateAll(const FitProblem& problem, const BaseParameters& base,
                  const std::vector<int>& free, const Selection* fixed, Fit fit,
@@ -150,19 +198,10 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
     verdict = FindOutliers(problem, selection, free, fit, probability);
     if (remove) selection = Without(problem.model, recording, verdict);
   }
-  for (int round = 1;; ++round) {
-    CheckEquations(recording, fit.placement, selection, base, free, verdict.markers.size());
+  if (fixed != nullptr) {
     fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
-    if (fixed != nullptr) break;
-    OutlierVerdict next = FindOutliers(problem, selection, free, fit, probability);
-    const bool stands = Same(next, verdict);
-    if (!stands && remove && round == kMaxVerdicts) {  // keeps the one that the fit was made with
-      fit.settled = false;
-      break;
-    }
-    verdict = std::move(next);
-    if (stands || !remove) break;
-    selection = Without(problem.model, recording, verdict);
+  } else {
+    verdict = SettleOutliers(problem, base, free, std::move(verdict), selection, fit);
   }
   Polish(problem, selection, free, fit);
   UpdatePosterior(problem, selection, free, fit);

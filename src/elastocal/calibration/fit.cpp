@@ -9,9 +9,12 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSlightDecrease = 1e-6;     // of the cost by a step, while noise is being found
-constexpr double kVarianceTolerance = 3e-3;  // relative, of a standard deviation, by its share
+// When noise, prior and weights have come to rest. Standard deviations are never known to a
+// hundredth, and a fit that only looks for gross errors needs less.
+constexpr double kSlightDecrease = 1e-5;     // of the cost by a step
+constexpr double kVarianceTolerance = 1e-2;  // relative, of a standard deviation, by its share
 constexpr double kWeightTolerance = 1e-2;
+constexpr double kRoughly = 5.0;     // times these
 constexpr int kRoughIterations = 5;  // of a solve whose weights will change anyway
 constexpr double kLeastLeft = 0.05;  // of the variance of a row
 constexpr int kMaxPolishing = 6;
@@ -108,7 +111,8 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   const Eigen::VectorXd next = x + equations.Expand(step);
   ++fit.iterations;
   body.Evaluate(next, false);
-  const bool small = -equations.gradient().dot(step) < kSlightDecrease * (1.0 + cost);
+  const double tolerance = robustness == Robustness::kMedians ? kRoughly : 1.0;
+  const bool small = -equations.gradient().dot(step) < tolerance * kSlightDecrease * (1.0 + cost);
   if (!small && !(CostOf(body) <= cost)) {  // far from the solution: damped steps
     SolveOnce(problem, selection, free,
               {.max_iterations = kRoughIterations, .function_tolerance = 1e-8}, fit);
@@ -124,9 +128,9 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   const RobustWeights weights = EstimateWeights(problem, selection, noise, body, robustness);
   const PriorScale scale =
       problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
-  const bool settled = NoiseChange(fit.noise, noise, components) < kVarianceTolerance &&
-                       ScaleChange(fit.prior_scale, scale) < kVarianceTolerance &&
-                       WeightChange(fit.weights, weights) < kWeightTolerance;
+  const bool settled = NoiseChange(fit.noise, noise, components) < tolerance * kVarianceTolerance &&
+                       ScaleChange(fit.prior_scale, scale) < tolerance * kVarianceTolerance &&
+                       WeightChange(fit.weights, weights) < tolerance * kWeightTolerance;
   fit.noise = noise;
   fit.weights = weights;
   fit.prior_scale = scale;
@@ -140,6 +144,20 @@ std::vector<int> PostureOfBlocks(const Selection& selection, const BodyResiduals
   for (int i : body.tied_postures()) posture.push_back(i);
   posture.resize(body.residual_blocks.size(), -1);
   return posture;
+}
+
+/// Information of the prior on the unknowns in the units of the solver, a diagonal: of the
+/// parameters, then of what else is unknown.
+Eigen::VectorXd PriorInformation(const FitProblem& problem, const Prior& prior,
+                                 const std::vector<int>& parameters, Eigen::Index unknowns) {
+  Eigen::VectorXd information =
+      Eigen::VectorXd::Constant(unknowns, BodyResiduals::kPoseScale * BodyResiduals::kPoseScale);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& parameter = problem.model.parameters[parameters[i]];
+    information[static_cast<Eigen::Index>(i)] =
+        std::pow(ParameterScale(parameter) / prior.Of(problem.model.tree, parameter), 2);
+  }
+  return information;
 }
 
 /// Compares the covariance with that of the cluster-robust (sandwich) estimator, whose clusters are
@@ -160,13 +178,8 @@ void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
       equations.Scores(raised, PostureOfBlocks(selection, body), problem.recording.posture_count());
   const std::vector<int>& parameters = fit.posterior.parameters;
   const auto count = static_cast<Eigen::Index>(parameters.size());
-  Eigen::VectorXd prior = Eigen::VectorXd::Constant(
-      covariance.rows(), BodyResiduals::kPoseScale * BodyResiduals::kPoseScale);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Parameter& parameter = problem.model.parameters[parameters[i]];
-    prior[i] =
-        std::pow(ParameterScale(parameter) / residuals.prior.Of(problem.model.tree, parameter), 2);
-  }
+  const Eigen::VectorXd prior =
+      PriorInformation(problem, residuals.prior, parameters, covariance.rows());
   const Eigen::MatrixXd by_data = covariance - covariance * prior.asDiagonal() * covariance;
   const Eigen::VectorXd by_clusters = (covariance * scores).rowwise().squaredNorm();
   double expected = 0.0;
@@ -180,6 +193,26 @@ void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
   if (!(fit.posterior.cluster_factor > 1.0)) return;
   fit.posterior.covariance += ParameterCovariance(problem.model, parameters,
                                                   (fit.posterior.cluster_factor - 1.0) * by_data);
+}
+
+/// What the data tell of the parameters, poses of waist and feet being unknown, without the prior.
+Eigen::MatrixXd DataInformation(const FitProblem& problem, const Prior& prior,
+                                const std::vector<int>& parameters,
+                                const NormalEquations& equations) {
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  const Eigen::Index poses = equations.information().rows() - count;
+  Eigen::MatrixXd information = equations.information();
+  information.diagonal() -= PriorInformation(problem, prior, parameters, information.rows());
+  Eigen::MatrixXd own = information.topLeftCorner(count, count);
+  if (poses > 0) {
+    const auto across = information.topRightCorner(count, poses);
+    own -= across * information.bottomRightCorner(poses, poses).ldlt().solve(across.transpose());
+  }
+  Eigen::VectorXd scale(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    scale[i] = ParameterScale(problem.model.parameters[parameters[i]]);
+  }
+  return scale.cwiseInverse().asDiagonal() * own * scale.cwiseInverse().asDiagonal();
 }
 
 }  // namespace
@@ -285,6 +318,7 @@ void UpdatePosterior(const FitProblem& problem, const Selection& selection,
     }
   }
   WidenByClusters(problem, residuals, selection, equations, covariance, explained, fit);
+  fit.posterior.data_information = DataInformation(problem, residuals.prior, parameters, equations);
 }
 
 }  // namespace elastocal

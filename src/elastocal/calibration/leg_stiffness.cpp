@@ -40,6 +40,7 @@ Vector6d CompliancesSd(const CalibrationResult& result, const Eigen::VectorXd& q
 
 std::vector<LegStiffness> AssessLegs(const CalibrationResult& result, const Recording& recording) {
   std::vector<LegStiffness> legs;
+  if (!result.model.elasticity.base) return legs;
   for (int leg = 0; leg < result.model.leg_count(); ++leg) {
     LegStiffness entry;
     entry.leg = result.model.legs[leg].name;

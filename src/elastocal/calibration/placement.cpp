@@ -14,7 +14,7 @@ constexpr int kNoLeg = -2;
 
 /// The leg that a trial stands on; -1: its root is held; kNoLeg: anything else.
 int SupportOf(const ErrorModel& model, const Trial& trial) {
-  if (trial.support.empty()) return -1;
+  if (trial.support.empty()) return trial.free_root ? kNoLeg : -1;
   if (trial.support.size() > 1) return kNoLeg;
   for (int leg = 0; leg < model.leg_count(); ++leg) {
     if (model.legs[leg].link == trial.support[0]) return leg;
@@ -76,7 +76,7 @@ std::vector<Footing> FindFootings(const ErrorModel& model, const Recording& reco
     const int trial = static_cast<int>(t);
     const int leg = SupportOf(model, recording.trials[t]);
     if (leg == kNoLeg) continue;
-    const int body = leg < 0 ? -1 : model.tree.links[model.legs[leg].link].body;
+    const int body = leg < 0 ? 0 : model.tree.links[model.legs[leg].link].body;
     const std::vector<int> markers = MarkersOfBody(model, body);
     std::optional<FootTrack> track;
     for (int i = 0; i < recording.posture_count(); ++i) {

@@ -15,10 +15,10 @@ struct Footing {
   std::vector<int> postures;  ///< ascending
 };
 
-/// A foot that was displaced between two postures of a trial.
+/// A foot, or a root link that is held, that was displaced between two postures of a trial.
 struct Slip {
   int trial = 0;
-  int leg = 0;
+  int leg = 0;            ///< as in Footing
   int posture = 0;        ///< the first one after it
   double distance = 0.0;  ///< of its markers, m
 };
@@ -35,9 +35,10 @@ struct Placement {
 };
 
 /// Footings of all trials: a trial that stands on one of the model's legs, or whose root is held,
-/// has one, and one more after each slip of more than `slip_m`, which the markers of the foot show.
-/// A trial on both feet has none: how the load is shared is unknown, and the waist is seen by its
-/// own markers. `slips`, where given, tells the slips found.
+/// has one, and one more after each slip of more than `slip_m`, which the markers of the foot (of
+/// the root link) show. A trial on both feet has none: how the load is shared is unknown, and the
+/// waist is seen by its own markers; nor has one whose root is free. `slips`, where given, tells
+/// the slips found.
 std::vector<Footing> FindFootings(const ErrorModel& model, const Recording& recording,
                                   double slip_m, std::vector<Slip>* slips = nullptr);
 

@@ -24,7 +24,8 @@ TEST_F(FootingsTest, OneForEachTrialOnOneLegOrWithItsRootHeld) {
   const Recording recording =
       robot_.Empty({{.name = "both", .chains = {}, .support = {robot_.left, robot_.right}},
                     {.name = "left", .chains = {}, .support = {robot_.left}},
-                    {.name = "held", .chains = {}}},
+                    {.name = "held", .chains = {}},
+                    {.name = "free", .chains = {}, .support = {}, .free_root = true}},
                    2);
   const std::vector<Footing> footings = FindFootings(robot_.model, recording, 1e-3);
   ASSERT_EQ(footings.size(), 2u);
@@ -49,6 +50,18 @@ TEST_F(FootingsTest, ASlipOfTheStandingFootBeginsAnother) {
   ASSERT_EQ(slips.size(), 1u);
   EXPECT_EQ(slips[0].posture, 2);
   EXPECT_NEAR(slips[0].distance, 3e-3, 1e-15);
+}
+
+TEST_F(FootingsTest, ASlipOfTheHeldRootBeginsAnother) {
+  Recording recording = robot_.Empty({{.name = "held", .chains = {}}}, 4);
+  Shift("WAIST", 2, 3e-3, recording);
+  Shift("LFOOT", 1, 0.1, recording);
+  std::vector<Slip> slips;
+  const std::vector<Footing> footings = FindFootings(robot_.model, recording, 1e-3, &slips);
+  ASSERT_EQ(footings.size(), 2u);
+  EXPECT_EQ(footings[1].postures, (std::vector<int>{2, 3}));
+  ASSERT_EQ(slips.size(), 1u);
+  EXPECT_EQ(slips[0].leg, -1);
 }
 
 }  // namespace

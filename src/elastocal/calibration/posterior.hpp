@@ -14,6 +14,8 @@ namespace elastocal {
 struct Posterior {
   std::vector<int> parameters;  ///< indices into the model's, ascending
   Eigen::MatrixXd covariance;   ///< of these, in products of their SI units
+  /// What the data alone tell of them, without the prior: inverse products of SI units.
+  Eigen::MatrixXd data_information;
   /// Number of parameters (poses included) that the data, rather than the prior, determine: trace
   /// of the share of the data in the information.
   double effective_parameters = 0.0;

@@ -84,7 +84,7 @@ std::string ExcitationText(const CalibrationRun& run) {
       "parameters {:.3g}); O1 {:.4g}\n"
       "  hardly excited, leaning on the prior (sd above 1 deg or 5 mm without it): {}\n",
       excitation.condition_base, excitation.condition_all, excitation.indices.o1,
-      Names(result, HardlyExcited(result.model.parameters, run.base.kept, excitation)));
+      Names(result, HardlyExcited(result.model.parameters, excitation)));
 }
 
 std::string Correlations(const CalibrationResult& result) {

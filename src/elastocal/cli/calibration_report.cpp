@@ -154,8 +154,8 @@ std::string FeetLine(const CalibrationResult& result) {
     const auto furthest =
         std::max_element(result.slips.begin(), result.slips.end(),
                          [](const Slip& a, const Slip& b) { return a.distance < b.distance; });
-    text += fmt::format("  feet slipped {} times, by at most {:.1f} mm\n", result.slips.size(),
-                        1e3 * furthest->distance);
+    text += fmt::format("  feet (or the held root) slipped {} times, by at most {:.1f} mm\n",
+                        result.slips.size(), 1e3 * furthest->distance);
   }
   if (!result.loose_footings.empty()) {
     text += fmt::format("  the waist is not where its leg puts it in {} postures, left out\n",
@@ -169,8 +169,7 @@ std::string UncertainLine(const CalibrationRun& run) {
   const auto count = [&](ParameterStatus status) {
     return std::count(result.status.begin(), result.status.end(), status);
   };
-  const std::size_t weak =
-      HardlyExcited(result.model.parameters, run.base.kept, run.excitation).size();
+  const std::size_t weak = HardlyExcited(result.model.parameters, run.excitation).size();
   return fmt::format(
       "  parameters: {} known hardly better than beforehand, {} held; {} hardly excited\n",
       count(ParameterStatus::kUnsupported), count(ParameterStatus::kHeld), weak);

@@ -89,8 +89,9 @@ std::string DescribeFeet(const CalibrationRun& run) {
   const CalibrationResult& result = run.comparison.largest();
   std::string text;
   for (const Slip& slip : result.slips) {
-    text += fmt::format("  foot of {} slipped by {:.1f} mm before {}\n",
-                        result.model.legs[slip.leg].name, 1e3 * slip.distance,
+    const std::string what =
+        slip.leg < 0 ? "root link" : "foot of " + result.model.legs[slip.leg].name;
+    text += fmt::format("  {} slipped by {:.1f} mm before {}\n", what, 1e3 * slip.distance,
                         DescribePosture(run.recording, slip.posture));
   }
   for (const LooseFooting& footing : result.loose_footings) {

@@ -63,6 +63,7 @@ ObservabilityIndices ComputeObservability(const Eigen::VectorXd& singular_values
 Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int>& base,
                             int postures, double marker_sd) {
   Excitation excitation;
+  excitation.parameters = base;
   const Eigen::MatrixXd R_base = factor(Eigen::all, base);
   const Eigen::VectorXd scale = InverseColumnNorms(R_base);
   excitation.condition_all = ConditionNumber(factor * InverseColumnNorms(factor).asDiagonal());
@@ -78,14 +79,13 @@ Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int
 }
 
 std::vector<int> HardlyExcited(const std::vector<Parameter>& parameters,
-                               const std::vector<int>& base, const Excitation& excitation) {
+                               const Excitation& excitation) {
   std::vector<int> weak;
-  Eigen::Index geometric = 0;  // elastic parameters have no entry in the excitation
-  for (int i : base) {
-    if (IsElastic(parameters[i].kind)) continue;
+  for (std::size_t k = 0; k < excitation.parameters.size(); ++k) {
+    const int i = excitation.parameters[k];
     const bool angle = parameters[i].unit == ParameterUnit::kRadian;
     const double limit = angle ? M_PI / 180.0 : 5e-3;
-    if (excitation.parameter_sd[geometric++] > limit) weak.push_back(i);
+    if (excitation.parameter_sd[static_cast<Eigen::Index>(k)] > limit) weak.push_back(i);
   }
   return weak;
 }

@@ -28,17 +28,19 @@ struct Excitation {
   double condition_all = 0.0;    ///< of all columns; infinite where they are dependent
   double condition_base = 0.0;   ///< of the identifiable columns
   ObservabilityIndices indices;  ///< of the identifiable columns as they are (m/rad, m/m)
-  /// For each identifiable parameter the standard deviation that it would have from this recording
+  std::vector<int> parameters;   ///< those that belong to the identifiable columns
+  /// For each of `parameters` the standard deviation that it would have from this recording
   /// alone if one marker coordinate had `marker_sd`: rad or m; infinite where it is not excited.
   Eigen::VectorXd parameter_sd;
 };
 
 /// Identifiable parameters whose standard deviation from this recording alone is more than a degree
-/// or 5 mm. `excitation` is that of the geometric parameters in `base`, in their order.
+/// or 5 mm.
 std::vector<int> HardlyExcited(const std::vector<Parameter>& parameters,
-                               const std::vector<int>& base, const Excitation& excitation);
+                               const Excitation& excitation);
 
-/// `factor` is what RegressorFactor returns; `base` lists the identifiable columns.
+/// `factor` is what RegressorFactor returns, or another root of what the recording tells of the
+/// parameters (its columns); `base` lists the identifiable columns.
 Excitation AssessExcitation(const Eigen::MatrixXd& factor, const std::vector<int>& base,
                             int postures, double marker_sd);
 

@@ -94,7 +94,7 @@ TEST(Excitation, OfTooFewRowsOrNoColumns) {
   EXPECT_EQ(AssessExcitation(factor, {}, 1, 0.1).parameter_sd.size(), 0);
 }
 
-TEST(HardlyExcited, PassesOverCompliancesBetweenTheOthers) {
+TEST(HardlyExcited, NamesParametersThatAreNotToldToADegreeOrFiveMillimetres) {
   const auto parameter = [](ParameterKind kind, ParameterUnit unit) {
     Parameter p;
     p.kind = kind;
@@ -107,9 +107,10 @@ TEST(HardlyExcited, PassesOverCompliancesBetweenTheOthers) {
       parameter(ParameterKind::kTorsion, ParameterUnit::kRadianPerNewtonMetre),
       parameter(ParameterKind::kR, ParameterUnit::kMetre),
       parameter(ParameterKind::kTheta, ParameterUnit::kRadian)};
-  Excitation excitation;  // of the geometric ones: 0, 3 and 4
+  Excitation excitation;
+  excitation.parameters = {0, 3, 4};
   excitation.parameter_sd = Eigen::Vector3d(1e-3, 6e-3, 1e-3);
-  EXPECT_EQ(HardlyExcited(parameters, {0, 1, 2, 3, 4}, excitation), std::vector<int>{3});
+  EXPECT_EQ(HardlyExcited(parameters, excitation), std::vector<int>{3});
 }
 
 }  // namespace

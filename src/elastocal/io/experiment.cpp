@@ -46,23 +46,25 @@ std::vector<int> ReadChains(const YamlValue& trial, const Project& project) {
 }
 
 /// Feet are where chains end: only there is known what carries the robot.
-std::vector<int> ReadSupport(const YamlValue& list, const Project& project) {
+void ReadSupport(const YamlValue& value, const Project& project, TrialFiles& trial) {
+  if (value.IsScalar() && value.Text() == "free") {
+    trial.free_root = true;
+    return;
+  }
   std::vector<std::string> tips;
   for (const Chain& chain : project.chains) {
     tips.push_back(project.tree.links[chain.tip_link].name);
   }
-  std::vector<int> support;
-  for (const YamlValue& value : list.Items()) {
-    const int link = LinkNamedBy(value, project.tree);
+  for (const YamlValue& item : value.Items()) {
+    const int link = LinkNamedBy(item, project.tree);
     const std::string& name = project.tree.links[link].name;
     if (!Contains(tips, name)) {
-      value.Fail("link " + Quote(name) + " is not the tip of any chain of " +
-                 project.file.string() + DidYouMean(name.substr(0, 60), tips));
+      item.Fail("link " + Quote(name) + " is not the tip of any chain of " + project.file.string() +
+                DidYouMean(name.substr(0, 60), tips));
     }
-    if (Contains(support, link)) value.Fail("the link comes twice");
-    support.push_back(link);
+    if (Contains(trial.support, link)) item.Fail("the link comes twice");
+    trial.support.push_back(link);
   }
-  return support;
 }
 
 TrialKind ReadKind(const YamlValue& value) {
@@ -93,7 +95,7 @@ TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Proje
   trial.name = value.Get("name").Text();
   if (const auto kind = value.Find("kind")) trial.kind = ReadKind(*kind);
   trial.chains = ReadChains(value, project);
-  if (const auto support = value.Find("support")) trial.support = ReadSupport(*support, project);
+  if (const auto support = value.Find("support")) ReadSupport(*support, project, trial);
   trial.markers = ReadFileName(value.Get("markers"), folder, used);
   trial.joints = ReadFileName(value.Get("joints"), folder, used);
   if (const auto lag = value.Find("expected_lag_s")) trial.expected_lag_s = lag->Number();
@@ -119,9 +121,13 @@ void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& p
   yaml << YAML::Key << "chains" << YAML::Value << YAML::Flow << YAML::BeginSeq;
   for (int chain : trial.chains) yaml << project.chains[chain].name;
   yaml << YAML::EndSeq;
-  yaml << YAML::Key << "support" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-  for (int link : trial.support) yaml << project.tree.links[link].name;
-  yaml << YAML::EndSeq;
+  if (trial.free_root) {
+    emit("support", "free");
+  } else {
+    yaml << YAML::Key << "support" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    for (int link : trial.support) yaml << project.tree.links[link].name;
+    yaml << YAML::EndSeq;
+  }
   const auto emit_file = [&](const char* key, const fs::path& file) {
     emit(key, file.lexically_proximate(folder.lexically_normal()).generic_string());
   };

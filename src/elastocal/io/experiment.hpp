@@ -21,7 +21,8 @@ struct TrialFiles {
   TrialKind kind = TrialKind::kCalibration;
   std::vector<int> chains;  ///< that it exercises, of Project::chains; one or more
   std::vector<int>
-      support;  ///< links that stand on the floor, of the tree; empty: the root is held
+      support;  ///< links that stand on the floor, of the tree; empty: the root is held ...
+  bool free_root = false;                 ///< ... unless it is free
   std::filesystem::path markers, joints;  ///< Qualisys TSV and joint log
   /// Camera time less robot time at the beginning, s, where it is known.
   std::optional<double> expected_lag_s = {};

@@ -141,6 +141,7 @@ TEST_F(ExperimentTest, WritesWhatItReads) {
   }
   written.trials[1].support = {FindLink(project_.tree, "left_sole"),
                                FindLink(project_.tree, "right_sole")};
+  written.trials[2].free_root = true;
   WriteExperiment(folder_, written, project_);
   EXPECT_EQ(ReadFile(folder_ / "experiment.yaml").find(folder_.string()), std::string::npos);
   const Experiment read = ReadExperiment(folder_, project_);
@@ -150,6 +151,7 @@ TEST_F(ExperimentTest, WritesWhatItReads) {
     EXPECT_EQ(read.trials[i].kind, written.trials[i].kind);
     EXPECT_EQ(read.trials[i].chains, written.trials[i].chains);
     EXPECT_EQ(read.trials[i].support, written.trials[i].support);
+    EXPECT_EQ(read.trials[i].free_root, written.trials[i].free_root);
     EXPECT_EQ(read.trials[i].markers, written.trials[i].markers);
     EXPECT_EQ(read.trials[i].joints, written.trials[i].joints);
   }

@@ -164,9 +164,10 @@ ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& tr
     }
   }
   Elasticity elasticity;
+  elasticity.base = project.elasticity.base;
   elasticity.torque_bias = project.elasticity.torque_bias;
   for (const Chain& chain : project.chains) {
-    if (!project.elasticity.base || !standing.contains(chain.tip_link)) continue;
+    if (!standing.contains(chain.tip_link)) continue;
     elasticity.legs.push_back({chain.name, chain.tip_link});
     standing.erase(chain.tip_link);  // a second chain to the same foot is the same leg
   }

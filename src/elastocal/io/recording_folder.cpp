@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <future>
-#include <limits>
 #include <set>
 
 #include "elastocal/io/joint_log.hpp"
@@ -42,7 +41,11 @@ void CheckJoints(const JointLog& log, const std::vector<int>& markers, const Tri
 }
 
 Trial TrialOf(const TrialFiles& files, const Project& project) {
-  Trial trial{.name = files.name, .kind = files.kind, .chains = {}, .support = files.support};
+  Trial trial{.name = files.name,
+              .kind = files.kind,
+              .chains = {},
+              .support = files.support,
+              .free_root = files.free_root};
   for (int chain : files.chains) trial.chains.push_back(project.chains[chain].name);
   return trial;
 }
@@ -103,26 +106,6 @@ Experiment ReadExperiments(const std::vector<fs::path>& folders, const Project& 
   return all;
 }
 
-/// On two feet nothing tells how the legs share the load and give way: the feet helped to find the
-/// clock, but say nothing about the robot.
-void HideFeetOfTwo(const MarkedRobot& robot, Recording& recording) {
-  const auto body = [&](int link) { return robot.tree.links[link].body; };
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    const std::vector<int>& support = recording.trials[recording.trial[i]].support;
-    if (support.size() < 2) continue;
-    for (std::size_t m = 0; m < recording.marker_names.size(); ++m) {
-      const auto named = [&](const Marker& marker) {
-        return marker.name == recording.marker_names[m];
-      };
-      const auto marker = std::find_if(robot.markers.begin(), robot.markers.end(), named);
-      const auto on_foot = [&](int link) { return body(link) == body(marker->link); };
-      if (std::none_of(support.begin(), support.end(), on_foot)) continue;
-      recording.markers.block<1, 3>(i, 3 * static_cast<Eigen::Index>(m))
-          .setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-}
-
 }  // namespace
 
 bool IsRecordingFolder(const fs::path& path) {
@@ -148,8 +131,6 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   for (const fs::path& folder : folders) source += (source.empty() ? "" : ", ") + folder.string();
   result.calibration = MergeTrials(robot, calibration, source);
   result.validation = MergeTrials(robot, validation, source);
-  HideFeetOfTwo(robot, result.calibration);
-  HideFeetOfTwo(robot, result.validation);
   result.calibration.gravity = result.validation.gravity = experiment.gravity;
   if (result.calibration.posture_count() + result.validation.posture_count() == 0) {
     throw InputError(source + ": no trial can be used; " + result.findings.front());

@@ -36,6 +36,7 @@ class YamlValue {
   void Expect(bool fine, const std::string& expected) const;
 
   int line() const { return line_; }
+  bool IsScalar() const { return kind_ == Kind::kScalar; }
 
   /// Of a mapping. Nothing at all (`key:` and the end of the line) is an empty one.
   void ExpectKeys(const std::vector<std::string>& known) const;

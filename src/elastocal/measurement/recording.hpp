@@ -17,8 +17,9 @@ struct Trial {
   TrialKind kind = TrialKind::kCalibration;
   std::vector<std::string> chains;  ///< chains that it exercises, by their names in the project
   /// Links of the robot tree that stand on the floor and do not move in the trial. If empty, the
-  /// root link is held still.
+  /// root link is held still, unless it is free.
   std::vector<int> support = {};
+  bool free_root = false;  ///< nothing ties the robot to the floor
 };
 
 /// Static postures of one robot with the marker positions measured in each. Real and simulated

@@ -10,6 +10,7 @@ namespace {
 /// Keeps a nuisance that nothing determines from being divided by zero; information of the others
 /// is of the order of one or more.
 constexpr double kRidge = 1e-12;
+constexpr Eigen::Index kBatchRows = 384;  // of nuisance, eliminated in one product
 constexpr int kMostActiveSets = 20;
 constexpr double kSlightGradient = 1e-9;  // no reason to leave a bound
 
@@ -20,12 +21,10 @@ NormalEquations::NormalEquations(const LeastSquaresProblem& problem) : problem_(
   const auto size = static_cast<Eigen::Index>(unknowns_.size());
   information_.setZero(size, size);
   gradient_.setZero(size);
-  for (Group& group : groups_) AddGroup(group);
   for (std::size_t block = 0; block < layout_.size(); ++block) {
-    if (layout_[block].group < 0 && problem_.residual_blocks[block].active) {
-      AddAlone(static_cast<int>(block));
-    }
+    if (problem_.residual_blocks[block].active) AddBlock(static_cast<int>(block));
   }
+  EliminateNuisance();
   information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
 }
 
@@ -66,18 +65,10 @@ void NormalEquations::LayOut() {
     if (layout.group >= 0) groups_[layout.group].blocks.push_back(static_cast<int>(block));
     layout_.push_back(std::move(layout));
   }
-  std::vector<int> local(unknowns_.size(), -1);
   for (Group& group : groups_) {
-    for (int block : group.blocks) {
-      for (int unknown : layout_[block].unknowns) {
-        if (local[unknown] < 0) {
-          local[unknown] = static_cast<int>(group.columns.size());
-          group.columns.push_back(unknown);
-        }
-        layout_[block].in_group.push_back(local[unknown]);
-      }
-    }
-    for (int unknown : group.columns) local[unknown] = -1;
+    group.row = nuisance_rows_;
+    group.size = layout_[group.blocks.front()].width;
+    nuisance_rows_ += group.size;
   }
 }
 
@@ -93,56 +84,9 @@ Eigen::MatrixXd NormalEquations::NuisanceJacobian(int block) const {
   return problem_.Jacobian(block).middleCols(layout.nuisance, layout.width);
 }
 
-void NormalEquations::AddGroup(Group& group) {
-  const auto width = static_cast<Eigen::Index>(group.columns.size());
-  const Eigen::Index size = layout_[group.blocks.front()].width;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(width, width);
-  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, width);
-  Eigen::MatrixXd D = kRidge * Eigen::MatrixXd::Identity(size, size);
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(width);
-  Eigen::VectorXd own_gradient = Eigen::VectorXd::Zero(size);
-  Eigen::MatrixXd part;
-  for (int block : group.blocks) {
-    if (!problem_.residual_blocks[block].active) continue;
-    const std::vector<int>& to = layout_[block].in_group;
-    const Eigen::MatrixXd J = OwnJacobian(block);
-    const Eigen::MatrixXd E = NuisanceJacobian(block);
-    const Eigen::VectorXd& r = problem_.Residual(block);
-    part.noalias() = J.transpose() * J;
-    for (std::size_t c = 0; c < to.size(); ++c) {
-      const auto column = static_cast<Eigen::Index>(c);
-      for (std::size_t row = 0; row < to.size(); ++row) {
-        A(to[row], to[c]) += part(static_cast<Eigen::Index>(row), column);
-      }
-    }
-    part.noalias() = E.transpose() * J;
-    for (std::size_t c = 0; c < to.size(); ++c) {
-      B.col(to[c]) += part.col(static_cast<Eigen::Index>(c));
-    }
-    const Eigen::VectorXd slope = J.transpose() * r;
-    for (std::size_t c = 0; c < to.size(); ++c) g[to[c]] += slope[static_cast<Eigen::Index>(c)];
-    D.noalias() += E.transpose() * E;
-    own_gradient.noalias() += E.transpose() * r;
-  }
-  group.factor.compute(D);
-  group.gain = group.factor.solve(B);
-  group.own = group.factor.solve(own_gradient);
-  nuisance_decrease_ += 0.5 * own_gradient.dot(group.own);
-  A.noalias() -= B.transpose() * group.gain;
-  g.noalias() -= B.transpose() * group.own;
-  for (Eigen::Index c = 0; c < width; ++c) {
-    gradient_[group.columns[c]] += g[c];
-    for (Eigen::Index r = 0; r < width; ++r) {
-      if (group.columns[r] >= group.columns[c]) {
-        information_(group.columns[r], group.columns[c]) += A(r, c);
-      }
-    }
-  }
-}
-
-void NormalEquations::AddAlone(int block) {
+void NormalEquations::AddBlock(int block) {
   const std::vector<int>& to = layout_[block].unknowns;
-  const auto& J = problem_.Jacobian(block);
+  const Eigen::MatrixXd J = OwnJacobian(block);
   const Eigen::MatrixXd part = J.transpose() * J;
   const Eigen::VectorXd slope = J.transpose() * problem_.Residual(block);
   for (std::size_t c = 0; c < to.size(); ++c) {
@@ -152,6 +96,51 @@ void NormalEquations::AddAlone(int block) {
       if (to[r] >= to[c]) information_(to[r], to[c]) += part(static_cast<Eigen::Index>(r), column);
     }
   }
+}
+
+void NormalEquations::EliminateNuisance() {
+  gains_.setZero(nuisance_rows_, information_.rows());
+  for (const std::vector<Group*>& batch : Batches()) {
+    Rows reduced = Rows::Zero(batch.back()->row + batch.back()->size - batch.front()->row,
+                              information_.rows());
+    for (Group* group : batch) {
+      auto rows = reduced.middleRows(group->row - batch.front()->row, group->size);
+      Eigen::MatrixXd D = kRidge * Eigen::MatrixXd::Identity(group->size, group->size);
+      Eigen::VectorXd own_gradient = Eigen::VectorXd::Zero(group->size);
+      for (int block : group->blocks) {
+        if (!problem_.residual_blocks[block].active) continue;
+        const std::vector<int>& to = layout_[block].unknowns;
+        const Eigen::MatrixXd E = NuisanceJacobian(block);
+        const Eigen::MatrixXd part = E.transpose() * OwnJacobian(block);
+        for (std::size_t c = 0; c < to.size(); ++c) {
+          rows.col(to[c]) += part.col(static_cast<Eigen::Index>(c));
+        }
+        D.noalias() += E.transpose() * E;
+        own_gradient.noalias() += E.transpose() * problem_.Residual(block);
+      }
+      group->factor.compute(D);
+      group->own = group->factor.solve(own_gradient);
+      nuisance_decrease_ += 0.5 * own_gradient.dot(group->own);
+      gradient_.noalias() -= rows.transpose() * group->own;
+      group->factor.matrixL().solveInPlace(rows);
+      gains_.middleRows(group->row, group->size) = group->factor.matrixU().solve(rows);
+    }
+    information_.selfadjointView<Eigen::Lower>().rankUpdate(reduced.transpose(), -1.0);
+  }
+}
+
+std::vector<std::vector<NormalEquations::Group*>> NormalEquations::Batches() {
+  std::vector<std::vector<Group*>> batches;
+  Eigen::Index rows = kBatchRows;
+  for (Group& group : groups_) {
+    if (rows >= kBatchRows) {
+      batches.emplace_back();
+      rows = 0;
+    }
+    batches.back().push_back(&group);
+    rows += group.size;
+  }
+  return batches;
 }
 
 std::vector<int> NormalEquations::Positions(const std::vector<int>& entries) const {
@@ -164,7 +153,7 @@ Eigen::VectorXd NormalEquations::Expand(const Eigen::VectorXd& step) const {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(position_.size()));
   all(unknowns_) = step;
   for (const Group& group : groups_) {
-    all.segment(group.first, group.own.size()) = -group.own - group.gain * step(group.columns);
+    all.segment(group.first, group.size) = -group.own - Gain(group) * step;
   }
   return all;
 }
@@ -177,10 +166,9 @@ Eigen::MatrixXd NormalEquations::Explained(int block, const Eigen::MatrixXd& cov
   if (layout.group < 0) return explained;
   const Group& group = groups_[layout.group];
   const Eigen::MatrixXd E = NuisanceJacobian(block);
-  const Eigen::MatrixXd reach =
-      covariance(Eigen::all, group.columns) * group.gain.transpose() * E.transpose();
+  const Eigen::MatrixXd reach = covariance * (E * Gain(group)).transpose();
   const Eigen::MatrixXd both = J * reach(layout.unknowns, Eigen::all);
-  const Eigen::MatrixXd by_gain = E * group.gain * reach(group.columns, Eigen::all);
+  const Eigen::MatrixXd by_gain = E * Gain(group) * reach;
   explained += by_gain - both - both.transpose() + E * group.factor.solve(E.transpose());
   return explained;
 }
@@ -188,29 +176,31 @@ Eigen::MatrixXd NormalEquations::Explained(int block, const Eigen::MatrixXd& cov
 std::vector<Eigen::VectorXd> NormalEquations::ExplainedVariances(
     const Eigen::MatrixXd& covariance) const {
   std::vector<Eigen::VectorXd> variances(layout_.size());
-  const auto own = [&](int block, const Eigen::MatrixXd& J) {
-    const std::vector<int>& at = layout_[block].unknowns;
-    const Eigen::MatrixXd spread = J * Eigen::MatrixXd(covariance(at, at));
-    return Eigen::VectorXd(spread.cwiseProduct(J).rowwise().sum());
-  };
   for (std::size_t block = 0; block < layout_.size(); ++block) {
-    const int b = static_cast<int>(block);
-    if (layout_[block].group < 0) variances[block] = own(b, OwnJacobian(b));
+    const std::vector<int>& at = layout_[block].unknowns;
+    const Eigen::MatrixXd J = OwnJacobian(static_cast<int>(block));
+    const Eigen::MatrixXd spread = J * Eigen::MatrixXd(covariance(at, at));
+    variances[block] = spread.cwiseProduct(J).rowwise().sum();
   }
+  // gain C, of many groups at once.
+  Rows reach;
+  Eigen::Index begin = 0;
   for (const Group& group : groups_) {
-    // C gain', and gain C gain' + D^-1, once for all blocks of the group.
-    const Eigen::MatrixXd reach =
-        Eigen::MatrixXd(covariance(group.columns, group.columns)) * group.gain.transpose();
-    const Eigen::Index size = group.own.size();
+    if (group.row + group.size > begin + reach.rows()) {
+      begin = group.row;
+      const Eigen::Index rows = std::min(std::max(kBatchRows, group.size), nuisance_rows_ - begin);
+      reach.noalias() = gains_.middleRows(begin, rows) * covariance;
+    }
+    const Eigen::MatrixXd own = reach.middleRows(group.row - begin, group.size);
     const Eigen::MatrixXd spread =
-        group.gain * reach + group.factor.solve(Eigen::MatrixXd::Identity(size, size));
+        own * Gain(group).transpose() +
+        group.factor.solve(Eigen::MatrixXd::Identity(group.size, group.size));
     for (int block : group.blocks) {
-      const Eigen::MatrixXd J = OwnJacobian(block);
       const Eigen::MatrixXd E = NuisanceJacobian(block);
       const Eigen::MatrixXd across =
-          J * Eigen::MatrixXd(reach(layout_[block].in_group, Eigen::all));
-      variances[block] = own(block, J) - 2.0 * across.cwiseProduct(E).rowwise().sum() +
-                         (E * spread).cwiseProduct(E).rowwise().sum();
+          OwnJacobian(block) *
+          Eigen::MatrixXd(own(Eigen::all, layout_[block].unknowns)).transpose();
+      variances[block] += (E * spread - 2.0 * across).cwiseProduct(E).rowwise().sum();
     }
   }
   return variances;
@@ -233,7 +223,7 @@ Eigen::MatrixXd NormalEquations::Scores(const std::vector<Eigen::VectorXd>& resi
     if (layout_[block].group < 0 && takes_part(b)) add_own(b);
   }
   for (const Group& group : groups_) {
-    Eigen::VectorXd own = Eigen::VectorXd::Zero(group.own.size());
+    Eigen::VectorXd own = Eigen::VectorXd::Zero(group.size);
     int of = -1;
     for (int block : group.blocks) {
       if (!takes_part(block)) continue;
@@ -241,11 +231,7 @@ Eigen::MatrixXd NormalEquations::Scores(const std::vector<Eigen::VectorXd>& resi
       add_own(block);
       own += NuisanceJacobian(block).transpose() * residuals[block];
     }
-    if (of < 0) continue;
-    const Eigen::VectorXd by_nuisance = group.gain.transpose() * own;
-    for (std::size_t c = 0; c < group.columns.size(); ++c) {
-      scores(group.columns[c], of) -= by_nuisance[static_cast<Eigen::Index>(c)];
-    }
+    if (of >= 0) scores.col(of) -= Gain(group).transpose() * own;
   }
   return scores;
 }
@@ -265,10 +251,7 @@ NormalEquations::Score NormalEquations::Project(int block, const Eigen::MatrixXd
   const Eigen::MatrixXd by_nuisance = A.transpose() * NuisanceJacobian(block);
   score.residual -= by_nuisance * group.own;
   score.information -= by_nuisance * group.factor.solve(by_nuisance.transpose());
-  const Eigen::MatrixXd by_gain = by_nuisance * group.gain;
-  for (std::size_t c = 0; c < group.columns.size(); ++c) {
-    score.cross.col(group.columns[c]) -= by_gain.col(static_cast<Eigen::Index>(c));
-  }
+  score.cross -= by_nuisance * Gain(group);
   return score;
 }
 

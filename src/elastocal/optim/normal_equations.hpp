@@ -58,11 +58,10 @@ class NormalEquations {
   /// The residual blocks that share a nuisance block.
   struct Group {
     std::vector<int> blocks;
-    std::vector<int> columns;  ///< among the unknowns, of all its blocks
-    Eigen::Index first = 0;    ///< entry of x of the nuisance block
+    Eigen::Index first = 0;          ///< entry of x of the nuisance block
+    Eigen::Index row = 0, size = 0;  ///< of the nuisance among that of all groups
     Eigen::LLT<Eigen::MatrixXd> factor;
-    Eigen::MatrixXd gain;  ///< step of the nuisance = -(own + gain x step of `columns`)
-    Eigen::VectorXd own;
+    Eigen::VectorXd own;  ///< step of the nuisance = -(own + Gain x step of the unknowns)
   };
   /// Where the derivatives of a residual block stand.
   struct Layout {
@@ -70,12 +69,15 @@ class NormalEquations {
     Eigen::Index nuisance = 0, width = 0;  ///< its columns in the block's Jacobian
     std::vector<int> columns;              ///< of the others, in the Jacobian ...
     std::vector<int> unknowns;             ///< ... and among the unknowns
-    std::vector<int> in_group;             ///< ... and in Group::columns
   };
 
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
   void LayOut();
-  void AddGroup(Group& group);
-  void AddAlone(int block);
+  void AddBlock(int block);
+  void EliminateNuisance();
+  std::vector<std::vector<Group*>> Batches();
+  auto Gain(const Group& group) const { return gains_.middleRows(group.row, group.size); }
   Eigen::MatrixXd OwnJacobian(int block) const;
   Eigen::MatrixXd NuisanceJacobian(int block) const;
 
@@ -83,6 +85,8 @@ class NormalEquations {
   std::vector<int> unknowns_, position_;  // position_: of an entry of x among the unknowns; -1
   std::vector<Layout> layout_;            // by residual block
   std::vector<Group> groups_;
+  Eigen::Index nuisance_rows_ = 0;
+  Rows gains_;  // of all groups x unknowns
   Eigen::MatrixXd information_;
   Eigen::VectorXd gradient_;
   double nuisance_decrease_ = 0.0;

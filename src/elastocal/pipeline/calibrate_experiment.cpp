@@ -4,7 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "elastocal/identifiability/regressor.hpp"
+#include <Eigen/Cholesky>
+
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -12,14 +13,21 @@
 namespace elastocal {
 namespace {
 
+/// By what the data tell before the prior, the waist being free in trials.
 Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& base,
                         const Recording& recording) {
-  const Eigen::MatrixXd factor = RegressorFactor(
-      result.model, ApplyErrors(result.model, result.delta), recording.q, SeenMask(recording));
+  const std::vector<int>& fitted = result.posterior.parameters;
+  const Eigen::LDLT<Eigen::MatrixXd> root(result.posterior.data_information);
+  Eigen::MatrixXd U = root.matrixL();
+  U = root.transpositionsP().transpose() * U;
+  U *= root.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(U.cols(), result.model.parameter_count());
+  factor(Eigen::all, fitted) = result.marker_sd * U.transpose();
   // Of the geometry: whether a compliance was excited, its loads say (see unsupported parameters).
   std::vector<int> geometric;
   for (int i : base.kept) {
-    if (!IsElastic(result.model.parameters[i].kind)) geometric.push_back(i);
+    if (IsElastic(result.model.parameters[i].kind)) continue;
+    if (std::binary_search(fitted.begin(), fitted.end(), i)) geometric.push_back(i);
   }
   return AssessExcitation(factor, geometric, recording.posture_count(), result.marker_sd);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "elastocal/calibration/closed_chains.hpp"
 #include "elastocal/calibration/residuals.hpp"
 #include "elastocal/io/experiment.hpp"
 #include "elastocal/io/posture_table.hpp"
@@ -77,6 +78,9 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
   if (read.calibration.posture_count() == 0) {
     if (purpose == ReadFor::kCalibration) RefuseWithoutCalibration(read);
     std::swap(read.calibration, read.validation);
+  }
+  for (Recording* recording : {&read.calibration, &read.validation}) {
+    HideClosedChains(project.tree, project.markers, *recording);
   }
   Measurements measured;
   measured.trials = std::move(read.trials);

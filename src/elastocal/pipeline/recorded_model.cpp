@@ -4,10 +4,14 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/math/singular_values.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/parameter_names.hpp"
+
 namespace elastocal {
 namespace {
+
+constexpr double kLeastWidth = 0.01;  // m: of the markers about the line that fits them best
 
 /// Joints whose limits leave them no motion: nothing can be identified there.
 std::string StuckJoints(const ErrorModel& model) {
@@ -38,6 +42,28 @@ void WarnOfLostRank(const ErrorModel& model, const IdentifiabilityOptions& optio
   } else if (base.held.empty()) {
     warnings.push_back(fmt::format("only {}; see inspect for what is not", count));
   }
+}
+
+/// On two feet, and in trials that no leg ties to the floor, the markers on the root link are all
+/// that locates the waist.
+void WarnOfFewWaistMarkers(const ErrorModel& model, std::vector<std::string>& warnings) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const Marker& marker : model.markers) {
+    const Link& link = model.tree.links[marker.link];
+    if (link.body == 0) positions.push_back(link.T_body_link * marker.p_link_marker);
+  }
+  const auto count = static_cast<Eigen::Index>(positions.size());
+  const Eigen::Map<const Eigen::Matrix3Xd> all(positions.empty() ? nullptr : positions[0].data(), 3,
+                                               count);
+  std::string found = fmt::format("{} markers on the root link", count);
+  if (count >= 3) {
+    const Eigen::VectorXd spread = SingularValues(all.colwise() - all.rowwise().mean());
+    if (spread[1] > kLeastWidth) return;
+    found += " lie on a line";
+  }
+  warnings.push_back(found +
+                     "; three or more that do not lie on a line were expected: else the pose of "
+                     "the waist leans on the markers of the chains");
 }
 
 /// The project's clusters as far as their markers were seen.
@@ -87,6 +113,7 @@ RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint6
     }
     result.base = FindBaseParameters(result.model, options);
   }
+  if (!recording.trials.empty()) WarnOfFewWaistMarkers(result.model, measured.warnings);
   WarnOfLostRank(result.model, options, result.base, measured.warnings);
   return result;
 }

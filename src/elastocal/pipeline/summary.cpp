@@ -76,7 +76,7 @@ Json ExcitationJson(const CalibrationRun& run) {
   json["O5"] = excitation.indices.o5;
   const auto& parameters = run.comparison.largest().model.parameters;
   json["hardly_excited"] = Json::array();
-  for (int i : HardlyExcited(parameters, run.base.kept, excitation)) {
+  for (int i : HardlyExcited(parameters, excitation)) {
     json["hardly_excited"].push_back(parameters[i].name);
   }
   return json;

@@ -56,9 +56,13 @@ class VarianceProgram : public NonlinearProgram {
 /// A weighted set: postures, by their information Psi^T Psi, with weights that sum to one.
 class WeightedSet {
  public:
-  explicit WeightedSet(const PostureSet& set)
-      : weights_(Eigen::VectorXd::Constant(set.size(), 1.0 / set.size())) {
-    for (int k = 0; k < set.size(); ++k) parts_.push_back(set.psi(k).transpose() * set.psi(k));
+  WeightedSet(PostureProblem& problem, const std::vector<Eigen::VectorXd>& postures)
+      : weights_(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(postures.size()),
+                                           1.0 / static_cast<double>(postures.size()))) {
+    for (const Eigen::VectorXd& x : postures) {
+      const Eigen::MatrixXd psi = EvaluateRegressor(problem, x);
+      parts_.push_back(psi.transpose() * psi);
+    }
   }
 
   int size() const { return static_cast<int>(parts_.size()); }
@@ -121,13 +125,18 @@ Certificate CertifyBound(PostureProblem& problem, const PostureSet& set,
   Certificate certificate;
   if (set.Index(Criterion::kO1) == 0.0) return certificate;
   FeasibleSampler sampler(problem.feasible, options.seed);
-  std::vector<Eigen::VectorXd> pool = set.postures();
+  // The bound is that of the feasible postures, which those given may not all be.
+  std::vector<Eigen::VectorXd> pool;
+  for (const Eigen::VectorXd& x : set.postures()) {
+    if (WorstViolation(problem.feasible, x).amount <= kFeasible) pool.push_back(x);
+  }
+  const bool all_feasible = static_cast<int>(pool.size()) == set.size();
   while (static_cast<int>(pool.size()) < options.candidates + set.size()) {
     const auto drawn = sampler.Draw();
     if (!drawn) break;
     pool.push_back(*drawn);
   }
-  WeightedSet weighted(set);
+  WeightedSet weighted(problem, all_feasible ? set.postures() : pool);
   certificate.bound = std::numeric_limits<double>::infinity();
   for (; certificate.rounds < options.max_rounds; ++certificate.rounds) {
     weighted.OptimiseWeights();

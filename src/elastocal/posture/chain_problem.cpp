@@ -90,9 +90,16 @@ void KeepExcited(const ErrorModel& model, const MotionSetup& motion, const Chain
     stacked.middleRows(i * regressor.rows(), regressor.rows()) = regressor.Evaluate(moving, x);
   }
   const PriorityQrResult excited = PriorityQr(stacked(Eigen::all, order), kTolerance);
+  std::vector<int> rows;
+  for (int i : excited.kept) rows.push_back(order[i]);
+  std::sort(rows.begin(), rows.end());
   std::vector<int> kept;
-  for (int i : excited.kept) kept.push_back(base.kept[order[i]]);
-  std::sort(kept.begin(), kept.end());
+  base.geometric_count = 0;
+  for (int i : rows) {
+    kept.push_back(base.kept[i]);
+    if (!IsElastic(model.parameters[kept.back()].kind)) ++base.geometric_count;
+  }
+  base.regrouping = Eigen::MatrixXd(base.regrouping(rows, Eigen::all));
   base.kept = std::move(kept);
 }
 

@@ -151,7 +151,7 @@ void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
     AddJointCompliances(model, joint, model.parameters);
   }
   std::set<int> biased;
-  for (int leg = 0; leg < model.leg_count(); ++leg) {
+  for (int leg = 0; leg < model.leg_count() && model.elasticity.base; ++leg) {
     AddLegParameters(model, leg, biased, model.parameters);
   }
   AddMarkerParameters(markers, model.parameters);

@@ -18,8 +18,8 @@ struct Marker {
   Eigen::Vector3d p_link_marker = Eigen::Vector3d::Zero();
 };
 
-/// A leg that can stand on the floor and carry the waist, with its lumped compliance (paper section
-/// 2.2).
+/// A leg that can stand on the floor and carry the waist, with its lumped compliance, if it has
+/// one (paper section 2.2).
 struct SupportLeg {
   std::string name;         ///< its compliances are `<name>.compliance_x`...
   int link = 0;             ///< its foot, which stands still while the leg supports the robot
@@ -36,8 +36,9 @@ struct Elasticity {
   std::vector<int> torsion =
       {};  ///< joints that are elastic about (prismatic: along) their axis, eq. 5
   std::vector<int> bending = {};  ///< revolute joints that are elastic across their axis too
-  std::vector<Leg> legs = {};     ///< legs with a lumped compliance between foot and waist, eq. 6
-  bool torque_bias = false;       ///< the torque sensors of the legs' joints have unknown biases
+  std::vector<Leg> legs = {};     ///< that the robot stands on alone, be they elastic or not
+  bool base = true;          ///< these legs have a lumped compliance from foot to waist, eq. 6 ...
+  bool torque_bias = false;  ///< ... and their torque sensors unknown biases
 };
 
 /// The robot with its markers and the named errors that can be estimated (paper section 2.1). Only
@@ -52,7 +53,8 @@ struct ErrorModel {
   std::vector<SupportLeg> legs;                   ///< those of `elasticity`, with their joints
   std::vector<int> active_joints;                 ///< joints that have parameters, ascending
   /// In this order: T0; joints from the waist outwards, each with its geometric parameters and then
-  /// compliance_z, _x, _y; legs, each with six compliances and then torque biases; markers.
+  /// compliance_z, _x, _y; legs, if `base`, each with six compliances and then torque biases;
+  /// markers.
   std::vector<Parameter> parameters;
 
   int parameter_count() const { return static_cast<int>(parameters.size()); }

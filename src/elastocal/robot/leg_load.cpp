@@ -1,5 +1,6 @@
 #include "elastocal/robot/leg_load.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -24,8 +25,22 @@ std::vector<bool> BodiesBeyond(const RobotTree& tree, int body) {
   return beyond;
 }
 
+/// The bodies of the leg: those beyond its first joint, but not another leg that hangs on it behind
+/// a joint that both share.
 std::vector<bool> LegBodies(const ErrorModel& model, const LegPosture& posture) {
-  return BodiesBeyond(model.tree, model.legs[posture.leg].joints.front() + 1);
+  const std::vector<int>& joints = model.legs[posture.leg].joints;
+  std::vector<bool> bodies = BodiesBeyond(model.tree, joints.front() + 1);
+  for (const SupportLeg& other : model.legs) {
+    const auto apart = std::find_if(other.joints.begin(), other.joints.end(), [&](int joint) {
+      return std::find(joints.begin(), joints.end(), joint) == joints.end();
+    });
+    if (apart == other.joints.end()) continue;
+    const std::vector<bool> of_other = BodiesBeyond(model.tree, *apart + 1);
+    for (std::size_t body = 0; body < bodies.size(); ++body) {
+      if (of_other[body]) bodies[body] = false;
+    }
+  }
+  return bodies;
 }
 
 Eigen::Matrix3d FootAxes(const ErrorModel& model, const LegPosture& posture) {
@@ -50,6 +65,17 @@ Vector6d Weight(const ErrorModel& model, const LegPosture& posture, const Vector
   Vector6d wrench;
   wrench << R_foot_ref * force, R_foot_ref * moment;
   return wrench;
+}
+
+/// What is carried through a section of the leg, `beyond` of which is its foot, beside the load on
+/// the waist: the leg's own links above it, less those that hang on the leg below it.
+Vector6d WeightBesideLoad(const ErrorModel& model, const LegPosture& posture,
+                          const Vector3d& gravity_ref, const std::vector<bool>& of_leg,
+                          const std::vector<bool>& beyond) {
+  return Weight(model, posture, gravity_ref,
+                [&](int body) { return of_leg[body] && !beyond[body]; }) -
+         Weight(model, posture, gravity_ref,
+                [&](int body) { return !of_leg[body] && beyond[body]; });
 }
 
 }  // namespace
@@ -112,9 +138,8 @@ Eigen::VectorXd LegWeightTorques(const ErrorModel& model, const LegPosture& post
   const std::vector<bool> of_leg = LegBodies(model, posture);
   Eigen::VectorXd torques(static_cast<Eigen::Index>(joints.size()));
   for (Eigen::Index i = 0; i < torques.size(); ++i) {
-    const std::vector<bool> beyond = BodiesBeyond(model.tree, joints[i] + 1);
-    const Vector6d weight = Weight(model, posture, gravity_ref,
-                                   [&](int body) { return of_leg[body] && !beyond[body]; });
+    const Vector6d weight = WeightBesideLoad(model, posture, gravity_ref, of_leg,
+                                             BodiesBeyond(model.tree, joints[i] + 1));
     torques[i] = -posture.J_waist_q.col(i).dot(weight);
   }
   return torques;
@@ -134,9 +159,8 @@ Vector6d LoadFromWrench(const ErrorModel& model, const LegPosture& posture, int 
   const Vector3d lever = T_foot_sensor.translation() - posture.T_foot_waist.translation();
   Vector6d at_waist;
   at_waist << force, T_foot_sensor.linear() * measured.tail<3>() + lever.cross(force);
-  const std::vector<bool> beyond = BodiesBeyond(model.tree, sensor_body);
-  return -at_waist - Weight(model, posture, gravity_ref,
-                            [&](int body) { return of_leg[body] && !beyond[body]; });
+  return -at_waist - WeightBesideLoad(model, posture, gravity_ref, of_leg,
+                                      BodiesBeyond(model.tree, sensor_body));
 }
 
 Vector6d LoadFromStatics(const ErrorModel& model, const LegPosture& posture,

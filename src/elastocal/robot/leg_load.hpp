@@ -68,8 +68,9 @@ LegLoad LoadFromTorques(const LegPosture& posture, const Eigen::VectorXd& leg_to
                         const LegLoadOptions& options = {});
 
 /// Torques by which the leg's joints hold the leg's own links, which are those beyond its first
-/// joint: each joint holds the links between itself and the waist. `gravity_ref` is in the
-/// reference frame, m/s^2.
+/// joint but not another leg that hangs on it: each joint holds the links between itself and the
+/// waist. A joint above that other leg does not hold it, which LoadFromTorques takes for granted.
+/// `gravity_ref` is in the reference frame, m/s^2.
 Eigen::VectorXd LegWeightTorques(const ErrorModel& model, const LegPosture& posture,
                                  const Eigen::Vector3d& gravity_ref);
 
@@ -84,8 +85,8 @@ Eigen::VectorXd LegWeightTorques(const ErrorModel& model, const LegPosture& post
 Vector6d LoadFromWrench(const ErrorModel& model, const LegPosture& posture, int sensor_link,
                         const Vector6d& measured, const Eigen::Vector3d& gravity_ref);
 
-/// The load by statics: the weight of all links except those of the leg (beyond its first joint),
-/// for a robot that stands on this leg alone.
+/// The load by statics: the weight of all links except the leg's own, for a robot that stands on
+/// this leg alone.
 Vector6d LoadFromStatics(const ErrorModel& model, const LegPosture& posture,
                          const Eigen::Vector3d& gravity_ref);
 

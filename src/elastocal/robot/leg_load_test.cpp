@@ -153,6 +153,43 @@ TEST(LegLoad, TheLegsOwnWeightIsALoadUnlessItIsTakenOff) {
   EXPECT_EQ(own[0], 0.0);  // no link between the first joint and the waist
 }
 
+// Two legs under a pelvis that turns beneath the waist: the leg in the air is carried, though it
+// hangs on a joint of the leg that stands.
+TEST(LegLoad, AnotherLegBehindASharedJointIsCarried) {
+  RobotTree tree = MakeRoot();
+  tree.links[0].mass = 40.0;
+  tree.links[0].com = {0.03, -0.05, 0.2};
+  const int pelvis = AddJoint(tree, "waist", 0, Offset(0, 0, -0.05), {0, 0, 1});
+  tree.links[pelvis].mass = 7.0;
+  std::vector<Elasticity::Leg> legs;
+  for (const double side : {0.1, -0.1}) {
+    const std::string name = side > 0.0 ? "left" : "right";
+    int link = pelvis;
+    const Vector3d axes[] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}};
+    for (int k = 0; k < 6; ++k) {
+      const Transform T = k == 0 ? Offset(0, side, 0) : Offset(0, 0, k == 3 || k == 4 ? -0.4 : 0.0);
+      link = AddJoint(tree, name + std::to_string(k), link, T, axes[k]);
+      tree.links[link].mass = 2.0 + k;
+      tree.links[link].com = {0.02, 0.01, -0.1};
+    }
+    legs.push_back({name, link});
+  }
+  const ErrorModel model = MakeErrorModel(tree, {}, {}, {.legs = legs});
+  Eigen::VectorXd q(13);
+  q << 0.3, 0.1, 0.05, -0.6, 1.1, -0.5, -0.05, 0.2, -0.1, -0.9, 1.3, -0.4, 0.1;
+  const LegPosture posture = PlaceLeg(model, Nominal(model), q, 0);
+  const Vector3d gravity_ref(0, 0, -9.81);
+  const Vector3d gravity_waist = posture.T_ref_link[0].linear().transpose() * gravity_ref;
+  const Eigen::VectorXd torques =
+      StaticTorques(model.tree, q, gravity_waist, model.legs[0].link).head<7>();
+  const Vector6d wrench = LoadFromStatics(model, posture, gravity_ref);
+  const double right_leg = 2.0 + 3.0 + 4.0 + 5.0 + 6.0 + 7.0;
+  EXPECT_NEAR(wrench.head<3>().norm(), (40.0 + right_leg) * 9.81, 1e-9);
+  const LegLoad load =
+      LoadFromTorques(posture, torques - LegWeightTorques(model, posture, gravity_ref));
+  EXPECT_LT((load.wrench - wrench).norm(), 1e-9);
+}
+
 TEST(LegLoad, AForceSensorCarriesTheLinksAboveIt) {
   const ErrorModel model = Humanoid(3.0);
   const Vector3d gravity(1, -2, -9);

@@ -9,6 +9,7 @@ namespace {
 constexpr double kMostOutliers = 0.25;     // from this part of all observations on, an objection
 constexpr double kManyOutliers = 0.05;     // from this part on, a remark
 constexpr double kSuspectedMarker = 0.25;  // part of the observations of a marker or posture
+constexpr double kMostWeak = 0.5;          // of the parameters may lean on the prior alone
 constexpr double kWorse = 1.05;            // times as large: more than chance makes an error
 constexpr const char* kAdvice =
     " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
@@ -91,6 +92,17 @@ void JudgeOutliers(const CalibrationResult& result, const Recording& recording, 
   }
 }
 
+void JudgeExcitation(const CalibrationResult& result, const Excitation& excitation,
+                     Verdict& verdict) {
+  const std::size_t weak = HardlyExcited(result.model.parameters, excitation).size();
+  const std::size_t count = excitation.parameters.size();
+  if (static_cast<double>(weak) <= kMostWeak * static_cast<double>(count)) return;
+  verdict.objections.push_back("the postures do not determine the parameters (" +
+                               std::to_string(weak) + " of " + std::to_string(count) +
+                               " not to a degree or 5 mm): record more of them, and more "
+                               "different ones");
+}
+
 }  // namespace
 
 Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
@@ -99,11 +111,7 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   const CalibrationResult& result = comparison.largest();
   Verdict verdict;
   JudgeFit(result, options, verdict);
-  if (!std::isfinite(excitation.condition_base)) {
-    verdict.objections.push_back(
-        "the postures do not determine the parameters (infinite condition number): record more of "
-        "them, and more different ones");
-  }
+  JudgeExcitation(result, excitation, verdict);
   JudgeOutliers(result, recording, verdict);
   if (validation.folds > 0) {
     if (validation.unconverged > 0) {

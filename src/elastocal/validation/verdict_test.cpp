@@ -70,9 +70,12 @@ TEST_F(VerdictTest, PriorAtItsLimit) {
   ExpectObjection("lengths are more than ten times");
 }
 
-TEST_F(VerdictTest, DependentColumns) {
-  excitation_.condition_base = std::numeric_limits<double>::infinity();
-  ExpectObjection("do not determine");
+TEST_F(VerdictTest, ParametersThatLeanOnThePriorAlone) {
+  excitation_.parameters = {6, 7, 8, 9};
+  excitation_.parameter_sd = Eigen::Vector4d(0.1, 0.1, 1e-4, 1e-4);
+  EXPECT_TRUE(Judged().objections.empty());  // aligned axes: some can be told together only
+  excitation_.parameter_sd[2] = std::numeric_limits<double>::infinity();
+  ExpectObjection("do not determine the parameters (3 of 4");
 }
 
 TEST_F(VerdictTest, OutliersByNumberAndByMarker) {
