@@ -17,6 +17,16 @@ namespace {
 constexpr std::size_t kMostParameters = 10;
 constexpr std::size_t kMostNamed = 5;
 
+/// Before all else: what the verdict does not know.
+std::string RefusedText(const CalibrationRun& run) {
+  std::string text;
+  for (const TrialSummary& trial : run.trials) {
+    if (trial.refused.empty()) continue;
+    text += "Not used: trial " + trial.trial.name + ": " + trial.refused + "\n";
+  }
+  return text;
+}
+
 /// One sentence for whoever reads no table.
 std::string VerdictText(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) {
@@ -185,8 +195,9 @@ std::string LookAt(const CalibrationRun& run) {
 }  // namespace
 
 std::string DescribeRun(const CalibrationRun& run, bool verbose) {
-  const std::string screen = VerdictText(run) + "\n" + Overview(run) + ModelTable(run) +
-                             ParametersText(run.comparison.largest()) + LookAt(run);
+  const std::string screen = RefusedText(run) + VerdictText(run) + "\n" + Overview(run) +
+                             ModelTable(run) + ParametersText(run.comparison.largest()) +
+                             LookAt(run);
   return screen + (verbose ? "\n" + DescribeDetails(run)
                            : "  all parameters, elasticity and correlations: --verbose\n");
 }

@@ -125,11 +125,14 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.deployment = ChooseDeployment(run.comparison, run.cross_validation,
                                     run.held_out ? &run.held_out->table : nullptr);
   run.verdict = Judge(run.comparison, run.cross_validation, run.excitation, recording, settings);
-  JudgeDeployment(run.deployment, run.verdict);
+  JudgeDeployment(run.deployment, ExpectedError(robot.model, recording, settings.prior),
+                  run.verdict);
   if (run.held_out) {
     JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
                  run.verdict);
   }
+  run.coverage = FindCoverage(project, measured);
+  JudgeCoverage(run.coverage, run.verdict);
   run.warnings = std::move(measured.warnings);
   Append(run.verdict.remarks, run.warnings);
   run.zero_offsets = options.zero_offsets;

@@ -11,6 +11,7 @@
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/pipeline/coverage.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/validation/deployment.hpp"
 #include "elastocal/validation/held_out.hpp"
@@ -42,6 +43,7 @@ struct CalibrationRun {
   BaseParameters base;         ///< which of them can be identified
   ModelComparison comparison;  ///< the estimates: `comparison.largest()` is the calibration
   Excitation excitation;       ///< how well the recorded postures tell the parameters apart
+  std::vector<ChainCoverage> coverage;      ///< what was recorded of each chain
   std::vector<ElasticityTrial> elasticity;  ///< tried, where the project leaves it open
   CrossValidation cross_validation;         ///< folds 0: none
   std::vector<TrialSummary> trials;         ///< of recording folders: what was used of each trial

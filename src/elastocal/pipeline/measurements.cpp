@@ -1,6 +1,7 @@
 #include "elastocal/pipeline/measurements.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "elastocal/calibration/closed_chains.hpp"
@@ -16,26 +17,48 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The recording with these markers only: a model has no position for those that it never shows.
-Recording WithMarkers(const Recording& recording, const std::vector<int>& markers) {
+/// The recording with the markers of these names, in their order; those that it does not have are
+/// not seen. Postures in which none is seen are left out.
+Recording WithMarkers(const Recording& recording, const std::vector<std::string>& names) {
   Recording selected = recording;
-  selected.marker_names.clear();
-  selected.markers.resize(recording.posture_count(), 3 * static_cast<Eigen::Index>(markers.size()));
-  for (std::size_t k = 0; k < markers.size(); ++k) {
-    selected.marker_names.push_back(recording.marker_names[markers[k]]);
+  selected.marker_names = names;
+  selected.markers.setConstant(recording.posture_count(),
+                               3 * static_cast<Eigen::Index>(names.size()),
+                               std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto at =
+        std::find(recording.marker_names.begin(), recording.marker_names.end(), names[k]);
+    if (at == recording.marker_names.end()) continue;
     selected.markers.middleCols<3>(3 * static_cast<Eigen::Index>(k)) =
-        recording.markers.middleCols<3>(3 * markers[k]);
+        recording.markers.middleCols<3>(3 * (at - recording.marker_names.begin()));
   }
-  return selected;
+  const ObservationMask seen = SeenMask(selected);
+  std::vector<int> postures;
+  for (int i = 0; i < selected.posture_count(); ++i) {
+    if (seen.row(i).any()) postures.push_back(i);
+  }
+  return SelectPostures(selected, postures);
 }
 
-std::vector<int> SeenMarkers(const Recording& recording) {
-  std::vector<int> seen;
+std::vector<std::string> SeenMarkers(const Recording& recording) {
+  std::vector<std::string> seen;
   const ObservationMask mask = SeenMask(recording);
   for (int m = 0; m < mask.cols(); ++m) {
-    if (mask.col(m).any()) seen.push_back(m);
+    if (mask.col(m).any()) seen.push_back(recording.marker_names[m]);
   }
   return seen;
+}
+
+/// A model has no position for a marker that the calibration never shows.
+void WarnOfOtherMarkers(const std::vector<std::string>& known, const Recording& validation,
+                        std::vector<std::string>& warnings) {
+  std::string others;
+  for (const std::string& name : SeenMarkers(validation)) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    others += (others.empty() ? "" : ", ") + name;
+  }
+  if (others.empty()) return;
+  warnings.push_back("markers seen in trials for validation only, not judged: " + others);
 }
 
 /// True waists at the times of the postures, of trials that have a file of them.
@@ -85,10 +108,11 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
   Measurements measured;
   measured.trials = std::move(read.trials);
   measured.warnings = std::move(read.findings);
-  const std::vector<int> seen = SeenMarkers(read.calibration);
+  const std::vector<std::string> seen = SeenMarkers(read.calibration);
   measured.calibration = WithMarkers(read.calibration, seen);
   measured.calibration_truth = TrueWaists(folders, project, measured.calibration);
   if (read.validation.posture_count() > 0) {
+    WarnOfOtherMarkers(seen, read.validation, measured.warnings);
     measured.validation = WithMarkers(read.validation, seen);
     measured.validation_truth = TrueWaists(folders, project, measured.validation);
   }

@@ -1,6 +1,8 @@
 #include "elastocal/pipeline/measurements.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -46,6 +48,55 @@ TEST_F(MeasurementsTest, ValidationTrialsAreNotEstimatedFrom) {
   EXPECT_EQ(any.validation.posture_count(), 0);
   WriteExperiment("calibration");
   EXPECT_EQ(ReadMeasurements(project_, {folder_.path()}).calibration.posture_count(), 8);
+}
+
+// Both recordings number their markers by themselves.
+TEST_F(MeasurementsTest, MarkersAreMatchedByName) {
+  WriteExperiment("calibration");
+  const Measurements whole = ReadMeasurements(project_, {folder_.path()});
+  MarkerTrajectories fewer = ReadQtmTsv(folder_.path() / "a.tsv");
+  const std::string left_out = whole.calibration.marker_names.front();
+  const auto at = std::find(fewer.names.begin(), fewer.names.end(), left_out);
+  ASSERT_NE(at, fewer.names.end());
+  fewer.positions.middleCols<3>(3 * (at - fewer.names.begin()))
+      .setConstant(std::numeric_limits<double>::quiet_NaN());
+  WriteQtmTsv(folder_.path() / "b.tsv", fewer);
+  std::filesystem::copy_file(folder_.path() / "a.csv", folder_.path() / "b.csv");
+  const auto read = [&](const char* first, const char* second) {
+    const std::string trial = ", chain: left_leg, support: [right_sole], markers: ";
+    folder_.Write("experiment.yaml", "trials: [{name: one, kind: calibration" + trial + first +
+                                         ".tsv, joints: " + first +
+                                         ".csv}, {name: two, kind: random" + trial + second +
+                                         ".tsv, joints: " + second + ".csv}]");
+    return ReadMeasurements(project_, {folder_.path()});
+  };
+  for (const bool more_in_validation : {true, false}) {
+    const Measurements measured = more_in_validation ? read("b", "a") : read("a", "b");
+    ASSERT_EQ(measured.validation.marker_names, measured.calibration.marker_names);
+    const bool known = !more_in_validation;
+    const auto& names = measured.validation.marker_names;
+    EXPECT_EQ(std::find(names.begin(), names.end(), left_out) != names.end(), known);
+    for (std::size_t m = 0; m < names.size(); ++m) {
+      const auto in_whole = std::find(whole.calibration.marker_names.begin(),
+                                      whole.calibration.marker_names.end(), names[m]) -
+                            whole.calibration.marker_names.begin();
+      if (names[m] == left_out) {
+        EXPECT_FALSE(Seen(measured.validation, 0, static_cast<int>(m)));
+        continue;
+      }
+      EXPECT_LT((MarkerPosition(measured.validation, 0, static_cast<int>(m)) -
+                 MarkerPosition(whole.calibration, 0, static_cast<int>(in_whole)))
+                    .norm(),
+                1e-3)
+          << names[m];
+    }
+    const bool said = std::any_of(
+        measured.warnings.begin(), measured.warnings.end(), [&](const std::string& warning) {
+          return warning.find("for validation only") != std::string::npos &&
+                 warning.find(left_out) != std::string::npos;
+        });
+    EXPECT_EQ(said, more_in_validation);
+  }
 }
 
 TEST_F(MeasurementsTest, ListsEveryFileThatIsRead) {

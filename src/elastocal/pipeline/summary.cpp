@@ -89,6 +89,17 @@ Json ClockJson(const TrialSummary& trial) {
           {"reliable", trial.clock.state == ClockState::kReliable}};
 }
 
+Json CoverageJson(const CalibrationRun& run) {
+  Json json = Json::array();
+  for (const ChainCoverage& chain : run.coverage) {
+    json.push_back({{"chain", chain.chain},
+                    {"calibrated", chain.calibrated},
+                    {"judged", chain.judged},
+                    {"refused", chain.refused}});
+  }
+  return json;
+}
+
 /// What only recordings of trials have.
 void AddTrials(const CalibrationRun& run, Json& json) {
   if (run.trials.empty()) return;
@@ -217,6 +228,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["settled"] = result.settled;
   json["deployed"] = DeploymentJson(run.deployment);
   json["objections"] = run.verdict.objections;
+  json["chains"] = CoverageJson(run);
   json["remarks"] = run.verdict.remarks;
   json["robot"] = result.model.tree.name;
   json["recording"] = run.recording.source;

@@ -1,8 +1,18 @@
 #include "elastocal/validation/deployment.hpp"
 
+#include <cmath>
+
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
+namespace {
+
+constexpr int kRobots = 20;  // drawn from the prior
+constexpr int kMostPostures = 50;
+
+}  // namespace
 
 Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValidation& validation,
                             const ErrorTable* table) {
@@ -29,6 +39,35 @@ Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValida
     deployment.urdf = rmse(ModelKind::kRigid);
   }
   return deployment;
+}
+
+double ExpectedError(const ErrorModel& model, const Recording& recording, const Prior& prior) {
+  const ObservationMask seen = SeenMask(recording);
+  const Geometry nominal = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
+  const int stride = 1 + recording.posture_count() / kMostPostures;
+  Random random(1);
+  double squares = 0.0;
+  double count = 0.0;
+  for (int robot = 0; robot < kRobots; ++robot) {
+    Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
+    for (int k = 0; k < delta.size(); ++k) {
+      const Parameter& parameter = model.parameters[k];
+      if (parameter.joint < 0 || IsElastic(parameter.kind)) continue;
+      delta[k] = random.Normal(prior.Of(model.tree, parameter));
+    }
+    const Geometry drawn = ApplyErrors(model, delta);
+    for (int i = 0; i < recording.posture_count(); i += stride) {
+      const Eigen::VectorXd q = recording.q.row(i).transpose();
+      const Eigen::Matrix3Xd moved =
+          MarkerPositions(model, drawn, q) - MarkerPositions(model, nominal, q);
+      for (int m = 0; m < recording.marker_count(); ++m) {
+        if (!seen(i, m)) continue;
+        squares += moved.col(m).squaredNorm();
+        count += 1.0;
+      }
+    }
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : kNaN;
 }
 
 }  // namespace elastocal

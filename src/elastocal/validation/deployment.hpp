@@ -23,4 +23,8 @@ struct Deployment {
 Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValidation& validation,
                             const ErrorTable* table);
 
+/// By how much a robot that was never calibrated is expected to err, m: root mean square over the
+/// observations of a recording and over robots drawn from the prior (angles and lengths).
+double ExpectedError(const ErrorModel& model, const Recording& recording, const Prior& prior);
+
 }  // namespace elastocal

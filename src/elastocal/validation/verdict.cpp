@@ -10,6 +10,7 @@ constexpr double kMostOutliers = 0.25;     // from this part of all observations
 constexpr double kManyOutliers = 0.05;     // from this part on, a remark
 constexpr double kSuspectedMarker = 0.25;  // part of the observations of a marker or posture
 constexpr double kMostWeak = 0.5;          // of the parameters may lean on the prior alone
+constexpr double kImplausible = 2.0;       // times the error of an uncalibrated robot
 constexpr double kWorse = 1.05;            // times as large: more than chance makes an error
 constexpr const char* kAdvice =
     " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
@@ -129,7 +130,14 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   return verdict;
 }
 
-void JudgeDeployment(const Deployment& deployment, Verdict& verdict) {
+void JudgeDeployment(const Deployment& deployment, double expected_error, Verdict& verdict) {
+  if (deployment.urdf > kImplausible * expected_error) {
+    verdict.objections.push_back("on " + deployment.judged_on +
+                                 " the calibrated robot description errs by " +
+                                 Number(1e3 * deployment.urdf, "mm") +
+                                 ", where one that was never " + "calibrated should err by some " +
+                                 Number(1e3 * expected_error, "mm") + " (the prior)." + kAdvice);
+  }
   if (deployment.judged_on == "the fit" || deployment.urdf < deployment.uncalibrated) return;
   const bool worse = deployment.urdf > kWorse * deployment.uncalibrated;
   (worse ? verdict.objections : verdict.remarks)

@@ -28,8 +28,10 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
               const CalibrationOptions& options);
 
 /// Adds an objection where the URDF alone is worse than the uncalibrated robot (by 5 % or more, on
-/// data not used for it), and a remark where it is about as good: there is nothing to correct.
-void JudgeDeployment(const Deployment& deployment, Verdict& verdict);
+/// data not used for it), and a remark where it is about as good: there is nothing to correct. Also
+/// an objection where it errs by more than twice what a robot is expected to err that was never
+/// calibrated (ExpectedError, m): better than a worse one is not good.
+void JudgeDeployment(const Deployment& deployment, double expected_error, Verdict& verdict);
 
 /// Adds the judgement by held-out trials on the calibrated model `model`: an objection for each
 /// group of chains whose markers it predicts worse than the uncalibrated robot does (by 5 %), and a

@@ -95,18 +95,26 @@ TEST(JudgeDeployment, ObjectsToAUrdfThatIsWorse) {
                         .urdf = 3.2e-3,
                         .compensated = 1e-3};  // which the user of a URDF does not have
   Verdict verdict;
-  JudgeDeployment(deployment, verdict);
+  JudgeDeployment(deployment, 8e-3, verdict);
   ASSERT_EQ(verdict.objections.size(), 1u);
   EXPECT_NE(verdict.objections[0].find("3.2 mm against 3 mm"), std::string::npos);
   verdict = {};
   deployment.urdf = 3.01e-3;  // a robot that was calibrated before
-  JudgeDeployment(deployment, verdict);
+  JudgeDeployment(deployment, 8e-3, verdict);
   EXPECT_TRUE(verdict.objections.empty());
   EXPECT_EQ(verdict.remarks.size(), 1u);
   verdict = {};
+  deployment.uncalibrated = 300e-3;
+  deployment.urdf = 190e-3;  // better, and no calibrated robot
+  JudgeDeployment(deployment, 8e-3, verdict);
+  ASSERT_EQ(verdict.objections.size(), 1u);
+  EXPECT_NE(verdict.objections[0].find("190 mm"), std::string::npos);
+  EXPECT_NE(verdict.objections[0].find("8 mm"), std::string::npos);
+  verdict = {};
+  deployment.uncalibrated = 3e-3;
   deployment.urdf = 4e-3;
   deployment.judged_on = "the fit";
-  JudgeDeployment(deployment, verdict);
+  JudgeDeployment(deployment, 8e-3, verdict);
   EXPECT_TRUE(verdict.objections.empty());
 }
 

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/validation/verdict.hpp"
+
+namespace elastocal {
+
+/// What the recordings say about a chain of the project.
+struct ChainCoverage {
+  std::string chain;
+  /// Whether markers on the chain were seen in what is estimated from. If not, its joints stay as
+  /// the URDF has them, but for those that it shares with other chains or stands on.
+  bool calibrated = false;
+  bool judged = false;               ///< whether markers on it were seen in trials for validation
+  std::vector<std::string> refused;  ///< trials for calibration of it that cannot be used, and why
+};
+
+/// Of the chains that carry markers, in the project's order.
+std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured);
+
+/// Adds an objection for each chain that stays uncalibrated because its trials cannot be used: who
+/// records a chain expects it to be calibrated. And a remark for each that was calibrated and is
+/// not judged although others are.
+void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict);
+
+}  // namespace elastocal

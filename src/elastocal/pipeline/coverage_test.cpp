@@ -1,0 +1,65 @@
+#include "elastocal/pipeline/coverage.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class CoverageOfChains : public testing::Test {
+ protected:
+  /// A trial of one chain in which its markers and those of the waist are seen.
+  Recording Shown(const std::string& chain) const {
+    Recording recording;
+    recording.trials = {{.name = chain, .chains = {chain}}};
+    recording.trial = {0};
+    for (const Chain& candidate : project_.chains) {
+      if (candidate.name == chain) recording.marker_names = ChainMarkers(project_, candidate);
+    }
+    recording.q.setZero(1, project_.tree.coordinate_count());
+    recording.markers.setZero(1, 3 * recording.marker_count());
+    return recording;
+  }
+
+  static TrialSummary Refused(const std::string& chain) {
+    TrialSummary summary;
+    summary.trial = {.name = chain + "_trial", .chains = {chain}};
+    summary.refused = "its clock cannot be told";
+    return summary;
+  }
+
+  const Project project_ = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
+};
+
+TEST_F(CoverageOfChains, AChainWhoseTrialsAreAllRefusedIsNotDeployed) {
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  measured.trials = {Refused("right_arm"), Refused("left_arm")};
+  Verdict verdict;
+  verdict.objections = {"another"};
+  JudgeCoverage(FindCoverage(project_, measured), verdict);
+  ASSERT_EQ(verdict.objections.size(), 2u);  // the left arm was recorded once more
+  EXPECT_EQ(verdict.objections[0].find("chain right_arm is not calibrated"), 0u);
+  EXPECT_NE(verdict.objections[0].find("right_arm_trial: its clock"), std::string::npos);
+  EXPECT_TRUE(verdict.remarks.empty());
+}
+
+TEST_F(CoverageOfChains, WhatIsNotJudgedIsSaidWhereOthersAre) {
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  measured.validation = Shown("right_arm");
+  const std::vector<ChainCoverage> coverage = FindCoverage(project_, measured);
+  for (const ChainCoverage& of : coverage) {
+    EXPECT_EQ(of.calibrated, of.chain == "left_arm") << of.chain;
+    EXPECT_EQ(of.judged, of.chain == "right_arm") << of.chain;
+  }
+  Verdict verdict;
+  JudgeCoverage(coverage, verdict);
+  EXPECT_TRUE(verdict.objections.empty());
+  ASSERT_EQ(verdict.remarks.size(), 1u);
+  EXPECT_NE(verdict.remarks[0].find("left_arm"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace elastocal
