@@ -9,30 +9,35 @@
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/io/waist_truth.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The recording with these markers only: a model has no position for those that it never shows.
-Recording WithMarkers(const Recording& recording, const std::vector<int>& markers) {
+/// The recording with the markers of these names; NaN where it never shows one.
+Recording WithMarkers(const Recording& recording, const std::vector<std::string>& names) {
   Recording selected = recording;
-  selected.marker_names.clear();
-  selected.markers.resize(recording.posture_count(), 3 * static_cast<Eigen::Index>(markers.size()));
-  for (std::size_t k = 0; k < markers.size(); ++k) {
-    selected.marker_names.push_back(recording.marker_names[markers[k]]);
+  selected.marker_names = names;
+  selected.markers.setConstant(recording.posture_count(),
+                               3 * static_cast<Eigen::Index>(names.size()), kNaN);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto found =
+        std::find(recording.marker_names.begin(), recording.marker_names.end(), names[k]);
+    if (found == recording.marker_names.end()) continue;
     selected.markers.middleCols<3>(3 * static_cast<Eigen::Index>(k)) =
-        recording.markers.middleCols<3>(3 * markers[k]);
+        recording.markers.middleCols<3>(3 * (found - recording.marker_names.begin()));
   }
   return selected;
 }
 
-std::vector<int> SeenMarkers(const Recording& recording) {
-  std::vector<int> seen;
+/// A model has no position for markers that its recording never shows.
+std::vector<std::string> SeenMarkers(const Recording& recording) {
+  std::vector<std::string> seen;
   const ObservationMask mask = SeenMask(recording);
   for (int m = 0; m < mask.cols(); ++m) {
-    if (mask.col(m).any()) seen.push_back(m);
+    if (mask.col(m).any()) seen.push_back(recording.marker_names[m]);
   }
   return seen;
 }
@@ -81,7 +86,7 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
   Measurements measured;
   measured.trials = std::move(read.trials);
   measured.warnings = std::move(read.findings);
-  const std::vector<int> seen = SeenMarkers(read.calibration);
+  const std::vector<std::string> seen = SeenMarkers(read.calibration);
   measured.calibration = WithMarkers(read.calibration, seen);
   measured.calibration_truth = TrueWaists(folders, project, measured.calibration);
   if (read.validation.posture_count() > 0) {

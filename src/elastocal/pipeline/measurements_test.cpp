@@ -21,8 +21,10 @@ class MeasurementsTest : public testing::Test {
     const ScriptedTrial played =
         Play(MakeMarkedRobot(project_),
              {.postures = 8, .standing = FindLink(project_.tree, "right_sole")});
-    WriteQtmTsv(folder_.path() / "a.tsv", played.markers);
-    WriteJointLog(folder_.path() / "a.csv", played.log);
+    for (const char* name : {"a", "b"}) {
+      WriteQtmTsv(folder_.path() / (std::string(name) + ".tsv"), played.markers);
+      WriteJointLog(folder_.path() / (std::string(name) + ".csv"), played.log);
+    }
   }
 
   /// One trial of this kind.
@@ -46,6 +48,35 @@ TEST_F(MeasurementsTest, ValidationTrialsAreNotEstimatedFrom) {
   EXPECT_EQ(any.validation.posture_count(), 0);
   WriteExperiment("calibration");
   EXPECT_EQ(ReadMeasurements(project_, {folder_.path()}).calibration.posture_count(), 8);
+}
+
+// A trial for validation may show markers that none for calibration shows (its trial was refused,
+// as one in which the clock cannot be told), and the other way round.
+TEST_F(MeasurementsTest, ValidationHasTheMarkersOfTheEstimate) {
+  const auto read = [&](const std::string& calibration, const std::string& validation) {
+    const std::string rest = ", support: [right_sole], markers: ";
+    folder_.Write("experiment.yaml", "trials:\n  - {name: fit, chains: [" + calibration + "]" +
+                                         rest + "a.tsv, joints: a.csv}\n" +
+                                         "  - {name: judge, kind: random, chains: [" + validation +
+                                         "]" + rest + "b.tsv, joints: b.csv}\n");
+    return ReadMeasurements(project_, {folder_.path()});
+  };
+  const Measurements more = read("left_leg", "left_leg, head");
+  EXPECT_EQ(more.validation.marker_names, more.calibration.marker_names);
+  // The same motion, of whose rests other frames may have been taken: 0.2 mm of noise.
+  constexpr double kTolerance = 1e-3;
+  EXPECT_LT((more.validation.markers - more.calibration.markers).cwiseAbs().maxCoeff(), kTolerance);
+  const Measurements fewer = read("left_leg, head", "left_leg");
+  ASSERT_EQ(fewer.validation.marker_names, fewer.calibration.marker_names);
+  for (int m = 0; m < fewer.validation.marker_count(); ++m) {
+    if (fewer.validation.marker_names[m].starts_with("HEAD")) {
+      EXPECT_FALSE(Seen(fewer.validation, 0, m));
+    } else {
+      EXPECT_LT(
+          (MarkerPosition(fewer.validation, 0, m) - MarkerPosition(fewer.calibration, 0, m)).norm(),
+          kTolerance);
+    }
+  }
 }
 
 TEST_F(MeasurementsTest, ListsEveryFileThatIsRead) {
