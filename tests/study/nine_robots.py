@@ -143,7 +143,9 @@ class Robot:
                 "origin": (from_rpy(numbers(origin, "rpy", (0, 0, 0))),
                            numbers(origin, "xyz", (0, 0, 0))),
                 "axis": numbers(e.find("axis"), "xyz", (1, 0, 0)),
-                "moves": kind != "fixed" and mimic is None, "mimic": mimic is not None,
+                "moves": kind != "fixed" and mimic is None,
+                "mimic": None if mimic is None else (mimic.get("joint"), float(
+                    mimic.get("multiplier", 1)), float(mimic.get("offset", 0))),
                 "lower": max(lower, -math.pi), "upper": min(upper, math.pi)})
         children = {j["child"] for j in joints}
         self.root = next(l.get("name") for l in xml.findall("link") if l.get("name") not in children)
@@ -157,12 +159,23 @@ class Robot:
     def moving(self):
         return [j for j in self.joints if j["moves"]]
 
+    def positions(self, encoders):
+        """Of all joints, also those that mimic one that moves; a true robot has errors of zero."""
+        q = {}
+        for j in self.joints:
+            if j["moves"]:
+                q[j["name"]] = encoders[j["name"]] + j.get("zero", 0.0)
+            elif j["mimic"]:
+                leader, multiplier, offset = j["mimic"]
+                q[j["name"]] = multiplier * encoders[leader] + offset + j.get("zero", 0.0)
+        return q
+
     def links(self, q):
-        """Pose of each link in the root's frame; mimic joints stay at zero."""
+        """Pose of each link in the root's frame."""
         T = {self.root: IDENTITY}
         for j in self.joints:
             X = times(T[j["parent"]], j["origin"])
-            if j["moves"]:
+            if j["moves"] or j["mimic"]:
                 n = math.sqrt(sum(a * a for a in j["axis"]))
                 value = q[j["name"]]
                 if j["kind"] == "prismatic":
@@ -189,15 +202,13 @@ def invented_urdf(name):
     return xml
 
 
-def own_project(robot):
-    """Clusters on the root, at the ends and on every third link before them."""
+def own_project(robot, ends_only):
+    """Clusters on the root, at the ends and (unless `ends_only`) on every third link before."""
     by_child = {j["child"]: j for j in robot.joints}
     moving = robot.moving()
 
     def carrier(link):  # the moving joint that carries a link
         while link in by_child and not by_child[link]["moves"]:
-            if by_child[link]["mimic"]:
-                return None
             link = by_child[link]["parent"]
         return by_child.get(link)
 
@@ -208,6 +219,8 @@ def own_project(robot):
         while joint is not None:
             if joint["child"] not in links:
                 links.append(joint["child"])
+            if ends_only:
+                break
             for _ in range(3):
                 joint = above[joint["name"]] if joint is not None else None
     draw = random.Random(5)
@@ -217,15 +230,15 @@ def own_project(robot):
     return {"markers": {"reference": "C0", "clusters": clusters}}
 
 
-def load(argument):
+def load(argument, ends_only):
     """The robot's name, its URDF and its project."""
     if argument in INVENTED:
         xml = invented_urdf(argument)
-        return argument, xml, own_project(Robot(xml))
+        return argument, xml, own_project(Robot(xml), ends_only)
     path = pathlib.Path(argument)
     if path.suffix == ".urdf":
         xml = ET.parse(path).getroot()
-        return path.stem, xml, own_project(Robot(xml))
+        return path.stem, xml, own_project(Robot(xml), ends_only)
     project = yaml.safe_load(path.read_text())
     urdf = path.parent / project["robot"]["urdf"]
     return urdf.stem, ET.parse(urdf).getroot(), project
@@ -254,7 +267,9 @@ def perturbed(xml, level, draw):
 def true_robot(xml, draw):
     """Origins off by 1 mm and 0.3 degrees, zeros by 0.5 degrees or 0.5 mm (standard deviations)."""
     robot = Robot(xml)
-    for j in robot.moving():
+    for j in robot.joints:
+        if j["kind"] == "fixed":
+            continue
         shift = [draw.gauss(0, 1e-3) for _ in range(3)]
         turn = [draw.gauss(0, math.radians(0.3)) for _ in range(3)]
         j["origin"] = times(j["origin"], (rotation(turn), shift))
@@ -276,7 +291,7 @@ def markers_of(project, draw):
 
 
 def true_positions(robot, markers, q):
-    T = robot.links({j["name"]: q[j["name"]] + j["zero"] for j in robot.moving()})
+    T = robot.links(robot.positions(q))
     return {name: apply(T[link], p) for name, (link, p) in markers.items()}
 
 
@@ -321,7 +336,7 @@ def urdf_error_mm(exported, truth, markers, postures):
     the best root frame (Gauss-Newton) and the best marker positions on the links."""
     seen = {m: [] for m, (link, _) in markers.items() if link != truth.root}
     for q in postures:
-        T = exported.links(q)
+        T = exported.links(exported.positions(q))
         positions = true_positions(truth, markers, q)
         for m in seen:
             seen[m].append((T[markers[m][0]], positions[m]))
@@ -365,11 +380,12 @@ def run(program, *words):
     return done.returncode, done.stderr.strip()
 
 
-def calibrate(program, folder, xml, project, truth, markers, draw, postures):
+def calibrate(program, folder, xml, project, truth, markers, draw, postures, rigid):
     folder.mkdir(parents=True, exist_ok=True)
     ET.ElementTree(xml).write(folder / "robot.urdf")
     project = dict(project, robot={"urdf": "robot.urdf"})
-    project["elasticity"] = {"torsion": [], "bending": [], "base": False}
+    if rigid:
+        project["elasticity"] = {"torsion": [], "bending": []}
     project.get("recording", {}).pop("not_recorded_mm", None)
     (folder / "project.yaml").write_text(yaml.safe_dump(project))
     T_ref_root = (rotation([draw.uniform(-1, 1) for _ in range(3)]),
@@ -403,6 +419,76 @@ def calibrate(program, folder, xml, project, truth, markers, draw, postures):
     return result
 
 
+SIMULATION = {"upper_geometry_scale": 1, "leg_geometry_scale": 1, "marker_noise_mm": NOISE_MM,
+              "marker_mm": 3, "head_postures": 16, "arm_postures": 24, "leg_postures": 24,
+              "random_postures": 10, "repetitions": 1}
+
+
+def simulate(program, folder, xml, project, seed):
+    """A robot that stands on its feet in the program's own simulator; its truth, its markers and
+    postures that it took in trials for validation."""
+    folder.mkdir(parents=True, exist_ok=True)
+    ET.ElementTree(xml).write(folder / "robot.urdf")
+    (folder / "project.yaml").write_text(
+        yaml.safe_dump(dict(project, robot={"urdf": "robot.urdf"})))
+    (folder / "settings.yaml").write_text(yaml.safe_dump(SIMULATION))
+    code, text = run(program, "simulate", folder / "project.yaml", "-o", folder / "recording",
+                     "--nominal", "--settings", folder / "settings.yaml", "--seed", seed)
+    if code:
+        sys.exit(f"simulate: {text}")
+    told = yaml.safe_load((folder / "recording" / "truth.yaml").read_text())
+    truth = Robot(xml)
+    for j in truth.joints:
+        known = told["joints"].get(j["name"])
+        j["zero"] = 0.0
+        if known is None:
+            continue
+        j["origin"] = times(j["origin"], (
+            rotation([math.radians(x) for x in known["turn_deg"]]),
+            [1e-3 * x for x in known["shift_mm"]]))
+        j["zero"] = (math.radians(known["offset_deg"]) if "offset_deg" in known
+                     else 1e-3 * known["offset_mm"])
+    links = {name: link for name, (link, _) in markers_of(project, random.Random(1)).items()}
+    markers = {m: (links[m], [1e-3 * x for x in p]) for m, p in told["markers_mm"].items()}
+    trials = yaml.safe_load((folder / "recording" / "experiment.yaml").read_text())["trials"]
+    postures = []
+    for trial in trials:
+        if trial["kind"] == "calibration":
+            continue
+        rows = (folder / "recording" / trial["joints"]).read_text().split()
+        header = rows[0].split(",")
+        for row in rows[1::max(1, len(rows) // 15)]:
+            q = dict(zip(header, map(float, row.split(","))))
+            postures.append({j["name"]: q[j["name"]] for j in truth.moving()})
+    return truth, markers, postures
+
+
+def calibrate_standing(program, folder, xml, project, recording, truth, markers, postures):
+    folder.mkdir(parents=True, exist_ok=True)
+    ET.ElementTree(xml).write(folder / "robot.urdf")
+    project = dict(project, robot={"urdf": "robot.urdf"},
+                   elasticity={"torsion": [], "bending": []})
+    (folder / "project.yaml").write_text(yaml.safe_dump(project))
+    out = folder / "out"
+    for old in out.glob("*_calibrated.urdf"):
+        old.unlink()
+    code, text = run(program, "calibrate", folder / "project.yaml", "--recording", recording, "-o",
+                     out)
+    (folder / "stderr.txt").write_text(text)
+    result = {"exit": code, "held_out": math.nan, "frozen": math.nan, "urdf": math.nan,
+              "worst": math.nan, "file": None,
+              "before": urdf_error_mm(Robot(xml), truth, markers, postures)[0]}
+    exported = list(out.glob("*_calibrated.urdf"))
+    if code or not exported:
+        return result
+    result["file"] = exported[0]
+    summary = json.loads((out / "summary.json").read_text())
+    result["held_out"] = summary["deployed"]["urdf"]["rmse_3d_mm"]
+    result["urdf"], result["worst"] = urdf_error_mm(
+        Robot(ET.parse(exported[0]).getroot()), truth, markers, postures)
+    return result
+
+
 def verdict(result):
     if result["exit"]:
         return f"FAILS: exit {result['exit']}"
@@ -419,23 +505,40 @@ def main():
     parser.add_argument("--postures", type=int, default=80)
     parser.add_argument("--levels", nargs="+", default=LEVELS)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--standing", action="store_true",
+                        help="robots stand on their feet, in the program's simulator")
+    parser.add_argument("--ends-only", action="store_true", help="of a URDF: clusters at the ends")
+    parser.add_argument("--elastic", action="store_true",
+                        help="posture tables: the data decide whether joints are elastic")
     parser.add_argument("robots", nargs="+")
     args = parser.parse_args()
     failures = 0
     print(f"{'robot':<17}{'level':<9}{'step':<8}{'exit':>4}{'held-out':>10}{'frozen':>8}{'nominal':>9}"
           f"{'URDF':>8}{'worst':>8}  verdict   (mm; floor {math.sqrt(3) * NOISE_MM:.3f})")
     for argument in args.robots:
-        name, xml, project = load(argument)
+        name, xml, project = load(argument, args.ends_only)
+        standing = None
         for level in args.levels:
             draw = random.Random(f"{args.seed} {name} {level}")
             markers = markers_of(project, draw)
-            folder = args.work / name / level
+            folder = args.work / (name + "_standing" * args.standing) / level
             nominal = perturbed(xml, level, draw)
             for step in ("first", "again"):
                 # The second time, the exported URDF is nominal, after repairs.
-                truth = true_robot(xml if step == "first" else nominal, draw)
-                r = calibrate(args.program, folder / step, nominal, project, truth, markers, draw,
-                              args.postures)
+                if args.standing:
+                    recorded = args.work / (name + "_recorded") / step
+                    if step == "again":
+                        played = simulate(args.program, recorded, nominal, project, args.seed + 1)
+                    else:
+                        standing = standing or simulate(args.program, recorded, xml, project,
+                                                        args.seed)
+                        played = standing
+                    r = calibrate_standing(args.program, folder / step, nominal, project,
+                                           recorded / "recording", *played)
+                else:
+                    truth = true_robot(xml if step == "first" else nominal, draw)
+                    r = calibrate(args.program, folder / step, nominal, project, truth, markers,
+                                  draw, args.postures, not args.elastic)
                 failures += verdict(r) != "ok"
                 print(f"{name:<17}{level:<9}{step:<8}{r['exit']:>4}{r['held_out']:>10.3f}"
                       f"{r['frozen']:>8.3f}{r['before']:>9.2f}{r['urdf']:>8.3f}{r['worst']:>8.3f}"
