@@ -60,15 +60,14 @@ std::vector<int> NoiseGroups(const ErrorModel& model, const Recording& recording
     joints_of_group[group] = std::move(joints);
     group_of_trial[t] = group;
   }
-  // Numbers without holes, in the order of the trials.
+  // Numbers without holes, in the order of the postures: a refused trial has none, and no group.
   std::vector<int> order, groups;
-  for (int& group : group_of_trial) {
+  for (int trial : recording.trial) {
+    const int group = group_of_trial[trial];
     const auto found = std::find(order.begin(), order.end(), group);
-    const int number = static_cast<int>(found - order.begin());
+    groups.push_back(static_cast<int>(found - order.begin()));
     if (found == order.end()) order.push_back(group);
-    group = number;
   }
-  for (int trial : recording.trial) groups.push_back(group_of_trial[trial]);
   return groups;
 }
 

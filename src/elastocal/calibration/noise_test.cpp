@@ -41,6 +41,13 @@ TEST_F(NoiseGroupsTest, ATrialThatSharesWithTwoJoinsThem) {
             (std::vector<int>{0, 0, 1, 0}));
 }
 
+// Or its standard deviations would be reported, which nothing has estimated.
+TEST_F(NoiseGroupsTest, ATrialWithoutPosturesHasNone) {
+  const Recording both =
+      robot_.Empty({{.name = "refused", .chains = {}}, {.name = "used", .chains = {}}}, 1);
+  EXPECT_EQ(NoiseGroups(robot_.model, SelectPostures(both, {1})), (std::vector<int>{0}));
+}
+
 TEST_F(NoiseGroupsTest, ATableOfPosturesIsOneGroup) {
   Recording recording = robot_.Empty({{.name = "t", .chains = {}}}, 3);
   recording.trials.clear();

@@ -139,6 +139,16 @@ TEST(SampleTrial, FindsLagAndDriftOfTheClock) {
   }
 }
 
+// Little motion tells the clock badly. Rests do not need it well: their samples are away from the
+// motion.
+TEST(SampleTrial, TakesRestsWhoseClockIsRoughlyKnown) {
+  const ScriptedTrial played = PlayStanding({.postures = 16, .range = 0.03});
+  const TrialSamples samples = Sample(played);
+  EXPECT_GT(samples.summary.clock.sd_s, 15e-3);
+  EXPECT_EQ(samples.summary.postures, 16) << samples.summary.refused;
+  ExpectTrue(samples, played);
+}
+
 TEST(SampleTrial, BearsFivePerCentOfSamplesMissing) {
   ScriptedTrial played = PlayStanding();
   Random random(5);
