@@ -137,7 +137,8 @@ TEST_F(Program, AFullDiskLeavesTheEarlierResults) {
   for (const auto& entry : std::filesystem::directory_iterator(out_)) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
   }
-  EXPECT_EQ(RunProgram("inspect " + project_ + " > /dev/full").exit_code, 3);
+  const std::string full = ELASTOCAL_PROGRAM " inspect " + project_ + " > /dev/full 2> " + err;
+  EXPECT_EQ(WEXITSTATUS(std::system(full.c_str())), 3);
 }
 
 // A run that was killed before its commit has left a folder; the next run or reader takes it away.

@@ -61,6 +61,7 @@ class Tries:
     def file(self, kind, label, name, contents, words, *names):
         """A case with one file; `words` is a function of its path."""
         path = self.folder() / name
+        path.unlink(missing_ok=True)  # a link to a good file
         path.write_bytes(contents if isinstance(contents, bytes) else contents.encode())
         self.add(kind, label, words(path), name, *names)
 
@@ -172,7 +173,8 @@ def strange_places(tries, base):
               "no name": "", "none": root / "none", "below a file": sparse / "x",
               "long name": root / ("x" * 300), "long path": root / ("x/" * 3000),
               "40 GB": sparse, "not UTF-8": bad / "none", "memory": "/proc/self/mem"}
-    calibrate = lambda project, recording: ["calibrate", project, "--recording", recording]
+    calibrate = lambda project, recording, *out: ["calibrate", project, "--recording", recording,
+                                                 *(out or QUICK)]
     reads = {
         "project": lambda p: ["inspect", p],
         "recording": lambda p: calibrate(base.project, p),
@@ -188,7 +190,7 @@ def strange_places(tries, base):
     for what, words in reads.items():
         for label, place in places.items():
             tries.add("places of inputs", f"{what}: {label}", words(place),
-                      os.path.basename(str(place)) or "required", "'", ":")
+                      os.path.basename(str(place)) or "required")
     outputs = dict(places, full="/dev/full", processes="/proc/x/y", root="/")
     outputs.pop("device")
     for label in ("pipe", "terminal", "none", "not UTF-8"):
@@ -196,13 +198,13 @@ def strange_places(tries, base):
     writes = {
         "--json": lambda p: ["inspect", base.project, "--json", p],
         "report": lambda p: ["report", base.out, "-o", p],
-        "calibrate": lambda p: calibrate(base.project, base.recording) + ["-o", p],
+        "calibrate": lambda p: calibrate(base.project, base.recording, "-o", p),
         "simulate": lambda p: ["simulate", base.project, "-o", p] + inputs.SHORT,
     }
     for what, words in writes.items():
         for label, place in outputs.items():
             tries.add("places of outputs", f"{what}: {label}", words(place),
-                      os.path.basename(str(place)), "'", ":")
+                      os.path.basename(str(place)))
     for file in [base.recording / "arm.tsv", base.recording / "arm.csv", base.table, base.project,
                  base.urdf, base.out / "calibration.yaml", base.out / "covariance.csv"]:
         copied = tries.folder() / file.name
@@ -238,7 +240,7 @@ def options(tries, base):
                 if command == "simulate" and tries.random.random() > 0.4:
                     continue
                 tries.add(f"options of {command}", f"{option} {value!r}",
-                          [command, *words, option, value], option, "'", ":")
+                          [command, *words, option, value], option)
         tries.add(f"options of {command}", "unknown", [command, *words, "--no-such-option"],
                   "--no-such-option")
 
@@ -304,7 +306,7 @@ def results(tries, base):
                 folder = tries.folder()
                 # The page takes the robot from report_data.json, if it is there.
                 left_out = ["SHA256SUMS", "report.html"] + ["report_data.json"] * (name == "robot_data.json")
-                shutil.copytree(base.out, folder, dirs_exist_ok=True,
+                shutil.copytree(base.out, folder, dirs_exist_ok=True, copy_function=os.link,
                                 ignore=shutil.ignore_patterns(*left_out))
                 if name == "m_margins.json":
                     (folder / "m.csv").write_text("time,a\n0,1\n")
@@ -344,6 +346,9 @@ def all_tries(base, seed):
                "time,elbow_joint\n0,0.1\n1000000,0.2\n", play)
     settings = lambda path: ["simulate", base.project, "-o", path.parent / "s", "--settings", path,
                              *inputs.SHORT]
+    for text in ["upper_stiffness_least: 1000000\n", "least_lag_s: 100\n"]:
+        tries.file("simulation settings", "least above largest", "settings.yaml", text, settings,
+                   text.split(":")[0])
     any_files(tries, "simulation settings", "settings.yaml", b"marker_noise_mm: 0.1\n", settings)
     yaml_keys(tries, "simulation settings", "settings.yaml", base.settings, settings, 0.3)
     urdfs(tries, base)
@@ -397,6 +402,8 @@ def faults_of(outcome):
 def named(outcome):
     """Whether the message names the place. What data say is named by trial, faults by name."""
     names = [*outcome.case.names, "trial arm", "trial 'arm'", "fault: ", "project.yaml:"]
+    if outcome.case.kind == "URDF":
+        names.append("robot 'arm6'")
     if outcome.case.kind == "results: calibration.yaml":
         names.append("covariance.csv")  # which no longer belongs to it
     return any(os.fsencode(name)[:60] in outcome.message for name in names if name)
@@ -428,13 +435,16 @@ def main():
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("source", type=pathlib.Path)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--share", type=float, default=0.5, help="of all tries, drawn by the seed")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", default="", help="kinds that contain this")
     parser.add_argument("--table", type=pathlib.Path)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="elastocal_faults_") as root:
         base = inputs.Base(arguments.program.resolve(), arguments.source.resolve(), pathlib.Path(root))
-        cases = [c for c in all_tries(base, arguments.seed) if arguments.only in c.kind]
+        draw = random.Random(arguments.seed)
+        cases = [case for case in all_tries(base, arguments.seed)
+                 if draw.random() < arguments.share and arguments.only in case.kind]
         with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
             outcomes = []
             for outcome in pool.map(lambda case: run(base.program, case, root), cases):

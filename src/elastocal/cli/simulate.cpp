@@ -44,6 +44,7 @@ VirtualExperimentOptions Settings(const SimulateCommand& options) {
     if (given == options.flags.end() || given->second.empty()) continue;
     ApplySetting(setting, given->second, FlagName(setting.key) + ": ");
   }
+  CheckRanges(settings);
   if (options.free) settings.physics.standing = Standing::kFree;
   return settings;
 }

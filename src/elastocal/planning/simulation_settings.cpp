@@ -222,6 +222,22 @@ void ApplySetting(const SimulationSetting& setting, const std::string& text,
   std::visit(Assign{setting, text, place}, setting.target);
 }
 
+void CheckRanges(const VirtualExperimentOptions& options) {
+  const TruthOptions& truth = options.truth;
+  const SensorOptions& sensors = options.sensors;
+  const auto check = [](const std::string& least_key, double least, const std::string& most_key,
+                        double most) {
+    if (least <= most) return;
+    throw InputError(least_key + " is " + FormatNumber(least) + ", above " + most_key + ", " +
+                     FormatNumber(most) + "; a range begins with the smaller number");
+  };
+  check("upper_stiffness_least", truth.upper_stiffness_least, "upper_stiffness_most",
+        truth.upper_stiffness_most);
+  check("leg_stiffness_least", truth.leg_stiffness_least, "leg_stiffness_most",
+        truth.leg_stiffness_most);
+  check("least_lag_s", sensors.least_lag_s, "largest_lag_s", sensors.largest_lag_s);
+}
+
 void ReadSimulationSettings(const std::filesystem::path& file, VirtualExperimentOptions& options) {
   const YamlValue root = YamlValue::Parse(ReadFile(file), file.string());
   const Settings settings = SimulationSettings(options);
