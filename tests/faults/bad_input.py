@@ -190,7 +190,7 @@ def strange_places(tries, base):
     for what, words in reads.items():
         for label, place in places.items():
             tries.add("places of inputs", f"{what}: {label}", words(place),
-                      os.path.basename(str(place)) or "required")
+                      os.path.basename(str(place)) or "is empty")
     outputs = dict(places, full="/dev/full", processes="/proc/x/y", root="/")
     outputs.pop("device")
     for label in ("pipe", "terminal", "none", "not UTF-8"):
@@ -204,7 +204,7 @@ def strange_places(tries, base):
     for what, words in writes.items():
         for label, place in outputs.items():
             tries.add("places of outputs", f"{what}: {label}", words(place),
-                      os.path.basename(str(place)))
+                      os.path.basename(str(place)) or "needs a name")
     for file in [base.recording / "arm.tsv", base.recording / "arm.csv", base.table, base.project,
                  base.urdf, base.out / "calibration.yaml", base.out / "covariance.csv"]:
         copied = tries.folder() / file.name
@@ -212,6 +212,11 @@ def strange_places(tries, base):
         tries.add("places of outputs", f"--json over {file.name}",
                   ["inspect", base.project, "--json", copied], file.name)
     tries.add("places of outputs", "standard output is full", ["inspect", base.project], "output")
+
+
+def plan_of_an_arm(command):
+    """Values that are fine still do not plan a motion of what has no legs."""
+    return ["expected a leg"] if command == "plan" else []
 
 
 def options(tries, base):
@@ -239,8 +244,10 @@ def options(tries, base):
                 # The simulation has many of one kind.
                 if command == "simulate" and tries.random.random() > 0.4:
                     continue
+                shown = {b"\xff\xe9": "\ufffd\ufffd", "\x1b[2J": "?[2J"}.get(value, value)
                 tries.add(f"options of {command}", f"{option} {value!r}",
-                          [command, *words, option, value], option)
+                          [command, *words, option, value], option, shown or "is empty",
+                          option[2:].replace("-", "_"), "experiment.yaml", *plan_of_an_arm(command))
         tries.add(f"options of {command}", "unknown", [command, *words, "--no-such-option"],
                   "--no-such-option")
 

@@ -63,7 +63,7 @@ struct QtmLines {
 
 bool IsKey(std::string_view cell) {
   constexpr std::string_view kCharacters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
-  return !cell.empty() && cell.find_first_not_of(kCharacters) == cell.npos &&
+  return !cell.empty() && cell.find_first_not_of(kCharacters) == std::string_view::npos &&
          cell.find_first_of("0123456789") != 0;
 }
 

@@ -44,6 +44,7 @@ class FolderAfter {
 };
 
 void CheckFolder(const fs::path& folder) {
+  if (folder.empty()) throw InputError("the name of a folder is empty");
   if (FileTypeOf(folder) != fs::file_type::directory) {
     throw InputError(folder.string() + ": is no folder; expected one that calibrate -o wrote to");
   }

@@ -99,6 +99,7 @@ std::vector<ChainAssessment> AssessPostures(const Project& project,
                                             const PostureAssessmentOptions& options,
                                             const Progress& progress) {
   ChosenSetups(project, {});  // says so where there is no section `design`
+  for (const std::string& name : options.chains) FindChain(project, name);
   std::vector<const ChainPostures*> chosen;
   for (const ChainPostures& set : sets) {
     const auto& names = options.chains;

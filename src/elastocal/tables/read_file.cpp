@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kLargestFile = 256u << 20;
 
 [[noreturn]] void FailToRead(const std::filesystem::path& file, int reason) {
+  if (file.empty()) throw InputError("the name of a file is empty");
   if (reason == ENOENT || reason == ENOTDIR) {
     throw InputError(file.string() + ": there is no such file");
   }

@@ -25,6 +25,7 @@ TEST(ReadFile, TakesRegularFilesOnly) {
   ExpectInputError([] { ReadFile("/dev/zero"); }, {"/dev/zero", "not a regular file"});
   ExpectInputError([&] { ReadFile(scratch.path()); }, {"is a folder"});
   ExpectInputError([&] { ReadFile(scratch.path() / "none"); }, {"none", "no such file"});
+  ExpectInputError([] { ReadFile(""); }, {"name", "is empty"});
 }
 
 TEST(FileTypeOf, KnowsWhereNoneIsAndWhereNobodyCanTell) {
