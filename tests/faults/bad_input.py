@@ -204,7 +204,7 @@ def strange_places(tries, base):
     for what, words in writes.items():
         for label, place in outputs.items():
             tries.add("places of outputs", f"{what}: {label}", words(place),
-                      os.path.basename(str(place)) or "needs a name")
+                      os.path.basename(str(place)) or "name")
     for file in [base.recording / "arm.tsv", base.recording / "arm.csv", base.table, base.project,
                  base.urdf, base.out / "calibration.yaml", base.out / "covariance.csv"]:
         copied = tries.folder() / file.name
@@ -246,7 +246,8 @@ def options(tries, base):
                     continue
                 shown = {b"\xff\xe9": "\ufffd\ufffd", "\x1b[2J": "?[2J"}.get(value, value)
                 tries.add(f"options of {command}", f"{option} {value!r}",
-                          [command, *words, option, value], option, shown or "is empty",
+                          [command, *words, option, value], option, shown or "''", "is empty",
+                          "is required", "cross-validation",
                           option[2:].replace("-", "_"), "experiment.yaml", *plan_of_an_arm(command))
         tries.add(f"options of {command}", "unknown", [command, *words, "--no-such-option"],
                   "--no-such-option")

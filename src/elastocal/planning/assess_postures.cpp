@@ -124,7 +124,7 @@ std::vector<ChainPostures> RecordedPostures(const Project& project, const Record
     ChainPostures set{setup.name, setup.support, {}};
     for (Eigen::Index i = 0; i < recording.q.rows(); ++i) {
       if (Exercises(recording, i, project, setup)) {
-        set.q.push_back(recording.q.row(i).transpose());
+        set.q.emplace_back(recording.q.row(i).transpose());
       }
     }
     if (!set.q.empty()) sets.push_back(std::move(set));
