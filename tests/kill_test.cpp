@@ -60,7 +60,7 @@ pid_t Start(const std::string& arguments) {
 /// A text without the durations in it, the one thing in which two runs of one command differ.
 std::string WithoutDurations(const std::string& text) {
   static const std::regex duration(
-      "\\\"(time_s|seconds|solve_seconds|planning_s)\\\": ?[-+.e0-9]+");
+      R"re("(time_s|seconds|solve_seconds|planning_s)": ?[-+.e0-9]+)re");
   return std::regex_replace(text, duration, "");
 }
 
