@@ -170,7 +170,7 @@ TEST_F(CalibrationFile, BadFilesAreNamedByLine) {
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "number"});
   Write(before + fine + "  - {name: b.d, unit: deg, value: 1}\n");
   ExpectInputError([&] { ReadCalibration(file_); },
-                   {file_.string() + ":7", "unit", "'deg'", "rad, m, rad/(N.m)"});
+                   {file_.string() + ":7", "unit", "'deg'", "m, the unit of 'b.d'"});
   Write(before + "  - {name: a.theta, value: 1}\n");
   ExpectInputError([&] { ReadCalibration(file_); }, {file_.string() + ":6", "'unit'"});
   Write(before + fine + fine);

@@ -72,6 +72,8 @@ TEST_F(Program, CompareRefusesOtherRobotsAndFoldersWithoutResult) {
   const std::string later = CalibratedLater("later", "elbow_joint.theta", 0.0);
   std::filesystem::copy_file(out_ + "/covariance.csv", later + "/covariance.csv",
                              std::filesystem::copy_options::overwrite_existing);
+  refused(out_ + " " + later, {"covariance.csv", "of two runs"});
+  std::filesystem::remove(later + "/SHA256SUMS");
   refused(out_ + " " + later, {"covariance.csv:2", "another calibration"});
 }
 

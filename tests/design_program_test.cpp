@@ -89,7 +89,7 @@ TEST_F(DesignProgram, NamesWhatIsWrongInTheProject) {
   expect("cone_deg: 60", "cone_deg: 600", "180");
   expect("lower: [-350", "lower: [3500", "lower corner below the upper one");
   expect("leg_left_4_joint: 49.2", "leg_left_4_joint: -49.2", "within the joint's limits");
-  expect("radius_mm: 135", "radius_mm: -1", "above 0");
+  expect("radius_mm: 135", "radius_mm: -1", "from 0.1");
 }
 
 TEST_F(DesignProgram, NamesWhatIsWrongInAPostureFile) {

@@ -13,6 +13,7 @@
 #include "elastocal/io/output_set.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/assess_postures.hpp"
 
 namespace elastocal::cli {
@@ -93,7 +94,7 @@ int Assess(const AssessCommand& command) {
   OutputSet outputs;
   outputs.Protect(InputFiles(project, {command.recordings.begin(), command.recordings.end()}));
   outputs.Protect({command.postures});
-  outputs.Declare(command.common.json_file);
+  DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
 
   PostureAssessmentOptions options;
@@ -134,8 +135,7 @@ void AddAssess(CLI::App& app, Action& action) {
   command
       ->add_option("--marker-noise-mm", options->marker_noise_mm,
                    "Noise of a marker coordinate that the standard deviations are for, mm")
-      ->check(CLI::Range(1e-3, 100.0))
-      ->check(IsNumber)
+      ->check(InBounds("assess --marker-noise-mm"))
       ->capture_default_str();
   command->add_option("--weakest", options->weakest, "How many of the weakest parameters to show")
       ->check(CLI::Range(0, 1000))

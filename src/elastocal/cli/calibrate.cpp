@@ -25,7 +25,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   OutputSet outputs;
   outputs.Protect(inputs);
   DeclareResults(folder, CalibrationFileNames(project), outputs);
-  outputs.Declare(options.common.json_file);
+  DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
 
   // Large recordings take a while: their checksums are made on another thread.

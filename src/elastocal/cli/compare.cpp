@@ -5,9 +5,11 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/comparison_report.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/io/output_set.hpp"
 #include "elastocal/pipeline/compare_calibrations.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -24,7 +26,7 @@ int Compare(const CompareOptions& options) {
     const CalibrationFiles files = FindCalibrationFiles(given);
     outputs.Protect({files.calibration, files.covariance});
   }
-  outputs.Declare(options.common.json_file);
+  DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
   const ComparisonRun run = CompareCalibrations(options.a, options.b, options.comparison);
   outputs.Set(options.common.json_file,
@@ -50,7 +52,7 @@ void AddCompare(CLI::App& app, Action& action) {
   command
       ->add_option("--level", options->comparison.level,
                    "Chance that any joint of an unchanged robot is called moved all the same")
-      ->check(CLI::Range(1e-9, 0.5))
+      ->check(InBounds("compare --level"))
       ->capture_default_str();
   AddOutputOptions(*command, options->common);
   command->footer(

@@ -12,6 +12,7 @@
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/io/output_set.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/design_postures.hpp"
 
 namespace elastocal::cli {
@@ -58,9 +59,12 @@ int Design(const DesignCommand& command) {
   const DesignFiles files(command.output);
   OutputSet outputs;
   outputs.Protect({command.project, project.urdf});
-  for (const std::filesystem::path& file : files.all()) outputs.Declare(file);
-  outputs.Declare(command.common.json_file);
+  outputs.Declare(files.postures, "robot: ");
+  outputs.Declare(files.summary, "{");
+  outputs.Declare(files.curves, "algorithm,");
+  outputs.Declare(files.picture, "<svg");
   DeclarePlanningReport(command.output, outputs);
+  DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
 
   const bool quiet = command.common.Silent();
@@ -116,7 +120,7 @@ void AddDesign(CLI::App& app, Action& action) {
   command
       ->add_option("--plateau", options->plateau,
                    "Ends when two additions in turn change the index by less than this, relatively")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(InBounds("design --plateau"))
       ->capture_default_str();
   command->add_option("--block", options->block, "Postures added at a time (N_p)")
       ->check(CLI::Range(1, 100))

@@ -9,6 +9,7 @@
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/output_set.hpp"
 #include "elastocal/pipeline/inspect_robot.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
@@ -109,7 +110,7 @@ int Inspect(const InspectOptions& options) {
   const Project project = ReadProject(options.project);
   OutputSet outputs;
   outputs.Protect({options.project, project.urdf});
-  outputs.Declare(options.common.json_file);
+  DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
   InspectionOptions inspect;
   if (!options.hold.empty()) inspect.hold = options.hold;

@@ -1,8 +1,14 @@
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <memory>
+#include <new>
+#include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +22,7 @@
 #include "elastocal/cli/progress.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/utf8.hpp"
 #include "elastocal/report/version.hpp"
 
 namespace elastocal::cli {
@@ -105,14 +112,34 @@ int Run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kFine : kUsage;
+    std::ostringstream out, err;
+    const bool fine = app.exit(error, out, err) == 0;
+    fmt::print("{}", Printable(out.str()));
+    fmt::print(stderr, "{}", Printable(err.str()));
+    return fine ? kFine : kUsage;
   }
+  return action();
+}
+
+/// Whether all that was printed has arrived.
+bool Printed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
+/// What libraries throw because of an input or an output is no defect of the program.
+int RunAndExplain(int argc, char** argv) {
   try {
-    return action();
+    const int code = Run(argc, argv);
+    if (Printed()) return code;
+    spdlog::error("cannot write to standard output: {}", std::strerror(errno));
+    return code == kFine ? kBadInput : code;
   } catch (const InputError& error) {
     spdlog::error("{}", error.what());
-    return kBadInput;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("there is not enough memory for an input of this size");
+  } catch (const std::system_error& error) {
+    // Of the file system, with the path, or of standard output.
+    spdlog::error("{}", error.what());
   }
+  return kBadInput;
 }
 
 }  // namespace
@@ -123,7 +150,7 @@ int RunCommandLine(const std::vector<std::string>& arguments) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  return Run(static_cast<int>(words.size()), argv.data());
+  return RunAndExplain(static_cast<int>(words.size()), argv.data());
 }
 
 }  // namespace elastocal::cli
@@ -134,7 +161,10 @@ class MessageSink : public spdlog::sinks::stderr_color_sink_mt {
   void log(const spdlog::details::log_msg& message) override {
     std::fflush(stdout);
     elastocal::cli::EraseProgressLine();
-    spdlog::sinks::stderr_color_sink_mt::log(message);
+    const std::string text = elastocal::Printable({message.payload.data(), message.payload.size()});
+    spdlog::details::log_msg printable = message;
+    printable.payload = text;
+    spdlog::sinks::stderr_color_sink_mt::log(printable);
   }
 };
 
@@ -142,10 +172,16 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("elastocal", std::make_shared<MessageSink>()));
   spdlog::set_pattern("elastocal: %^%l%$: %v");
+  // Beyond a limit on the size of files a write then fails, with a message, instead of this signal.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
-    return elastocal::cli::Run(argc, argv);
+    return elastocal::cli::RunAndExplain(argc, argv);
   } catch (const std::exception& error) {
-    spdlog::critical("{}", error.what());
+    spdlog::critical(
+        "{}\nThis is a defect of the program and not of your input. Please report it to its "
+        "maintainers, with this message, the command line, the files that it names and what "
+        "elastocal --version says.",
+        error.what());
     return elastocal::cli::kInternal;
   }
 }

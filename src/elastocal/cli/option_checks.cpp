@@ -1,15 +1,16 @@
 #include "elastocal/cli/option_checks.hpp"
 
-#include <cmath>
-
+#include "elastocal/io/bounds.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal::cli {
 
-std::string IsNumber(const std::string& text) {
-  const auto number = ParseNumber(text);
-  if (number && std::isfinite(*number)) return "";
-  return "found " + Quote(text) + "; a number was expected";
+std::function<std::string(const std::string&)> InBounds(const std::string& key) {
+  return [range = BoundsOf(key)](const std::string& text) {
+    const auto number = ParseNumber(text);
+    if (number && range.Contains(*number)) return std::string();
+    return "found " + Quote(text) + "; expected " + range.InWords();
+  };
 }
 
 std::string IsNamed(const std::string& text) {

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace elastocal::cli {
 
 // For CLI::Option::check: what is wrong with the text; empty where nothing is.
 
-/// A finite number. CLI::Range alone takes NaN.
-std::string IsNumber(const std::string& text);
+/// A number within the bounds of an option, "COMMAND --option" (bounds.hpp). Of what CLI11 offers,
+/// Range takes NaN.
+std::function<std::string(const std::string&)> InBounds(const std::string& key);
 
 /// The name of an output: not empty.
 std::string IsNamed(const std::string& text);

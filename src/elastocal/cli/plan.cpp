@@ -13,6 +13,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/output_set.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/plan_motion.hpp"
 
 namespace elastocal::cli {
@@ -102,9 +103,12 @@ int Plan(const PlanCommand& command) {
   std::vector<std::filesystem::path> inputs = {command.project, project.urdf};
   if (!command.postures.empty()) inputs.push_back(command.postures);
   outputs.Protect(inputs);
-  for (const std::filesystem::path& file : files.all()) outputs.Declare(file);
-  outputs.Declare(command.common.json_file);
+  outputs.Declare(files.motion, "time,");
+  outputs.Declare(files.margins, "{");
+  outputs.Declare(files.trajectory, "header:");
+  for (const std::filesystem::path& file : files.chains) outputs.Declare(file, "time,");
   DeclarePlanningReport(command.output, outputs);
+  DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
 
   const bool quiet = command.common.Silent();
@@ -176,23 +180,17 @@ void AddPlan(CLI::App& app, Action& action) {
                    "Also a motion for each chain in this folder, without the changes of support: "
                    "what simulate --motion plays as a trial")
       ->type_name("DIR");
-  const auto number = [&](const char* name, double& value, double least, double most,
-                          const char* help) {
-    command->add_option(name, value, help)
-        ->check(CLI::Range(least, most))
-        ->check(IsNumber)
-        ->capture_default_str();
+  const auto number = [&](const std::string& name, double& value, const char* help) {
+    command->add_option(name, value, help)->check(InBounds("plan " + name))->capture_default_str();
   };
   MotionPlanOptions& plan = options->options;
-  number("--move-s", plan.plan.path.duration_s, 0.1, 1000.0, "Time between two postures, s");
-  number("--rest-s", plan.plan.hold_s, 1.0, 1000.0, "At rest in each posture, s");
-  number("--zmp-margin-mm", options->zmp_margin_mm, 0.0, 1000.0,
+  number("--move-s", plan.plan.path.duration_s, "Time between two postures, s");
+  number("--rest-s", plan.plan.hold_s, "At rest in each posture, s");
+  number("--zmp-margin-mm", options->zmp_margin_mm,
          "Least distance of the zero-moment point to the edge of the support, mm");
-  number("--torque-share", plan.limits.torque_share, 0.01, 1.0,
-         "Share of the torque limits to be used");
-  number("--velocity-share", plan.limits.velocity_share, 0.01, 1.0,
-         "Share of the velocity limits to be used");
-  number("--floor-friction", options->tries.floor_friction, 0.0, 10.0,
+  number("--torque-share", plan.limits.torque_share, "Share of the torque limits to be used");
+  number("--velocity-share", plan.limits.velocity_share, "Share of the velocity limits to be used");
+  number("--floor-friction", options->tries.floor_friction,
          "Friction of the floor that --robots stand on");
   command->add_option("--threads", plan.threads, "Chains planned, and robots tried, at a time")
       ->check(CLI::Range(1, 64))
@@ -201,7 +199,7 @@ void AddPlan(CLI::App& app, Action& action) {
       ->add_option("--robots", options->tries.robots,
                    "Play the motion on as many robots with errors, standing free")
       ->check(CLI::Range(0, 1000));
-  number("--leg-geometry-scale", options->tries.leg_errors, 0.0, 100.0,
+  number("--leg-geometry-scale", options->tries.leg_errors,
          "Factor on the errors of their legs' geometry");
   command->add_flag("--no-stabiliser", options->unstabilised,
                     "They follow the motion blindly: nothing corrects it by what the feet and the "

@@ -10,6 +10,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "elastocal/math/utf8.hpp"
+
 namespace elastocal::cli {
 namespace {
 
@@ -38,7 +40,7 @@ std::size_t TerminalWidth() {
 void Draw(const std::string& text) {
   // What stdout still holds belongs above the line.
   std::fflush(stdout);
-  fmt::print(stderr, "{}{}", kEmptyLine, text.substr(0, TerminalWidth() - 1));
+  fmt::print(stderr, "{}{}", kEmptyLine, Printable(text.substr(0, TerminalWidth() - 1)));
   std::fflush(stderr);
   IsDrawn() = true;
 }

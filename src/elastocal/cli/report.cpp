@@ -34,11 +34,11 @@ int Report(const ReportOptions& options) {
   RecoverOutputs(folder);
   OutputSet outputs;
   outputs.Protect(PageInputs(folder, earlier));
-  outputs.Declare(output);
-  outputs.Declare(options.common.json_file);
+  DeclarePage(folder, output, outputs);
+  DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
   const std::string page = MakeFolderPage(folder, ProgramVersion(), earlier);
-  outputs.Set(output, page);
+  SetPage(folder, output, page, outputs);
   const nlohmann::ordered_json json = {{"report", output.string()}, {"bytes", page.size()}};
   outputs.Set(options.common.json_file,
               json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");

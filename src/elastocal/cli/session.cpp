@@ -6,13 +6,14 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/warning_groups.hpp"
+#include "elastocal/math/utf8.hpp"
 
 namespace elastocal::cli {
 
 void Print(bool quiet, const std::string& text) {
   if (quiet) return;
   EraseProgressLine();
-  fmt::print("{}", text);
+  fmt::print("{}", Printable(text));
 }
 
 void PrintWarnings(const std::vector<std::string>& warnings, bool verbose) {

@@ -9,7 +9,7 @@
 
 namespace elastocal::cli {
 
-/// Prints to stdout unless quiet.
+/// Prints to stdout unless quiet; see Printable for what is shown of names in the text.
 void Print(bool quiet, const std::string& text);
 
 /// Prints warnings to stderr; those that say the same of several things together, unless `verbose`.

@@ -11,6 +11,7 @@
 #include "elastocal/cli/simulation_report.hpp"
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/io/output_set.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/planning/simulation_settings.hpp"
 
@@ -43,6 +44,7 @@ VirtualExperimentOptions Settings(const SimulateCommand& options) {
     if (given == options.flags.end() || given->second.empty()) continue;
     ApplySetting(setting, given->second, FlagName(setting.key) + ": ");
   }
+  CheckRanges(settings);
   if (options.free) settings.physics.standing = Standing::kFree;
   return settings;
 }
@@ -73,7 +75,7 @@ int Simulate(const SimulateCommand& command) {
   outputs.Protect(
       {command.project, project.urdf, command.settings, command.postures, command.motion});
   for (const std::filesystem::path& file : files.all()) outputs.Declare(file);
-  outputs.Declare(command.common.json_file);
+  DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
 
   const bool quiet = command.common.Silent();

@@ -67,7 +67,7 @@ int Validate(const ValidateOptions& options) {
   OutputSet outputs;
   outputs.Protect(inputs);
   if (!folder.empty()) DeclareResults(folder, {"validation.json"}, outputs);
-  outputs.Declare(options.common.json_file);
+  DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
 
   const ValidationRun run =

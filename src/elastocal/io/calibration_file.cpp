@@ -1,5 +1,7 @@
 #include "elastocal/io/calibration_file.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -10,12 +12,14 @@
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/yaml_value.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr const char* kFormat = "elastocal-calibration-1";
+constexpr std::int64_t kMostEstimates = 1000000;
 
 /// Text in which equal numbers look the same: rounded to 1e-9, and 0 where that leaves -0.
 class RoundedText {
@@ -42,11 +46,22 @@ std::uint64_t Fnv1a(const std::string& text) {
   return hash;
 }
 
-bool IsUnitName(const std::string& text) {
-  for (int unit = 0; unit < kParameterUnitCount; ++unit) {
-    if (text == UnitName(static_cast<ParameterUnit>(unit))) return true;
+/// Units that a parameter can have by the last part of its name, and the largest value that is a
+/// deviation of a robot and not a damaged file.
+struct NamedUnits {
+  std::array<const char*, 2> units;
+  double most = std::numeric_limits<double>::infinity();
+};
+
+NamedUnits UnitsOf(const std::string& parameter) {
+  const std::string suffix = parameter.substr(parameter.rfind('.') + 1);
+  for (const char* angle : {"theta", "alpha", "beta", "gamma"}) {
+    if (suffix == angle) return {{"rad", "rad"}, M_PI};
   }
-  return false;
+  if (suffix == "torque_bias") return {{"N.m", "N"}};
+  if (suffix.starts_with("compliance_")) return {{"rad/(N.m)", "m/N"}};
+  constexpr double kLongest = 1000.0;  // m: markers and waist in the frame of any laboratory
+  return {{"m", "m"}, kLongest};
 }
 
 void EmitParameter(const CalibrationResult& result, int i, YAML::Emitter& yaml) {
@@ -111,10 +126,17 @@ ParameterEstimate ReadParameter(const YamlValue& item) {
   parameter.name = item.Get("name").Text();
   const YamlValue unit = item.Get("unit");
   parameter.unit = unit.Text();
-  unit.Expect(IsUnitName(parameter.unit), "rad, m, rad/(N.m), m/N, N.m or N");
+  const auto [units, most] = UnitsOf(parameter.name);
+  const std::string either = units[0] == units[1] ? "" : std::string(" or ") + units[1];
+  unit.Expect(parameter.unit == units[0] || parameter.unit == units[1],
+              units[0] + either + ", the unit of " + Quote(parameter.name));
   parameter.external =
       parameter.name.starts_with("waist.T0.") || parameter.name.starts_with("marker.");
-  parameter.value = item.Get("value").Number();
+  parameter.value =
+      std::isinf(most)
+          ? item.Get("value").Number()
+          : item.Get("value").Number(
+                {.lower = -most, .upper = most, .with_lower = true, .with_upper = true});
   parameter.status = ReadStatus(item.Get("status"));
   parameter.sd = std::numeric_limits<double>::quiet_NaN();
   if (parameter.status == ParameterStatus::kEstimated || item.Find("sd")) {
@@ -122,6 +144,11 @@ ParameterEstimate ReadParameter(const YamlValue& item) {
     item.Get("sd").Expect(parameter.sd > 0.0, "a number above 0");
   }
   return parameter;
+}
+
+/// The joint or chain that the name of a parameter begins with.
+std::string OwnerOf(const std::string& parameter) {
+  return parameter.substr(0, parameter.rfind('.'));
 }
 
 Eigen::Vector3d ReadNumbers(const YamlValue& value) {
@@ -180,6 +207,8 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(result.interval_factor);
   if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, yaml);
   if (uncalibrated != nullptr) EmitUncalibrated(*uncalibrated, yaml);
+  yaml << YAML::Key << "parameter_count" << YAML::Value << result.model.parameter_count()
+       << YAML::Comment("a file that was cut has fewer");
   yaml << YAML::Key << "parameters" << YAML::Value << YAML::BeginSeq;
   for (int i = 0; i < result.model.parameter_count(); ++i) EmitParameter(result, i, yaml);
   yaml << YAML::EndSeq << YAML::EndMap;
@@ -199,11 +228,21 @@ CalibrationEstimate ParseEstimate(const std::string& text, const std::string& so
   estimate.robot = root.Get("robot").Text();
   estimate.nominal = root.Get("nominal").Text();
   estimate.recording = root.Get("recording").Text();
+  const YamlValue list = root.Get("parameters");
   std::set<std::string> names;
-  for (const YamlValue& item : root.Get("parameters").Items()) {
+  for (const YamlValue& item : list.Items()) {
     estimate.parameters.push_back(ReadParameter(item));
     item.Get("name").Expect(names.insert(estimate.parameters.back().name).second,
                             "every parameter once");
+  }
+  if (names.empty()) list.Fail("found no parameter; those of a calibration were expected");
+  if (const auto count = root.Find("parameter_count")) {
+    const auto found = static_cast<std::int64_t>(names.size());
+    if (count->Integer(1, kMostEstimates) != found) {
+      list.Fail("found " + std::to_string(found) + " parameters; " +
+                std::to_string(count->Integer(1, kMostEstimates)) +
+                " were expected (parameter_count): the file was cut or changed");
+    }
   }
   estimate.model = root.Get("model").Text();
   const YamlValue factor = root.Get("interval_95_in_sd");
@@ -218,6 +257,10 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   const CalibrationEstimate estimate = ParseEstimate(text, file.string());
   const YamlValue root = YamlValue::Parse(text, file.string());
   StoredCalibration stored;
+  stored.source = file.string();
+  for (const YamlValue& item : root.Get("parameters").Items()) {
+    stored.lines[item.Get("name").Text()] = item.line();
+  }
   stored.robot = estimate.robot;
   stored.nominal = estimate.nominal;
   stored.recording = estimate.recording;
@@ -234,6 +277,29 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
     }
   }
   return stored;
+}
+
+void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
+                     const std::vector<std::string>& chains) {
+  std::set<std::string> owners(chains.begin(), chains.end());
+  for (const Joint& joint : model.tree.joints) owners.insert(joint.name);
+  std::set<std::string> calibrated;
+  for (const auto& [name, value] : stored.joint_errors) {
+    const std::string owner = OwnerOf(name);
+    if (!owners.contains(owner)) {
+      throw InputError(Place(stored.source, stored.lines.at(name)) + "parameter " + Quote(name) +
+                       ": the robot has no joint or chain " + Quote(owner) +
+                       DidYouMean(owner.substr(0, 60), owners));
+    }
+    calibrated.insert(owner);
+  }
+  for (const Parameter& parameter : model.parameters) {
+    if (IsExternal(parameter.kind) || IsElastic(parameter.kind)) continue;
+    const std::string owner = OwnerOf(parameter.name);
+    if (!calibrated.contains(owner) || stored.joint_errors.contains(parameter.name)) continue;
+    throw InputError(stored.source + ": no parameter " + Quote(parameter.name) +
+                     ", although the file has others of this joint: it was cut or changed");
+  }
 }
 
 }  // namespace elastocal

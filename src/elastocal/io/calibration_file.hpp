@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
@@ -26,7 +27,8 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
                                 const CalibrationResult* uncalibrated = nullptr);
 
 /// Reads all of a calibration.yaml that a comparison needs; the covariance is in another file.
-/// Throws InputError naming file, line and key.
+/// Throws InputError naming file, line and key, also for a file that was cut, a unit that its
+/// parameter cannot have, and an angle beyond half a turn.
 CalibrationEstimate ReadEstimate(const std::filesystem::path& file);
 
 /// The same from the text of a file; `source` names it in messages.
@@ -34,6 +36,7 @@ CalibrationEstimate ParseEstimate(const std::string& text, const std::string& so
 
 /// What another run needs of such a file.
 struct StoredCalibration {
+  std::string source;  ///< the file, for messages
   std::string robot;
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
@@ -43,9 +46,16 @@ struct StoredCalibration {
   /// Waist (deviations from there) and markers, by parameter name, SI: of the calibrated model, and
   /// of the uncalibrated one fitted to the same recording (empty if the file does not have it).
   std::map<std::string, double> externals, uncalibrated_externals;
+  std::map<std::string, int> lines;  ///< of the file, by parameter name
 };
 
 /// Reads a calibration.yaml. Throws InputError naming file, line and key.
 StoredCalibration ReadCalibration(const std::filesystem::path& file);
+
+/// Throws InputError naming the line where the calibration has a parameter of a joint or chain that
+/// is neither the model's nor one of `chains`, and where a joint lacks some of its parameters of
+/// geometry. The model has all markers of the project.
+void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
+                     const std::vector<std::string>& chains);
 
 }  // namespace elastocal

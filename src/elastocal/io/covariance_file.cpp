@@ -87,7 +87,7 @@ std::string MakeCovarianceCsv(const CalibrationResult& result) {
 }
 
 void ReadCovariance(const std::filesystem::path& file, CalibrationEstimate& estimate) {
-  std::ifstream stream = OpenTable(file);
+  std::istringstream stream = OpenTable(file);
   ReadCovariance(stream, file.string(), estimate);
 }
 

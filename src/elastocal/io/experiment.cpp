@@ -98,7 +98,7 @@ TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Proje
   if (const auto support = value.Find("support")) ReadSupport(*support, project, trial);
   trial.markers = ReadFileName(value.Get("markers"), folder, used);
   trial.joints = ReadFileName(value.Get("joints"), folder, used);
-  if (const auto lag = value.Find("expected_lag_s")) trial.expected_lag_s = lag->Number();
+  if (const auto lag = value.Find("expected_lag_s")) trial.expected_lag_s = lag->Bounded();
   if (const auto truth = value.Find("truth")) trial.truth = ReadFileName(*truth, folder, used);
   return trial;
 }

@@ -148,7 +148,7 @@ void ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
 }  // namespace
 
 JointLog ReadJointLog(const std::filesystem::path& file, const Project& project) {
-  std::ifstream stream = OpenTable(file);
+  std::istringstream stream = OpenTable(file);
   return ReadJointLog(stream, file.string(), project);
 }
 

@@ -15,6 +15,7 @@ namespace elastocal {
 namespace {
 
 /// Half an hour at 100 Hz; this bounds the memory that a file can take.
+constexpr double kLongestMotion = 3600.0;  // s
 constexpr int kMostSamples = 200000;
 constexpr double kSpeedMargin = 1.05;  // samples are rounded
 
@@ -140,7 +141,14 @@ JointMotion ReadSamples(std::istream& stream, const std::string& source, const P
       table.Fail("more than " + std::to_string(kMostSamples) + " rows");
     }
     motion.line.push_back(table.line());
-    if (timed) AppendTime(table, columns.time, time);
+    if (timed) {
+      AppendTime(table, columns.time, time);
+      if (time.back() - time.front() > kLongestMotion) {
+        table.FailCell(columns.time, FormatNumber(time.back() - time.front()) +
+                                         " s after the first row; a motion lasts at most " +
+                                         FormatNumber(kLongestMotion) + " s");
+      }
+    }
     for (int column : columns.coordinates) {
       q.push_back(column < 0 ? kNaN : table.Number(column));
     }
@@ -171,7 +179,7 @@ JointMotion ReadMotion(std::istream& stream, const std::string& source, const Pr
 }
 
 JointMotion ReadMotion(const std::filesystem::path& file, const Project& project) {
-  std::ifstream stream = OpenTable(file);
+  std::istringstream stream = OpenTable(file);
   return ReadMotion(stream, file.string(), project);
 }
 
@@ -181,7 +189,7 @@ JointMotion ReadPostureList(std::istream& stream, const std::string& source,
 }
 
 JointMotion ReadPostureList(const std::filesystem::path& file, const Project& project) {
-  std::ifstream stream = OpenTable(file);
+  std::istringstream stream = OpenTable(file);
   return ReadPostureList(stream, file.string(), project);
 }
 

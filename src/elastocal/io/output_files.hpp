@@ -5,10 +5,9 @@
 #include <utility>
 #include <vector>
 
-namespace elastocal {
+#include "elastocal/tables/read_file.hpp"
 
-/// Contents of a file. Throws InputError when it cannot be read or is larger than 256 MiB.
-std::string ReadFile(const std::filesystem::path& file);
+namespace elastocal {
 
 /// Writes one file, or several, by an OutputSet: all or none. Creates folders.
 void WriteFile(const std::filesystem::path& file, const std::string& contents);

@@ -17,6 +17,7 @@
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -27,6 +28,20 @@ constexpr const char* kStagingPrefix = ".elastocal-";
 // In a staging folder, beside the files of the run.
 constexpr const char* kCommit = ".commit";
 constexpr const char* kOwner = ".owner";  // locked while the run lives
+
+/// That nothing else is replaced than a file that begins so, or an empty one.
+void CheckBeginning(const fs::path& file, const std::string& beginning) {
+  std::error_code error;
+  if (beginning.empty() || !fs::is_regular_file(file, error)) return;
+  std::ifstream stream(file, std::ios::binary);
+  std::string found(beginning.size(), '\0');
+  stream.read(found.data(), static_cast<std::streamsize>(found.size()));
+  found.resize(static_cast<std::size_t>(stream.gcount()));
+  if (found.empty() || found == beginning) return;
+  throw InputError(file.string() + ": is there and does not begin with " + Quote(beginning) +
+                   ", as this output does, so it is not replaced; choose another name, or remove "
+                   "it");
+}
 
 std::string SystemError() { return errno != 0 ? std::strerror(errno) : "input or output error"; }
 
@@ -345,7 +360,7 @@ void OutputSet::Protect(const std::vector<fs::path>& inputs) {
   }
 }
 
-void OutputSet::Declare(const fs::path& file) {
+void OutputSet::Declare(const fs::path& file, const std::string& beginning) {
   if (file.empty()) return;
   for (const fs::path& input : state_->inputs) {
     if (SamePlace(file, input)) {
@@ -358,6 +373,7 @@ void OutputSet::Declare(const fs::path& file) {
                        output.given.string() + "); choose another output");
     }
   }
+  CheckBeginning(file, beginning);
   state_->outputs.push_back({file, {}});
 }
 
@@ -370,6 +386,14 @@ void OutputSet::Set(const fs::path& file, std::string contents) {
 }
 
 bool OutputSet::IsDeclared(const fs::path& file) const { return state_->Find(file) != nullptr; }
+
+std::vector<fs::path> OutputSet::DeclaredIn(const fs::path& folder) const {
+  std::vector<fs::path> files;
+  for (const State::Output& output : state_->outputs) {
+    if (SamePlace(FolderOf(output.given), folder)) files.push_back(output.given);
+  }
+  return files;
+}
 
 const std::string* OutputSet::Contents(const fs::path& file) const {
   const State::Output* output = state_->Find(file);
@@ -390,7 +414,10 @@ void OutputSet::Publish() {
   state_->WriteStaged();
   state_->WriteStreams();
   state_->CommitAll();
-  for (const auto& [folder, place] : state_->staging) ApplyCommit(place);
+  for (const auto& [folder, place] : state_->staging) {
+    const FolderLock lock(folder);  // readers wait until the folder is of one run
+    ApplyCommit(place);
+  }
   state_->folders.Keep();
 }
 

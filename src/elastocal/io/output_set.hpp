@@ -44,8 +44,10 @@ class OutputSet {
   void Protect(const std::vector<std::filesystem::path>& inputs);
 
   /// A file that the run may write. An empty path is passed over. Throws InputError where the file
-  /// is an input, or where it is declared already (two outputs under one name).
-  void Declare(const std::filesystem::path& file);
+  /// is an input, or where it is declared already (two outputs under one name). `beginning`: how
+  /// all files of this kind begin; a file that is there and begins otherwise is somebody else's,
+  /// and InputError.
+  void Declare(const std::filesystem::path& file, const std::string& beginning = "");
 
   /// Makes the folders and tries whether each declared file can be written. Throws InputError
   /// naming the file as it was given: it is a folder, it or its folder is read-only, its folder
@@ -59,6 +61,9 @@ class OutputSet {
   /// Whether the file is declared, and its contents where Set gave them (else null).
   bool IsDeclared(const std::filesystem::path& file) const;
   const std::string* Contents(const std::filesystem::path& file) const;
+
+  /// The declared files in a folder.
+  std::vector<std::filesystem::path> DeclaredIn(const std::filesystem::path& folder) const;
 
   /// Where to write a declared file piece by piece instead of Set, after Prepare. Throws
   /// std::invalid_argument where the file is not declared, or is a device, a pipe or "-".

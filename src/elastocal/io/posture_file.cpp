@@ -28,7 +28,7 @@ Eigen::VectorXd ReadPosture(const YamlValue& value, const Project& project) {
   for (const auto& [name, position] : value.Entries()) {
     const int joint = DriverNamedBy(name, position, tree);
     const JointLimits& limits = tree.joints[joint].limits;
-    const double wanted = position.Number();
+    const double wanted = position.Bounded();
     position.Expect(wanted >= limits.lower - kBeyond && wanted <= limits.upper + kBeyond,
                     "a position within the joint's limits, " + FormatNumber(limits.lower) + " to " +
                         FormatNumber(limits.upper));

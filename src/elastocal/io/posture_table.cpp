@@ -156,7 +156,7 @@ void NameMarkers(const PostureColumns& columns, const Project& project, PostureT
 }  // namespace
 
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project) {
-  std::ifstream stream = OpenTable(file);
+  std::istringstream stream = OpenTable(file);
   return ReadPostureTable(stream, file.string(), project);
 }
 

@@ -93,7 +93,7 @@ void ReadNotRecorded(const YamlValue& section, JointType type, double unit, Proj
                      ? "the joint is prismatic: give it in not_recorded_mm"
                      : "the joint is revolute: give it in not_recorded_deg");
     }
-    project.recording.not_recorded[name] = unit * value.Number();
+    project.recording.not_recorded[name] = unit * value.Bounded();
   }
 }
 
@@ -107,7 +107,7 @@ Eigen::Vector3d PointFromMm(const YamlValue& value) {
                "; expected three coordinates [x, y, z] in mm");
   }
   Eigen::Vector3d point;
-  for (int i = 0; i < 3; ++i) point[i] = kOneMm * coordinates[i].Number();
+  for (int i = 0; i < 3; ++i) point[i] = kOneMm * coordinates[i].Bounded();
   return point;
 }
 

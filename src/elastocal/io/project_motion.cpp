@@ -10,10 +10,8 @@ namespace {
 Eigen::Vector2d ReadCorner(const YamlValue& value) {
   const std::vector<YamlValue> items = value.Items();
   value.Expect(items.size() == 2, "two numbers, x and y");
-  return kOneMm * Eigen::Vector2d(items[0].Number(), items[1].Number());
+  return kOneMm * Eigen::Vector2d(items[0].Bounded(), items[1].Bounded());
 }
-
-constexpr NumberRange ShareUpTo(double most) { return {0.0, most, true, true}; }
 
 int SphereNamedBy(const YamlValue& value, const std::vector<CollisionSphere>& spheres) {
   std::vector<std::string> names;
@@ -62,10 +60,9 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
   }
   if (const auto box = value.Find("box_mm")) setup.box = ReadBox(*box);
   if (const auto cone = value.Find("cone_deg")) {
-    setup.largest_turn =
-        kOneDegree * cone->Number({.lower = 0.0, .upper = 180.0, .with_upper = true});
+    setup.largest_turn = kOneDegree * cone->Bounded();
   }
-  if (const auto floor = value.Find("floor_mm")) setup.floor_z = kOneMm * floor->Number();
+  if (const auto floor = value.Find("floor_mm")) setup.floor_z = kOneMm * floor->Bounded();
   if (const auto contacts = value.Find("contacts")) {
     setup.contacts = ReadContacts(*contacts, project.motion.spheres);
   }
@@ -92,7 +89,7 @@ void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& moti
     const int joint = DriverNamedBy(name, value, tree);
     const int i = tree.joints[joint].coordinate;
     const double unit = tree.joints[joint].type == JointType::kRevolute ? kOneDegree : kOneMm;
-    motion.rest[i] = unit * value.Number();
+    motion.rest[i] = unit * value.Bounded();
     value.Expect(motion.rest[i] >= motion.lower[i] && motion.rest[i] <= motion.upper[i],
                  "a position within the joint's limits, " + FormatNumber(motion.lower[i] / unit) +
                      " to " + FormatNumber(motion.upper[i] / unit));
@@ -120,7 +117,7 @@ void ReadStanding(const YamlValue& section, Project& project) {
 void ReadCollision(const YamlValue& section, Project& project) {
   section.ExpectKeys({"margin_mm", "spheres"});
   MotionSetup& motion = project.motion;
-  section.Read("margin_mm", motion.sphere_margin, kNotNegative, kOneMm);
+  section.ReadBounded("margin_mm", motion.sphere_margin, kOneMm);
   const auto spheres = section.Find("spheres");
   if (!spheres) return;
   for (const YamlValue& value : spheres->Items()) {
@@ -129,7 +126,7 @@ void ReadCollision(const YamlValue& section, Project& project) {
     sphere.name = NewName(value.Get("name"), "sphere", motion.spheres);
     sphere.link = LinkNamedBy(value.Get("link"), project.tree);
     sphere.p_link_centre = PointFromMm(value.Get("centre_mm"));
-    sphere.radius = kOneMm * value.Get("radius_mm").Number(kPositive);
+    sphere.radius = kOneMm * value.Get("radius_mm").Bounded();
     motion.spheres.push_back(std::move(sphere));
   }
 }
@@ -138,10 +135,10 @@ void ReadDesign(const YamlValue& section, Project& project) {
   section.ExpectKeys({"rest_deg", "limit_margin", "effort_share", "chains", "cameras_mm"});
   MotionSetup& motion = project.motion;
   if (const auto margin = section.Find("limit_margin")) {
-    SetLimits(project.tree, margin->Number(ShareUpTo(0.4)), motion);
+    SetLimits(project.tree, margin->Bounded(), motion);
     motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
   }
-  section.Read("effort_share", motion.effort_share, ShareUpTo(1.0));
+  section.ReadBounded("effort_share", motion.effort_share);
   if (const auto rest = section.Find("rest_deg")) ReadRest(*rest, project.tree, motion);
   if (const auto cameras = section.Find("cameras_mm")) {
     for (const YamlValue& camera : cameras->Items()) motion.cameras.push_back(PointFromMm(camera));

@@ -33,9 +33,9 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
   for (const Entry& entry : kEntries) keys.emplace_back(entry.key);
   keys.emplace_back("deflection_mrad");
   section.ExpectKeys(keys);
-  section.Read("deflection_mrad", prior.deflection, kPositive, 1e-3);
+  section.ReadBounded("deflection_mrad", prior.deflection, 1e-3);
   for (const Entry& entry : kEntries) {
-    section.Read(entry.key, prior[entry.kind], kPositiveOrInfinity, entry.unit);
+    section.ReadBounded(entry.key, prior[entry.kind], entry.unit);
   }
 }
 
@@ -85,7 +85,7 @@ void ReadPatterns(const YamlValue& section, const char* key, const RobotTree& tr
 
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {
   section.ExpectKeys({"parallel_tolerance_deg"});
-  section.Read("parallel_tolerance_deg", options.parallel_tolerance_rad, {0.0, 45.0}, kOneDegree);
+  section.ReadBounded("parallel_tolerance_deg", options.parallel_tolerance_rad, kOneDegree);
 }
 
 void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& options) {
@@ -93,24 +93,23 @@ void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& option
                       "longest_lag_s", "largest_lag_sd_ms", "largest_rest_lag_sd_ms",
                       "rest_speed_mm_per_s", "hold_s", "samples_per_rest", "sine_rate_hz"});
   constexpr double kMillisecond = 1e-3;
-  section.Read("cutoff_hz", options.smoothing.cutoff_hz, kPositive);
-  section.Read("filter_order", options.smoothing.filter_order, 1, 10);
-  section.Read("longest_gap_s", options.smoothing.longest_fill_s, kNotNegative);
-  if (const auto lag = section.Find("expected_lag_s")) options.expected_lag_s = lag->Number();
-  section.Read("longest_lag_s", options.clock.longest_lag_s,
-               {.lower = 0.0, .upper = 3600.0, .with_upper = true});
-  section.Read("largest_lag_sd_ms", options.clock.largest_sd_s, kPositive, kMillisecond);
-  section.Read("largest_rest_lag_sd_ms", options.largest_rest_lag_sd_s, kPositive, kMillisecond);
-  section.Read("rest_speed_mm_per_s", options.rest.threshold_m_per_s, kPositive, kOneMm);
-  section.Read("hold_s", options.rest.hold_s, kPositive);
-  section.Read("samples_per_rest", options.rest.samples_per_run, 1, 100000);
-  section.Read("sine_rate_hz", options.sine_rate_hz, kPositive);
+  section.ReadBounded("cutoff_hz", options.smoothing.cutoff_hz);
+  section.ReadBounded("filter_order", options.smoothing.filter_order);
+  section.ReadBounded("longest_gap_s", options.smoothing.longest_fill_s);
+  if (const auto lag = section.Find("expected_lag_s")) options.expected_lag_s = lag->Bounded();
+  section.ReadBounded("longest_lag_s", options.clock.longest_lag_s);
+  section.ReadBounded("largest_lag_sd_ms", options.clock.largest_sd_s, kMillisecond);
+  section.ReadBounded("largest_rest_lag_sd_ms", options.largest_rest_lag_sd_s, kMillisecond);
+  section.ReadBounded("rest_speed_mm_per_s", options.rest.threshold_m_per_s, kOneMm);
+  section.ReadBounded("hold_s", options.rest.hold_s);
+  section.ReadBounded("samples_per_rest", options.rest.samples_per_run);
+  section.ReadBounded("sine_rate_hz", options.sine_rate_hz);
 }
 
 void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options) {
   section.ExpectKeys({"postures", "tolerance", "seed", "hold"});
-  section.Read("postures", options.postures, 1, 1000000);
-  section.Read("tolerance", options.tolerance, kFraction);
+  section.ReadBounded("postures", options.postures);
+  section.ReadBounded("tolerance", options.tolerance);
   if (const auto seed = section.Find("seed")) {
     options.seed =
         static_cast<std::uint64_t>(seed->Integer(0, std::numeric_limits<std::int64_t>::max()));
@@ -126,11 +125,11 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
                       "max_iterations", "support", "load", "slip_mm", "outliers"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
   section.Read("widen_prior", options.widen_prior);
-  section.Read("marker_sd_mm", options.marker_sd, kNotNegative, kOneMm);
-  section.Read("plausible_marker_sd_mm", options.plausible_marker_sd, kPositiveOrInfinity, kOneMm);
-  section.Read("outlier_probability", options.outlier_probability, kFraction);
-  section.Read("support_threshold", options.support_threshold, kFractionOrOne);
-  section.Read("correlation_threshold", options.correlation_threshold, kFractionOrOne);
+  section.ReadBounded("marker_sd_mm", options.marker_sd, kOneMm);
+  section.ReadBounded("plausible_marker_sd_mm", options.plausible_marker_sd, kOneMm);
+  section.ReadBounded("outlier_probability", options.outlier_probability);
+  section.ReadBounded("support_threshold", options.support_threshold);
+  section.ReadBounded("correlation_threshold", options.correlation_threshold);
   ReadChoice<SupportForm>(
       section, "support", options.support_form,
       {{"nuisance", SupportForm::kNuisance}, {"foot_rooted", SupportForm::kFootRooted}});
@@ -140,8 +139,8 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
                          {{"torques", LoadSource::kTorques},
                           {"wrench", LoadSource::kWrench},
                           {"statics", LoadSource::kStatics}});
-  section.Read("slip_mm", options.slip, kPositiveOrInfinity, kOneMm);
-  section.Read("max_iterations", options.max_iterations, 1, 1000000);
+  section.ReadBounded("slip_mm", options.slip, kOneMm);
+  section.ReadBounded("max_iterations", options.max_iterations);
 }
 
 void ReadElasticity(const YamlValue& section, Project& project) {

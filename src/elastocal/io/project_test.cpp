@@ -53,10 +53,10 @@ TEST(Project, ReadsMeasurementAndForceTorqueSensors) {
   EXPECT_EQ(options.sine_rate_hz, 5.0);
   EXPECT_FALSE(Parse().measurement.expected_lag_s);
   EXPECT_EQ(Parse("measurement:\n").measurement.rest.samples_per_run, 8);
-  ExpectError("measurement: {cutoff_hz: 0}", {"p.yaml:3: ", "measurement.cutoff_hz", "above 0"});
+  ExpectError("measurement: {cutoff_hz: 0}", {"p.yaml:3: ", "measurement.cutoff_hz", "from 0.01"});
   ExpectError("measurement: {filter_order: 11}", {"measurement.filter_order", "10"});
-  ExpectError("measurement: {longest_gap_s: -1}", {"longest_gap_s", "at least 0"});
-  ExpectError("measurement: {longest_lag_s: 4000}", {"longest_lag_s", "at most 3600"});
+  ExpectError("measurement: {longest_gap_s: -1}", {"longest_gap_s", "from 0 to 60"});
+  ExpectError("measurement: {longest_lag_s: 4000}", {"longest_lag_s", "to 3600"});
   ExpectError("measurement: {samples_per_rest: 0}", {"samples_per_rest"});
   ExpectError("measurement: {cutof_hz: 5}", {"did you mean 'cutoff_hz'"});
   ExpectError("force_torque_sensors: [{name: a, link: tol}]", {"p.yaml:3: ", "'tool'"});

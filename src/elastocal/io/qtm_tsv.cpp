@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "elastocal/io/bounds.hpp"
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
@@ -62,7 +63,7 @@ struct QtmLines {
 
 bool IsKey(std::string_view cell) {
   constexpr std::string_view kCharacters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
-  return !cell.empty() && cell.find_first_not_of(kCharacters) == cell.npos &&
+  return !cell.empty() && cell.find_first_not_of(kCharacters) == std::string_view::npos &&
          cell.find_first_of("0123456789") != 0;
 }
 
@@ -257,6 +258,11 @@ class FrameReader {
       const int missing = std::isnan(x) + std::isnan(y) + std::isnan(z);
       if (missing == 1 || missing == 2) {
         Fail(i, "X, Y and Z, or none of them for a marker that was not seen");
+      }
+      static const NumberRange range = BoundsOf("Qualisys TSV X, Y, Z");
+      for (std::size_t axis = 0; axis < 3 && missing == 0; ++axis) {
+        const double position = axis == 0 ? x : axis == 1 ? y : z;
+        if (!range.Contains(position)) Fail(i + axis, range.InWords() + " (mm)");
       }
       if (x == 0.0 && y == 0.0 && z == 0.0) x = y = z = kNaN;
       for (double position : {x, y, z}) positions_.push_back(kMetresPerMm * position);

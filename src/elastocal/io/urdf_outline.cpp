@@ -12,9 +12,20 @@ namespace {
 const std::array<std::string, 6> kJointTypes = {"revolute", "continuous", "prismatic",
                                                 "fixed",    "floating",   "planar"};
 
+constexpr int kMostMovable = 300;  // a humanoid with two hands has about 80
+
 std::string UniqueName(const XmlElement& element, std::map<std::string, int>& index) {
   constexpr std::size_t kMost = 5000;  // no robot has more
+  constexpr std::size_t kMostAttributes = 100;
+  constexpr std::size_t kLongestName = 200;  // bytes; names come in every message and table
+  if (element.AttributeCount() > kMostAttributes) {
+    element.Fail("more than " + std::to_string(kMostAttributes) + " attributes");
+  }
   const std::string name = element.Text("name");
+  if (name.size() > kLongestName) {
+    element.Fail("the name " + Quote(name) + " has more than " + std::to_string(kLongestName) +
+                 " bytes");
+  }
   const std::string what(element.Tag());
   if (!index.emplace(name, static_cast<int>(index.size())).second) {
     element.Fail("second " + what + " of the name " + Quote(name));
@@ -49,6 +60,12 @@ void ReadEntries(const XmlElement& robot, UrdfOutline& outline) {
     }
   }
   if (outline.links.empty()) robot.Fail("the robot has no <link>");
+  const auto moves = [](const UrdfJoint& joint) { return joint.type != "fixed"; };
+  const auto movable = std::count_if(outline.joints.begin(), outline.joints.end(), moves);
+  if (movable > kMostMovable) {
+    robot.Fail("found " + std::to_string(movable) + " movable joints; at most " +
+               std::to_string(kMostMovable) + " are calibrated");
+  }
 }
 
 void ConnectJoint(int j, UrdfOutline& outline) {

@@ -32,11 +32,7 @@ Link ReadLink(const UrdfLink& source) {
   const auto inertial = source.element.Find("inertial");
   if (!inertial) return link;
   const Transform T_link_inertial = ToTransform(ReadUrdfOrigin(*inertial));
-  const XmlElement mass = inertial->Get("mass");
-  link.mass = mass.Number("value");
-  if (link.mass < 0.0) {
-    mass.Fail("found a mass of " + FormatNumber(link.mass) + " kg; at least 0 was expected");
-  }
+  link.mass = inertial->Get("mass").Number("value");
   const XmlElement entries = inertial->Get("inertia");
   // Numbers may throw, which Eigen does not stand in the middle of a list.
   const double ixx = entries.Number("ixx"), ixy = entries.Number("ixy"),
@@ -65,8 +61,8 @@ JointLimits ReadLimits(const UrdfJoint& joint) {
   const XmlElement limit = joint.element.Get("limit");
   limits.velocity = limit.Number("velocity");
   limits.effort = limit.Number("effort");
-  const double lower = limit.NumberOr("lower", 0.0), upper = limit.NumberOr("upper", 0.0);
   if (continuous) return limits;
+  const double lower = limit.NumberOr("lower", 0.0), upper = limit.NumberOr("upper", 0.0);
   limits.lower = lower;
   limits.upper = upper;
   if (lower > upper) {

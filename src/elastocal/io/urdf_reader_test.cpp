@@ -263,7 +263,7 @@ TEST(UrdfReader, NamesWrongNumbers) {
     return "<link name='a'><inertial>\n<mass value='" + mass + "'/>\n<inertia ixx='" + ixx +
            "' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";
   };
-  ExpectLinksError(inertial("-1", "1"), {"r.urdf:3: ", "mass of -1 kg"});
+  ExpectLinksError(inertial("-1", "1"), {"r.urdf:3: ", "a number from 0 to"});
   ExpectLinksError(inertial("heavy", "1"), {"r.urdf:3: ", "'heavy'"});
   ExpectLinksError(
       "<link name='a'><inertial><mass value='1'/>\n<inertia ixx='1' ixy='0' ixz='0' iyy='1' "
@@ -316,18 +316,39 @@ TEST(UrdfReader, ReadsTheModelsOfTheTests) {
   EXPECT_EQ(ReadUrdf(SourceFile("models/talos/talos.urdf")).coordinate_count(), 30);
 }
 
-/// The most links that are read, in one chain, each joint following the one before: nothing in it
-/// may take time or stack that grows out of hand.
+/// The most links that are read, in one chain, each movable joint following the one before: nothing
+/// in it may take time or stack that grows out of hand.
 TEST(UrdfReader, ReadsTheLongestChain) {
-  std::string contents = Link("0");
-  for (int i = 1; i < 5000; ++i) {
-    const std::string name = std::to_string(i), last = std::to_string(i - 1);
-    contents += Link(name) + Joint(name, "continuous", last, name,
-                                   i == 1 ? "" : "<mimic joint='" + last + "'/>");
-  }
-  const RobotTree tree = ParseLinks(contents);
-  EXPECT_EQ(tree.joints.size(), 4999u);
+  const auto chain = [](int movable) {
+    std::string contents = Link("0");
+    for (int i = 1; i < 5000; ++i) {
+      const std::string name = std::to_string(i), last = std::to_string(i - 1);
+      contents += Link(name) + Joint(name, i <= movable ? "continuous" : "fixed", last, name,
+                                     i == 1 ? "" : "<mimic joint='" + last + "'/>");
+    }
+    return contents;
+  };
+  const RobotTree tree = ParseLinks(chain(300));
+  EXPECT_EQ(tree.joints.size(), 300u);
   EXPECT_EQ(tree.coordinate_count(), 1);
+  ExpectLinksError(chain(301), {"r.urdf:1: ", "found 301 movable joints; at most 300"});
+}
+
+// Numbers, sizes and names that no robot has, which would overflow or take hours.
+TEST(UrdfReader, RefusesWhatNoRobotHas) {
+  const std::string links = Link("a") + "\n" + Link("b") + "\n";
+  const auto joint = [&](const std::string& limit) {
+    return links + "<joint name='j' type='revolute'><parent link='a'/><child link='b'/>\n<limit " +
+           limit + "/></joint>";
+  };
+  ExpectLinksError(joint("lower='-1e8' upper='1' velocity='1' effort='1'"),
+                   {"'lower'", "'-1e8'", "from -1000 to 1000", "continuous"});
+  ExpectLinksError(joint("lower='-1' upper='1' velocity='-1' effort='1'"), {"'velocity'", "'-1'"});
+  ExpectLinksError(joint("lower='-1' upper='1' velocity='1' effort='-1'"), {"'effort'", "'-1'"});
+  std::string attributes;
+  for (int i = 0; i < 101; ++i) attributes += " a" + std::to_string(i) + "='1'";
+  ExpectLinksError("<link name='a'" + attributes + "/>", {"more than 100 attributes"});
+  ExpectLinksError(Link(std::string(201, 'x')), {"more than 200 bytes"});
 }
 
 TEST(UrdfReader, NamesAMissingFile) {

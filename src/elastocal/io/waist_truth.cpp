@@ -19,7 +19,7 @@ constexpr std::array kWaistColumns = {"t", "x", "y", "z", "qw", "qx", "qy", "qz"
 }  // namespace
 
 WaistTruth ReadWaistTruth(const fs::path& file) {
-  std::ifstream stream = OpenTable(file);
+  std::istringstream stream = OpenTable(file);
   Table table(stream, file.string());
   if (!std::equal(kWaistColumns.begin(), kWaistColumns.end(), table.header().begin(),
                   table.header().end())) {

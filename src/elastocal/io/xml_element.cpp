@@ -1,7 +1,9 @@
 #include "elastocal/io/xml_element.hpp"
 
 #include <algorithm>
+#include <iterator>
 
+#include "elastocal/io/bounds.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/utf8.hpp"
 #include "elastocal/tables/text.hpp"
@@ -78,6 +80,11 @@ XmlElement XmlElement::Get(const char* child) const {
   return *found;
 }
 
+std::size_t XmlElement::AttributeCount() const {
+  const auto attributes = node_.attributes();
+  return static_cast<std::size_t>(std::distance(attributes.begin(), attributes.end()));
+}
+
 pugi::xml_attribute XmlElement::Attribute(const char* attribute) const {
   const pugi::xml_attribute first = node_.attribute(attribute);
   if (!first) Fail(Label() + " has no attribute '" + attribute + "'");
@@ -107,7 +114,14 @@ std::string XmlElement::Text(const char* attribute) const {
 double XmlElement::Number(const char* attribute) const {
   const std::optional<double> value = ParseNumber(Attribute(attribute).value());
   if (!value) FailAttribute(attribute, "a finite number was expected");
+  CheckBounds(attribute, *value);
   return *value;
+}
+
+void XmlElement::CheckBounds(const char* attribute, double value) const {
+  const Bound* bound = FindBound("URDF " + std::string(Tag()) + "." + attribute);
+  if (bound == nullptr || bound->range().Contains(value)) return;
+  FailAttribute(attribute, bound->range().InWords() + " was expected (" + bound->why + ")");
 }
 
 double XmlElement::NumberOr(const char* attribute, double otherwise) const {
@@ -124,6 +138,7 @@ Eigen::Vector3d XmlElement::Vector(const char* attribute) const {
     if (!value || (&component == &vector.z() && !rest.empty())) {
       FailAttribute(attribute, "three finite numbers were expected");
     }
+    CheckBounds(attribute, *value);
     component = *value;
   }
   return vector;

@@ -54,12 +54,14 @@ class XmlElement {
   std::optional<XmlElement> Find(const char* child) const;
   XmlElement Get(const char* child) const;
 
+  std::size_t AttributeCount() const;
   bool Has(const char* attribute) const { return !node_.attribute(attribute).empty(); }
   /// UTF-8, not empty and without control characters.
   std::string Text(const char* attribute) const;
+  /// A number, and three numbers with spaces between them, finite and within the bounds that
+  /// bounds.hpp has for the element's attribute.
   double Number(const char* attribute) const;
   double NumberOr(const char* attribute, double otherwise) const;
-  /// Three numbers with spaces between them.
   Eigen::Vector3d Vector(const char* attribute) const;
 
   /// A piece of the text.
@@ -76,6 +78,7 @@ class XmlElement {
   pugi::xml_attribute Attribute(const char* attribute) const;
   Range RangeOf(const pugi::xml_attribute& attribute) const;
   std::string Label() const;
+  void CheckBounds(const char* attribute, double value) const;  ///< see bounds.hpp
   [[noreturn]] void FailAttribute(const char* attribute, const std::string& expected) const;
 
   const XmlText* text_;

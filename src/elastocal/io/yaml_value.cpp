@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include <yaml-cpp/eventhandler.h>
@@ -140,19 +141,6 @@ YamlValue YamlValue::Parse(const std::string& text, const std::string& source) {
   return builder.TakeRoot();
 }
 
-namespace {
-
-std::string InWords(const NumberRange& range) {
-  const std::string lower = FormatNumber(range.lower), upper = FormatNumber(range.upper);
-  if (range.with_lower && range.with_upper) return "a number from " + lower + " to " + upper;
-  const std::string words =
-      (range.with_lower ? "a number of at least " : "a number above ") + lower;
-  if (std::isinf(range.upper)) return words + (range.with_upper ? ", or .inf" : "");
-  return words + (range.with_upper ? " and at most " : " and below ") + upper;
-}
-
-}  // namespace
-
 void YamlValue::Fail(const std::string& message) const {
   throw InputError(Place(source_, line_) + (path_.empty() ? "" : path_ + ": ") + message);
 }
@@ -227,15 +215,15 @@ double YamlValue::Number() const {
 }
 
 double YamlValue::Number(const NumberRange& range) const {
-  const auto [lower, upper, with_lower, with_upper] = range;
-  if (with_upper && std::isinf(upper) && kind_ == Kind::kScalar && scalar_ == ".inf") return upper;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool takes_infinity = range.or_infinity || (range.with_upper && std::isinf(range.upper));
+  if (takes_infinity && kind_ == Kind::kScalar && scalar_ == ".inf") return kInfinity;
   const std::optional<double> found = kind_ == Kind::kScalar ? ParseNumber(scalar_) : std::nullopt;
-  const double number = found.value_or(std::numeric_limits<double>::quiet_NaN());
-  Expect((number > lower || (with_lower && number == lower)) &&
-             (number < upper || (with_upper && number == upper)),
-         InWords(range));
-  return number;
+  Expect(found && range.Contains(*found), range.InWords());
+  return found.value_or(0.0);
 }
+
+double YamlValue::Bounded() const { return Number(BoundsOf(path_)); }
 
 std::int64_t YamlValue::Integer(std::int64_t least, std::int64_t most) const {
   std::int64_t value = 0;
@@ -258,6 +246,18 @@ void YamlValue::Read(const char* key, double& option, const NumberRange& range, 
 
 void YamlValue::Read(const char* key, int& option, int least, int most) const {
   if (const auto value = Find(key)) option = static_cast<int>(value->Integer(least, most));
+}
+
+void YamlValue::ReadBounded(const char* key, double& option, double unit) const {
+  if (const auto value = Find(key)) option = unit * value->Bounded();
+}
+
+void YamlValue::ReadBounded(const char* key, int& option) const {
+  const auto value = Find(key);
+  if (!value) return;
+  const NumberRange range = BoundsOf(value->path_);
+  option = static_cast<int>(value->Integer(static_cast<std::int64_t>(range.lower),
+                                           static_cast<std::int64_t>(range.upper)));
 }
 
 void YamlValue::Read(const char* key, bool& option) const {

@@ -1,20 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "elastocal/io/bounds.hpp"
+
 namespace elastocal {
 
-/// The numbers between two bounds, without the bounds unless they are said to count. An infinite
-/// upper bound that counts is written as `.inf`.
-struct NumberRange {
-  double lower, upper = std::numeric_limits<double>::infinity();
-  bool with_lower = false, with_upper = false;
-};
 constexpr NumberRange kPositive = {0.0};
 constexpr NumberRange kNotNegative = {.lower = 0.0, .with_lower = true};
 constexpr NumberRange kPositiveOrInfinity = {.lower = 0.0, .with_upper = true};
@@ -52,6 +47,8 @@ class YamlValue {
   /// A finite number.
   double Number() const;
   double Number(const NumberRange& range) const;
+  /// A number within the bounds of the keys that lead to it (bounds.hpp), which has an entry there.
+  double Bounded() const;
   /// A whole number of at least `least` and at most `most`.
   std::int64_t Integer(std::int64_t least, std::int64_t most) const;
   bool Boolean() const;
@@ -61,6 +58,9 @@ class YamlValue {
   void Read(const char* key, double& option, const NumberRange& range, double unit = 1.0) const;
   void Read(const char* key, int& option, int least, int most) const;
   void Read(const char* key, bool& option) const;
+  /// The same within the bounds of the keys (bounds.hpp).
+  void ReadBounded(const char* key, double& option, double unit = 1.0) const;
+  void ReadBounded(const char* key, int& option) const;
 
  private:
   friend class YamlBuilder;

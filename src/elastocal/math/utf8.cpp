@@ -24,6 +24,25 @@ std::size_t FindNotUtf8(std::string_view text) {
 
 bool IsUtf8(std::string_view text) { return FindNotUtf8(text) == text.size(); }
 
+std::string Printable(std::string_view text) {
+  std::string printable;
+  printable.reserve(text.size());
+  const char* const end = text.data() + text.size();
+  for (const char* at = text.data(); at != end;) {
+    const char* const begin = at;
+    const auto code = boost::locale::utf::utf_traits<char>::decode(at, end);
+    if (!boost::locale::utf::is_valid_codepoint(code)) {
+      printable += "\uFFFD";
+      at = begin + 1;
+    } else if ((code < 0x20 && code != '\n' && code != '\t') || (code >= 0x7f && code < 0xa0)) {
+      printable += '?';
+    } else {
+      printable.append(begin, at);
+    }
+  }
+  return printable;
+}
+
 void RequireUtf8(std::string_view text, const std::string& source, int first_line) {
   const std::size_t place = FindNotUtf8(text);
   if (place == text.size()) return;

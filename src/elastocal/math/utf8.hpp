@@ -13,4 +13,8 @@ bool IsUtf8(std::string_view text);
 /// every reader of names asks before any work is done with them.
 void RequireUtf8(std::string_view text, const std::string& source, int first_line = 1);
 
+/// The text as a terminal may show it: what is not UTF-8 as U+FFFD, control characters other than
+/// line ends and tabs, with which a name could command the terminal, as '?'.
+std::string Printable(std::string_view text);
+
 }  // namespace elastocal

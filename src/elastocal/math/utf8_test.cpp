@@ -26,5 +26,14 @@ TEST(Utf8, NamesTheLine) {
   ExpectInputError([] { RequireUtf8("\xe9,b", "f.csv", 7); }, {"f.csv:7: what follows '' "});
 }
 
+TEST(Printable, LeavesTextAndTakesTheRest) {
+  EXPECT_EQ(Printable("a\tb\n\u00e9\u20ac\U0001F916"), "a\tb\n\u00e9\u20ac\U0001F916");
+  EXPECT_EQ(Printable("caf\xe9!"), "caf\uFFFD!");
+  EXPECT_EQ(Printable("\xff\xfe"), "\uFFFD\uFFFD");
+  // The beginnings of commands to a terminal, in 7 and in 8 bits.
+  EXPECT_EQ(Printable("\x1b[2J\r\x7f"), "?[2J??");
+  EXPECT_EQ(Printable("\u009b2J"), "?2J");
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -4,8 +4,10 @@
 #include "elastocal/io/covariance_file.hpp"
 #include "elastocal/io/output_set.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/checksums.hpp"
 #include "elastocal/pipeline/robot_views.hpp"
 #include "elastocal/pipeline/summary.hpp"
+#include "elastocal/tables/read_file.hpp"
 
 namespace elastocal {
 namespace {
@@ -51,12 +53,13 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
 }
 
 CalibrationFiles FindCalibrationFiles(const std::filesystem::path& given) {
-  const bool is_folder = std::filesystem::is_directory(given);
+  const bool is_folder = FileTypeOf(given) == std::filesystem::file_type::directory;
   const std::filesystem::path folder = is_folder ? given : given.parent_path();
   RecoverOutputs(folder.empty() ? "." : folder);
+  CheckChecksums(folder);
   const CalibrationFiles files{is_folder ? given / "calibration.yaml" : given,
                                folder / "covariance.csv"};
-  if (is_folder && !std::filesystem::exists(files.calibration)) {
+  if (is_folder && FileTypeOf(files.calibration) == std::filesystem::file_type::not_found) {
     throw InputError(given.string() + ": no calibration.yaml in this folder; expected the folder " +
                      "that calibrate wrote a result to that can be deployed");
   }
@@ -65,7 +68,9 @@ CalibrationFiles FindCalibrationFiles(const std::filesystem::path& given) {
 
 CalibrationEstimate ReadCalibrationFiles(const CalibrationFiles& files) {
   CalibrationEstimate estimate = ReadEstimate(files.calibration);
-  if (std::filesystem::exists(files.covariance)) ReadCovariance(files.covariance, estimate);
+  if (FileTypeOf(files.covariance) != std::filesystem::file_type::not_found) {
+    ReadCovariance(files.covariance, estimate);
+  }
   return estimate;
 }
 

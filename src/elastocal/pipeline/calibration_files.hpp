@@ -29,7 +29,7 @@ struct CalibrationFiles {
 
 /// The files of a calibration, given as the folder that calibrate wrote to (what a killed run left
 /// there is put in order first) or as its calibration.yaml. Throws InputError for a folder without
-/// calibration.yaml.
+/// calibration.yaml, and for one of two runs (CheckChecksums).
 CalibrationFiles FindCalibrationFiles(const std::filesystem::path& given);
 
 /// Reads both. Throws InputError naming file and line.

@@ -9,6 +9,7 @@
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/checksums.hpp"
 #include "elastocal/report/page.hpp"
 
 namespace elastocal {
@@ -43,17 +44,20 @@ class FolderAfter {
 };
 
 void CheckFolder(const fs::path& folder) {
-  if (!fs::is_directory(folder)) {
+  if (folder.empty()) throw InputError("the name of a folder is empty");
+  if (FileTypeOf(folder) != fs::file_type::directory) {
     throw InputError(folder.string() + ": is no folder; expected one that calibrate -o wrote to");
   }
 }
 
 std::set<std::string> RegularFiles(const fs::path& folder) {
   std::set<std::string> names;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_regular_file(error)) names.insert(entry.path().filename().string());
+  std::error_code error, ignored;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->is_regular_file(ignored)) names.insert(entry->path().filename().string());
   }
+  if (error) throw InputError(folder.string() + ": cannot be read: " + error.message());
   return names;
 }
 
@@ -109,9 +113,11 @@ const char* const kNoPage =
 
 void DeclareResults(const fs::path& folder, const std::vector<std::string>& names,
                     OutputSet& outputs) {
-  for (const std::string& name : names) outputs.Declare(folder / name);
-  outputs.Declare(folder / kRuns);
-  outputs.Declare(folder / kPage);
+  std::vector<std::string> all = names;
+  all.insert(all.end(), {kRuns, kPage, kChecksums});
+  RecoverOutputs(folder);
+  CheckOwn(folder, {all.begin(), all.end() - 1});
+  for (const std::string& name : all) outputs.Declare(folder / name);
 }
 
 std::string SetResults(const fs::path& folder, const std::map<std::string, std::string>& files,
@@ -123,20 +129,50 @@ std::string SetResults(const fs::path& folder, const std::map<std::string, std::
   }
   outputs.Set(folder / kRuns, UpdateRuns(EarlierRuns(folder), record));
   names.insert(kRuns);
-  if (PageTemplate().empty()) return kNoPage;
-  try {
-    outputs.Set(folder / kPage,
-                MakePageOf(folder, names, FolderAfter(folder, &outputs), record.version, {}));
-  } catch (const InputError& error) {
-    // The results themselves are fine: something else in the folder cannot be shown.
-    return std::string("no report.html: ") + error.what();
+  std::string why_no_page;
+  if (PageTemplate().empty()) {
+    why_no_page = kNoPage;
+  } else {
+    try {
+      outputs.Set(folder / kPage,
+                  MakePageOf(folder, names, FolderAfter(folder, &outputs), record.version, {}));
+    } catch (const InputError& error) {
+      // The results themselves are fine: something else in the folder cannot be shown.
+      why_no_page = std::string("no report.html: ") + error.what();
+    }
   }
-  return "";
+  outputs.Set(folder / kChecksums, UpdateChecksums(folder, outputs));
+  return why_no_page;
+}
+
+void DeclarePage(const fs::path& folder, const fs::path& page, OutputSet& outputs) {
+  outputs.Declare(page, "<!doctype html>");
+  if (!outputs.DeclaredIn(folder).empty()) outputs.Declare(folder / kChecksums);
+}
+
+void SetPage(const fs::path& folder, const fs::path& page, std::string contents,
+             OutputSet& outputs) {
+  outputs.Set(page, std::move(contents));
+  if (!outputs.IsDeclared(folder / kChecksums)) return;
+  outputs.Set(folder / kChecksums, UpdateChecksums(folder, outputs));
+}
+
+void DeclareJson(const fs::path& file, OutputSet& outputs) {
+  outputs.Declare(file, "{");
+  if (file.empty() || file == "-") return;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const std::string name = file.filename().string();
+  const bool own_run = outputs.IsDeclared(folder / kChecksums) && ReportFiles({name}).empty();
+  if (ListedIn(folder, name) && !own_run) {
+    throw InputError(file.string() + ": is a result that " + kChecksums +
+                     " lists, so it is not replaced; choose another name");
+  }
 }
 
 std::string MakeFolderPage(const fs::path& folder, const std::string& version,
                            const std::vector<fs::path>& earlier) {
   CheckFolder(folder);
+  CheckChecksums(folder);
   return MakePageOf(folder, RegularFiles(folder), FolderAfter(folder, nullptr), version, earlier);
 }
 

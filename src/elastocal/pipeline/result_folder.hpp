@@ -22,7 +22,8 @@ namespace elastocal {
 ///   SetResults(folder, MakeCalibrationFiles(project, run), record, outputs);
 ///   outputs.Publish();
 
-/// Declares files of these names in the folder, and runs.json and report.html with them.
+/// Declares files of these names in the folder, and runs.json, report.html and SHA256SUMS with
+/// them. Throws InputError for a file that is there and no result (CheckOwn).
 void DeclareResults(const std::filesystem::path& folder, const std::vector<std::string>& names,
                     OutputSet& outputs);
 
@@ -33,10 +34,21 @@ std::string SetResults(const std::filesystem::path& folder,
                        const std::map<std::string, std::string>& files, const RunRecord& record,
                        OutputSet& outputs);
 
+/// The same for the page alone, which may be in the folder or elsewhere.
+void DeclarePage(const std::filesystem::path& folder, const std::filesystem::path& page,
+                 OutputSet& outputs);
+void SetPage(const std::filesystem::path& folder, const std::filesystem::path& page,
+             std::string contents, OutputSet& outputs);
+
+/// Declares a JSON file that the user names. Throws InputError where something else than JSON is
+/// there, or a result of another command. Call it after DeclareResults.
+void DeclareJson(const std::filesystem::path& file, OutputSet& outputs);
+
 /// The page of a folder as it is. `version`: of the program that makes it. `earlier`: folders of
 /// earlier calibrations of this robot, or calibration.yaml files, the oldest first.
 ///
-/// Throws InputError where there is nothing to show, or something that cannot be read.
+/// Throws InputError where there is nothing to show, or something that cannot be read, and for a
+/// folder of two runs (CheckChecksums).
 std::string MakeFolderPage(const std::filesystem::path& folder, const std::string& version,
                            const std::vector<std::filesystem::path>& earlier = {});
 

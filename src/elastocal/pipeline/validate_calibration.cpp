@@ -72,6 +72,10 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
                      "' with other nominal geometry than " + project.urdf.string() +
                      "; expected the URDF that was calibrated, not the calibrated one");
   }
+  std::vector<std::string> chains;
+  for (const Chain& chain : project.chains) chains.push_back(chain.name);
+  CheckParameters(run.calibration, MakeErrorModel(project.tree, project.markers, project.placement),
+                  chains);
   if (options.frozen) {
     const StoredCalibration& stored = run.calibration;
     if (measured.calibration.trials.empty() && !stored.T_ref_waist) {

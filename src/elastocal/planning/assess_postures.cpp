@@ -99,6 +99,7 @@ std::vector<ChainAssessment> AssessPostures(const Project& project,
                                             const PostureAssessmentOptions& options,
                                             const Progress& progress) {
   ChosenSetups(project, {});  // says so where there is no section `design`
+  for (const std::string& name : options.chains) FindChain(project, name);
   std::vector<const ChainPostures*> chosen;
   for (const ChainPostures& set : sets) {
     const auto& names = options.chains;
@@ -123,7 +124,7 @@ std::vector<ChainPostures> RecordedPostures(const Project& project, const Record
     ChainPostures set{setup.name, setup.support, {}};
     for (Eigen::Index i = 0; i < recording.q.rows(); ++i) {
       if (Exercises(recording, i, project, setup)) {
-        set.q.push_back(recording.q.row(i).transpose());
+        set.q.emplace_back(recording.q.row(i).transpose());
       }
     }
     if (!set.q.empty()) sets.push_back(std::move(set));

@@ -17,6 +17,8 @@ using Json = nlohmann::ordered_json;
 
 /// Whether a file begins with a header that FormatMotionTable writes.
 bool IsPlannedMotion(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
   std::ifstream stream(file);
   std::string header;
   std::getline(stream, header);

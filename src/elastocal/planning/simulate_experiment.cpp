@@ -1,6 +1,7 @@
 #include "elastocal/planning/simulate_experiment.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "elastocal/identifiability/base_parameters.hpp"
@@ -12,6 +13,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/planning/truth_file.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -55,6 +57,19 @@ MatchedExperiment MatchTrials(const VirtualExperiment& experiment, const Project
   const ErrorModel model = MakeProjectModel(project, trials);
   return MatchExperiment(experiment, model,
                          FindBaseParameters(model, project.identifiability).kept);
+}
+
+/// Memory grows with the duration of a trial, and nobody records for so long without a break.
+void CheckDurations(const Simulation& simulation) {
+  constexpr double kLongest = 3600.0;
+  for (const std::size_t i : simulation.chosen) {
+    const PlannedTrial& trial = simulation.experiment.trials[i];
+    const double duration = trial.motion.duration_s();
+    if (duration <= kLongest) continue;
+    throw InputError("trial '" + trial.name + "' lasts " + FormatNumber(std::round(duration)) +
+                     " s; at most 3600 s are simulated at a time (fewer postures, or less time "
+                     "for each)");
+  }
 }
 
 SimulatedTrial Play(const Simulation& simulation, std::size_t trial) {
@@ -104,6 +119,7 @@ Simulation PrepareSimulation(const Project& project, const SimulationOptions& op
     simulation.experiment = PrepareExperiment(robot, settings);
   }
   simulation.chosen = ChooseTrials(simulation.experiment, options.trials);
+  CheckDurations(simulation);
   if (options.matched) {
     simulation.matched = MatchTrials(simulation.experiment, project, simulation.chosen);
     simulation.experiment = simulation.matched->plan;

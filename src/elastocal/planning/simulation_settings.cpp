@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "elastocal/io/output_files.hpp"
@@ -15,7 +14,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kMillimetre = 1e-3;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kStiffest = 1e9;  // N.m/rad: beyond, physics needs smaller steps
 
 using Settings = std::vector<SimulationSetting>;
 
@@ -38,12 +37,12 @@ void AddTruth(TruthOptions& truth, Settings& list) {
   const std::string e = "True elasticity";
   list.insert(
       list.end(),
-      {{e, "upper_stiffness_least", &truth.upper_stiffness_least, 1, 1, kInfinity,
+      {{e, "upper_stiffness_least", &truth.upper_stiffness_least, 1, 1, kStiffest,
         "Joint springs of head, arms and trunk, N.m/rad: from"},
-       {e, "upper_stiffness_most", &truth.upper_stiffness_most, 1, 1, kInfinity, "to"},
-       {e, "leg_stiffness_least", &truth.leg_stiffness_least, 1, 1, kInfinity,
+       {e, "upper_stiffness_most", &truth.upper_stiffness_most, 1, 1, kStiffest, "to"},
+       {e, "leg_stiffness_least", &truth.leg_stiffness_least, 1, 1, kStiffest,
         "Joint springs of the legs, N.m/rad: from"},
-       {e, "leg_stiffness_most", &truth.leg_stiffness_most, 1, 1, kInfinity, "to"},
+       {e, "leg_stiffness_most", &truth.leg_stiffness_most, 1, 1, kStiffest, "to"},
        {e, "upper_elasticity_scale", &truth.upper_elasticity_scale, 1, 0, 1000,
         "Factor on compliances of head, arms and trunk; 0: rigid"},
        {e, "leg_elasticity_scale", &truth.leg_elasticity_scale, 1, 0, 1000,
@@ -81,7 +80,7 @@ void AddSensors(SensorOptions& sensors, Settings& list) {
   const std::string l = "Joint log";
   list.insert(
       list.end(),
-      {{l, "log_rate_hz", &sensors.log_rate_hz, 1, 1, 1e4, "Samples a second"},
+      {{l, "log_rate_hz", &sensors.log_rate_hz, 1, 1, 1e3, "Samples a second"},
        {l, "least_lag_s", &sensors.least_lag_s, 1, -1e3, 1e3,
         "How far the robot's clock is behind the cameras': from"},
        {l, "largest_lag_s", &sensors.largest_lag_s, 1, -1e3, 1e3, "to"},
@@ -221,6 +220,22 @@ std::string SettingText(const SimulationSetting& setting) {
 void ApplySetting(const SimulationSetting& setting, const std::string& text,
                   const std::string& place) {
   std::visit(Assign{setting, text, place}, setting.target);
+}
+
+void CheckRanges(const VirtualExperimentOptions& options) {
+  const TruthOptions& truth = options.truth;
+  const SensorOptions& sensors = options.sensors;
+  const auto check = [](const std::string& least_key, double least, const std::string& most_key,
+                        double most) {
+    if (least <= most) return;
+    throw InputError(least_key + " is " + FormatNumber(least) + ", above " + most_key + ", " +
+                     FormatNumber(most) + "; a range begins with the smaller number");
+  };
+  check("upper_stiffness_least", truth.upper_stiffness_least, "upper_stiffness_most",
+        truth.upper_stiffness_most);
+  check("leg_stiffness_least", truth.leg_stiffness_least, "leg_stiffness_most",
+        truth.leg_stiffness_most);
+  check("least_lag_s", sensors.least_lag_s, "largest_lag_s", sensors.largest_lag_s);
 }
 
 void ReadSimulationSettings(const std::filesystem::path& file, VirtualExperimentOptions& options) {

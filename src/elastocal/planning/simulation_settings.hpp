@@ -33,6 +33,9 @@ std::string SettingText(const SimulationSetting& setting);
 void ApplySetting(const SimulationSetting& setting, const std::string& text,
                   const std::string& place);
 
+/// Throws InputError naming both keys where the least of a range is above the largest.
+void CheckRanges(const VirtualExperimentOptions& options);
+
 /// Reads a settings file: a YAML mapping of keys to values. Throws InputError naming file, line and
 /// key, with the nearest known key for one that is unknown.
 void ReadSimulationSettings(const std::filesystem::path& file, VirtualExperimentOptions& options);

@@ -44,6 +44,13 @@ TEST(SimulationSettings, RefusesWhatItDoesNotKnow) {
   refused("pelvis_compliance: [1, 1]\n", {"pelvis_compliance", "2 numbers"});
 }
 
+TEST(SimulationSettings, RangesBeginWithTheSmallerNumber) {
+  VirtualExperimentOptions options;
+  CheckRanges(options);
+  options.sensors.least_lag_s = options.sensors.largest_lag_s + 1.0;
+  ExpectInputError([&] { CheckRanges(options); }, {"least_lag_s", "largest_lag_s"});
+}
+
 TEST(SimulationSettings, EachIsGivenOnceAndShowsItsDefault) {
   VirtualExperimentOptions options;
   std::set<std::string> keys;

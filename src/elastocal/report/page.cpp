@@ -9,6 +9,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/report/csv_columns.hpp"
 #include "elastocal/report/encoding.hpp"
+#include "elastocal/report/json_reader.hpp"
 
 namespace elastocal {
 namespace {
@@ -21,14 +22,6 @@ constexpr std::size_t kMostMotionRows = 800;
 
 std::string WithoutSuffix(const std::string& name, std::string_view suffix) {
   return name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : std::string();
-}
-
-Json Parse(const std::string& name, const std::string& text) {
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw InputError(name + ": is no JSON: " + error.what());
-  }
 }
 
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -69,7 +62,7 @@ Json DesignJson(const ReportSources& sources) {
     if (name.ends_with("_curves.csv")) {
       json["curves"] = ReadCsvColumns(name, text, kMostCurveRows, rows);
     } else if (name.ends_with("_summary.json")) {
-      json["summary"] = Parse(name, text);
+      json["summary"] = ParseJsonObject(name, text);
     }
   }
   return json;
@@ -84,7 +77,8 @@ Json MotionsJson(const ReportSources& sources) {
     Json motion = {{"name", stem}, {"columns", ReadCsvColumns(name, text, kMostMotionRows, rows)}};
     motion["rows"] = rows;
     const auto margins = sources.files.find(stem + "_margins.json");
-    if (margins != sources.files.end()) motion["margins"] = Parse(margins->first, margins->second);
+    if (margins != sources.files.end())
+      motion["margins"] = ParseJsonObject(margins->first, margins->second);
     json.push_back(std::move(motion));
   }
   return json;
@@ -154,11 +148,11 @@ std::string MakeReportJson(const ReportSources& sources) {
         std::pair{"validation", "validation.json"}, std::pair{"comparison", "comparison.json"},
         std::pair{"runs", "runs.json"}}) {
     const auto file = sources.files.find(name);
-    if (file != sources.files.end()) report[key] = Parse(file->first, file->second);
+    if (file != sources.files.end()) report[key] = ParseJsonObject(file->first, file->second);
   }
   const auto robot = sources.files.find("robot_data.json");
   if (!report.contains("data") && robot != sources.files.end()) {
-    report["data"] = Parse(robot->first, robot->second);
+    report["data"] = ParseJsonObject(robot->first, robot->second);
   }
   report["calibrations"] = Json::array();
   for (const LabelledCalibration& calibration : sources.calibrations) {

@@ -1,11 +1,11 @@
 #include "elastocal/report/run_record.hpp"
 
-#include <fstream>
-#include <sstream>
-
 #include <nlohmann/json.hpp>
 
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/report/encoding.hpp"
+#include "elastocal/report/json_reader.hpp"
+#include "elastocal/tables/read_file.hpp"
 
 namespace elastocal {
 namespace {
@@ -20,14 +20,12 @@ constexpr const char* kPlain =
 std::vector<InputRecord> RecordInputs(const std::vector<std::filesystem::path>& files) {
   std::vector<InputRecord> records;
   for (const std::filesystem::path& file : files) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) continue;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) continue;
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
-    const std::string_view view = bytes.view();
-    records.push_back({file.string(), view.size(), Sha256(view)});
+    try {
+      const std::string bytes = ReadFile(file);
+      records.push_back({file.string(), bytes.size(), Sha256(bytes)});
+    } catch (const InputError&) {
+      continue;  // what cannot be read was not used either
+    }
   }
   return records;
 }
@@ -48,8 +46,12 @@ std::string QuoteCommandLine(const std::vector<std::string>& words) {
 }
 
 std::string UpdateRuns(const std::string& runs, const RunRecord& record) {
-  Json json = Json::parse(runs, nullptr, false);
-  if (!json.is_object()) json = Json::object();
+  Json json = Json::object();
+  try {
+    json = ParseJsonObject("runs.json", runs);
+  } catch (const InputError&) {
+    // Records that cannot be read are no reason to lose a result.
+  }
   Json item = {{"command_line", record.command_line}, {"version", record.version}};
   item["seed"] = record.seed ? Json(*record.seed) : Json(nullptr);
   item["inputs"] = Json::array();

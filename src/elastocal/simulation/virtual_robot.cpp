@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <regex>
 #include <stdexcept>
 #include <string>
 
 #include <mujoco/mujoco.h>
+
+#include "elastocal/math/input_error.hpp"
 
 namespace elastocal {
 namespace {
@@ -15,7 +18,21 @@ namespace {
 using ModelPointer = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
 using DataPointer = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
 
-ModelPointer Compile(const std::string& xml) {
+/// A message of MuJoCo, in which bodies have our numbers ("b24"), in one line and with the names of
+/// the links that these bodies begin with.
+std::string WithLinkNames(std::string message, const RobotTree& tree) {
+  for (int body = tree.body_count() - 1; body >= 0; --body) {
+    const Joint* joint = body > 0 ? &tree.joints[static_cast<std::size_t>(body - 1)] : nullptr;
+    const int link = joint != nullptr ? joint->child_link : 0;
+    const std::regex number("\\bb" + std::to_string(body) + "\\b");
+    message = std::regex_replace(message, number,
+                                 "link '" + tree.links[static_cast<std::size_t>(link)].name + "'");
+  }
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  return message;
+}
+
+ModelPointer Compile(const std::string& xml, const RobotTree& tree) {
   const auto files = std::make_unique<mjVFS>();  // two megabytes: too large for the stack
   mj_defaultVFS(files.get());
   const char* name = "robot.xml";
@@ -24,7 +41,10 @@ ModelPointer Compile(const std::string& xml) {
   std::array<char, 1000> error{};
   ModelPointer model(mj_loadXML(name, files.get(), error.data(), error.size()), &mj_deleteModel);
   mj_deleteVFS(files.get());
-  if (model == nullptr) throw std::runtime_error(std::string("MuJoCo: ") + error.data());
+  if (model == nullptr) {
+    throw InputError("the robot '" + tree.name +
+                     "' cannot be simulated: " + WithLinkNames(error.data(), tree));
+  }
   return model;
 }
 
@@ -60,7 +80,7 @@ struct VirtualRobot::Simulation {
 
   Simulation(const TrueRobot& true_robot, const MjcfModel& mjcf)
       : robot(true_robot),
-        model(Compile(mjcf.xml)),
+        model(Compile(mjcf.xml, robot.tree)),
         data(mj_makeData(model.get()), &mj_deleteData),
         bristle(Eigen::VectorXd::Zero(true_robot.offset.size())) {
     for (std::size_t k = 0; k < robot.tree.joints.size(); ++k) {

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/utf8.hpp"
+#include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -50,16 +49,8 @@ char* TakeQuoted(char* at, char* end, std::string_view& cell) {
 
 }  // namespace
 
-std::ifstream OpenTable(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error) && !error) {
-    throw InputError(file.string() + ": there is no such file");
-  }
-  if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string() + ": cannot be read: " + std::strerror(errno));
-  return stream;
+std::istringstream OpenTable(const std::filesystem::path& file) {
+  return std::istringstream(ReadFile(file));
 }
 
 TextStream::TextStream(std::string_view text) : std::istream(static_cast<std::streambuf*>(this)) {

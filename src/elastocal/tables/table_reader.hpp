@@ -1,10 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <istream>
 #include <map>
 #include <span>
+#include <sstream>
 #include <streambuf>
 #include <string>
 #include <string_view>
@@ -14,8 +14,8 @@
 
 namespace elastocal {
 
-/// Opens a table for reading. Throws InputError where there is no file or it cannot be read.
-std::ifstream OpenTable(const std::filesystem::path& file);
+/// A table for reading. Throws InputError where ReadFile does.
+std::istringstream OpenTable(const std::filesystem::path& file);
 
 /// A text as a stream, without a copy of it; the text must outlive the stream.
 class TextStream : private std::streambuf, public std::istream {

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "elastocal/math/utf8.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -14,10 +16,17 @@ bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 std::string Quote(std::string_view text) {
   constexpr std::size_t kLongest = 60;
-  std::string shown(text.substr(0, kLongest));
+  std::string_view begin = text.substr(0, kLongest);
+  // Not in the middle of a character.
+  const auto continues = [](char byte) {
+    return (static_cast<unsigned char>(byte) & 0xc0) == 0x80;
+  };
+  while (begin.size() < text.size() && !begin.empty() && continues(text[begin.size()])) {
+    begin.remove_suffix(1);
+  }
+  std::string shown = Printable(begin);
   std::replace_if(
-      shown.begin(), shown.end(),
-      [](unsigned char character) { return character < 0x20 || character == 0x7f; }, '?');
+      shown.begin(), shown.end(), [](char c) { return c == '\n' || c == '\t'; }, '?');
   return "'" + shown + (text.size() > kLongest ? "..." : "") + "'";
 }
 

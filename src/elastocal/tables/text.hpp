@@ -6,7 +6,8 @@
 
 namespace elastocal {
 
-/// 'text' as it is shown in a message: in quotes, long text clipped, control characters as '?'.
+/// 'text' as it is shown in a message: in quotes, long text clipped, control characters as '?',
+/// what is not UTF-8 as U+FFFD.
 std::string Quote(std::string_view text);
 
 /// "file:line: ", how messages about a line begin.

@@ -1,0 +1,32 @@
+#include "elastocal/report/json_reader.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
+
+Json ParseJsonObject(const std::string& source, const std::string& text) {
+  // Copies and text of a value are made by recursion, so that deep ones would exhaust the stack.
+  constexpr int kDeepest = 100;
+  const auto check_depth = [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth <= kDeepest) return true;
+    throw InputError(source + ": nested more than 100 levels deep");
+  };
+  Json json;
+  try {
+    json = Json::parse(text, check_depth);
+  } catch (const Json::exception& error) {
+    throw InputError(source + ": is no JSON: " + error.what());
+  }
+  if (json.is_object()) return json;
+  throw InputError(source + ": found JSON of the type " + json.type_name() +
+                   "; an object was expected");
+}
+
+}  // namespace elastocal

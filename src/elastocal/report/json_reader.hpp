@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace elastocal {
+
+/// The JSON object in the text of a file; `source` names it in messages. All JSON is read here.
+/// Throws InputError: no JSON, numbers that no double holds, nesting beyond 100 levels, another
+/// value than an object.
+nlohmann::ordered_json ParseJsonObject(const std::string& source, const std::string& text);
+
+}  // namespace elastocal
