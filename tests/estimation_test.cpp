@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
@@ -55,6 +56,30 @@ TEST_F(LegEstimation, OutliersAreNamedAndTheRestIsLeftAlone) {
     EXPECT_LT(std::abs(result.delta[i] - without.delta[i]), 0.5 * without.sd[i])
         << model_.parameters[i].name;
   }
+}
+
+TEST_F(LegEstimation, FaultsOfARecordingAreNamed) {
+  const Recording clean = Record(truth_, 40);
+  EXPECT_TRUE(FindRecordingFaults(Estimate(clean), clean, {}).empty());
+  const int joint = 3;
+  const int coordinate = model_.tree.joints[joint].coordinate;
+  Recording gain = clean;
+  gain.q.col(coordinate) *= 1.02;
+  const std::vector<RecordingFault> of_gain = FindRecordingFaults(Estimate(gain), gain, {});
+  ASSERT_FALSE(of_gain.empty());
+  EXPECT_EQ(of_gain[0].kind, FaultKind::kJointGain);
+  EXPECT_EQ(of_gain[0].coordinate, coordinate);
+  EXPECT_NEAR(of_gain[0].size, 0.02, 0.002);
+  Recording offset = clean;
+  offset.q.col(coordinate).tail(19).array() += 0.02;  // between two of the postures tried
+  const std::vector<RecordingFault> of_offset = FindRecordingFaults(Estimate(offset), offset, {});
+  ASSERT_FALSE(of_offset.empty());
+  EXPECT_EQ(of_offset[0].kind, FaultKind::kJointOffset);
+  EXPECT_EQ(of_offset[0].coordinate, coordinate);
+  EXPECT_NEAR(of_offset[0].posture, 21, 2);
+  EXPECT_NEAR(of_offset[0].size, 0.02, 0.005);
+  const std::string text = DescribeFault(of_offset[0], model_.tree, offset);
+  EXPECT_EQ(text.find(model_.tree.joints[joint].name + ": its positions are off by"), 0u) << text;
 }
 
 // One clean recording in a hundred has an outlier named, also when the noise is estimated from few

@@ -12,6 +12,7 @@ namespace {
 constexpr double kRidge = 1e-12;
 constexpr Eigen::Index kBatchRows = 384;  // of nuisance, eliminated in one product
 constexpr int kMostActiveSets = 20;
+constexpr double kLeastLeft = 1e-6;      // of an added unknown, beside the others
 constexpr double kSlightGradient = 1e-9;  // no reason to leave a bound
 
 }  // namespace
@@ -253,6 +254,37 @@ NormalEquations::Score NormalEquations::Project(int block, const Eigen::MatrixXd
   score.information -= by_nuisance * group.factor.solve(by_nuisance.transpose());
   score.cross -= by_nuisance * Gain(group);
   return score;
+}
+
+NormalEquations::Addition NormalEquations::Add(const std::vector<Eigen::VectorXd>& derivative,
+                                               const Eigen::MatrixXd& covariance) const {
+  double score = 0.0;
+  double information = 0.0;
+  Eigen::VectorXd cross = Eigen::VectorXd::Zero(information_.rows());
+  const auto takes_part = [&](int block) {
+    return derivative[block].size() > 0 && problem_.residual_blocks[block].active;
+  };
+  for (int block = 0; block < static_cast<int>(layout_.size()); ++block) {
+    if (!takes_part(block)) continue;
+    score += derivative[block].dot(problem_.Residual(block));
+    information += derivative[block].squaredNorm();
+    cross(layout_[block].unknowns) += OwnJacobian(block).transpose() * derivative[block];
+  }
+  for (const Group& group : groups_) {
+    Eigen::VectorXd own = Eigen::VectorXd::Zero(group.size);
+    for (int block : group.blocks) {
+      if (takes_part(block)) own += NuisanceJacobian(block).transpose() * derivative[block];
+    }
+    if (own.isZero(0.0)) continue;
+    score -= own.dot(group.own);
+    information -= own.dot(group.factor.solve(own));
+    cross -= Gain(group).transpose() * own;
+  }
+  const Eigen::VectorXd by_unknowns = covariance * cross;
+  const double left = information - cross.dot(by_unknowns);
+  if (!(left > kLeastLeft * information)) return {};
+  const double slope = score - by_unknowns.dot(gradient_);
+  return {-slope / left, 1.0 / left, slope * slope / left};
 }
 
 double CostOf(const LeastSquaresProblem& problem) {

@@ -54,6 +54,17 @@ class NormalEquations {
   };
   Score Project(int block, const Eigen::MatrixXd& A) const;
 
+  /// How much of one more unknown would explain what the residuals leave, all else being fitted
+  /// beside it (score test, Rao 1948). `derivative`: of the residuals by it, by block (empty:
+  /// none).
+  struct Addition {
+    double value = 0.0;     ///< the estimate
+    double variance = 0.0;  ///< of it, where residuals have unit variance
+    double gain = 0.0;      ///< by which the sum of squares would fall
+  };
+  Addition Add(const std::vector<Eigen::VectorXd>& derivative,
+               const Eigen::MatrixXd& covariance) const;
+
  private:
   /// The residual blocks that share a nuisance block.
   struct Group {

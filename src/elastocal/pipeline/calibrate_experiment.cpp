@@ -32,6 +32,29 @@ Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& b
   return AssessExcitation(factor, geometric, recording.posture_count(), result.marker_sd);
 }
 
+/// What is wrong with the recording as a whole. What looks like knocks of several clusters may be a
+/// fault that moves them all, so it is looked for without the knocks, too.
+std::vector<std::string> FindFaults(const Project& project, const ExperimentOptions& options,
+                                    Measurements as_recorded, const RecordedModel& robot,
+                                    const Recording& recording, const CalibrationResult& result) {
+  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
+  const Recording* of = &recording;
+  if (!robot.knocks.empty()) {
+    const RecordedModel plain =
+        MakeRecordedModel(project, options.seed, as_recorded, KnockSearch::kNone);
+    const CalibrationResult without = Calibrate(plain.model, as_recorded.calibration, plain.base,
+                                                result.kind, project.calibration);
+    std::vector<RecordingFault> found =
+        FindRecordingFaults(without, as_recorded.calibration, project.calibration);
+    if (!found.empty()) {
+      faults = std::move(found);
+      of = &as_recorded.calibration;
+    }
+  }
+  if (faults.empty()) return {};
+  return {DescribeFault(faults.front(), project.tree, *of)};
+}
+
 /// The error of the waist by model, on trials for validation where there are any, else on those of
 /// the estimate.
 ByModel<double> WaistErrors(const ModelComparison& comparison, const Measurements& measured,
@@ -87,6 +110,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
   // that give way under their loads (eq. 5 and 6): delta is eq. 7. A QR decomposition of the
   // regressor (eq. 4) over random postures tells which of it can be identified (section 2.1).
+  const Measurements as_recorded = measured;
   RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
   const Recording& recording = measured.calibration;
 
@@ -100,6 +124,9 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // Section 6.1.4. Simpler models (not calibrated, geometric) on the same data.
   run.comparison = CompareModels(std::move(calibrated), robot.model, recording, robot.base,
                                  settings, OfStep(options.progress, "fit"));
+
+  run.faults =
+      FindFaults(project, options, as_recorded, robot, recording, run.comparison.largest());
 
   // Eq. 12: how well the recorded postures tell the parameters apart.
   run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording);
@@ -131,6 +158,8 @@ CalibrationRun CalibrateExperiment(const Project& given,
     JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
                  run.verdict);
   }
+  run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
+                                run.faults.end());
   run.coverage = FindCoverage(project, measured);
   JudgeCoverage(run.coverage, run.verdict);
   run.warnings = std::move(measured.warnings);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastocal/calibration/knocks.hpp"
+#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
@@ -43,6 +44,8 @@ struct CalibrationRun {
   BaseParameters base;         ///< which of them can be identified
   ModelComparison comparison;  ///< the estimates: `comparison.largest()` is the calibration
   Excitation excitation;       ///< how well the recorded postures tell the parameters apart
+  /// Faults of the recording as a whole (RecordingFault), in words; objections of the verdict.
+  std::vector<std::string> faults;
   std::vector<ChainCoverage> coverage;      ///< what was recorded of each chain
   std::vector<ElasticityTrial> elasticity;  ///< tried, where the project leaves it open
   CrossValidation cross_validation;         ///< folds 0: none

@@ -92,14 +92,14 @@ std::string DescribeKnock(const Knock& knock, const Recording& recording) {
 }  // namespace
 
 RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint64_t> seed,
-                                Measurements& measured) {
+                                Measurements& measured, KnockSearch search) {
   IdentifiabilityOptions options = project.identifiability;
   if (seed) options.seed = *seed;
   Recording& recording = measured.calibration;
   RecordedModel result;
   result.model = SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
   result.base = FindBaseParameters(result.model, options);
-  if (!recording.trials.empty()) {
+  if (!recording.trials.empty() && search == KnockSearch::kAll) {
     result.knocks = FindKnocks(result.model, recording, result.base,
                                SeenClusters(project, recording), project.calibration);
   }

@@ -1,0 +1,217 @@
+#include "elastocal/calibration/recording_faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "elastocal/calibration/fit.hpp"
+#include "elastocal/calibration/variances.hpp"
+#include "elastocal/measurement/describe_posture.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
+constexpr double kLeastShare = 0.03;
+constexpr double kLeastSds = 8.0;
+constexpr int kSplits = 12;  // of the recording, after which an offset of a joint may begin
+
+/// Sizes from which a fault is none that a good robot and good cameras may have.
+double LeastSize(FaultKind kind, bool slides) {
+  if (kind == FaultKind::kJointGain) return 0.005;
+  if (kind == FaultKind::kCameraScale) return 0.0015;
+  return slides ? 1e-3 : 0.25 * M_PI / 180.0;
+}
+
+using Blocks = std::vector<Eigen::VectorXd>;
+
+class FaultSearch {
+ public:
+  FaultSearch(const CalibrationResult& result, const Recording& recording,
+              const CalibrationOptions& options)
+      : result_(result),
+        recording_(recording),
+        options_(options),
+        selection_(SelectAll(result.model, recording)) {
+    fit_.delta = result.delta;
+    fit_.placement = result.placement;
+    fit_.noise = result.noise;
+    fit_.prior_scale = result.prior_scale;
+    // A fault may be what the fit left out as outliers: all observations take part, but each by a
+    // limited weight.
+    fit_.weights = Weights();
+    FitResiduals residuals(Problem(recording), selection_, result.posterior.parameters, fit_);
+    BodyResiduals& body = residuals.body;
+    body.Evaluate(body.Start(), true);
+    posture_.assign(body.residual_blocks.size(), -1);
+    for (int b = 0; b < body.body_count(); ++b) posture_[b] = selection_.bodies[b].posture;
+    for (std::size_t t = 0; t < body.tied_postures().size(); ++t) {
+      posture_[body.TieBlock(static_cast<int>(t))] = body.tied_postures()[t];
+    }
+    at_ = Residuals(body);
+    for (std::size_t b = 0; b < at_.size(); ++b) {
+      if (body.residual_blocks[b].active) squares_ += at_[b].squaredNorm();
+    }
+    const NormalEquations equations(body);
+    const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
+    for (int coordinate : Coordinates()) TryJoint(equations, covariance, coordinate);
+    TryScale(equations, covariance);
+    std::stable_sort(
+        found_.begin(), found_.end(),
+        [](const RecordingFault& a, const RecordingFault& b) { return a.share > b.share; });
+  }
+
+  std::vector<RecordingFault> found() && { return std::move(found_); }
+
+ private:
+  FitProblem Problem(const Recording& recording) const {
+    return {result_.model, recording, options_, result_.group};
+  }
+
+  RobustWeights Weights() const {
+    FitResiduals residuals(Problem(recording_), selection_, result_.posterior.parameters, fit_);
+    residuals.body.Evaluate(residuals.body.Start(), false);
+    return EstimateWeights(Problem(recording_), selection_, fit_.noise, residuals.body,
+                           Robustness::kMedians);
+  }
+
+  /// Of observations and constraints.
+  Blocks Residuals(const BodyResiduals& body) const {
+    Blocks residuals(posture_.size());
+    for (std::size_t b = 0; b < posture_.size(); ++b) {
+      if (posture_[b] >= 0) residuals[b] = body.Residual(static_cast<int>(b));
+    }
+    return residuals;
+  }
+
+  /// Change of the residuals by a change of the recording, over kStep.
+  Blocks Derivative(const Recording& changed) const {
+    FitResiduals residuals(Problem(changed), selection_, result_.posterior.parameters, fit_);
+    residuals.body.Evaluate(residuals.body.Start(), false);
+    Blocks derivative = Residuals(residuals.body);
+    for (std::size_t b = 0; b < derivative.size(); ++b)
+      derivative[b] = (derivative[b] - at_[b]) / kStep;
+    return derivative;
+  }
+
+  std::set<int> Coordinates() const {
+    std::set<int> coordinates;
+    for (int joint : result_.model.active_joints) {
+      coordinates.insert(result_.model.tree.joints[joint].coordinate);
+    }
+    return coordinates;
+  }
+
+  /// The derivative with each posture's part times a factor of its own.
+  template <typename Factor>
+  Blocks Weighted(const Blocks& derivative, const Factor& factor) const {
+    Blocks weighted(derivative.size());
+    for (std::size_t b = 0; b < derivative.size(); ++b) {
+      const double by = posture_[b] < 0 ? 0.0 : factor(posture_[b]);
+      if (by != 0.0) weighted[b] = by * derivative[b];
+    }
+    return weighted;
+  }
+
+  void Try(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+           const Blocks& derivative, RecordingFault fault, bool slides) {
+    const NormalEquations::Addition addition = equations.Add(derivative, covariance);
+    // What has to be added to the recording is what it lacks.
+    fault.size = -addition.value;
+    fault.sd = std::sqrt(addition.variance * std::max(1.0, result_.posterior.cluster_factor));
+    fault.share = addition.gain / squares_;
+    const bool certain = std::abs(fault.size) > kLeastSds * fault.sd;
+    const bool matters =
+        std::abs(fault.size) > LeastSize(fault.kind, slides) && fault.share > kLeastShare;
+    if (certain && matters) found_.push_back(fault);
+  }
+
+  void TryJoint(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+                int coordinate) {
+    Recording changed = recording_;
+    changed.q.col(coordinate).array() += kStep;
+    const Blocks derivative = Derivative(changed);
+    const auto joint =
+        std::find_if(result_.model.tree.joints.begin(), result_.model.tree.joints.end(),
+                     [&](const Joint& candidate) { return candidate.coordinate == coordinate; });
+    const bool slides = joint->type == JointType::kPrismatic;
+    const auto add = [&](RecordingFault fault, const auto& factor) {
+      fault.coordinate = coordinate;
+      Try(equations, covariance, Weighted(derivative, factor), fault, slides);
+    };
+    add({FaultKind::kJointGain}, [&](int i) { return recording_.q(i, coordinate); });
+    const int count = recording_.posture_count();
+    const int stride = std::max(1, count / kSplits);
+    for (int split = stride; split < count; split += stride) {
+      add({.kind = FaultKind::kJointOffset, .posture = split},
+          [&](int i) { return i >= split ? 1.0 : 0.0; });
+    }
+    for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
+      const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);
+      if (first == recording_.trial.end()) continue;
+      const int posture = static_cast<int>(first - recording_.trial.begin());
+      add({.kind = FaultKind::kJointOffset, .trial = trial, .posture = posture},
+          [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; });
+    }
+  }
+
+  /// Of one trial. A scale of all of them is what a robot with other lengths shows as well.
+  void TryScale(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    if (recording_.trials.size() < 2) return;
+    Recording changed = recording_;
+    changed.markers *= 1.0 + kStep;
+    const Blocks derivative = Derivative(changed);
+    for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
+      Try(equations, covariance,
+          Weighted(derivative, [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; }),
+          {.kind = FaultKind::kCameraScale, .trial = trial}, false);
+    }
+  }
+
+  const CalibrationResult& result_;
+  const Recording& recording_;
+  const CalibrationOptions& options_;
+  Selection selection_;
+  Fit fit_;
+  std::vector<int> posture_;  // by residual block; -1: a prior
+  Blocks at_;
+  double squares_ = 0.0;
+  std::vector<RecordingFault> found_;
+};
+
+}  // namespace
+
+std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
+                                                const Recording& recording,
+                                                const CalibrationOptions& options) {
+  return FaultSearch(result, recording, options).found();
+}
+
+std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
+                          const Recording& recording) {
+  const bool joint = fault.kind != FaultKind::kCameraScale;
+  std::string text = "camera positions";
+  bool slides = false;
+  for (const Joint& candidate : tree.joints) {
+    if (!joint || candidate.coordinate != fault.coordinate) continue;
+    text = candidate.name;
+    slides = candidate.type == JointType::kPrismatic;
+    break;
+  }
+  char number[80];
+  if (fault.kind == FaultKind::kJointOffset) {
+    const double unit = slides ? 1e-3 : M_PI / 180.0;
+    std::snprintf(number, sizeof number, ": its positions are off by %.3f +- %.3f %s",
+                  fault.size / unit, fault.sd / unit, slides ? "mm" : "deg");
+  } else {
+    std::snprintf(number, sizeof number, "%s %.4f +- %.4f times the true ones",
+                  joint ? ": its positions are" : " are", 1.0 + fault.size, fault.sd);
+  }
+  text += number;
+  if (fault.trial >= 0) return text + " in trial " + recording.trials[fault.trial].name;
+  return fault.posture > 0 ? text + " from " + DescribePosture(recording, fault.posture) + " on"
+                           : text;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/calibrate.hpp"
+
+namespace elastocal {
+
+/// What may be wrong with a recording as a whole, beyond single markers.
+enum class FaultKind {
+  kJointGain,    ///< a joint's positions are a multiple of the true ones
+  kJointOffset,  ///< a joint's positions are off by a constant from a posture on
+  kCameraScale,  ///< the cameras' positions in one trial are a multiple of the true ones
+};
+
+/// A fault that explains much of what the fit leaves.
+struct RecordingFault {
+  FaultKind kind = FaultKind::kJointGain;
+  int coordinate = -1;  ///< of the joints that are logged together, of the robot tree
+  int trial = -1;       ///< the only one that it is in; -1: all
+  int posture = 0;      ///< the first one that it is in
+  double size = 0.0;    ///< gain less 1; offset, rad or m; scale less 1
+  double sd = 0.0;      ///< of `size`, as wide as the postures scatter
+  double share = 0.0;   ///< of the sum of squared residuals that it explains
+};
+
+/// Looks for the fault that explains most of what a fit has left: each candidate is one more
+/// unknown beside all others (score test), so that it is not confused with what the robot's own
+/// errors explain as well. Candidates are the gain of each joint, an offset of each joint from one
+/// of twelve postures on or in one trial alone, and the scale of the cameras in one of several
+/// trials (a scale of all of them looks like a robot all of whose lengths are off). Only faults
+/// that no good robot has are returned, the one that explains most first: of a size that matters
+/// (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain (eight standard deviations) and a
+/// part of what is left (3 %).
+std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
+                                                const Recording& recording,
+                                                const CalibrationOptions& options);
+
+/// "arm_left_4_joint: its positions are off by 1.02 +- 0.03 deg from trial b, posture 1 on".
+std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
+                          const Recording& recording);
+
+}  // namespace elastocal
