@@ -12,7 +12,7 @@ namespace {
 constexpr double kRidge = 1e-12;
 constexpr Eigen::Index kBatchRows = 384;  // of nuisance, eliminated in one product
 constexpr int kMostActiveSets = 20;
-constexpr double kLeastLeft = 1e-6;      // of an added unknown, beside the others
+constexpr double kLeastLeft = 1e-6;       // of an added unknown, beside the others
 constexpr double kSlightGradient = 1e-9;  // no reason to leave a bound
 
 }  // namespace
