@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/leg_stiffness.hpp"
+#include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/dense_problem.hpp"
@@ -187,6 +188,35 @@ TEST_F(StandingTest, RigidLegsCarryTheRobotToo) {
     }
   }
   EXPECT_GT(compared, 50);
+}
+
+// Faults of torque sensors are told from the robot's own errors by statics.
+TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
+  const Recording clean = Record();
+  EXPECT_TRUE(FindContradictoryTorques(robot_.model, clean, 1e-3).empty());
+  const int knee = FindJoint(robot_.project.tree, "leg_right_4_joint");
+  const int hip = FindJoint(robot_.project.tree, "leg_left_2_joint");
+  const auto only = [&](const Recording& recording, int joint, TorqueContradiction kind) {
+    const auto found = FindContradictoryTorques(robot_.model, recording, 1e-3);
+    ASSERT_EQ(found.size(), 1u) << Describe(found.front(), robot_.project.tree);
+    EXPECT_EQ(found[0].joint, joint);
+    EXPECT_EQ(static_cast<int>(found[0].kind), static_cast<int>(kind));
+  };
+  Recording recording = clean;
+  recording.torques.col(knee) *= -1.0;
+  only(recording, knee, TorqueContradiction::kReversed);
+  recording = clean;
+  recording.torques.col(knee) *= 1000.0;
+  only(recording, knee, TorqueContradiction::kScaled);
+  recording = clean;
+  recording.torques.col(hip).array() += 40.0;
+  only(recording, hip, TorqueContradiction::kBiased);
+  recording = clean;
+  recording.torques.col(knee).swap(recording.torques.col(hip));
+  const auto swapped = FindContradictoryTorques(robot_.model, recording, 1e-3);
+  EXPECT_EQ(swapped.size(), 2u);
+  HideTorques(swapped, recording);
+  EXPECT_TRUE(FindContradictoryTorques(robot_.model, recording, 1e-3).empty());
 }
 
 TEST_F(StandingTest, ATorqueSensorLeftOutIsReplacedByStatics) {

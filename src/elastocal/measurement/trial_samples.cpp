@@ -9,6 +9,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/posture_frames.hpp"
 #include "elastocal/measurement/smoothed_log.hpp"
+#include "elastocal/measurement/support_check.hpp"
 #include "elastocal/measurement/trial_clock.hpp"
 
 namespace elastocal {
@@ -32,6 +33,11 @@ class TrialSampler {
     Smooth();
     Eigen::MatrixXd speeds = MarkerSpeeds(trajectories_);
     ForgetEdges(trajectories_, smoothed_log_.margin_s, speeds);
+    std::vector<Marker> seen;
+    for (const int marker : markers_) seen.push_back(robot_.markers[marker]);
+    if (const auto moved = FindMovedSupport(robot_.tree, seen, trial_, trajectories_)) {
+      return Refuse(Describe(*moved, robot_.tree));
+    }
     FitClock(speeds);
     if (summary().clock.state != ClockState::kReliable) return Refuse(Describe(summary().clock));
     LeaveOutUnlogged(speeds);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/math/singular_values.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/parameter_names.hpp"
@@ -11,6 +12,7 @@
 namespace elastocal {
 namespace {
 
+constexpr std::size_t kManySensors = 4;
 constexpr double kLeastWidth = 0.01;  // m: of the markers about the line that fits them best
 
 /// Joints whose limits leave them no motion: nothing can be identified there.
@@ -42,6 +44,25 @@ void WarnOfLostRank(const ErrorModel& model, const IdentifiabilityOptions& optio
   } else if (base.held.empty()) {
     warnings.push_back(fmt::format("only {}; see inspect for what is not", count));
   }
+}
+
+/// Torque sensors that contradict statics are not used.
+void CheckTorques(const ErrorModel& model, const CalibrationOptions& options,
+                  Measurements& measured) {
+  const std::vector<ContradictoryTorque> found =
+      FindContradictoryTorques(model, measured.calibration, options.slip);
+  for (const ContradictoryTorque& one : found) {
+    measured.warnings.push_back(Describe(one, model.tree) +
+                                "; not used, statics takes their place");
+  }
+  if (found.size() >= kManySensors) {
+    measured.warnings.push_back(
+        fmt::format("{} torque sensors contradict statics: are `up` in experiment.yaml, the unit "
+                    "(N.m) and the sign (torques balance the load) right?",
+                    found.size()));
+  }
+  HideTorques(found, measured.calibration);
+  HideTorques(found, measured.validation);
 }
 
 /// On two feet, and in trials that no leg ties to the floor, the markers on the root link are all
@@ -98,6 +119,7 @@ RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint6
   Recording& recording = measured.calibration;
   RecordedModel result;
   result.model = SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
+  CheckTorques(result.model, project.calibration, measured);
   result.base = FindBaseParameters(result.model, options);
   if (!recording.trials.empty() && search == KnockSearch::kAll) {
     result.knocks = FindKnocks(result.model, recording, result.base,

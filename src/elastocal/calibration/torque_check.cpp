@@ -1,0 +1,134 @@
+#include "elastocal/calibration/torque_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+
+#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/robot/statics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeastSpread = 5.0;      // N.m or N: standard deviation of static torques ...
+constexpr double kLever = 0.02;           // ... and by how much the weight carried may be aside, m
+constexpr double kLeastBias = 10.0;       // N.m or N
+constexpr double kLeastBiasShare = 0.25;  // of the largest static torque
+constexpr double kLeastSlope = 0.5;
+constexpr double kMostSlope = 2.0;
+constexpr double kLeastCorrelation = 0.5;
+constexpr std::size_t kLeastPairs = 5;
+
+/// Static and measured torques of one joint.
+struct Pairs {
+  std::vector<double> expected, measured;
+  double weight = 0.0;  ///< the largest carried, N
+};
+
+std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs) {
+  const auto count = static_cast<Eigen::Index>(pairs.expected.size());
+  if (pairs.expected.size() < kLeastPairs) return std::nullopt;
+  const Eigen::Map<const Eigen::ArrayXd> expected(pairs.expected.data(), count);
+  const Eigen::Map<const Eigen::ArrayXd> measured(pairs.measured.data(), count);
+  const Eigen::ArrayXd x = expected - expected.mean();
+  const Eigen::ArrayXd y = measured - measured.mean();
+  ContradictoryTorque found{.joint = joint, .bias = (measured - expected).mean()};
+  const double spread = std::sqrt(x.square().mean());
+  const double uncertain = kLever * pairs.weight;
+  if (spread >= std::max(kLeastSpread, uncertain)) {
+    found.slope = (x * y).sum() / x.square().sum();
+    const double norm = std::sqrt(x.square().sum() * y.square().sum());
+    const double correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0;
+    if (correlation < -kLeastCorrelation) {
+      found.kind = TorqueContradiction::kReversed;
+      return found;
+    }
+    if (correlation < kLeastCorrelation) return found;  // unrelated
+    if (found.slope < kLeastSlope || found.slope > kMostSlope) {
+      found.kind = TorqueContradiction::kScaled;
+      return found;
+    }
+  }
+  const double largest = expected.abs().maxCoeff();
+  if (std::abs(found.bias) < std::max({kLeastBias, kLeastBiasShare * largest, uncertain}))
+    return std::nullopt;
+  found.kind = TorqueContradiction::kBiased;
+  return found;
+}
+
+/// Whether the joint is between the root and one of the links.
+bool Carries(const RobotTree& tree, int joint, const std::vector<int>& links) {
+  for (int link : links) {
+    for (int on_way : JointsToBody(tree, tree.links[link].body)) {
+      if (on_way == joint) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& model,
+                                                          const Recording& recording,
+                                                          double slip_m) {
+  if (recording.trials.empty() || recording.torques.rows() == 0) return {};
+  if (!(TotalMass(model.tree) > 0.0)) return {};
+  const Placement placement = RegisterPlacement(model, recording, slip_m);
+  const std::size_t joints = model.tree.joints.size();
+  std::vector<Pairs> pairs(joints);
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const Trial& trial = recording.trials[recording.trial[i]];
+    const int fixed = trial.support.size() == 1 ? trial.support[0] : 0;
+    const Eigen::Vector3d gravity_waist =
+        placement.T_ref_waist[i].linear().transpose() * recording.gravity;
+    const std::vector<CarriedLoad> carried =
+        CarriedLoads(model.tree, LinkTransforms(model.tree, recording.q.row(i).transpose()), fixed);
+    const Eigen::VectorXd expected =
+        StaticTorques(model.tree, recording.q.row(i).transpose(), gravity_waist, fixed);
+    for (std::size_t k = 0; k < joints; ++k) {
+      const int joint = static_cast<int>(k);
+      const double measured = recording.torques(i, joint);
+      // How two feet share the load, statics does not say.
+      const bool shared = trial.support.size() > 1 && Carries(model.tree, joint, trial.support);
+      if (!std::isfinite(measured) || shared) continue;
+      pairs[k].expected.push_back(expected[model.tree.joints[k].coordinate]);
+      pairs[k].measured.push_back(measured);
+      pairs[k].weight = std::max(pairs[k].weight, recording.gravity.norm() * carried[k].mass);
+    }
+  }
+  std::vector<ContradictoryTorque> found;
+  for (std::size_t k = 0; k < joints; ++k) {
+    if (const auto one = Judge(static_cast<int>(k), pairs[k])) found.push_back(*one);
+  }
+  return found;
+}
+
+std::string Describe(const ContradictoryTorque& found, const RobotTree& tree) {
+  char text[120];
+  switch (found.kind) {
+    case TorqueContradiction::kReversed:
+      std::snprintf(text, sizeof text, "have the opposite sign of those of statics");
+      break;
+    case TorqueContradiction::kScaled:
+      std::snprintf(text, sizeof text, "are %.3g times those of statics", found.slope);
+      break;
+    case TorqueContradiction::kBiased:
+      std::snprintf(text, sizeof text, "are off by %.3g from those of statics", found.bias);
+      break;
+    case TorqueContradiction::kUnrelated:
+      std::snprintf(text, sizeof text, "do not follow those of statics");
+      break;
+  }
+  return tree.joints[found.joint].name + ": its torques " + text;
+}
+
+void HideTorques(const std::vector<ContradictoryTorque>& found, Recording& recording) {
+  for (const ContradictoryTorque& one : found) {
+    if (recording.torques.rows() == 0) continue;
+    recording.torques.col(one.joint).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+}  // namespace elastocal

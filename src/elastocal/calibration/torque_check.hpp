@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/placement.hpp"
+
+namespace elastocal {
+
+/// How the torques of a joint's sensor go with those that the weight of the robot makes.
+enum class TorqueContradiction {
+  kReversed,   ///< they have the opposite sign
+  kScaled,     ///< they are a multiple (or another unit)
+  kBiased,     ///< they are off by a constant
+  kUnrelated,  ///< they do not follow
+};
+
+struct ContradictoryTorque {
+  int joint = 0;
+  TorqueContradiction kind = TorqueContradiction::kUnrelated;
+  double slope = 0.0;  ///< of measured torque by that of statics
+  double bias = 0.0;   ///< mean of measured less static torque, N.m or N
+};
+
+/// Torque sensors that contradict statics in the postures of a recording of trials, by far more
+/// than masses of links, friction and deflection could make them: a slope below 0.5 or above 2, a
+/// bias of more than 10 N.m (N) and a quarter of the largest torque, a correlation below a half.
+/// Statics of the joints of a leg on one foot, of the others in any posture, at nominal geometry;
+/// the waist as its markers have it. Only sensors whose static torque varies by 5 N.m (N) or more
+/// (sd; for a bias: any) in five postures or more are judged; none where the robot description has
+/// no masses.
+std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& model,
+                                                          const Recording& recording,
+                                                          double slip_m);
+
+/// "leg_left_4_joint: its torques have the opposite sign of those of statics".
+std::string Describe(const ContradictoryTorque& found, const RobotTree& tree);
+
+/// Takes the torques of these joints for not measured: statics takes their place.
+void HideTorques(const std::vector<ContradictoryTorque>& found, Recording& recording);
+
+}  // namespace elastocal

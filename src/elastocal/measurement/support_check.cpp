@@ -1,0 +1,101 @@
+#include "elastocal/measurement/support_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "elastocal/math/statistics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kDisplaced = 0.02;   // m: no foot slips so far
+constexpr double kAtRest = 0.005;     // m
+constexpr double kOftenMoved = 0.25;  // of the frames
+constexpr int kMostLooked = 500;      // looked at
+constexpr std::size_t kLeastLooked = 10;
+
+double MedianAlong(const std::vector<double>& values) {
+  return Median(
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+}
+
+/// In each frame looked at in which a marker of the body is seen: the median distance of these
+/// markers from where each mostly is.
+std::vector<double> BodyDistances(const RobotTree& tree, const std::vector<Marker>& markers,
+                                  int body, const MarkerTrajectories& trajectories) {
+  const int stride = 1 + trajectories.frame_count() / kMostLooked;
+  std::vector<std::vector<double>> of_frame(
+      static_cast<std::size_t>(trajectories.frame_count() / stride + 1));
+  for (std::size_t m = 0; m < markers.size(); ++m) {
+    if (tree.links[markers[m].link].body != body) continue;
+    const auto positions = trajectories.positions.middleCols<3>(3 * static_cast<Eigen::Index>(m));
+    std::vector<double> along[3];
+    for (int i = 0; i < trajectories.frame_count(); i += stride) {
+      if (!positions.row(i).allFinite()) continue;
+      for (int axis = 0; axis < 3; ++axis) along[axis].push_back(positions(i, axis));
+    }
+    if (along[0].empty()) continue;
+    const Eigen::RowVector3d usual(MedianAlong(along[0]), MedianAlong(along[1]),
+                                   MedianAlong(along[2]));
+    for (int i = 0; i < trajectories.frame_count(); i += stride) {
+      const double distance = (positions.row(i) - usual).norm();
+      if (std::isfinite(distance)) of_frame[i / stride].push_back(distance);
+    }
+  }
+  std::vector<double> distances;
+  for (const std::vector<double>& seen : of_frame) {
+    if (!seen.empty()) distances.push_back(MedianAlong(seen));
+  }
+  return distances;
+}
+
+bool EndsAChain(const RobotTree& tree, int body) {
+  return body > 0 && std::none_of(tree.joints.begin(), tree.joints.end(),
+                                  [&](const Joint& joint) { return joint.parent_body == body; });
+}
+
+}  // namespace
+
+std::optional<MovedSupport> FindMovedSupport(const RobotTree& tree,
+                                             const std::vector<Marker>& markers, const Trial& trial,
+                                             const MarkerTrajectories& trajectories) {
+  if (trial.free_root) return std::nullopt;
+  const std::vector<int> support = trial.support.empty() ? std::vector<int>{0} : trial.support;
+  for (int link : support) {
+    const std::vector<double> distances =
+        BodyDistances(tree, markers, tree.links[link].body, trajectories);
+    const auto moved = std::count_if(distances.begin(), distances.end(),
+                                     [](double distance) { return distance > kDisplaced; });
+    if (distances.size() < kLeastLooked ||
+        static_cast<double>(moved) <= kOftenMoved * static_cast<double>(distances.size())) {
+      continue;
+    }
+    MovedSupport found{link, *std::max_element(distances.begin(), distances.end())};
+    for (const Marker& marker : markers) {
+      const int body = tree.links[marker.link].body;
+      const bool stands = std::any_of(support.begin(), support.end(), [&](int declared) {
+        return tree.links[declared].body == body;
+      });
+      if (stands || !EndsAChain(tree, body)) continue;
+      const std::vector<double> other = BodyDistances(tree, markers, body, trajectories);
+      if (other.size() >= kLeastLooked && *std::max_element(other.begin(), other.end()) < kAtRest) {
+        found.still = marker.link;
+      }
+    }
+    return found;
+  }
+  return std::nullopt;
+}
+
+std::string Describe(const MovedSupport& moved, const RobotTree& tree) {
+  char distance[40];
+  std::snprintf(distance, sizeof distance, "%.0f mm", 1e3 * moved.distance);
+  const std::string what = moved.link == 0 ? "the root link, which should be held,"
+                                           : "the support " + tree.links[moved.link].name;
+  return what + " moves by " + distance +
+         (moved.still < 0 ? "" : ", while " + tree.links[moved.still].name + " stands still") +
+         "; see `support` in experiment.yaml";
+}
+
+}  // namespace elastocal
