@@ -7,6 +7,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/log_mistake.hpp"
 #include "elastocal/measurement/posture_frames.hpp"
 #include "elastocal/measurement/smoothed_log.hpp"
 #include "elastocal/measurement/support_check.hpp"
@@ -39,7 +40,9 @@ class TrialSampler {
       return Refuse(Describe(*moved, robot_.tree));
     }
     FitClock(speeds);
-    if (summary().clock.state != ClockState::kReliable) return Refuse(Describe(summary().clock));
+    if (summary().clock.state != ClockState::kReliable) {
+      return Refuse(Describe(summary().clock) + CauseOfBadClock(speeds));
+    }
     LeaveOutUnlogged(speeds);
     Average(ChooseFrames(speeds));
     if (result_.frames.empty()) Refuse("the robot is never at rest for long enough");
@@ -130,14 +133,26 @@ class TrialSampler {
     smoothed_log_ = SmoothLog(log_, options_.smoothing);
   }
 
-  void FitClock(const Eigen::MatrixXd& speeds) {
-    const int standing = trial_.support.empty() ? 0 : trial_.support[0];
-    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, standing, smoothed_log_,
-                                              coordinates_, trajectories_.rate_hz);
+  int StandingLink() const { return trial_.support.empty() ? 0 : trial_.support[0]; }
+
+  ClockOptions ClockSettings() const {
     ClockOptions options = options_.clock;
     if (trial_.kind != TrialKind::kSine) options.largest_sd_s = options_.largest_rest_lag_sd_s;
-    summary().clock =
-        EstimateTrialClock(speeds, trajectories_.rate_hz, logged, options_.expected_lag_s, options);
+    return options;
+  }
+
+  void FitClock(const Eigen::MatrixXd& speeds) {
+    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, StandingLink(), smoothed_log_,
+                                              coordinates_, trajectories_.rate_hz);
+    summary().clock = EstimateTrialClock(speeds, trajectories_.rate_hz, logged,
+                                         options_.expected_lag_s, ClockSettings());
+  }
+
+  std::string CauseOfBadClock(const Eigen::MatrixXd& speeds) const {
+    const auto mistake =
+        FindLogMistake(robot_, markers_, StandingLink(), smoothed_log_, coordinates_, speeds,
+                       trajectories_.rate_hz, options_.expected_lag_s, ClockSettings());
+    return mistake ? "; " + Describe(*mistake, log_.names) : "";
   }
 
   double CameraTime(int frame) const { return frame / trajectories_.rate_hz; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -116,6 +117,39 @@ TEST(SampleTrial, HoldsTheRootWhereThereIsNoSupport) {
   const TrialSamples samples = Sample(played, {}, trial);
   EXPECT_EQ(samples.summary.postures, 24) << samples.summary.refused;
   ExpectTrue(samples, played, 0);
+}
+
+// The speeds of a leg one of whose joints has the wrong sign are others; where they do not fit any
+// more, the log that would fit tells why.
+TEST(SampleTrial, NamesTheSignAndTheExchangeThatSpoilTheClock) {
+  const ScriptedTrial clean = PlayStanding();
+  const auto joints = clean.log.positions.cols();
+  int refused = 0;
+  int named = 0;
+  for (Eigen::Index c = 0; c < joints; ++c) {
+    ScriptedTrial played = clean;
+    played.log.positions.col(c) *= -1.0;
+    const std::string reason = Sample(played).summary.refused;
+    if (reason.empty()) continue;
+    ++refused;
+    named += reason.find("with the sign of " + clean.log.names[c] + " reversed the log fits") !=
+                     std::string::npos
+                 ? 1
+                 : 0;
+  }
+  ScriptedTrial played = clean;
+  played.log.positions.col(2).swap(played.log.positions.col(3));
+  const std::string reason = Sample(played).summary.refused;
+  if (!reason.empty()) {
+    ++refused;
+    named += reason.find(clean.log.names[2] + " and " + clean.log.names[3] + " exchanged") !=
+                     std::string::npos
+                 ? 1
+                 : 0;
+  }
+  std::printf("%d of %d faults that spoil the clock are named\n", named, refused);
+  EXPECT_GT(refused, 0);
+  EXPECT_EQ(named, refused);
 }
 
 TEST(SampleTrial, FindsLagAndDriftOfTheClock) {

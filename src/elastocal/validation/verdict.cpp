@@ -11,6 +11,7 @@ constexpr double kManyOutliers = 0.05;     // from this part on, a remark
 constexpr double kSuspectedMarker = 0.25;  // part of the observations of a marker or posture
 constexpr double kMostWeak = 0.5;          // of the parameters may lean on the prior alone
 constexpr double kImplausible = 2.0;       // times the error of an uncalibrated robot
+constexpr double kAsGood = 1.01;           // times as large: no difference
 constexpr double kWorse = 1.05;            // times as large: more than chance makes an error
 constexpr const char* kAdvice =
     " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
@@ -153,7 +154,11 @@ void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verd
     if (calibrated == row.metrics.end() || !std::isfinite(calibrated->second.rmse_3d)) continue;
     const double rmse = calibrated->second.rmse_3d;
     for (const auto& [kind, metrics] : row.metrics) {
-      if (kind == model || kind == ModelKind::kRigid || !(rmse >= metrics.rmse_3d)) continue;
+      // Of a rigid robot all models but the uncalibrated one are as good.
+      const double as_good = kind == ModelKind::kUncalibrated ? 1.0 : kAsGood;
+      if (kind == model || kind == ModelKind::kRigid || !(rmse >= as_good * metrics.rmse_3d)) {
+        continue;
+      }
       const std::string text = "on held-out trials of " + row.group + " the " +
                                ModelKindName(model) + " model errs by " + Number(1e3 * rmse, "mm") +
                                ", the " + ModelKindName(kind) + " one by " +

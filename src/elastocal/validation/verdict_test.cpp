@@ -134,6 +134,9 @@ TEST(JudgeHeldOut, ObjectsToWhatErrsNoLessThanTheUncalibratedRobot) {
                kGeometric, verdict);
   EXPECT_TRUE(verdict.objections.empty());
   EXPECT_TRUE(verdict.remarks.empty());
+  JudgeHeldOut(HeldOutTable({{kUncalibrated, 2e-3}, {kGeometric, 1e-3}, {kFull, 1.005e-3}}), kFull,
+               kGeometric, verdict);
+  EXPECT_TRUE(verdict.remarks.empty());  // a rigid robot
   JudgeHeldOut(HeldOutTable({{kUncalibrated, 2e-3}, {kGeometric, 0.5e-3}, {kFull, 1e-3}}), kFull,
                kGeometric, verdict);
   EXPECT_TRUE(verdict.objections.empty());

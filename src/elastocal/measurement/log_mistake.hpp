@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/measurement/trial_clock.hpp"
+
+namespace elastocal {
+
+/// What is wrong with the columns of a joint log.
+struct LogMistake {
+  int column = 0;     ///< of the log's joints
+  int exchanged = 0;  ///< with this one; `column` itself: its sign is reversed
+  double peak = 0.0;  ///< correlation of speeds (ClockFit) once that is undone
+};
+
+/// Of a trial whose clock cannot be told: the reversed sign of one joint, or exchange of two, that
+/// lets it be told when undone, with the best correlation. `speeds` and `logged` as for
+/// EstimateTrialClock, `markers` to `rate_hz` as for PredictSpeeds. Joints that hardly move are
+/// passed over.
+std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
+                                         int standing, const SmoothedLog& log,
+                                         const std::vector<int>& coordinates,
+                                         const Eigen::MatrixXd& speeds, double rate_hz,
+                                         const std::optional<double>& expected_lag_s,
+                                         const ClockOptions& options);
+
+/// "with the sign of arm_7_joint reversed the log fits (correlation 0.99)"; `names`: of the
+/// columns.
+std::string Describe(const LogMistake& mistake, const std::vector<std::string>& names);
+
+}  // namespace elastocal
