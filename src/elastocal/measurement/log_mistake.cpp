@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kLeastMotion = 0.05;  // rad or m: range of a joint that can be wrong
 constexpr double kLeastPeak = 0.9;     // what is right correlates well
+constexpr double kFarBetter = 0.25;    // of what a correlation lacks to one is left
 
 /// Joints that move and are between the standing link and a marker.
 std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>& markers,
@@ -40,7 +41,8 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
                                          const std::vector<int>& coordinates,
                                          const Eigen::MatrixXd& speeds, double rate_hz,
                                          const std::optional<double>& expected_lag_s,
-                                         const ClockOptions& options) {
+                                         const ClockOptions& options, double peak) {
+  const double least_peak = std::max(kLeastPeak, 1.0 - kFarBetter * (1.0 - peak));
   std::optional<LogMistake> best;
   const std::vector<int> columns = MovingColumns(robot, markers, log, coordinates);
   for (std::size_t a = 0; a < columns.size(); ++a) {
@@ -56,7 +58,7 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
       const ClockFit fit = EstimateTrialClock(
           speeds, rate_hz, PredictSpeeds(robot, markers, standing, changed, coordinates, rate_hz),
           expected_lag_s, options);
-      if (fit.state != ClockState::kReliable || fit.peak < kLeastPeak) continue;
+      if (fit.state != ClockState::kReliable || fit.peak < least_peak) continue;
       if (!best || fit.peak > best->peak) best = {columns[a], columns[b], fit.peak};
     }
   }

@@ -16,7 +16,8 @@ struct LogMistake {
 };
 
 /// Of a trial whose clock cannot be told: the reversed sign of one joint, or exchange of two, that
-/// lets it be told when undone, with the best correlation. `speeds` and `logged` as for
+/// lets it be told when undone, with the best correlation: one that is far better than `peak`, that
+/// of the log as it is (a quarter of what it lacks to 1). `speeds` and `logged` as for
 /// EstimateTrialClock, `markers` to `rate_hz` as for PredictSpeeds. Joints that hardly move are
 /// passed over.
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
@@ -24,7 +25,7 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
                                          const std::vector<int>& coordinates,
                                          const Eigen::MatrixXd& speeds, double rate_hz,
                                          const std::optional<double>& expected_lag_s,
-                                         const ClockOptions& options);
+                                         const ClockOptions& options, double peak);
 
 /// "with the sign of arm_7_joint reversed the log fits (correlation 0.99)"; `names`: of the
 /// columns.

@@ -151,7 +151,8 @@ class TrialSampler {
   std::string CauseOfBadClock(const Eigen::MatrixXd& speeds) const {
     const auto mistake =
         FindLogMistake(robot_, markers_, StandingLink(), smoothed_log_, coordinates_, speeds,
-                       trajectories_.rate_hz, options_.expected_lag_s, ClockSettings());
+                       trajectories_.rate_hz, options_.expected_lag_s, ClockSettings(),
+                       result_.summary.clock.peak);
     return mistake ? "; " + Describe(*mistake, log_.names) : "";
   }
 
