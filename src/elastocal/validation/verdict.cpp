@@ -32,7 +32,7 @@ void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options
   if (result.termination != Termination::kConverged) {
     verdict.objections.push_back("the fit has not converged: " + result.message);
   } else if (!result.settled) {
-    verdict.remarks.push_back(
+    verdict.remarks.emplace_back(
         "noise, prior and outliers have not converged: the standard deviations "
         "are approximate");
   }
