@@ -79,7 +79,7 @@ struct CalibrationRun {
 /// Throws InputError for recordings that cannot be read or do not suffice, and for folds that the
 /// postures do not allow. A calibration that did not converge or is not to be trusted is no
 /// exception: see `verdict`.
-CalibrationRun CalibrateExperiment(const Project& project,
+CalibrationRun CalibrateExperiment(const Project& given,
                                    const std::vector<std::filesystem::path>& recordings,
                                    const ExperimentOptions& options = {});
 
