@@ -1,0 +1,172 @@
+#include "elastocal/runtime/compensator.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "elastocal/runtime/core_correction.h"
+
+namespace elastocal {
+namespace {
+
+using Vector = Eigen::Ref<const Eigen::VectorXd>;
+
+Eigen::Isometry3d ToIsometry(const ec_pose& pose) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.R);
+  T.translation() = Eigen::Map<const Eigen::Vector3d>(pose.p);
+  return T;
+}
+
+void SetPose(const Eigen::Isometry3d& T, ec_pose& pose) {
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(pose.R);
+  R = T.linear();
+  Eigen::Map<Eigen::Vector3d> p(pose.p);
+  p = T.translation();
+}
+
+void CheckOptions(const CompensatorOptions& options) {
+  const bool good = options.torque_time_constant_s >= 0.0 && options.period_s > 0.0 &&
+                    options.largest_turn_rad > 0.0 && options.largest_turn_rad <= 0.3 &&
+                    options.largest_shift_m > 0.0 && options.largest_correction_rad > 0.0;
+  if (!good) {
+    throw std::invalid_argument(
+        "options of the compensator: positive times and limits were expected, turns of at most "
+        "0.3 rad");
+  }
+}
+
+}  // namespace
+
+std::string DescribeStatus(CompensatorStatus status) {
+  constexpr std::pair<CompensatorStatus, const char*> kTexts[] = {
+      {EC_BAD_POSITION, "positions that are not finite, or too few: the last good ones were used"},
+      {EC_BAD_TORQUE, "a torque that is not finite: its last good value was used"},
+      {EC_BAD_SUPPORT, "an unknown foot: the last good support was used"},
+      {EC_DEFLECTION_CUT, "a deflection beyond its limit was cut"},
+      {EC_CORRECTION_CUT, "a correction beyond its limit was cut"},
+      {EC_JOINT_LIMIT, "a command beyond the limits of its joint was cut"},
+      {EC_NOTHING_YET, "no good positions so far: those of the zero posture were used"}};
+  std::string text;
+  for (const auto& [bit, words] : kTexts) {
+    if ((status & bit) == 0) continue;
+    text += (text.empty() ? "" : "; ") + std::string(words);
+  }
+  return text;
+}
+
+Compensator::Compensator(RuntimeModel model, const CompensatorOptions& options)
+    : model_(std::move(model)), branches_(FindBranches(model_)) {
+  if (model_.calibrated.empty() || model_.feet.size() > 32) {
+    throw std::invalid_argument(
+        "compensator: a robot with joints and at most 32 feet was expected");
+  }
+  CheckOptions(options);
+  Link(branches_, options);
+  Allocate();
+  ec_reset(&robot_, &memory_);
+}
+
+void Compensator::Link(const RuntimeBranches& branches, const CompensatorOptions& options) {
+  const auto count = [](const auto& list) { return static_cast<int>(list.size()); };
+  robot_.joints = count(model_.calibrated);
+  robot_.coordinates = count(model_.lower);
+  robot_.links = count(model_.links);
+  robot_.feet = count(model_.feet);
+  robot_.tips = count(model_.tips);
+  robot_.branches = count(branches.branch_size);
+  robot_.nominal = model_.nominal.data();
+  robot_.calibrated = model_.calibrated.data();
+  robot_.mass = model_.mass.data();
+  robot_.moment = model_.moment.data();
+  robot_.leg_of_body = model_.leg_of_body.data();
+  robot_.link = model_.links.data();
+  robot_.foot = model_.feet.data();
+  robot_.tip = model_.tips.data();
+  robot_.branch_of_coordinate = branches.branch_of_coordinate.data();
+  robot_.column_of_coordinate = branches.column_of_coordinate.data();
+  robot_.branch_size = branches.branch_size.data();
+  robot_.lower = model_.lower.data();
+  robot_.upper = model_.upper.data();
+  robot_.total_mass = 0.0;
+  for (double mass : model_.mass) robot_.total_mass += mass;
+  robot_.gravity = model_.gravity;
+  robot_.torque_gain = options.period_s / (options.period_s + options.torque_time_constant_s);
+  robot_.largest_turn = options.largest_turn_rad;
+  robot_.largest_shift = options.largest_shift_m;
+  robot_.largest_correction = options.largest_correction_rad;
+}
+
+void Compensator::Allocate() {
+  const int joints = robot_.joints, coordinates = robot_.coordinates, feet = robot_.feet;
+  int largest = 1;
+  for (int size : branches_.branch_size) largest = std::max(largest, size);
+  const std::pair<double**, int> doubles[] = {
+      {&memory_.axis, 3 * joints},    {&memory_.beyond, 4 * (joints + 1)},
+      {&memory_.load, 3 * joints},    {&memory_.normal, largest * largest},
+      {&memory_.gradient, largest},   {&memory_.column, 6 * 64},
+      {&memory_.good_q, coordinates}, {&memory_.good_torque, joints},
+      {&memory_.work_q, coordinates}, {&memory_.centre, 3 * feet},
+      {&memory_.share, feet},         {&memory_.motion, 3 * joints}};
+  const std::pair<ec_pose**, int> poses[] = {
+      {&memory_.body, joints + 1}, {&memory_.twisted, joints}, {&memory_.target, robot_.tips},
+      {&memory_.sole, feet},       {&links_, robot_.links},    {&wanted_, robot_.tips}};
+  const auto hand_out = [](auto& store, const auto& parts) {
+    std::size_t size = 0;
+    for (const auto& part : parts) size += static_cast<std::size_t>(part.second);
+    store.resize(size);
+    auto* next = store.data();
+    for (const auto& part : parts) {
+      *part.first = next;
+      next += part.second;
+    }
+  };
+  hand_out(numbers_, doubles);
+  hand_out(poses_, poses);
+  not_finite_.assign(static_cast<std::size_t>(std::max(joints, coordinates)),
+                     std::numeric_limits<double>::quiet_NaN());
+  rigid_ = Eigen::VectorXd::Zero(coordinates);
+  command_ = Eigen::VectorXd::Zero(coordinates);
+}
+
+const double* Compensator::Positions(const Vector& q) const noexcept {
+  return q.size() == robot_.coordinates ? q.data() : not_finite_.data();
+}
+
+const double* Compensator::Torques(const Vector& torque) const noexcept {
+  if (torque.size() == 0) return nullptr;
+  return torque.size() == robot_.joints ? torque.data() : not_finite_.data();
+}
+
+CompensatorStatus Compensator::Forward(const Vector& q, const Vector& torque,
+                                       StandingFeet feet) noexcept {
+  return ec_forward(&robot_, Positions(q), Torques(torque), feet, &memory_, links_, &root_);
+}
+
+CompensatorStatus Compensator::Correct(const Vector& q, const Vector& torque,
+                                       StandingFeet feet) noexcept {
+  return ec_correct(&robot_, Positions(q), Torques(torque), feet, &memory_, rigid_.data(),
+                    displacement_.data());
+}
+
+CompensatorStatus Compensator::Command(const Vector& nominal, const Vector& torque,
+                                       StandingFeet feet) noexcept {
+  return ec_command(&robot_, Positions(nominal), Torques(torque), feet, &memory_, command_.data(),
+                    residual_);
+}
+
+CompensatorStatus Compensator::Command(const Eigen::Isometry3d* T_root_tip, const Vector& nominal,
+                                       const Vector& torque, StandingFeet feet) noexcept {
+  for (int t = 0; t < robot_.tips; ++t) SetPose(T_root_tip[t], wanted_[t]);
+  return ec_command_poses(&robot_, wanted_, Positions(nominal), Torques(torque), feet, &memory_,
+                          command_.data(), residual_);
+}
+
+Eigen::Isometry3d Compensator::link_pose(int link) const noexcept {
+  return ToIsometry(links_[link]);
+}
+
+Eigen::Isometry3d Compensator::root_pose() const noexcept { return ToIsometry(root_); }
+
+}  // namespace elastocal

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "elastocal/runtime/core_poses.h"
+#include "elastocal/runtime/runtime_model.hpp"
+
+namespace elastocal {
+
+struct CompensatorOptions {
+  /// Time constant of the low-pass on torques that are given, s, and the interval between calls, s.
+  /// Measured torques of fast motion hold more than the load that deflects the robot, and would
+  /// overcompensate (paper, section 7). 0: no filter, for torques of a plan.
+  double torque_time_constant_s = 0.0;
+  double period_s = 1e-3;
+  /// Limits, so that no input gives a wild command. What is beyond is cut and reported.
+  double largest_turn_rad = 0.05;        ///< of each elastic rotation
+  double largest_shift_m = 0.02;         ///< of each elastic translation
+  double largest_correction_rad = 0.25;  ///< of a joint (m for a prismatic joint) from nominal
+};
+
+/// The feet that stand: bit i for foot i of the model. 0: the root link is held.
+using StandingFeet = unsigned;
+
+/// What a call has to say about itself: bits EC_... of core_poses.h, 0 is fine.
+using CompensatorStatus = unsigned;
+
+/// In words, "; " between them; empty for 0. Allocates: not for the control loop.
+std::string DescribeStatus(CompensatorStatus status);
+
+/// A calibrated elastic robot for a controller: where it really is, and what to command so that it
+/// goes where the nominal robot would. After construction nothing allocates, locks or throws, and
+/// the work of a call is bounded by the size of the robot. An object serves one thread.
+///
+/// Positions are by coordinate (RuntimeModel::coordinate_names), rad or m, as encoders give them.
+/// Torques are by joint (joint_names), N.m or N, as sensors report them, which balance the load; an
+/// empty vector stands for none: loads then follow from statics. Torques of NaN are not known:
+/// statics takes their place until a first value comes, and then the last value.
+///
+/// Bad input never gives a wild command. Positions that are not finite, or of another number, are
+/// replaced by the last good ones, an unknown foot by the last good support, and the status says
+/// so.
+class Compensator {
+ public:
+  /// Throws std::invalid_argument for a model without joints or with more than 32 feet, and for
+  /// options that are not positive.
+  explicit Compensator(RuntimeModel model, const CompensatorOptions& options = {});
+  Compensator(Compensator&&) = default;
+  Compensator& operator=(Compensator&&) = delete;
+  Compensator(const Compensator&) = delete;
+  Compensator& operator=(const Compensator&) = delete;
+  ~Compensator() = default;
+
+  const RuntimeModel& model() const noexcept { return model_; }
+
+  /// Forward kinematics with deflection (eq. 3, 5, 6): fills link_pose() and root_pose().
+  CompensatorStatus Forward(const Eigen::Ref<const Eigen::VectorXd>& q,
+                            const Eigen::Ref<const Eigen::VectorXd>& torque,
+                            StandingFeet feet) noexcept;
+
+  /// The positions with which a rigid robot of calibrated geometry has hands and feet where the
+  /// real one has them at `q`: rigid_positions(). And how far the real root link is from that of
+  /// the rigid robot at `q` on the same feet: root_displacement().
+  CompensatorStatus Correct(const Eigen::Ref<const Eigen::VectorXd>& q,
+                            const Eigen::Ref<const Eigen::VectorXd>& torque,
+                            StandingFeet feet) noexcept;
+
+  /// Commands with which hands, feet and waist are where the nominal robot has them at
+  /// `nominal`: command(). What is left is in residual_m() and residual_rad().
+  CompensatorStatus Command(const Eigen::Ref<const Eigen::VectorXd>& nominal,
+                            const Eigen::Ref<const Eigen::VectorXd>& torque,
+                            StandingFeet feet) noexcept;
+
+  /// The same for wanted poses of the ends of the limbs, in the root link's frame, by tip of the
+  /// model (array of tip_names.size()). `nominal` is a posture nearby, from which redundant joints
+  /// do not stray.
+  CompensatorStatus Command(const Eigen::Isometry3d* T_root_tip,
+                            const Eigen::Ref<const Eigen::VectorXd>& nominal,
+                            const Eigen::Ref<const Eigen::VectorXd>& torque,
+                            StandingFeet feet) noexcept;
+
+  /// Of the last Forward: pose of a link in the root link's frame, and of the root link in the
+  /// frame of the first foot that stands (identity while the root link is held). Where several feet
+  /// stand, they are taken to stand as the nominal robot has them, and each counts by its share of
+  /// the weight.
+  Eigen::Isometry3d link_pose(int link) const noexcept;
+  Eigen::Isometry3d root_pose() const noexcept;
+
+  /// Of the last Correct. The displacement is a translation of the root link's origin [m], then a
+  /// rotation vector [rad], in the axes of the first foot that stands.
+  const Eigen::VectorXd& rigid_positions() const noexcept { return rigid_; }
+  const Eigen::Matrix<double, 6, 1>& root_displacement() const noexcept { return displacement_; }
+
+  /// Of the last Command.
+  const Eigen::VectorXd& command() const noexcept { return command_; }
+  double residual_m() const noexcept { return residual_[0]; }
+  double residual_rad() const noexcept { return residual_[1]; }
+
+  /// The same robot for the functions of core_correction.h.
+  const ec_robot& robot() const noexcept { return robot_; }
+
+ private:
+  const double* Positions(const Eigen::Ref<const Eigen::VectorXd>& q) const noexcept;
+  const double* Torques(const Eigen::Ref<const Eigen::VectorXd>& torque) const noexcept;
+  void Link(const RuntimeBranches& branches, const CompensatorOptions& options);
+  void Allocate();
+
+  RuntimeModel model_;
+  RuntimeBranches branches_;
+  ec_robot robot_{};
+  ec_memory memory_{};
+  std::vector<double> numbers_, not_finite_;
+  std::vector<ec_pose> poses_;
+  ec_pose root_{};
+  ec_pose* links_ = nullptr;
+  ec_pose* wanted_ = nullptr;
+  Eigen::VectorXd rigid_, command_;
+  Eigen::Matrix<double, 6, 1> displacement_ = Eigen::Matrix<double, 6, 1>::Zero();
+  double residual_[2] = {0.0, 0.0};
+};
+
+}  // namespace elastocal

@@ -1,0 +1,204 @@
+/* The calibrated robot at run time, in C99 that is C++ as well: the one implementation that both
+   the library (compensator.hpp) and the headers of `elastocal export --format c99` compile.
+
+   Units are SI and radians. A pose maps coordinates of its frame to those of its reference. The
+   reference of all poses is the root link, unless said otherwise. No function allocates, locks or
+   fails; loops are bounded by the sizes in ec_robot. What the model means is in docs/algorithms.md:
+   eq. 1, 3, 5 and 6 of Bonnet et al. 2023. */
+#ifndef ELASTOCAL_CORE_POSES_H
+#define ELASTOCAL_CORE_POSES_H
+
+#include <math.h>
+
+/* What a call has to say, as bits. 0 is fine. */
+enum {
+  EC_FINE = 0,
+  EC_BAD_POSITION = 1,    /* a position is not finite: the last good positions were used */
+  EC_BAD_TORQUE = 2,      /* a torque is not finite: the last good one was used, or else statics */
+  EC_BAD_SUPPORT = 4,     /* no such foot: the last good support was used */
+  EC_DEFLECTION_CUT = 8,  /* a deflection was larger than its limit: cut to it */
+  EC_CORRECTION_CUT = 16, /* a correction was larger than its limit: cut to it */
+  EC_JOINT_LIMIT = 32,    /* a command was beyond the limits of its joint: cut to them */
+  EC_NOTHING_YET = 64     /* bad input before any good one: nominal, no correction */
+};
+
+typedef struct {
+  double R[9]; /* by rows */
+  double p[3];
+} ec_pose;
+
+/* A joint: parent body -> twisted frame (z on the axis) -> elastic turn -> own motion -> body. */
+typedef struct {
+  int parent, coordinate, prismatic;
+  double multiplier, offset; /* position = multiplier * q[coordinate] + offset */
+  ec_pose twisted;
+  double theta, r, centre; /* centre: z of the joint's physical centre in the twisted frame */
+  double compliance[3];    /* rad/(N.m); of a prismatic joint along z, m/N */
+  ec_pose body;
+} ec_joint;
+
+typedef struct {
+  int body;
+  ec_pose pose; /* in the body */
+} ec_frame;
+
+typedef struct {
+  ec_frame sole;
+  double centre[3];     /* of the sole, in its frame */
+  double up[3];         /* in its frame, while it is flat on a level floor */
+  double compliance[6]; /* of the leg, in the axes of the foot: m/N x 3, rad/(N.m) x 3 */
+} ec_foot;
+
+/* The end of a limb, which the corrections put where it belongs. */
+typedef struct {
+  ec_frame frame;
+  int foot;   /* of which leg, or -1 */
+  int branch; /* group of coordinates that move it, see ec_robot */
+} ec_tip;
+
+typedef struct {
+  int joints, coordinates, links, feet, tips, branches;
+  const ec_joint *nominal, *calibrated;
+  const double* mass;     /* by body, kg */
+  const double* moment;   /* by body, 3 each: mass times centre of mass in the body, kg.m */
+  const int* leg_of_body; /* foot of the leg to which the body belongs, or -1 */
+  const ec_frame* link;
+  const ec_foot* foot;
+  const ec_tip* tip;
+  const int* branch_of_coordinate; /* or -1: it moves no tip, and is not corrected */
+  const int* column_of_coordinate; /* its place among the coordinates of its branch */
+  const int* branch_size;
+  const double *lower, *upper; /* limits, by coordinate */
+  double total_mass, gravity;  /* kg, m/s^2 */
+  double torque_gain;          /* low-pass on torques: share of a new value, in (0, 1]; 1: none */
+  double largest_turn;         /* limit of each deflection, rad ... */
+  double largest_shift;        /* ... and m */
+  double largest_correction;   /* limit of a command's difference to the nominal one, rad or m */
+} ec_robot;
+
+/* Working memory, of the sizes given; all of one call, but the last good input. */
+typedef struct {
+  ec_pose* body;       /* joints + 1 */
+  ec_pose* twisted;    /* joints: of the last walk, before the elastic turn */
+  double* axis;        /* 3 x joints: of the last walk, after the elastic turn */
+  double* beyond;      /* 4 x (joints + 1): mass and first moment of each body and all beyond it */
+  double* load;        /* 3 x joints, in the twisted frames */
+  double* normal;      /* square of the largest branch */
+  double* gradient;    /* largest branch */
+  double* column;      /* 6 x largest branch: of one tip */
+  ec_pose* target;     /* tips */
+  double* good_q;      /* coordinates */
+  double* good_torque; /* joints; NaN: never seen */
+  double* work_q;      /* coordinates */
+  double* centre;      /* 3 x feet: of the soles */
+  double* share;       /* feet: of the weight */
+  ec_pose* sole;       /* feet */
+  double common[3];    /* point of pressure less the centre of the sole, the same for all feet */
+  unsigned good_support;
+  int has_good_q;
+} ec_memory;
+
+/* ---- poses ---- */
+
+static inline void ec_rotate(const double* R, const double* v, double* out) {
+  const double x = v[0], y = v[1], z = v[2];
+  out[0] = R[0] * x + R[1] * y + R[2] * z;
+  out[1] = R[3] * x + R[4] * y + R[5] * z;
+  out[2] = R[6] * x + R[7] * y + R[8] * z;
+}
+
+static inline void ec_rotate_back(const double* R, const double* v, double* out) {
+  const double x = v[0], y = v[1], z = v[2];
+  out[0] = R[0] * x + R[3] * y + R[6] * z;
+  out[1] = R[1] * x + R[4] * y + R[7] * z;
+  out[2] = R[2] * x + R[5] * y + R[8] * z;
+}
+
+static inline void ec_cross(const double* a, const double* b, double* out) {
+  const double x = a[1] * b[2] - a[2] * b[1];
+  const double y = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+  out[0] = x;
+  out[1] = y;
+}
+
+static inline double ec_dot(const double* a, const double* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* out = A B; out is neither of them. */
+static inline void ec_multiply(const double* A, const double* B, double* out) {
+  int i, j;
+  for (i = 0; i < 3; ++i) {
+    for (j = 0; j < 3; ++j) {
+      out[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+    }
+  }
+}
+
+static inline void ec_compose(const ec_pose* a, const ec_pose* b, ec_pose* out) {
+  int i;
+  ec_multiply(a->R, b->R, out->R);
+  ec_rotate(a->R, b->p, out->p);
+  for (i = 0; i < 3; ++i) out->p[i] += a->p[i];
+}
+
+static inline void ec_invert(const ec_pose* a, ec_pose* out) {
+  int i, j;
+  ec_rotate_back(a->R, a->p, out->p);
+  for (i = 0; i < 3; ++i) {
+    out->p[i] = -out->p[i];
+    for (j = 0; j < 3; ++j) out->R[3 * i + j] = a->R[3 * j + i];
+  }
+}
+
+static inline void ec_identity(ec_pose* out) {
+  int i;
+  for (i = 0; i < 9; ++i) out->R[i] = i % 4 == 0 ? 1.0 : 0.0;
+  for (i = 0; i < 3; ++i) out->p[i] = 0.0;
+}
+
+/* Rotation by a small vector: series of sin(t)/t and (1-cos t)/t^2, exact to rounding below 0.3. */
+static inline void ec_exp(const double* v, double* R) {
+  const double t = ec_dot(v, v);
+  const double s =
+      1.0 - t / 6.0 * (1.0 - t / 20.0 * (1.0 - t / 42.0 * (1.0 - t / 72.0 * (1.0 - t / 110.0))));
+  const double c = 0.5 * (1.0 - t / 12.0 * (1.0 - t / 30.0 * (1.0 - t / 56.0 * (1.0 - t / 90.0))));
+  R[0] = 1.0 - c * (v[1] * v[1] + v[2] * v[2]);
+  R[4] = 1.0 - c * (v[0] * v[0] + v[2] * v[2]);
+  R[8] = 1.0 - c * (v[0] * v[0] + v[1] * v[1]);
+  R[1] = c * v[0] * v[1] - s * v[2];
+  R[3] = c * v[0] * v[1] + s * v[2];
+  R[2] = c * v[0] * v[2] + s * v[1];
+  R[6] = c * v[0] * v[2] - s * v[1];
+  R[5] = c * v[1] * v[2] - s * v[0];
+  R[7] = c * v[1] * v[2] + s * v[0];
+}
+
+/* Rotation vector of a small rotation (below a right angle). */
+static inline void ec_log(const double* R, double* v) {
+  double s, c, scale;
+  v[0] = 0.5 * (R[7] - R[5]);
+  v[1] = 0.5 * (R[2] - R[6]);
+  v[2] = 0.5 * (R[3] - R[1]);
+  s = sqrt(ec_dot(v, v));
+  c = 0.5 * (R[0] + R[4] + R[8] - 1.0);
+  scale = s > 1e-9 ? atan2(s, c) / s : 1.0;
+  v[0] *= scale;
+  v[1] *= scale;
+  v[2] *= scale;
+}
+
+static inline double ec_cut(double value, double limit, unsigned bit, unsigned* status) {
+  if (value > limit) {
+    *status |= bit;
+    return limit;
+  }
+  if (value < -limit) {
+    *status |= bit;
+    return -limit;
+  }
+  return value;
+}
+
+#endif /* ELASTOCAL_CORE_POSES_H */

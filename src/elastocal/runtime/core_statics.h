@@ -1,0 +1,364 @@
+/* The calibrated robot at run time: kinematics, loads and deflections. See core_poses.h. */
+#ifndef ELASTOCAL_CORE_STATICS_H
+#define ELASTOCAL_CORE_STATICS_H
+
+#include "elastocal/runtime/core_poses.h"
+
+static inline double ec_position(const ec_joint* joint, const double* q) {
+  return joint->multiplier * q[joint->coordinate] + joint->offset;
+}
+
+/* Turns (or shifts) the twisted frame by its load (eq. 5). */
+static inline void ec_deflect(const ec_robot* robot, const ec_joint* joint, const double* load,
+                              ec_pose* frame, unsigned* status) {
+  double phi[3], turn[9], turned[9];
+  int i;
+  if (joint->prismatic) {
+    const double shift =
+        ec_cut(joint->compliance[2] * load[2], robot->largest_shift, EC_DEFLECTION_CUT, status);
+    for (i = 0; i < 3; ++i) frame->p[i] += shift * frame->R[3 * i + 2];
+    return;
+  }
+  for (i = 0; i < 3; ++i) {
+    phi[i] = ec_cut(joint->compliance[i] * load[i], robot->largest_turn, EC_DEFLECTION_CUT, status);
+  }
+  ec_exp(phi, turn);
+  ec_multiply(frame->R, turn, turned);
+  for (i = 0; i < 3; ++i) {
+    frame->p[i] += joint->centre * (frame->R[3 * i + 2] - turned[3 * i + 2]);
+  }
+  for (i = 0; i < 9; ++i) frame->R[i] = turned[i];
+}
+
+/* The joints' own motion at the positions q, for the walks that follow. */
+static inline void ec_move(const ec_robot* robot, const ec_joint* joints, const double* q,
+                           ec_memory* memory) {
+  int k;
+  for (k = 0; k < robot->joints; ++k) {
+    const ec_joint* joint = &joints[k];
+    const double position = ec_position(joint, q);
+    const double theta = joint->theta + (joint->prismatic ? 0.0 : position);
+    memory->motion[3 * k] = cos(theta);
+    memory->motion[3 * k + 1] = sin(theta);
+    memory->motion[3 * k + 2] = joint->r + (joint->prismatic ? position : 0.0);
+  }
+}
+
+/* Poses of all bodies (eq. 3) after ec_move, deflected by the loads in memory if `loaded`. */
+static inline void ec_walk(const ec_robot* robot, const ec_joint* joints, int loaded,
+                           ec_memory* memory, unsigned* status) {
+  int k, i;
+  ec_identity(&memory->body[0]);
+  for (k = 0; k < robot->joints; ++k) {
+    const ec_joint* joint = &joints[k];
+    const double c = memory->motion[3 * k], s = memory->motion[3 * k + 1];
+    ec_pose frame, moved;
+    ec_compose(&memory->body[joint->parent], &joint->twisted, &frame);
+    memory->twisted[k] = frame;
+    if (loaded) ec_deflect(robot, joint, &memory->load[3 * k], &frame, status);
+    for (i = 0; i < 3; ++i) {
+      const double x = frame.R[3 * i], y = frame.R[3 * i + 1], z = frame.R[3 * i + 2];
+      moved.R[3 * i] = c * x + s * y;
+      moved.R[3 * i + 1] = c * y - s * x;
+      moved.R[3 * i + 2] = z;
+      moved.p[i] = frame.p[i] + memory->motion[3 * k + 2] * z;
+      memory->axis[3 * k + i] = z;
+    }
+    ec_compose(&moved, &joint->body, &memory->body[k + 1]);
+  }
+}
+
+/* Direction and size of gravity in the root link's frame. The first foot that stands is flat on a
+   level floor; a held root link is upright. */
+static inline void ec_gravity(const ec_robot* robot, const ec_memory* memory, unsigned support,
+                              double* gravity) {
+  int f, i;
+  gravity[0] = gravity[1] = 0.0;
+  gravity[2] = -robot->gravity;
+  for (f = 0; f < robot->feet; ++f) {
+    ec_pose sole;
+    if (!(support >> f & 1U)) continue;
+    ec_compose(&memory->body[robot->foot[f].sole.body], &robot->foot[f].sole.pose, &sole);
+    ec_rotate(sole.R, robot->foot[f].up, gravity);
+    for (i = 0; i < 3; ++i) gravity[i] *= -robot->gravity;
+    return;
+  }
+}
+
+/* Two orthogonal horizontal directions. */
+static inline void ec_floor_axes(const double* gravity, double* a, double* b) {
+  const double size = sqrt(ec_dot(gravity, gravity));
+  double length;
+  int i;
+  for (i = 0; i < 3; ++i) b[i] = 0.0;
+  b[fabs(gravity[0]) < 0.7 * size ? 0 : 1] = 1.0;
+  ec_cross(gravity, b, a);
+  length = sqrt(ec_dot(a, a));
+  for (i = 0; i < 3; ++i) a[i] /= length;
+  ec_cross(gravity, a, b);
+  for (i = 0; i < 3; ++i) b[i] /= size;
+}
+
+/* Slopes of the shares along the two directions: the least shares that put the weight at (x, y)
+   from the mean of the feet, whose second moments are xx, xy, yy. Feet in a line have no slope
+   across it. */
+static inline void ec_slopes(double xx, double xy, double yy, double x, double y, double* slope) {
+  const double determinant = xx * yy - xy * xy, trace = xx + yy;
+  slope[0] = slope[1] = 0.0;
+  if (determinant > 1e-9 * trace * trace) {
+    slope[0] = (yy * x - xy * y) / determinant;
+    slope[1] = (xx * y - xy * x) / determinant;
+  } else if (trace > 0.0) {
+    slope[0] = (xx * x + xy * y) / (trace * trace);
+    slope[1] = (xy * x + yy * y) / (trace * trace);
+  }
+}
+
+/* Shares of the weight that the standing feet carry at rest, if all press at like points: of two
+   feet, by the place of the centre of mass between their centres; of more, those of least norm. */
+static inline void ec_shares(const ec_robot* robot, ec_memory* memory, unsigned support,
+                             const double* com, const double* gravity) {
+  double* common = memory->common;
+  double mean[3] = {0.0, 0.0, 0.0}, a[3], b[3], slope[2], from[3];
+  double xx = 0.0, xy = 0.0, yy = 0.0, sum = 0.0;
+  int f, i, count = 0;
+  for (f = 0; f < robot->feet; ++f) {
+    double* centre = &memory->centre[3 * f];
+    ec_pose sole;
+    ec_compose(&memory->body[robot->foot[f].sole.body], &robot->foot[f].sole.pose, &sole);
+    ec_rotate(sole.R, robot->foot[f].centre, centre);
+    memory->share[f] = 0.0;
+    for (i = 0; i < 3; ++i) centre[i] += sole.p[i];
+    if (!(support >> f & 1U)) continue;
+    ++count;
+    for (i = 0; i < 3; ++i) mean[i] += centre[i];
+  }
+  for (i = 0; i < 3; ++i) {
+    mean[i] /= count;
+    from[i] = com[i] - mean[i];
+    common[i] = com[i];
+  }
+  ec_floor_axes(gravity, a, b);
+  for (f = 0; f < robot->feet; ++f) {
+    const double* centre = &memory->centre[3 * f];
+    const double u = ec_dot(centre, a) - ec_dot(mean, a), v = ec_dot(centre, b) - ec_dot(mean, b);
+    if (!(support >> f & 1U)) continue;
+    xx += u * u;
+    xy += u * v;
+    yy += v * v;
+  }
+  ec_slopes(xx, xy, yy, ec_dot(from, a), ec_dot(from, b), slope);
+  for (f = 0; f < robot->feet; ++f) {
+    const double* centre = &memory->centre[3 * f];
+    const double u = ec_dot(centre, a) - ec_dot(mean, a), v = ec_dot(centre, b) - ec_dot(mean, b);
+    if (!(support >> f & 1U)) continue;
+    memory->share[f] = 1.0 / count + slope[0] * u + slope[1] * v;
+    if (memory->share[f] < 0.0) memory->share[f] = 0.0; /* a foot does not pull */
+    sum += memory->share[f];
+  }
+  for (f = 0; f < robot->feet; ++f) {
+    memory->share[f] /= sum;
+    for (i = 0; i < 3; ++i) common[i] -= memory->share[f] * memory->centre[3 * f + i];
+  }
+}
+
+/* Mass and first moment of each body and of all beyond it. */
+static inline void ec_gather(const ec_robot* robot, ec_memory* memory) {
+  double* beyond = memory->beyond;
+  int k, i;
+  for (k = 0; k <= robot->joints; ++k) {
+    const double mass = robot->mass[k];
+    ec_rotate(memory->body[k].R, &robot->moment[3 * k], &beyond[4 * k + 1]);
+    beyond[4 * k] = mass;
+    for (i = 0; i < 3; ++i) beyond[4 * k + 1 + i] += mass * memory->body[k].p[i];
+  }
+}
+
+static inline void ec_accumulate(const ec_robot* robot, const ec_joint* joints, ec_memory* memory) {
+  int k, i;
+  for (k = robot->joints - 1; k >= 0; --k) {
+    for (i = 0; i < 4; ++i) {
+      memory->beyond[4 * joints[k].parent + i] += memory->beyond[4 * (k + 1) + i];
+    }
+  }
+}
+
+/* The floor holds the feet up: for a joint that is the same as negative mass at the point of
+   pressure. One foot presses under the centre of mass. */
+static inline void ec_stand(const ec_robot* robot, ec_memory* memory, unsigned support,
+                            const double* gravity) {
+  double com[3] = {0.0, 0.0, 0.0};
+  int k, f, i;
+  for (f = 0; f < robot->feet; ++f) memory->share[f] = 0.0;
+  if (support == 0 || !(robot->total_mass > 0.0)) return;
+  for (k = 0; k <= robot->joints; ++k) {
+    for (i = 0; i < 3; ++i) com[i] += memory->beyond[4 * k + 1 + i];
+  }
+  for (i = 0; i < 3; ++i) com[i] /= robot->total_mass;
+  ec_shares(robot, memory, support, com, gravity);
+  for (f = 0; f < robot->feet; ++f) {
+    double* foot = &memory->beyond[4 * robot->foot[f].sole.body];
+    const double held = memory->share[f] * robot->total_mass;
+    if (held == 0.0) continue;
+    foot[0] -= held;
+    for (i = 0; i < 3; ++i) foot[1 + i] -= held * (memory->centre[3 * f + i] + memory->common[i]);
+  }
+}
+
+/* Loads of all joints (JointLoads in robot/kinematics.hpp) in the posture of the last walk, from
+   statics, and about the axes from the torques that are given. `torque` may be null, and its
+   entries NaN. */
+static inline void ec_loads(const ec_robot* robot, const ec_joint* joints, unsigned support,
+                            const double* torque, ec_memory* memory, double* gravity) {
+  int k, i;
+  ec_gather(robot, memory);
+  ec_gravity(robot, memory, support, gravity);
+  ec_stand(robot, memory, support, gravity);
+  ec_accumulate(robot, joints, memory);
+  for (k = 0; k < robot->joints; ++k) {
+    const ec_pose* twisted = &memory->twisted[k];
+    const double* beyond = &memory->beyond[4 * (k + 1)];
+    double* load = &memory->load[3 * k];
+    double moment[3];
+    if (joints[k].prismatic) {
+      load[0] = load[1] = 0.0;
+      load[2] = beyond[0] * (twisted->R[2] * gravity[0] + twisted->R[5] * gravity[1] +
+                             twisted->R[8] * gravity[2]);
+    } else {
+      for (i = 0; i < 3; ++i) {
+        const double centre = twisted->p[i] + joints[k].centre * twisted->R[3 * i + 2];
+        moment[i] = beyond[1 + i] - beyond[0] * centre;
+      }
+      ec_cross(moment, gravity, moment);
+      ec_rotate_back(twisted->R, moment, load);
+    }
+    if (torque && isfinite(torque[k])) load[2] = -torque[k];
+  }
+}
+
+/* What the waist puts on the leg of foot f: force and moment at the root link's origin, in its
+   axes. The opposite is borne by the floor, or is the leg's own weight. */
+static inline void ec_leg_load(const ec_robot* robot, int f, const double* gravity,
+                               const ec_memory* memory, double* force, double* moment) {
+  const double held = memory->share[f] * robot->total_mass;
+  double mass = -held, first[3], turned[3];
+  int k, i;
+  for (i = 0; i < 3; ++i) {
+    first[i] = -held * (memory->centre[3 * f + i] + memory->common[i]);
+  }
+  for (k = 0; k <= robot->joints; ++k) {
+    if (robot->leg_of_body[k] != f) continue;
+    ec_rotate(memory->body[k].R, &robot->moment[3 * k], turned);
+    mass += robot->mass[k];
+    for (i = 0; i < 3; ++i) first[i] += turned[i] + robot->mass[k] * memory->body[k].p[i];
+  }
+  ec_cross(gravity, first, moment);
+  for (i = 0; i < 3; ++i) force[i] = -mass * gravity[i];
+}
+
+/* Pose of foot f with the leg's lumped compliance (eq. 6). */
+static inline void ec_sole_pose(const ec_robot* robot, int elastic, int f, const double* gravity,
+                                ec_memory* memory, unsigned* status) {
+  const ec_foot* foot = &robot->foot[f];
+  ec_pose* sole = &memory->sole[f];
+  double force[3], moment[3], turn[9];
+  ec_pose rigid, back, bent;
+  int i;
+  ec_compose(&memory->body[foot->sole.body], &foot->sole.pose, sole);
+  if (!elastic || memory->share[f] == 0.0) return;
+  rigid = *sole;
+  ec_leg_load(robot, f, gravity, memory, force, moment);
+  ec_rotate_back(rigid.R, force, force);
+  ec_rotate_back(rigid.R, moment, moment);
+  ec_invert(&rigid, &back);
+  for (i = 0; i < 3; ++i) {
+    bent.p[i] = back.p[i] + ec_cut(foot->compliance[i] * force[i], robot->largest_shift,
+                                   EC_DEFLECTION_CUT, status);
+    moment[i] =
+        ec_cut(foot->compliance[3 + i] * moment[i], robot->largest_turn, EC_DEFLECTION_CUT, status);
+  }
+  ec_exp(moment, turn);
+  ec_multiply(turn, back.R, bent.R);
+  ec_invert(&bent, sole);
+}
+
+static inline void ec_sole_poses(const ec_robot* robot, int elastic, const double* gravity,
+                                 ec_memory* memory, unsigned* status) {
+  int f;
+  for (f = 0; f < robot->feet; ++f) {
+    ec_sole_pose(robot, elastic, f, gravity, memory, status);
+  }
+}
+
+/* The end of a limb, after ec_sole_poses. */
+static inline void ec_tip_pose(const ec_robot* robot, int t, const ec_memory* memory,
+                               ec_pose* pose) {
+  const ec_tip* tip = &robot->tip[t];
+  if (tip->foot >= 0) {
+    *pose = memory->sole[tip->foot];
+  } else {
+    ec_compose(&memory->body[tip->frame.body], &tip->frame.pose, pose);
+  }
+}
+
+static inline void ec_tip_poses(const ec_robot* robot, const ec_memory* memory, ec_pose* poses) {
+  int t;
+  for (t = 0; t < robot->tips; ++t) ec_tip_pose(robot, t, memory, &poses[t]);
+}
+
+/* The calibrated robot at rest: loads, deflections and loads of the deflected robot (a third time
+   changes nothing, see docs/algorithms.md). Leaves body, twisted, axis, load and sole in memory. */
+static inline void ec_settle(const ec_robot* robot, const double* q, unsigned support,
+                             const double* torque, ec_memory* memory, double* gravity,
+                             unsigned* status) {
+  ec_move(robot, robot->calibrated, q, memory);
+  ec_walk(robot, robot->calibrated, 0, memory, status);
+  ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
+  ec_walk(robot, robot->calibrated, 1, memory, status);
+  ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
+  ec_walk(robot, robot->calibrated, 1, memory, status);
+  ec_sole_poses(robot, 1, gravity, memory, status);
+}
+
+/* Pose of the root link on its feet, in the frame of the first foot that stands; a held root link
+   is its own reference. The feet stand where the nominal robot has them (`placed`, by foot), and
+   where they disagree each counts by its share of the weight. */
+static inline void ec_root_on_feet(const ec_robot* robot, unsigned support, const ec_pose* placed,
+                                   const ec_pose* sole, const double* share, ec_pose* root) {
+  ec_pose first, back, by;
+  double twist[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, R[9], v[3];
+  int f, i, begun = 0;
+  ec_identity(root);
+  for (f = 0; f < robot->feet; ++f) {
+    if (!(support >> f & 1U)) continue;
+    ec_invert(&sole[f], &by);
+    if (!begun) {
+      ec_invert(&placed[f], &first);
+      *root = by;
+      begun = 1;
+      continue;
+    }
+    ec_compose(&first, &placed[f], &back);
+    {
+      const ec_pose foot = by;
+      ec_compose(&back, &foot, &by);
+    }
+    /* How the second foot would have the root link, against the first. */
+    for (i = 0; i < 9; ++i) {
+      R[i] = by.R[3 * (i / 3)] * root->R[3 * (i % 3)] +
+             by.R[3 * (i / 3) + 1] * root->R[3 * (i % 3) + 1] +
+             by.R[3 * (i / 3) + 2] * root->R[3 * (i % 3) + 2];
+    }
+    ec_log(R, v);
+    for (i = 0; i < 3; ++i) {
+      twist[i] += share[f] * (by.p[i] - root->p[i]);
+      twist[3 + i] += share[f] * v[i];
+    }
+  }
+  ec_exp(&twist[3], R);
+  by = *root;
+  ec_multiply(R, by.R, root->R);
+  for (i = 0; i < 3; ++i) root->p[i] += twist[i];
+}
+
+#endif /* ELASTOCAL_CORE_STATICS_H */

@@ -1,0 +1,48 @@
+#include "elastocal/runtime/runtime_model.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace elastocal {
+namespace {
+
+/// The joint at the root that carries a body; -1 for the root's own body.
+int RootJoint(const RuntimeModel& model, int body) {
+  int joint = -1;
+  while (body > 0) {
+    joint = body - 1;
+    body = model.calibrated[static_cast<std::size_t>(joint)].parent;
+  }
+  return joint;
+}
+
+}  // namespace
+
+RuntimeBranches FindBranches(RuntimeModel& model) {
+  RuntimeBranches branches;
+  branches.branch_of_coordinate.assign(model.lower.size(), -1);
+  branches.column_of_coordinate.assign(model.lower.size(), 0);
+  std::map<int, int> branch_of_root;
+  std::erase_if(model.tips, [](const ec_tip& tip) { return tip.frame.body == 0; });
+  for (ec_tip& tip : model.tips) {
+    const int root = RootJoint(model, tip.frame.body);
+    tip.branch =
+        branch_of_root.emplace(root, static_cast<int>(branch_of_root.size())).first->second;
+    branches.branch_size.resize(branch_of_root.size(), 0);
+    for (int body = tip.frame.body; body > 0;) {
+      const ec_joint& joint = model.calibrated[static_cast<std::size_t>(body - 1)];
+      const auto coordinate = static_cast<std::size_t>(joint.coordinate);
+      int& branch = branches.branch_of_coordinate[coordinate];
+      if (branch < 0) {
+        branch = tip.branch;
+        int& size = branches.branch_size[static_cast<std::size_t>(branch)];
+        branches.column_of_coordinate[coordinate] = size++;
+      }
+      body = joint.parent;
+    }
+  }
+  return branches;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,398 @@
+// The robot at run time against the estimator's own model, statics and hand values.
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/robot/inverse_dynamics.hpp"
+#include "elastocal/robot/leg_load.hpp"
+#include "elastocal/robot/legs.hpp"
+#include "elastocal/robot/standing.hpp"
+#include "elastocal/robot/statics.hpp"
+#include "elastocal/runtime/compensator.hpp"
+#include "elastocal/runtime/core_correction.h"
+#include "tests/runtime_calibration.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+const Eigen::VectorXd kNoTorque;
+
+double Distance(const Eigen::Isometry3d& a, const Transform& b) {
+  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
+}
+
+class Runtime : public testing::Test {
+ protected:
+  Runtime()
+      : project_(ReadProject(SourceFile("models/talos/project.yaml"))),
+        stored_(RandomCalibration(project_, 1)),
+        robot_(RestoreRobot(project_, stored_)),
+        geometry_(ApplyErrors(robot_.model, robot_.errors)) {
+    // With the root link as reference: the errors of the waist are zero.
+    PlaceWaist(Transform::Identity(), Vector6d::Zero(), geometry_);
+  }
+
+  Compensator Make(RuntimeContent content = RuntimeContent::kEverything) const {
+    return Compensator(MakeRuntimeModel(project_, stored_, content));
+  }
+
+  /// A standing posture with other arms and legs.
+  Eigen::VectorXd Posture(std::uint64_t seed) const {
+    Random random(seed);
+    Eigen::VectorXd q = project_.motion.rest;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      q[i] += 0.3 * random.Uniform(-0.5, 0.5);
+    }
+    return q.cwiseMax(project_.motion.lower).cwiseMin(project_.motion.upper);
+  }
+
+  /// Gravity in the root link's frame for the foot `leg` flat on the floor.
+  Eigen::Vector3d Gravity(const std::vector<Transform>& T_root_link, int leg) const {
+    const std::vector<Leg> legs = Legs();
+    const Leg& on = legs[static_cast<std::size_t>(leg)];
+    return T_root_link[static_cast<std::size_t>(on.foot_link)].linear() *
+           (on.R_floor_foot.transpose() * kGravity);
+  }
+
+  std::vector<Leg> Legs() const {
+    std::vector<NamedChain> chains;
+    for (const Chain& chain : project_.chains) {
+      chains.push_back({chain.name, chain.from_link, chain.tip_link});
+    }
+    return FindLegs(project_.tree, chains);
+  }
+
+  Project project_;
+  StoredCalibration stored_;
+  StoredRobot robot_;
+  Geometry geometry_;
+};
+
+// Rounding of a chain of 14 joints, a few units in the last place of metres.
+constexpr double kRounding = 1e-13;
+
+TEST_F(Runtime, WithoutErrorsIsTheUrdf) {
+  Compensator robot = Make(RuntimeContent::kNominal);
+  const Eigen::VectorXd q = Posture(1);
+  EXPECT_EQ(robot.Forward(q, kNoTorque, 0), 0u);
+  const std::vector<Transform> expected = LinkTransforms(project_.tree, q);
+  for (int i = 0; i < static_cast<int>(expected.size()); ++i) {
+    EXPECT_LT(Distance(robot.link_pose(i), expected[static_cast<std::size_t>(i)]), kRounding);
+  }
+  EXPECT_EQ(robot.Correct(q, kNoTorque, 1), 0u);
+  EXPECT_LT((robot.rigid_positions() - q).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT(robot.root_displacement().norm(), 1e-12);
+  EXPECT_EQ(robot.Command(q, kNoTorque, 1), 0u);
+  EXPECT_LT((robot.command() - q).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_F(Runtime, GeometryAloneIsTheCalibratedUrdf) {
+  Compensator robot = Make(RuntimeContent::kGeometry);
+  const Eigen::VectorXd q = Posture(2);
+  robot.Forward(q, kNoTorque, 1);
+  const std::vector<Transform> expected = CalibratedLinkTransforms(robot_.model, geometry_, q);
+  for (int i = 0; i < static_cast<int>(expected.size()); ++i) {
+    EXPECT_LT(Distance(robot.link_pose(i), expected[static_cast<std::size_t>(i)]), kRounding);
+  }
+}
+
+TEST_F(Runtime, DeflectsAsTheEstimatorsModelDoes) {
+  Compensator robot = Make();
+  const Eigen::VectorXd q = Posture(3);
+  for (int leg : {-1, 0, 1}) {
+    const int fixed = leg < 0 ? 0 : Legs()[static_cast<std::size_t>(leg)].foot_link;
+    const auto gravity = [&](const std::vector<Transform>& poses) -> Eigen::Vector3d {
+      return leg < 0 ? kGravity : Gravity(poses, leg);
+    };
+    const std::vector<Transform> rigid = CalibratedLinkTransforms(robot_.model, geometry_, q);
+    const JointLoads first = GravityLoads(robot_.model, geometry_, q, gravity(rigid), fixed);
+    const std::vector<Transform> bent = CalibratedLinkTransforms(robot_.model, geometry_, q, first);
+    const JointLoads loads = GravityLoads(robot_.model, geometry_, q, gravity(bent), fixed, first);
+    const std::vector<Transform> expected =
+        CalibratedLinkTransforms(robot_.model, geometry_, q, loads);
+    EXPECT_EQ(robot.Forward(q, kNoTorque, leg < 0 ? 0u : 1u << leg), 0u);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_LT(Distance(robot.link_pose(static_cast<int>(i)), expected[i]), kRounding);
+      largest = std::max(largest, Distance(robot.link_pose(static_cast<int>(i)), rigid[i]));
+    }
+    EXPECT_GT(largest, 3e-4);  // there was something to deflect
+  }
+}
+
+TEST_F(Runtime, LegsGiveWayAsEquation6Says) {
+  Compensator robot = Make();
+  const Eigen::VectorXd q = Posture(4);
+  for (int leg : {0, 1}) {
+    robot.Forward(q, kNoTorque, 1u << leg);
+    const Leg on = Legs()[static_cast<std::size_t>(leg)];
+    LegPosture posture;
+    posture.leg = leg;
+    for (std::size_t i = 0; i < project_.tree.links.size(); ++i) {
+      Transform T = Transform::Identity();
+      T.matrix() = robot.link_pose(static_cast<int>(i)).matrix();
+      posture.T_ref_link.push_back(T);
+    }
+    posture.T_foot_waist = posture.T_ref_link[static_cast<std::size_t>(on.foot_link)].inverse();
+    const Vector6d load = LoadFromStatics(robot_.model, posture, Gravity(posture.T_ref_link, leg));
+    const Transform expected =
+        DeflectWaist(posture.T_foot_waist, geometry_.leg_compliance[static_cast<std::size_t>(leg)],
+                     load)
+            .T_foot_waist;
+    // The load is that of the posture before the last deflection, which moved by some 1e-3 of it.
+    EXPECT_LT(Distance(robot.root_pose(), expected), 2e-6);
+    EXPECT_GT(Distance(robot.root_pose(), posture.T_foot_waist), 1e-4);
+  }
+}
+
+TEST_F(Runtime, TwoFeetCarryWhatInverseDynamicsSays) {
+  // Rigid, so that the posture is the same for both.
+  Compensator robot = Make(RuntimeContent::kNominal);
+  Eigen::VectorXd q = project_.motion.rest;
+  robot.Forward(q, kNoTorque, 3);
+  const std::vector<BodyInertia> inertias = BodyInertias(project_.tree);
+  const std::vector<Transform> T_root_link = LinkTransforms(project_.tree, q);
+  const Eigen::Vector3d com = CentreOfMass(project_.tree, inertias, q);
+  const double weight = 9.81 * TotalMass(project_.tree);
+  std::vector<Sole> soles;
+  std::vector<Transform> T_world_sole;
+  for (const Leg& leg : Legs()) {
+    for (const Sole& sole : project_.soles) {
+      if (sole.link != leg.foot_link) continue;
+      soles.push_back(sole);
+      T_world_sole.push_back(T_root_link[static_cast<std::size_t>(sole.link)]);
+    }
+  }
+  const Eigen::Vector3d force(0.0, 0.0, weight);
+  const std::vector<LinkWrench> wrenches =
+      ShareWrench(soles, T_world_sole, force, com.cross(force));
+  RobotState state;
+  state.q = q;
+  state.velocity = state.acceleration = Eigen::VectorXd::Zero(q.size());
+  const Eigen::VectorXd torques =
+      InverseDynamics(project_.tree, inertias, state, kGravity, wrenches).torques;
+  // Loads of the model are in memory of a Forward: the torque about the axis is their opposite.
+  RuntimeModel model = MakeRuntimeModel(project_, stored_, RuntimeContent::kNominal);
+  for (ec_joint& joint : model.calibrated) joint.compliance[2] = joint.prismatic ? 0.0 : 1e-9;
+  Compensator loaded(std::move(model));
+  loaded.Correct(q, kNoTorque, 3);
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const double load = (loaded.rigid_positions()[i] - q[i]) / 1e-9;
+    EXPECT_NEAR(load, -torques[i], 1e-3 + 1e-4 * std::abs(torques[i]));
+  }
+}
+
+TEST_F(Runtime, CommandPutsTheRealRobotWhereTheNominalOneIs) {
+  Compensator robot = Make();
+  for (StandingFeet feet : {0u, 1u, 2u, 3u}) {
+    const Eigen::VectorXd q = Posture(5 + feet);
+    EXPECT_EQ(DescribeStatus(robot.Command(q, kNoTorque, feet)), "");
+    const Eigen::VectorXd command = robot.command();
+    const std::vector<Transform> wanted = LinkTransforms(project_.tree, q);
+    const auto largest = [&](const Eigen::VectorXd& positions) {
+      robot.Forward(positions, kNoTorque, feet);
+      double distance = 0.0;
+      for (const char* name : {"arm_left", "arm_right", "leg_left", "leg_right"}) {
+        const Chain& chain = project_.chains[static_cast<std::size_t>(FindChain(project_, name))];
+        const auto tip = static_cast<std::size_t>(chain.tip_link);
+        const std::vector<Leg> legs = Legs();
+        Eigen::Isometry3d got = robot.link_pose(chain.tip_link);
+        for (std::size_t i = 0; i < legs.size(); ++i) {
+          // With one foot on the floor, that leg's own compliance counts.
+          if (feet == 1u << i && legs[i].foot_link == chain.tip_link) {
+            got = robot.root_pose().inverse();
+          }
+        }
+        distance = std::max(distance, (got.translation() - wanted[tip].translation()).norm());
+      }
+      return distance;
+    };
+    EXPECT_GT(largest(q), 3e-3) << feet;
+    // Of two feet, link_pose is without the leg's lumped compliance.
+    EXPECT_LT(largest(command), feet == 3 ? 2e-3 : 1e-5) << feet;
+  }
+}
+
+TEST_F(Runtime, CorrectGivesARigidRobotThePlacesOfTheElasticOne) {
+  Compensator robot = Make();
+  Compensator rigid = Make(RuntimeContent::kGeometry);
+  const Eigen::VectorXd q = Posture(9);
+  for (StandingFeet feet : {1u, 2u}) {
+    ASSERT_EQ(robot.Correct(q, kNoTorque, feet), 0u);
+    const Eigen::VectorXd positions = robot.rigid_positions();
+    const Vector6d displacement = robot.root_displacement();
+    robot.Forward(q, kNoTorque, feet);
+    rigid.Forward(positions, kNoTorque, feet);
+    // One Gauss-Newton step: what is left is the square of the bending, here (0.005 rad)^2.
+    EXPECT_LT((robot.root_pose().matrix() - rigid.root_pose().matrix()).cwiseAbs().maxCoeff(),
+              4e-5);
+    rigid.Forward(q, kNoTorque, feet);
+    EXPECT_LT(
+        (robot.root_pose().translation() - rigid.root_pose().translation() - displacement.head<3>())
+            .norm(),
+        1e-9);
+    EXPECT_GT(displacement.head<3>().norm(), 5e-4);
+  }
+}
+
+TEST_F(Runtime, MeasuredTorquesTakeThePlaceOfStatics) {
+  Compensator robot = Make();
+  const Eigen::VectorXd q = Posture(10);
+  const std::size_t k = static_cast<std::size_t>(FindJoint(project_.tree, "arm_left_4_joint"));
+  Eigen::VectorXd torque =
+      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(project_.tree.joints.size()),
+                                std::numeric_limits<double>::quiet_NaN());
+  torque[static_cast<Eigen::Index>(k)] = 7.0;
+  robot.Correct(q, torque, 0);
+  const Eigen::VectorXd with = robot.rigid_positions();
+  torque[static_cast<Eigen::Index>(k)] = 8.0;
+  robot.Correct(q, torque, 0);
+  const double compliance = geometry_.joints[k].compliance.z();
+  // The torque balances the load: one N.m more turns the joint back.
+  EXPECT_NEAR((robot.rigid_positions() - with)[project_.tree.joints[k].coordinate], -compliance,
+              1e-3 * compliance);
+}
+
+TEST_F(Runtime, BadInputKeepsTheLastGoodOne) {
+  Compensator robot = Make();
+  const Eigen::VectorXd q = Posture(11);
+  Eigen::VectorXd bad = q;
+  bad[3] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(robot.Command(bad, kNoTorque, 1), unsigned{EC_BAD_POSITION} | EC_NOTHING_YET);
+  EXPECT_TRUE(robot.command().allFinite());
+  EXPECT_EQ(robot.Command(q, kNoTorque, 1), 0u);
+  const Eigen::VectorXd good = robot.command();
+  EXPECT_EQ(robot.Command(bad, kNoTorque, 1), unsigned{EC_BAD_POSITION});
+  EXPECT_EQ(robot.command(), good);
+  EXPECT_EQ(robot.Command(q.head(3), kNoTorque, 1), unsigned{EC_BAD_POSITION});
+  EXPECT_EQ(robot.command(), good);
+  EXPECT_EQ(robot.Command(q, kNoTorque, 4), unsigned{EC_BAD_SUPPORT});
+  EXPECT_EQ(robot.command(), good);
+
+  Eigen::VectorXd torque =
+      Eigen::VectorXd::Ones(static_cast<Eigen::Index>(project_.tree.joints.size()));
+  EXPECT_EQ(robot.Command(q, torque, 1), 0u);
+  const Eigen::VectorXd with_torque = robot.command();
+  torque[2] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(robot.Command(q, torque, 1), unsigned{EC_BAD_TORQUE});
+  EXPECT_EQ(robot.command(), with_torque);
+}
+
+TEST_F(Runtime, NoInputGivesAWildCommand) {
+  const CompensatorOptions options{.largest_correction_rad = 0.01};
+  Compensator robot(MakeRuntimeModel(project_, stored_), options);
+  const Eigen::VectorXd q = Posture(12);
+  EXPECT_NE(robot.Command(q, kNoTorque, 1) & EC_CORRECTION_CUT, 0u);
+  EXPECT_LE((robot.command() - q).cwiseAbs().maxCoeff(), 0.01 + 1e-12);
+  const Eigen::VectorXd torque =
+      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(project_.tree.joints.size()), 1e9);
+  EXPECT_NE(robot.Correct(q, torque, 1) & EC_DEFLECTION_CUT, 0u);
+  EXPECT_LE((robot.rigid_positions() - q).cwiseAbs().maxCoeff(), 0.01 + 1e-12);
+  Eigen::VectorXd at_limit = q;
+  at_limit[5] = project_.tree.joints[static_cast<std::size_t>(project_.tree.coordinate_joint[5])]
+                    .limits.upper;
+  robot.Command(at_limit, kNoTorque, 1);
+  EXPECT_LE(robot.command()[5], at_limit[5]);
+}
+
+TEST_F(Runtime, LowPassFollowsATorqueWithItsTimeConstant) {
+  const CompensatorOptions options{.torque_time_constant_s = 0.1, .period_s = 0.001};
+  Compensator robot(MakeRuntimeModel(project_, stored_), options);
+  const Eigen::VectorXd q = Posture(13);
+  const Eigen::Index count = static_cast<Eigen::Index>(project_.tree.joints.size());
+  const int k = FindJoint(project_.tree, "arm_left_4_joint");
+  const int coordinate = project_.tree.joints[static_cast<std::size_t>(k)].coordinate;
+  robot.Correct(q, Eigen::VectorXd::Zero(count), 0);
+  const double begin = robot.rigid_positions()[coordinate];
+  Eigen::VectorXd torque = Eigen::VectorXd::Zero(count);
+  torque[k] = 10.0;
+  for (int i = 0; i < 100; ++i) robot.Correct(q, torque, 0);
+  const double after = robot.rigid_positions()[coordinate];
+  const double all = -10.0 * geometry_.joints[static_cast<std::size_t>(k)].compliance.z();
+  EXPECT_NEAR((after - begin) / all, 1.0 - std::exp(-1.0), 0.01);
+}
+
+TEST_F(Runtime, TheFileGivesTheSameBits) {
+  const RuntimeModel model = MakeRuntimeModel(project_, stored_);
+  std::stringstream file;
+  WriteRuntimeModel(model, file);
+  Compensator first(model), second(ReadRuntimeModel(file, "model"));
+  const Eigen::VectorXd q = Posture(14);
+  first.Command(q, kNoTorque, 1);
+  second.Command(q, kNoTorque, 1);
+  EXPECT_EQ(first.command(), second.command());
+}
+
+TEST_F(Runtime, ADamagedFileIsRefused) {
+  std::ostringstream out;
+  WriteRuntimeModel(MakeRuntimeModel(project_, stored_), out);
+  const std::string good = out.str();
+  const auto refused = [](const std::string& text) {
+    std::istringstream in(text);
+    try {
+      ReadRuntimeModel(in, "model.txt");
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what()).starts_with("model.txt: ");
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused(""));
+  for (std::size_t part = 1; part < 40; ++part) {
+    EXPECT_TRUE(refused(good.substr(0, part * good.size() / 40))) << part;
+  }
+  std::string wrong = good;
+  wrong.replace(wrong.find("\ncalibrated 30\n") + 1, 13, "calibrated -1");
+  EXPECT_TRUE(refused(wrong));
+  wrong = good;
+  wrong.replace(wrong.find("gravity 9"), 9, "gravity x");
+  EXPECT_TRUE(refused(wrong));
+}
+
+TEST(RuntimeByHand, OneSpringTurnsByMomentTimesCompliance) {
+  // A bar of 1 m and 2 kg along x that turns about y: gravity pulls its end (com at 0.5 m) down
+  // with 2 * 9.81 * 0.5 N.m about +y.
+  RuntimeModel model;
+  model.joint_names = model.coordinate_names = {"hinge"};
+  ec_joint joint{};
+  joint.multiplier = 1.0;
+  // Twisted frame with z along y: x stays, y is -z.
+  const double R[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};
+  const double back[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0};
+  for (int i = 0; i < 9; ++i) {
+    joint.twisted.R[i] = R[i];
+    joint.body.R[i] = back[i];
+  }
+  joint.compliance[2] = 1e-4;
+  model.nominal = model.calibrated = {joint};
+  model.mass = {0.0, 2.0};
+  model.moment = {0, 0, 0, 1.0, 0, 0};
+  model.leg_of_body = {-1, -1};
+  model.link_names = {"tip"};
+  ec_frame tip{};
+  tip.body = 1;
+  for (int i = 0; i < 3; ++i) tip.pose.R[4 * i] = 1.0;
+  tip.pose.p[0] = 1.0;
+  model.links = {tip};
+  model.lower = {-2.0};
+  model.upper = {2.0};
+  Compensator robot(model);
+  const double turn = 9.81e-4;
+  robot.Correct(Eigen::VectorXd::Zero(1), kNoTorque, 0);
+  EXPECT_NEAR(robot.rigid_positions()[0], turn, 1e-3 * turn * turn);
+  robot.Forward(Eigen::VectorXd::Zero(1), kNoTorque, 0);
+  EXPECT_NEAR(robot.link_pose(0).translation().z(), -std::sin(turn), 1e-9);
+  // Without load there is no deflection: the torque sensor says 0.
+  robot.Forward(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1), 0);
+  EXPECT_NEAR(robot.link_pose(0).translation().z(), 0.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace elastocal
