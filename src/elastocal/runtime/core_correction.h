@@ -10,6 +10,8 @@
    do not determine (redundant arms, stretched knees) stays there. */
 #define EC_STAY 3e-4
 #define EC_ITERATIONS 3
+/* After a step as small as this, rad or m, the next one would change the square of it. */
+#define EC_SMALL_STEP 1e-3
 
 /* Adds what tip t asks of its branch to the normal equations. */
 static inline void ec_add_tip(const ec_robot* robot, const ec_joint* joints, int t,
@@ -74,9 +76,10 @@ static inline void ec_solve(int size, double* normal, double* x) {
 }
 
 /* One Gauss-Newton step of all branches: moves q so that the ends of the limbs come to the targets
-   in memory. Positions stay near `reference`. */
-static inline void ec_step(const ec_robot* robot, const double* reference, double* q,
-                           ec_memory* memory) {
+   in memory. Positions stay near `reference`. Returns the largest change. */
+static inline double ec_step(const ec_robot* robot, const double* reference, double* q,
+                             ec_memory* memory) {
+  double largest = 0.0;
   int branch, t, c, i;
   for (branch = 0; branch < robot->branches; ++branch) {
     const int size = robot->branch_size[branch];
@@ -95,10 +98,14 @@ static inline void ec_step(const ec_robot* robot, const double* reference, doubl
     }
     ec_solve(size, memory->normal, memory->gradient);
     for (c = 0; c < robot->coordinates; ++c) {
+      double change;
       if (robot->branch_of_coordinate[c] != branch) continue;
-      q[c] += memory->gradient[robot->column_of_coordinate[c]];
+      change = memory->gradient[robot->column_of_coordinate[c]];
+      q[c] += change;
+      if (fabs(change) > largest) largest = fabs(change);
     }
   }
+  return largest;
 }
 
 /* Largest distance [m] and angle [rad] of the ends of the limbs to their targets. */
@@ -196,8 +203,10 @@ static inline unsigned ec_forward(const ec_robot* robot, const double* q, const 
   ec_move(robot, robot->nominal, memory->good_q, memory);
   ec_walk(robot, robot->nominal, 0, memory, &status);
   ec_place_feet(robot, memory, placed);
-  ec_settle(robot, memory->good_q, memory->good_support, torque ? memory->good_torque : 0, memory,
-            gravity, &status);
+  ec_move(robot, robot->calibrated, memory->good_q, memory);
+  ec_walk(robot, robot->calibrated, 0, memory, &status);
+  ec_settle(robot, memory->good_support, torque ? memory->good_torque : 0, memory, gravity,
+            &status);
   for (i = 0; i < robot->links; ++i) {
     ec_compose(&memory->body[robot->link[i].body], &robot->link[i].pose, &links[i]);
   }
@@ -222,17 +231,15 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
     for (i = 0; i < 6; ++i) displacement[i] = 0.0;
     return status;
   }
-  ec_move(robot, robot->calibrated, q, memory);
-  ec_walk(robot, robot->calibrated, 0, memory, &status);
-  ec_place_feet(robot, memory, straight);
   if (memory->good_support & (memory->good_support - 1U)) { /* more than one foot */
     ec_move(robot, robot->nominal, q, memory);
     ec_walk(robot, robot->nominal, 0, memory, &status);
-    ec_place_feet(robot, memory, placed);
-  } else {
-    for (i = 0; i < robot->feet; ++i) placed[i] = straight[i]; /* not used */
   }
-  ec_settle(robot, q, memory->good_support, torque ? memory->good_torque : 0, memory, gravity,
+  ec_place_feet(robot, memory, placed); /* not used of one foot */
+  ec_move(robot, robot->calibrated, q, memory);
+  ec_walk(robot, robot->calibrated, 0, memory, &status);
+  ec_place_feet(robot, memory, straight);
+  ec_settle(robot, memory->good_support, torque ? memory->good_torque : 0, memory, gravity,
             &status);
   ec_tip_poses(robot, memory, memory->target);
   ec_root_on_feet(robot, memory->good_support, placed, memory->sole, memory->share, &root);
@@ -252,10 +259,12 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
         joint->prismatic ? robot->largest_shift : robot->largest_turn, EC_DEFLECTION_CUT, &status);
   }
   for (c = 0; c < robot->coordinates; ++c) rigid[c] = start[c];
-  ec_move(robot, robot->calibrated, rigid, memory);
-  ec_walk(robot, robot->calibrated, 0, memory, &status);
-  ec_sole_poses(robot, 0, gravity, memory, &status);
-  ec_step(robot, start, rigid, memory);
+  for (i = 0; i < 2; ++i) {
+    ec_move(robot, robot->calibrated, rigid, memory);
+    ec_walk(robot, robot->calibrated, 0, memory, &status);
+    ec_sole_poses(robot, 0, gravity, memory, &status);
+    if (ec_step(robot, start, rigid, memory) < EC_SMALL_STEP) break;
+  }
   for (c = 0; c < robot->coordinates; ++c) {
     rigid[c] =
         q[c] + ec_cut(rigid[c] - q[c], robot->largest_correction, EC_CORRECTION_CUT, &status);

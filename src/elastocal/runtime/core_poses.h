@@ -79,6 +79,7 @@ typedef struct {
 /* Working memory, of the sizes given; all of one call, but the last good input. */
 typedef struct {
   ec_pose* body;       /* joints + 1 */
+  double* motion;      /* 3 x joints: cosine, sine and slide of the joint's own motion */
   ec_pose* twisted;    /* joints: of the last walk, before the elastic turn */
   double* axis;        /* 3 x joints: of the last walk, after the elastic turn */
   double* beyond;      /* 4 x (joints + 1): mass and first moment of each body and all beyond it */

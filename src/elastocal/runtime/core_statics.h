@@ -306,17 +306,16 @@ static inline void ec_tip_poses(const ec_robot* robot, const ec_memory* memory, 
   for (t = 0; t < robot->tips; ++t) ec_tip_pose(robot, t, memory, &poses[t]);
 }
 
-/* The calibrated robot at rest: loads, deflections and loads of the deflected robot (a third time
-   changes nothing, see docs/algorithms.md). Leaves body, twisted, axis, load and sole in memory. */
-static inline void ec_settle(const ec_robot* robot, const double* q, unsigned support,
-                             const double* torque, ec_memory* memory, double* gravity,
-                             unsigned* status) {
-  ec_move(robot, robot->calibrated, q, memory);
-  ec_walk(robot, robot->calibrated, 0, memory, status);
-  ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
-  ec_walk(robot, robot->calibrated, 1, memory, status);
-  ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
-  ec_walk(robot, robot->calibrated, 1, memory, status);
+/* The calibrated robot at rest, after an unloaded walk: loads, deflections and loads of the
+   deflected robot (a third time changes nothing, see docs/algorithms.md). Leaves body, twisted,
+   axis, load and sole in memory. */
+static inline void ec_settle(const ec_robot* robot, unsigned support, const double* torque,
+                             ec_memory* memory, double* gravity, unsigned* status) {
+  int i;
+  for (i = 0; i < 2; ++i) {
+    ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
+    ec_walk(robot, robot->calibrated, 1, memory, status);
+  }
   ec_sole_poses(robot, 1, gravity, memory, status);
 }
 
