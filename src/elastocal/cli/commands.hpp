@@ -53,5 +53,6 @@ void AddDesign(CLI::App& app, Action& action);
 void AddAssess(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddPlan(CLI::App& app, Action& action);
+void AddCompensate(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

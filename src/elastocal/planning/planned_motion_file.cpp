@@ -47,17 +47,26 @@ std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planne
   const auto put = std::back_inserter(out);
   fmt::format_to(put, "time");
   for (const std::string& joint : joints) fmt::format_to(put, ",{}", MakeCell(joint));
-  fmt::format_to(put, ",support,zmp_x,zmp_y");
-  for (const std::string& joint : joints) fmt::format_to(put, ",{}", MakeCell("torque_" + joint));
-  fmt::format_to(put, "\n");
   const JointMotion& motion = planned.motion;
+  if (!motion.support.empty()) fmt::format_to(put, ",support");
+  const bool has_forces = planned.zmp.rows() > 0;
+  if (has_forces) {
+    fmt::format_to(put, ",zmp_x,zmp_y");
+    for (const std::string& joint : joints) {
+      fmt::format_to(put, ",{}", MakeCell("torque_" + joint));
+    }
+  }
+  fmt::format_to(put, "\n");
   for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
     fmt::format_to(put, "{:.4f}", motion.time_s[i]);
     for (const double position : motion.q.row(i)) fmt::format_to(put, ",{:.12g}", position);
-    fmt::format_to(put, ",{},{:.6f},{:.6f}",
-                   SupportCell(tree, motion.support[static_cast<std::size_t>(i)]),
-                   planned.zmp(i, 0), planned.zmp(i, 1));
-    for (const double torque : planned.torques.row(i)) fmt::format_to(put, ",{:.4f}", torque);
+    if (!motion.support.empty()) {
+      fmt::format_to(put, ",{}", SupportCell(tree, motion.support[static_cast<std::size_t>(i)]));
+    }
+    if (has_forces) {
+      fmt::format_to(put, ",{:.6f},{:.6f}", planned.zmp(i, 0), planned.zmp(i, 1));
+      for (const double torque : planned.torques.row(i)) fmt::format_to(put, ",{:.4f}", torque);
+    }
     fmt::format_to(put, "\n");
   }
   return fmt::to_string(out);

@@ -17,7 +17,7 @@ struct PlannedMotion {
 };
 
 /// As CSV (docs/formats.md "Motion"): time, a column a joint that is no mimic, support, zmp_x and
-/// zmp_y, torque_JOINT.
+/// zmp_y, torque_JOINT. Without support or forces, these columns are left out.
 std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planned);
 
 /// As a ROS trajectory_msgs/JointTrajectory in YAML: positions of all joints that are no mimics and

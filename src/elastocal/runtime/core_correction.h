@@ -6,10 +6,15 @@
 
 /* Rotations count as the displacement that they give at this distance, m. */
 #define EC_ARM 0.3
-/* Weight of staying near the reference posture, against EC_ARM's metres: what the ends of the limbs
-   do not determine (redundant arms, stretched knees) stays there. */
-#define EC_STAY 3e-4
-#define EC_ITERATIONS 3
+/* Weights of staying near the reference posture and of a short step, against EC_ARM's metres. What
+   the ends of the limbs do not determine (redundant arms) stays at the reference, and what they
+   hardly determine (stretched arms and knees) moves little. */
+#define EC_STAY 1e-3
+#define EC_DAMP 0.02
+/* Weight of a limb of fewer than six joints (a head), which cannot keep its pose: the joints that
+   it shares with others do not go far for it. */
+#define EC_SHORT 0.05
+#define EC_ITERATIONS 4
 /* After a step as small as this, rad or m, the next one would change the square of it. */
 #define EC_SMALL_STEP 1e-3
 
@@ -18,6 +23,7 @@ static inline void ec_add_tip(const ec_robot* robot, const ec_joint* joints, int
                               const ec_pose* now, const ec_pose* target, ec_memory* memory) {
   const ec_tip* tip = &robot->tip[t];
   const int size = robot->branch_size[tip->branch];
+  const double share = tip->freedom < 6 ? EC_SHORT * EC_SHORT : 1.0;
   double error[6], turn[9], *J = memory->column;
   int columns[64], used = 0, body, i, a, b;
   for (i = 0; i < 9; ++i) {
@@ -45,12 +51,12 @@ static inline void ec_add_tip(const ec_robot* robot, const ec_joint* joints, int
     columns[used++] = robot->column_of_coordinate[joint->coordinate];
   }
   for (a = 0; a < used; ++a) {
-    for (i = 0; i < 6; ++i) memory->gradient[columns[a]] += J[6 * a + i] * error[i];
+    for (i = 0; i < 6; ++i) memory->gradient[columns[a]] += share * J[6 * a + i] * error[i];
     for (b = 0; b < used; ++b) {
       double sum = 0.0;
       if (columns[b] > columns[a]) continue; /* the lower half */
       for (i = 0; i < 6; ++i) sum += J[6 * a + i] * J[6 * b + i];
-      memory->normal[size * columns[a] + columns[b]] += sum;
+      memory->normal[size * columns[a] + columns[b]] += share * sum;
     }
   }
 }
@@ -87,7 +93,7 @@ static inline double ec_step(const ec_robot* robot, const double* reference, dou
     for (c = 0; c < robot->coordinates; ++c) {
       const int column = robot->column_of_coordinate[c];
       if (robot->branch_of_coordinate[c] != branch) continue;
-      memory->normal[(size + 1) * column] = EC_STAY * EC_STAY;
+      memory->normal[(size + 1) * column] = EC_STAY * EC_STAY + EC_DAMP * EC_DAMP;
       memory->gradient[column] = EC_STAY * EC_STAY * (reference[c] - q[c]);
     }
     for (t = 0; t < robot->tips; ++t) {
@@ -108,7 +114,8 @@ static inline double ec_step(const ec_robot* robot, const double* reference, dou
   return largest;
 }
 
-/* Largest distance [m] and angle [rad] of the ends of the limbs to their targets. */
+/* Largest distance [m] and angle [rad] of the ends of limbs of six joints and more to their
+   targets; shorter ones cannot keep them. */
 static inline void ec_residual(const ec_robot* robot, const ec_memory* memory, double* residual) {
   int t, i;
   residual[0] = residual[1] = 0.0;
@@ -116,6 +123,7 @@ static inline void ec_residual(const ec_robot* robot, const ec_memory* memory, d
     const ec_pose* target = &memory->target[t];
     ec_pose now;
     double turn[9], v[3], distance = 0.0, angle;
+    if (robot->tip[t].freedom < 6) continue;
     ec_tip_pose(robot, t, memory, &now);
     for (i = 0; i < 3; ++i) {
       distance += (target->p[i] - now.p[i]) * (target->p[i] - now.p[i]);
@@ -318,7 +326,7 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
 
 /* Commands with which the real robot has hands, feet and waist where the nominal robot has them at
    `nominal`. `torque`: those of the planned motion, by joint, or null: statics. `residual`: largest
-   distance [m] and angle [rad] that is left at the end of a limb. */
+   distance [m] and angle [rad] that is left at the end of a limb of six joints and more. */
 static inline unsigned ec_command(const ec_robot* robot, const double* nominal,
                                   const double* torque, unsigned support, ec_memory* memory,
                                   double* command, double* residual) {

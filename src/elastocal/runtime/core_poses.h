@@ -52,8 +52,9 @@ typedef struct {
 /* The end of a limb, which the corrections put where it belongs. */
 typedef struct {
   ec_frame frame;
-  int foot;   /* of which leg, or -1 */
-  int branch; /* group of coordinates that move it, see ec_robot */
+  int foot;    /* of which leg, or -1 */
+  int branch;  /* group of coordinates that move it, see ec_robot */
+  int freedom; /* number of these that move it: six and more can give it any pose nearby */
 } ec_tip;
 
 typedef struct {

@@ -30,7 +30,8 @@ RuntimeBranches FindBranches(RuntimeModel& model) {
     tip.branch =
         branch_of_root.emplace(root, static_cast<int>(branch_of_root.size())).first->second;
     branches.branch_size.resize(branch_of_root.size(), 0);
-    for (int body = tip.frame.body; body > 0;) {
+    tip.freedom = 0;
+    for (int body = tip.frame.body; body > 0; ++tip.freedom) {
       const ec_joint& joint = model.calibrated[static_cast<std::size_t>(body - 1)];
       const auto coordinate = static_cast<std::size_t>(joint.coordinate);
       int& branch = branches.branch_of_coordinate[coordinate];

@@ -1,0 +1,136 @@
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/option_checks.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/cli/text_table.hpp"
+#include "elastocal/io/motion_file.hpp"
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/planning/compensate_motion.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+struct CompensateOptions {
+  CommonOptions common;
+  std::string calibration, project, motion, output;
+  std::string as = "compensated", loads = "statics";
+};
+
+nlohmann::ordered_json MotionExtremeJson(const MotionExtreme& extreme) {
+  return {{"value", extreme.value}, {"time_s", extreme.time_s}, {"where", extreme.where}};
+}
+
+std::string MakeCompensationJson(const CompensatedMotion& result) {
+  nlohmann::ordered_json json;
+  json["status"] = result.broken.empty() ? "fine" : "refused";
+  json["correction"] = MotionExtremeJson(result.correction);
+  json["residual_mm"] = 1e3 * result.residual_m;
+  json["residual_deg"] = result.residual_rad * 180.0 / M_PI;
+  json["to_joint_limit"] = MotionExtremeJson(result.position);
+  json["velocity_share"] = MotionExtremeJson(result.velocity);
+  if (result.has_clearance) json["clearance_m"] = MotionExtremeJson(result.clearance);
+  json["broken"] = result.broken;
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string DescribeCompensation(const CompensatedMotion& result) {
+  TextTable table({"over all samples", "worst", "at s", "where"});
+  const auto add = [&](const char* what, const MotionExtreme& at, double scale) {
+    table.Add({what, fmt::format("{:.2f}", scale * at.value), fmt::format("{:.2f}", at.time_s),
+               at.where});
+  };
+  constexpr double kDegreesARadian = 180.0 / M_PI;
+  add("change of a joint, deg", result.correction, kDegreesARadian);
+  add("joint to its limit, deg", result.position, kDegreesARadian);
+  add("velocity, % of limit", result.velocity, 100.0);
+  if (result.has_clearance) add("least distance of parts, mm", result.clearance, 1e3);
+  return table.Render() +
+         fmt::format("Left at hands, feet and waist: at most {:.3f} mm and {:.4f} deg\n",
+                     1e3 * result.residual_m, result.residual_rad * kDegreesARadian);
+}
+
+int Compensate(const CompensateOptions& options) {
+  const CalibratedRobot robot = OpenCalibratedRobot(options.calibration, options.project);
+  OutputSet outputs;
+  std::vector<std::filesystem::path> inputs = robot.inputs;
+  inputs.emplace_back(options.motion);
+  outputs.Protect(inputs);
+  outputs.Declare(options.output);
+  DeclareJson(options.common.json_file, outputs);
+  outputs.Prepare();
+
+  const JointMotion planned = ReadMotion(options.motion, robot.project);
+  const RuntimeContent content =
+      options.as == "urdf" ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
+  const RuntimeModel model = MakeRuntimeModel(robot.project, robot.calibration, content);
+  const CompensatedMotion result =
+      CompensateMotion(robot.project, model, planned,
+                       options.loads == "planned" ? MotionLoads::kPlanned : MotionLoads::kStatics);
+  const bool fine = result.broken.empty();
+  if (fine) outputs.Set(options.output, FormatMotionTable(robot.project.tree, result.planned));
+  outputs.Set(options.common.json_file, MakeCompensationJson(result));
+  outputs.Publish();
+
+  const bool quiet = options.common.Silent();
+  Print(quiet, DescribeCompensation(result));
+  for (const std::string& reason : result.broken) spdlog::error("{}", reason);
+  if (!fine) {
+    spdlog::error("the corrected motion must not be played: nothing was written");
+    return kNotConverged;
+  }
+  Print(quiet, fmt::format("Written: {}\n", options.output));
+  return kFine;
+}
+
+}  // namespace
+
+void AddCompensate(CLI::App& app, Action& action) {
+  auto options = std::make_shared<CompensateOptions>();
+  CLI::App* command = app.add_subcommand(
+      "compensate",
+      "Correct a planned motion so that hands, feet and waist go where the plan meant");
+  command
+      ->add_option("calibration", options->calibration,
+                   "Output folder of calibrate, or a calibration.yaml")
+      ->required();
+  command->add_option("--motion", options->motion, "Planned joint trajectory (CSV with time)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, "The corrected trajectory (CSV)")
+      ->required()
+      ->check(IsNamed)
+      ->type_name("FILE");
+  command
+      ->add_option("--project", options->project,
+                   "Project file; default: the one that runs.json beside the calibration names")
+      ->type_name("FILE");
+  command
+      ->add_option("--as", options->as,
+                   "What the correction knows: compensated (geometry and elasticity) or urdf "
+                   "(geometry alone, as the calibrated URDF)")
+      ->transform(CLI::IsMember({"compensated", "urdf"}, CLI::ignore_case))
+      ->capture_default_str();
+  command
+      ->add_option("--loads", options->loads,
+                   "What deflects the robot: statics (the weight in each posture) or planned "
+                   "(torques of the motion, for fast ones)")
+      ->transform(CLI::IsMember({"statics", "planned"}, CLI::ignore_case))
+      ->capture_default_str();
+  AddOutputOptions(*command, options->common);
+  command->footer(
+      "Ends with 4, and writes nothing, where the corrected motion would break a limit.\n"
+      "Example: elastocal compensate out --motion motion.csv -o corrected.csv");
+  command->callback([&action, options] { action = [options] { return Compensate(*options); }; });
+}
+
+}  // namespace elastocal::cli

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "elastocal/io/calibration_file.hpp"
+#include "elastocal/io/project.hpp"
+
+namespace elastocal {
+
+/// A calibration together with the project that it was made with.
+struct CalibratedRobot {
+  Project project;
+  StoredCalibration calibration;
+  std::vector<std::filesystem::path> inputs;  ///< files that were read
+};
+
+/// Opens the folder that calibrate wrote to, or its calibration.yaml. The project is that of the
+/// record of the calibration (runs.json beside it), unless `project` names another place of it.
+/// Throws InputError: no record, or it names no project; a project that cannot be read or has
+/// changed since (by its checksum), unless it was named; what FindCalibrationFiles throws.
+CalibratedRobot OpenCalibratedRobot(const std::filesystem::path& given,
+                                    const std::filesystem::path& project = {});
+
+}  // namespace elastocal

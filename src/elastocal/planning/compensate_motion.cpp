@@ -1,0 +1,181 @@
+#include "elastocal/planning/compensate_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/motion/motion_check.hpp"
+#include "elastocal/planning/project_motion.hpp"
+
+namespace elastocal {
+namespace {
+
+double TimeAt(const JointMotion& motion, Eigen::Index i) {
+  return motion.time_s.size() > 0 ? motion.time_s[i] : static_cast<double>(i);
+}
+
+const std::string& CoordinateName(const RobotTree& tree, Eigen::Index c) {
+  const int joint = tree.coordinate_joint[static_cast<std::size_t>(c)];
+  return tree.joints[static_cast<std::size_t>(joint)].name;
+}
+
+void KeepLarger(double value, double time_s, const std::string& where, MotionExtreme& extreme) {
+  if (value > extreme.value) extreme = {value, time_s, where};
+}
+
+void KeepSmaller(double value, double time_s, const std::string& where, MotionExtreme& extreme) {
+  if (value < extreme.value) extreme = {value, time_s, where};
+}
+
+/// The standing robot with the feet of a sampled motion, for inverse dynamics and clearances.
+SampledMotion ToSampled(const StandingRobot& robot, const JointMotion& motion) {
+  SampledMotion sampled;
+  sampled.q = motion.q;
+  const Eigen::Index last = motion.time_s.size() - 1;
+  sampled.rate_hz = static_cast<double>(last) / (motion.time_s[last] - motion.time_s[0]);
+  for (const std::vector<int>& links : motion.support) {
+    std::vector<int> feet;
+    for (std::size_t f = 0; f < robot.soles.size(); ++f) {
+      if (std::count(links.begin(), links.end(), robot.soles[f].link) > 0) {
+        feet.push_back(static_cast<int>(f));
+      }
+    }
+    sampled.standing.push_back(std::move(feet));
+  }
+  return sampled;
+}
+
+bool CanBeChecked(const Project& project, const JointMotion& motion) {
+  const bool stands = std::all_of(motion.support.begin(), motion.support.end(),
+                                  [](const std::vector<int>& links) { return !links.empty(); });
+  return !project.soles.empty() && motion.time_s.size() > 2 && !motion.support.empty() && stands;
+}
+
+void CheckLimits(const Project& project, CompensatedMotion& result) {
+  const JointMotion& motion = result.planned.motion;
+  result.position.value = std::numeric_limits<double>::infinity();
+  for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
+    const std::string& name = CoordinateName(project.tree, c);
+    const JointLimits& limits = project.tree
+                                    .joints[static_cast<std::size_t>(
+                                        project.tree.coordinate_joint[static_cast<std::size_t>(c)])]
+                                    .limits;
+    for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
+      const double q = motion.q(i, c);
+      KeepSmaller(std::min(q - limits.lower, limits.upper - q), TimeAt(motion, i), name,
+                  result.position);
+      if (i == 0 || motion.time_s.size() == 0) continue;
+      const double speed =
+          std::abs(q - motion.q(i - 1, c)) / (motion.time_s[i] - motion.time_s[i - 1]);
+      KeepLarger(speed / limits.velocity, motion.time_s[i], name, result.velocity);
+    }
+  }
+  const auto refuse = [&](const char* what, const MotionExtreme& at, double scale,
+                          const char* unit) {
+    result.broken.push_back(fmt::format("{}: {} {:.3g} {} at {:.2f} s", what, at.where,
+                                        scale * at.value, unit, at.time_s));
+  };
+  constexpr double kRounding = 1e-9;
+  if (result.position.value < -kRounding)
+    refuse("beyond a joint's limit", result.position, 180.0 / M_PI, "deg");
+  if (result.velocity.value > 1.0)
+    refuse("faster than a joint's limit", result.velocity, 100.0, "%");
+  if (result.has_clearance && result.clearance.value < 0.0) {
+    refuse("parts touch", result.clearance, 1e3, "mm");
+  }
+}
+
+void CheckClearance(const Project& project, const StandingRobot& robot, CompensatedMotion& result) {
+  if (!robot.clearances) return;
+  const std::vector<std::string> names = ContactNames(project);
+  result.clearance.value = std::numeric_limits<double>::infinity();
+  const JointMotion& motion = result.planned.motion;
+  for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
+    const Eigen::VectorXd distances = robot.clearances(motion.q.row(i).transpose());
+    Eigen::Index nearest = 0;
+    if (distances.size() == 0) return;
+    const double distance = distances.minCoeff(&nearest);
+    KeepSmaller(distance, TimeAt(motion, i), names[static_cast<std::size_t>(nearest)],
+                result.clearance);
+  }
+  result.has_clearance = true;
+}
+
+/// Torques by joint from those by coordinate of the plan.
+Eigen::VectorXd JointTorques(const RobotTree& tree, const Eigen::VectorXd& by_coordinate) {
+  Eigen::VectorXd torques = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(tree.joints.size()),
+                                                      std::numeric_limits<double>::quiet_NaN());
+  for (Eigen::Index c = 0; c < by_coordinate.size(); ++c) {
+    torques[tree.coordinate_joint[static_cast<std::size_t>(c)]] = by_coordinate[c];
+  }
+  return torques;
+}
+
+}  // namespace
+
+StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
+                         const std::vector<int>& links) {
+  StandingFeet feet = 0;
+  for (int link : links) {
+    const std::string& name = project.tree.links[static_cast<std::size_t>(link)].name;
+    bool found = false;
+    for (std::size_t f = 0; f < model.foot_names.size(); ++f) {
+      const Chain& chain =
+          project.chains[static_cast<std::size_t>(FindChain(project, model.foot_names[f]))];
+      if (chain.tip_link != link) continue;
+      feet |= StandingFeet{1} << f;
+      found = true;
+    }
+    if (!found) throw InputError("support '" + name + "': it is no foot of the robot");
+  }
+  return feet;
+}
+
+CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
+                                   const JointMotion& planned, MotionLoads loads) {
+  CompensatedMotion result;
+  result.planned.motion = planned;
+  JointMotion& motion = result.planned.motion;
+  std::unique_ptr<StandingRobot> robot;
+  if (CanBeChecked(project, planned)) {
+    robot = StandProjectRobot(project, {});
+    MotionForces forces;
+    CheckMotion(*robot, ToSampled(*robot, planned), &forces);
+    result.planned.zmp = forces.zmp;
+    result.planned.torques = forces.torques;
+  } else if (loads == MotionLoads::kPlanned) {
+    throw InputError(planned.source +
+                     ": torques of the plan need its times and support, and the project's soles");
+  }
+  Compensator compensator(model);
+  const StandingFeet all = (StandingFeet{1} << model.feet.size()) - 1;
+  CompensatorStatus status = 0;
+  Eigen::VectorXd torque;
+  for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
+    const Eigen::VectorXd nominal = planned.q.row(i).transpose();
+    const StandingFeet feet =
+        planned.support.empty()
+            ? all
+            : FeetOfLinks(project, model, planned.support[static_cast<std::size_t>(i)]);
+    if (loads == MotionLoads::kPlanned) {
+      torque = JointTorques(project.tree, result.planned.torques.row(i).transpose());
+    }
+    status |= compensator.Command(nominal, torque, feet);
+    motion.q.row(i) = compensator.command().transpose();
+    result.residual_m = std::max(result.residual_m, compensator.residual_m());
+    result.residual_rad = std::max(result.residual_rad, compensator.residual_rad());
+    Eigen::Index joint = 0;
+    const double change = (compensator.command() - nominal).cwiseAbs().maxCoeff(&joint);
+    KeepLarger(change, TimeAt(planned, i), CoordinateName(project.tree, joint), result.correction);
+  }
+  if (status != 0) result.broken.push_back(DescribeStatus(status));
+  if (robot != nullptr) CheckClearance(project, *robot, result);
+  CheckLimits(project, result);
+  return result;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/planning/planned_motion_file.hpp"
+#include "elastocal/robot/joint_motion.hpp"
+#include "elastocal/runtime/compensator.hpp"
+
+namespace elastocal {
+
+/// The loads that deflect the robot in a planned motion.
+enum class MotionLoads {
+  kStatics,  ///< of each posture at rest
+  kPlanned   ///< torques of the motion by inverse dynamics: for fast motion; it needs soles
+};
+
+/// The worst value over a motion, and where it occurs.
+struct MotionExtreme {
+  double value = 0.0;
+  double time_s = 0.0;
+  std::string where = {};  ///< a joint or a pair of parts
+};
+
+/// A planned motion with other joint positions: those with which the calibrated robot has hands,
+/// feet and waist where the plan meant.
+struct CompensatedMotion {
+  PlannedMotion planned;     ///< zero-moment points and torques are those of the plan
+  MotionExtreme correction;  ///< largest change of a joint, rad or m
+  double residual_m = 0.0, residual_rad = 0.0;  ///< largest that is left at the end of a limb
+  MotionExtreme position;                       ///< least distance to a joint's limit, rad or m
+  MotionExtreme velocity;                       ///< largest share of a joint's velocity limit
+  MotionExtreme clearance;  ///< least distance of parts that can touch, m; where there are any
+  bool has_clearance = false;
+  /// Why the motion must not be played, a sentence each: a joint beyond its limit or faster than
+  /// it, parts that touch, a correction that was cut. Empty: it may be played.
+  std::vector<std::string> broken;
+};
+
+/// Corrects every sample of a motion (Compensator::Command). The motion has times or not; its
+/// support may be left open: then all feet stand, or the root link is held where there are none.
+/// Throws InputError for a support that is no foot of the model.
+CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
+                                   const JointMotion& planned,
+                                   MotionLoads loads = MotionLoads::kStatics);
+
+/// The feet of the model that are these links. Throws InputError for a link that is no foot.
+StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
+                         const std::vector<int>& links);
+
+}  // namespace elastocal
