@@ -234,7 +234,7 @@ FitResiduals::FitResiduals(const FitProblem& problem, const Selection& selection
                                problem.options.load)
                 : std::vector<PostureLoads>()),
       body({problem.model, problem.recording, problem.group, selection, loads, prior, noise,
-            weights, problem.options.support_form},
+            weights, problem.options},
            free, fit.delta, placement) {}
 
 Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen::VectorXd& delta) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "elastocal/robot/parameters.hpp"
 #include "elastocal/robot/posture_loads.hpp"
@@ -96,6 +97,9 @@ struct CalibrationOptions {
   /// A foot whose markers are displaced by more than this between two postures has slipped: it
   /// stands elsewhere from there on, m.
   double slip = 1e-3;
+  /// How far from flat on one level floor the soles of feet that carry the robot may be (see
+  /// floor.hpp): slopes [rad], and heights against each other [m]; infinite: it is not used.
+  double floor_tilt_sd = 0.1 * M_PI / 180.0, floor_height_sd = 1e-3;
   LoadOptions load = {};
   int max_iterations = 100;
 };

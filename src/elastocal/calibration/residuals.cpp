@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastocal/calibration/floor.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 
 namespace elastocal {
@@ -36,6 +37,7 @@ BodyResiduals::BodyResiduals(const ResidualInputs& inputs, const std::vector<int
   blocks_of_posture_.resize(in_.recording.posture_count());
   for (const BodyObservation& body : in_.selection.bodies) MakeBodyBlock(body);
   MakeTieBlocks();
+  MakeFloorBlocks();
   residuals_.resize(residual_blocks.size());
   jacobians_.resize(residual_blocks.size());
   MakePriorBlocks();
@@ -83,6 +85,19 @@ void BodyResiduals::MakeTieBlocks() {
   }
 }
 
+void BodyResiduals::MakeFloorBlocks() {
+  if (std::isinf(in_.options.floor_tilt_sd) && std::isinf(in_.options.floor_height_sd)) return;
+  floor_footings_ = FloorFootings(placement_);
+  for (int footing : floor_footings_) {
+    ResidualBlock block{3, {unknowns_.FootingBlock(footing)}, true};
+    const int first = unknowns_.FootingBlock(floor_footings_.front());
+    if (block.parameter_blocks.front() != first) block.parameter_blocks.push_back(first);
+    sds_.emplace_back(Eigen::Vector3d(in_.options.floor_tilt_sd, in_.options.floor_tilt_sd,
+                                      in_.options.floor_height_sd));
+    residual_blocks.push_back(std::move(block));
+  }
+}
+
 void BodyResiduals::MakePriorBlocks() {
   const auto add = [&](int block, int first, int rows, double weight) {
     residual_blocks.push_back({rows, {block}, true});
@@ -122,7 +137,7 @@ Vector6d BodyResiduals::TieSds(int posture) const {
   const int group = in_.group[posture];
   sds.head<3>().setConstant(in_.noise(group, NoiseSource::kWaistPosition));
   sds.tail<3>().setConstant(in_.noise(group, NoiseSource::kWaistRotation));
-  if (in_.form == SupportForm::kFootRooted) sds.setConstant(kExactLeg);
+  if (in_.options.support_form == SupportForm::kFootRooted) sds.setConstant(kExactLeg);
   if (!in_.weights.ties.empty()) sds /= std::sqrt(in_.weights.ties[posture]);
   return sds;
 }
@@ -159,10 +174,36 @@ void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobians) {
       }
     }
   }
+  EvaluateFloors();
   const std::size_t first = residuals_.size() - prior_unknowns_.size();
   for (std::size_t p = 0; p < prior_unknowns_.size(); ++p) {
     Eigen::VectorXd& residual = residuals_[first + p];
     residual = prior_weights_[p] * x_.segment(prior_unknowns_[p], residual.size());
+  }
+}
+
+void BodyResiduals::EvaluateFloors() {
+  if (floor_footings_.empty()) return;
+  const Eigen::Vector3d up = -in_.recording.gravity.normalized();
+  const int first = floor_footings_.front();
+  auto block = static_cast<std::size_t>(body_count()) + tied_postures_.size();
+  for (int footing : floor_footings_) {
+    const int leg = placement_.footings[static_cast<std::size_t>(footing)].leg;
+    const FloorResidual at =
+        EvaluateFloor(unknowns_.FootingPose(x_, footing), unknowns_.FootingPose(x_, first), up,
+                      UpOfFoot(in_.model, leg));
+    RowMajorMatrix& J = jacobians_[block];
+    J.setZero(3, footing == first ? 6 : 12);
+    J.leftCols<6>() = at.by_foot * unknowns_.FootingChart(x_, footing);
+    if (footing == first) {
+      J.row(2).setZero();  // its height refers to itself
+    } else {
+      J.row(2).rightCols<6>() = at.height_by_first * unknowns_.FootingChart(x_, first);
+    }
+    const Eigen::Vector3d weights = sds_[block].cwiseInverse();
+    residuals_[block] = weights.cwiseProduct(at.residual);
+    J = weights.asDiagonal() * J;
+    ++block;
   }
 }
 

@@ -37,14 +37,15 @@ struct ResidualInputs {
   const Prior& prior;
   const Noise& noise;
   const RobustWeights& weights;
-  SupportForm form = SupportForm::kNuisance;
+  const CalibrationOptions& options;
 };
 
 /// Eq. 14 as a least-squares problem: for the markers of every body in every posture the difference
 /// between measured and predicted positions (those on the foot that stands: from the footing, the
 /// others from the waist), in the basis of BodyObservation; for every posture on one foot what its
-/// constraint leaves (see support_tie.hpp); for every parameter its deviation from nominal; for
-/// every footing (vaguely, 1 m and 1 rad) its displacement; each over its standard deviation.
+/// constraint leaves (see support_tie.hpp); for every footing on a leg how far its sole is from
+/// flat on the floor (floor.hpp); for every parameter its deviation from nominal; for every footing
+/// (vaguely, 1 m and 1 rad) its displacement; each over its standard deviation.
 ///
 /// The unknowns are those of BodyUnknowns. A body in a posture meets one waist (in a table of
 /// postures none), so that these are eliminated first.
@@ -61,7 +62,8 @@ class BodyResiduals : public LeastSquaresProblem {
   Eigen::VectorXd ToErrors(const Eigen::VectorXd& x) const { return unknowns_.ToErrors(x); }
   Placement ToPlacement(const Eigen::VectorXd& x) const { return unknowns_.ToPlacement(x); }
 
-  /// Residual blocks: first the bodies of the selection, then the constraints, then the priors.
+  /// Residual blocks: first the bodies of the selection, then the constraints, then those
+  /// of the floor, then the priors.
   int body_count() const { return static_cast<int>(in_.selection.bodies.size()); }
   const std::vector<int>& tied_postures() const { return tied_postures_; }
   int TieBlock(int tie) const { return body_count() + tie; }
@@ -80,6 +82,7 @@ class BodyResiduals : public LeastSquaresProblem {
  private:
   void MakeBodyBlock(const BodyObservation& body);
   void MakeTieBlocks();
+  void MakeFloorBlocks();
   void MakePriorBlocks();
   Eigen::VectorXd BodySds(std::size_t body) const;
   Vector6d TieSds(int posture) const;
@@ -88,6 +91,7 @@ class BodyResiduals : public LeastSquaresProblem {
   void EvaluateBody(int block, bool with_jacobians);
   void EvaluateFoot(int block, bool with_jacobians);
   void EvaluateTie(int block, int posture);
+  void EvaluateFloors();
   void FillTieJacobian(int leg, const PostureLoads& load, const Vector6d& wrench,
                        const TieResidual& at, RowMajorMatrix& J) const;
 
@@ -99,6 +103,7 @@ class BodyResiduals : public LeastSquaresProblem {
   std::vector<std::vector<BodyUnknowns::Columns>> leg_columns_;     // by leg
   std::vector<BodyUnknowns::Deflection> deflections_;               // by leg
   std::vector<int> tied_postures_;
+  std::vector<int> floor_footings_;
   std::vector<std::vector<int>> blocks_of_posture_;
   std::vector<int> prior_unknowns_;    // by prior residual block: its first entry of x
   std::vector<double> prior_weights_;  // likewise: of the entries

@@ -10,7 +10,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastTieShare = 0.1;   // of the marker noise [m, rad]: no constraint is better
-constexpr double kLeastShare = 0.01;     // of the rows is left over where it is all but zero
+constexpr double kLeastRowsLeft = 0.01;  // of the rows is left over where it is all but zero
 constexpr double kHuberQuantile = 0.99;  // of the distance of a body within which it counts whole
 constexpr double kLeastSharedSd = 1e-3;  // of the marker noise [m, rad]: as good as none
 
@@ -36,7 +36,7 @@ double Huber(double square, Eigen::Index rows) {
 
 double VarianceComponent::Factor(Robustness robustness) const {
   if (means.empty()) return 1.0;
-  const double left = std::max({kLeastShare * rows, rows - explained, 1e-6});
+  const double left = std::max({kLeastRowsLeft * rows, rows - explained, 1e-6});
   double total = squares;
   if (robustness == Robustness::kMedians) {
     const Eigen::Map<const Eigen::VectorXd> all(means.data(),
@@ -169,7 +169,7 @@ double DegreesOfFreedom(const CalibrationOptions& options, const VarianceCompone
       if (given || component.rows <= 0.0) continue;
       // Of the rows that are left, each counts by the source's share in it.
       const double left =
-          component.weight * std::max(kLeastShare, 1.0 - component.explained / component.rows);
+          component.weight * std::max(kLeastRowsLeft, 1.0 - component.explained / component.rows);
       spread += component.explained * component.explained / std::max(1e-9, left);
     }
   }

@@ -6,12 +6,17 @@
 #include <fmt/format.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/execution_report.hpp"
 #include "elastocal/cli/option_checks.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/simulation_report.hpp"
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/io/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/planning/execute_motion.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/planning/simulation_settings.hpp"
 
@@ -25,6 +30,8 @@ struct SimulateCommand {
   std::string postures, motion, kind;  ///< of a motion that the user gives
   std::vector<std::string> chains;
   int threads = 2;
+  std::string deploy;           ///< folder of a calibration that is put to use
+  std::vector<std::string> as;  ///< how; empty: in all ways
   bool nominal = false, free = false, matched = false, force = false;
   std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
 };
@@ -67,7 +74,49 @@ SimulationOptions MakeOptions(const SimulateCommand& command, const Project& pro
   return options;
 }
 
+/// Executes a motion on the robot that was calibrated, and measures what the calibration is worth.
+int Deploy(const SimulateCommand& command) {
+  if (command.motion.empty()) throw InputError("--deploy: --motion FILE was expected with it");
+  const Project project = ReadProject(command.project);
+  const CalibrationFiles calibration = FindCalibrationFiles(command.deploy);
+  const std::vector<std::filesystem::path> inputs = {
+      command.project, project.urdf, command.settings, command.motion, calibration.calibration};
+  OutputSet outputs;
+  outputs.Protect(inputs);
+  DeclareResults(command.output, {"deployment.json"}, outputs);
+  DeclareJson(command.common.json_file, outputs);
+  outputs.Prepare();
+
+  DeployOptions options;
+  const VirtualExperimentOptions settings = Settings(command);
+  options.truth = settings.truth;
+  options.truth.seed = command.common.seed.value_or(1);
+  options.physics = settings.physics;
+  options.threads = command.threads;
+  if (!command.as.empty()) options.as.clear();
+  for (const DeployAs as : {DeployAs::kNominal, DeployAs::kUrdf, DeployAs::kCompensated}) {
+    const auto& given = command.as;
+    if (std::find(given.begin(), given.end(), DeployName(as)) != given.end()) {
+      options.as.push_back(as);
+    }
+  }
+  const bool quiet = command.common.Silent();
+  const std::vector<Execution> executions = PlayExecutions(
+      project, ReadCalibration(calibration.calibration), ReadMotion(command.motion, project),
+      options, TerminalProgress("executed motion", quiet));
+  const std::string json = FormatExecutions(executions);
+  outputs.Set(command.common.json_file, json);
+  const std::string no_report =
+      SetResults(command.output, {{"deployment.json", json}},
+                 MakeRunRecord("simulate --deploy", command.common, RecordInputs(inputs)), outputs);
+  outputs.Publish();
+  Print(quiet, DescribeExecutions(executions));
+  PrintReportPlace(command.output, no_report, quiet);
+  return kFine;
+}
+
 int Simulate(const SimulateCommand& command) {
+  if (!command.deploy.empty()) return Deploy(command);
   const Project project = ReadProject(command.project);
   const Simulation simulation = PrepareSimulation(project, MakeOptions(command, project));
   const SimulationFiles files = FilesOfSimulation(simulation, command.output, command.force);
@@ -123,6 +172,19 @@ void AddSimulate(CLI::App& app, Action& action) {
                    "calibration where the robot rests, else sine")
       ->transform(
           CLI::IsMember({"calibration", "sine", "random", "repeatability"}, CLI::ignore_case));
+  auto* deploy =
+      command
+          ->add_option("--deploy", options->deploy,
+                       "Executes --motion on the robot that was calibrated (the same --seed and "
+                       "options), whose controller uses the calibration in this folder: how far "
+                       "are hands, feet and waist from the plan?")
+          ->type_name("DIR");
+  command
+      ->add_option("--as", options->as,
+                   "What the controller of --deploy knows: nominal, urdf (the calibrated one) or "
+                   "compensated; default: each in turn")
+      ->needs(deploy)
+      ->transform(CLI::IsMember({"nominal", "urdf", "compensated"}, CLI::ignore_case));
   command->add_option("--threads", options->threads, "Trials played at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

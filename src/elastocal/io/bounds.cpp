@@ -52,6 +52,8 @@ std::vector<Bound> MakeBounds() {
       {"calibration.correlation_threshold", "", 1e-3, 1, "a share"},
       {"calibration.max_iterations", "", 1, 1e4, "minutes"},
       {"calibration.slip_mm", "mm", 1e-3, 1e3, "cameras' noise; a step", true},
+      {"calibration.floor_tilt_deg", "deg", 1e-3, 10, "a machined plate; a ramp", true},
+      {"calibration.floor_height_mm", "mm", 1e-3, 100, "a machined plate; a step", true},
       {"calibration.prior.deflection_mrad", "mrad", 1e-4, 1e3, "a rigid and a soft robot"},
   };
   for (const char* angle : {"theta", "gamma", "alpha", "beta"}) {

@@ -122,7 +122,8 @@ void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options) {
   section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "plausible_marker_sd_mm",
                       "outlier_probability", "support_threshold", "correlation_threshold",
-                      "max_iterations", "support", "load", "slip_mm", "outliers"});
+                      "max_iterations", "support", "load", "slip_mm", "outliers", "floor_tilt_deg",
+                      "floor_height_mm"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
   section.Read("widen_prior", options.widen_prior);
   section.ReadBounded("marker_sd_mm", options.marker_sd, kOneMm);
@@ -140,6 +141,8 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
                           {"wrench", LoadSource::kWrench},
                           {"statics", LoadSource::kStatics}});
   section.ReadBounded("slip_mm", options.slip, kOneMm);
+  section.ReadBounded("floor_tilt_deg", options.floor_tilt_sd, kOneDegree);
+  section.ReadBounded("floor_height_mm", options.floor_height_sd, kOneMm);
   section.ReadBounded("max_iterations", options.max_iterations);
 }
 

@@ -196,8 +196,9 @@ std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& mo
     PhysicsOptions physics;
     physics.floor_friction = options.floor_friction;
     Stabiliser stabiliser(project.tree, project.soles);
-    trials[i] = {truth.seed, StandThrough(DrawTrueRobot(nominal, truth), project.soles, motion,
-                                          physics, options.stabilised ? &stabiliser : nullptr)};
+    trials[i] = {truth.seed,
+                 StandThrough(DrawTrueRobot(nominal, truth), project.soles, motion, physics,
+                              {.stabiliser = options.stabilised ? &stabiliser : nullptr})};
   };
   ForAll(trials.size(), options.threads, play, progress);
   return trials;

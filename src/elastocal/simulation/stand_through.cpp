@@ -10,12 +10,22 @@ namespace {
 constexpr double kLongestSettling = 4.0;  // s
 constexpr double kFallen = 0.7;  // share of the waist's height below which the robot has fallen
 
-/// The command at a time; `at` moves along with the time.
-Eigen::VectorXd CommandAt(const JointMotion& motion, double time_s, Eigen::Index& at) {
+/// The samples before and after a time, and the share of the second one. `at` moves along with the
+/// time.
+struct Between {
+  Eigen::Index at = 0;
+  double share = 0.0;
+
+  Eigen::VectorXd Of(const Eigen::MatrixXd& q) const {
+    return (q.row(at) + share * (q.row(at + 1) - q.row(at))).transpose();
+  }
+};
+
+void MoveTo(const JointMotion& motion, double time_s, Between& between) {
+  Eigen::Index& at = between.at;
   while (at + 2 < motion.time_s.size() && motion.time_s[at + 1] <= time_s) ++at;
   const double span = motion.time_s[at + 1] - motion.time_s[at];
-  const double share = std::clamp((time_s - motion.time_s[at]) / span, 0.0, 1.0);
-  return (motion.q.row(at) + share * (motion.q.row(at + 1) - motion.q.row(at))).transpose();
+  between.share = std::clamp((time_s - motion.time_s[at]) / span, 0.0, 1.0);
 }
 
 /// Distance of the zero-moment point to the edge of the loaded soles, m.
@@ -57,14 +67,15 @@ double TrackingError(const TrueRobot& robot, const Eigen::VectorXd& encoders,
 }  // namespace
 
 StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
-                         const JointMotion& motion, PhysicsOptions options,
-                         Stabiliser* stabiliser) {
-  options.standing = Standing::kFree;
-  options.foot_length = soles.front().upper.x() - soles.front().lower.x();
-  options.foot_width = soles.front().upper.y() - soles.front().lower.y();
+                         const JointMotion& motion, PhysicsOptions physics,
+                         const StandThroughOptions& options) {
+  physics.standing = Standing::kFree;
+  physics.foot_length = soles.front().upper.x() - soles.front().lower.x();
+  physics.foot_width = soles.front().upper.y() - soles.front().lower.y();
   std::vector<int> feet;
   for (const Sole& sole : soles) feet.push_back(sole.link);
-  VirtualRobot body(robot, feet, motion.q.row(0).transpose(), options);
+  const Eigen::MatrixXd& commanded = options.commanded != nullptr ? *options.commanded : motion.q;
+  VirtualRobot body(robot, feet, commanded.row(0).transpose(), physics);
   body.Settle(kLongestSettling);
   const Transform begin = body.WaistPose();
   StandingRun run;
@@ -72,27 +83,29 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
   const double first = motion.time_s[0], last = motion.time_s[motion.time_s.size() - 1];
   const auto steps = static_cast<long>(std::floor((last - first) / body.time_step_s()));
   const long per_look = std::max(1L, std::lround(0.01 / body.time_step_s()));
-  Eigen::Index at = 0;
+  Between now;
   Eigen::VectorXd correction = Eigen::VectorXd::Zero(motion.q.cols());
   for (long i = 1; i <= steps; ++i) {
     run.time_s = static_cast<double>(i) * body.time_step_s();
-    const Eigen::VectorXd planned = CommandAt(motion, first + run.time_s, at);
-    body.Command(planned + correction);
+    MoveTo(motion, first + run.time_s, now);
+    body.Command(now.Of(commanded) + correction);
     body.Step();
     if (i % per_look != 0) continue;
     const Transform waist = body.WaistPose();
     if (!(waist.translation().z() > kFallen * begin.translation().z())) return run;
     const double upright = waist.linear().col(2).dot(begin.linear().col(2));
     run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
-    run.tracking =
-        std::max(run.tracking, TrackingError(robot, body.Encoders(), planned + correction));
+    run.tracking = std::max(run.tracking,
+                            TrackingError(robot, body.Encoders(), now.Of(commanded) + correction));
     const StandingSense sense = Sense(body, soles.size());
     run.least_zmp_margin = std::min(run.least_zmp_margin, ZmpMargin(body, soles, sense));
-    if (stabiliser == nullptr) continue;
+    const Eigen::VectorXd planned = now.Of(motion.q);
+    if (options.watch) options.watch(now.at, planned, body);
+    if (options.stabiliser == nullptr) continue;
     const double interval = static_cast<double>(per_look) * body.time_step_s();
-    const std::vector<int>& support = motion.support[static_cast<std::size_t>(at)];
-    correction = stabiliser->Correct(planned, support, sense, interval) - planned;
-    run.largest_shift = std::max(run.largest_shift, stabiliser->shift().norm());
+    const std::vector<int>& support = motion.support[static_cast<std::size_t>(now.at)];
+    correction = options.stabiliser->Correct(planned, support, sense, interval) - planned;
+    run.largest_shift = std::max(run.largest_shift, options.stabiliser->shift().norm());
   }
   run.stood = true;
   return run;

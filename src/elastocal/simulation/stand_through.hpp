@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "elastocal/motion/stabiliser.hpp"
@@ -22,13 +23,26 @@ struct StandingRun {
   double largest_shift = 0.0;  ///< of the root link by the stabiliser, m
 };
 
+/// How a controller plays a motion.
+struct StandThroughOptions {
+  Stabiliser* stabiliser = nullptr;  ///< none: nothing controls the balance
+  /// What the joints are commanded where that is not the motion itself, for instance corrected by a
+  /// calibration. Times and support are those of the motion.
+  const Eigen::MatrixXd* commanded = nullptr;
+  /// Is shown the robot 100 times a second, with the last sample of the motion and what the motion
+  /// has between samples at that time.
+  std::function<void(Eigen::Index sample, const Eigen::VectorXd& planned,
+                     const VirtualRobot& robot)>
+      watch = {};
+};
+
 /// Plays a whole motion, changes of support included, on a robot whose soles lie freely on the
 /// floor. It begins at rest with all `soles` on the floor. `motion` needs times and support;
 /// samples are joined by straight lines. A `stabiliser` (of the same soles) corrects the commands
 /// 100 times a second by the measurements of the inertial unit and the feet. Without it, the joints
 /// follow the motion and nothing controls the balance.
 StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
-                         const JointMotion& motion, PhysicsOptions options,
-                         Stabiliser* stabiliser = nullptr);
+                         const JointMotion& motion, PhysicsOptions physics,
+                         const StandThroughOptions& options = {});
 
 }  // namespace elastocal

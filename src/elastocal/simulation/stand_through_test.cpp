@@ -69,7 +69,7 @@ TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
   for (int i = 0; i < 31; ++i) motion.q(i, 1) += 0.5 * std::clamp((i - 15) / 10.0, 0.0, 1.0);
   EXPECT_FALSE(StandThrough(robot_, soles_, motion, {}).stood);
   Stabiliser stabiliser(biped_.tree, soles_);
-  const StandingRun run = StandThrough(robot_, soles_, motion, {}, &stabiliser);
+  const StandingRun run = StandThrough(robot_, soles_, motion, {}, {.stabiliser = &stabiliser});
   EXPECT_TRUE(run.stood);
   EXPECT_NEAR(run.largest_shift, 29.0 / 60.0 * 0.1, 0.015);
 }

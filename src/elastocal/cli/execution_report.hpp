@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/planning/execute_motion.hpp"
+
+namespace elastocal::cli {
+
+/// A table of what each way to know the robot gave.
+std::string DescribeExecutions(const std::vector<Execution>& executions);
+
+}  // namespace elastocal::cli

@@ -1,0 +1,270 @@
+#include "elastocal/planning/execute_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/parallel.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/planning/compensate_motion.hpp"
+#include "elastocal/planning/simulate_experiment.hpp"
+
+namespace elastocal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kBeforeLanding = 0.05;  // s
+constexpr int kEvery = 10;               // looks of 10 ms between two comparisons
+
+class Sum {
+ public:
+  void Add(const Transform& wanted, const Transform& got) {
+    Add((got.translation() - wanted.translation()).norm(),
+        Eigen::AngleAxisd(wanted.linear().transpose() * got.linear()).angle());
+  }
+  void Add(double distance, double angle) {
+    squares_ += distance * distance;
+    turns_ += angle * angle;
+    result_.max_m = std::max(result_.max_m, distance);
+    result_.max_rad = std::max(result_.max_rad, angle);
+    ++result_.samples;
+  }
+  PlaceError Result() const {
+    PlaceError result = result_;
+    if (result.samples > 0) {
+      result.rms_m = std::sqrt(squares_ / result.samples);
+      result.rms_rad = std::sqrt(turns_ / result.samples);
+    }
+    return result;
+  }
+
+ private:
+  PlaceError result_;
+  double squares_ = 0.0, turns_ = 0.0;
+};
+
+/// Compares where a robot is with where the plan has it.
+class PlanWatch {
+ public:
+  PlanWatch(const Project& project, const TrueRobot& robot, const JointMotion& plan)
+      : project_(project), robot_(robot), plan_(plan) {
+    for (const Chain& chain : project.chains) {
+      const int body = project.tree.links[static_cast<std::size_t>(chain.tip_link)].body;
+      const bool is_foot =
+          std::any_of(project.soles.begin(), project.soles.end(),
+                      [&](const Sole& sole) { return sole.link == chain.tip_link; });
+      const bool known = std::count(hands_links_.begin(), hands_links_.end(), chain.tip_link) > 0;
+      if (is_foot || known || JointsToBody(project.tree, body).size() < 6) continue;
+      hands_links_.push_back(chain.tip_link);
+    }
+    MarkLandings();
+  }
+
+  void Look(Eigen::Index sample, const Eigen::VectorXd& planned, const VirtualRobot& body) {
+    const int landing = landing_[static_cast<std::size_t>(sample)];
+    const bool lands = landing >= 0 && landing != last_landing_;
+    if (++looks_ % kEvery != 0 && !lands) return;
+    const std::vector<int>& support = plan_.support[static_cast<std::size_t>(sample)];
+    const std::vector<Transform> T_root_link = LinkTransforms(project_.tree, planned);
+    const Transform T_wanted = T_root_link[static_cast<std::size_t>(support.front())].inverse();
+    const Transform T_got = SolePose(support.front(), body).inverse();
+    if (lands) {
+      last_landing_ = landing;
+      const int link = landing_link_[static_cast<std::size_t>(landing)];
+      landing_sum_.Add(T_wanted * T_root_link[static_cast<std::size_t>(link)],
+                       T_got * SolePose(link, body));
+    }
+    if (looks_ % kEvery != 0) return;
+    for (int link : hands_links_) {
+      hands_.Add(T_wanted * T_root_link[static_cast<std::size_t>(link)],
+                 T_got * body.LinkPose(link));
+    }
+    for (const Sole& sole : project_.soles) {
+      if (std::count(support.begin(), support.end(), sole.link) > 0) continue;
+      feet_.Add(T_wanted * T_root_link[static_cast<std::size_t>(sole.link)],
+                T_got * SolePose(sole.link, body));
+    }
+    waist_.Add(T_wanted, T_got * body.WaistPose());
+    AddCentreOfMass(T_wanted, T_root_link, T_got, body);
+  }
+
+  void Store(Execution& execution) const {
+    execution.hands = hands_.Result();
+    execution.swinging_feet = feet_.Result();
+    execution.landing = landing_sum_.Result();
+    execution.waist = waist_.Result();
+    execution.centre_of_mass = com_.Result();
+  }
+
+ private:
+  /// The sample shortly before each time that the plan sets a foot down.
+  void MarkLandings() {
+    const std::size_t count = plan_.support.size();
+    landing_.assign(count, -1);
+    for (std::size_t i = 1; i < count; ++i) {
+      for (int link : plan_.support[i]) {
+        const std::vector<int>& before = plan_.support[i - 1];
+        if (before.empty() || std::count(before.begin(), before.end(), link) > 0) continue;
+        std::size_t early = i - 1;
+        const auto time = [&](std::size_t at) {
+          return plan_.time_s[static_cast<Eigen::Index>(at)];
+        };
+        while (early > 0 && time(i) - time(early) < kBeforeLanding) --early;
+        landing_[early] = static_cast<int>(landing_link_.size());
+        landing_link_.push_back(link);
+      }
+    }
+  }
+
+  Transform SolePose(int link, const VirtualRobot& body) const {
+    for (std::size_t i = 0; i < project_.soles.size(); ++i) {
+      if (project_.soles[i].link == link) return body.SolePose(static_cast<int>(i));
+    }
+    return body.LinkPose(link);
+  }
+
+  void AddCentreOfMass(const Transform& T_wanted, const std::vector<Transform>& T_root_link,
+                       const Transform& T_got, const VirtualRobot& body) {
+    Eigen::Vector3d wanted = Eigen::Vector3d::Zero(), got = Eigen::Vector3d::Zero();
+    double wanted_mass = 0.0, got_mass = 0.0;
+    for (std::size_t i = 0; i < T_root_link.size(); ++i) {
+      const Link& nominal = project_.tree.links[i];
+      const Link& real = robot_.tree.links[i];
+      wanted_mass += nominal.mass;
+      wanted += nominal.mass * (T_root_link[i] * nominal.com);
+      got_mass += real.mass;
+      got += real.mass * (body.LinkPose(static_cast<int>(i)) * real.com);
+    }
+    com_.Add(
+        (T_wanted * Eigen::Vector3d(wanted / wanted_mass) - T_got * Eigen::Vector3d(got / got_mass))
+            .norm(),
+        0.0);
+  }
+
+  const Project& project_;
+  const TrueRobot& robot_;
+  const JointMotion& plan_;
+  std::vector<int> hands_links_, landing_, landing_link_;
+  int last_landing_ = -1;
+  long looks_ = 0;
+  Sum hands_, feet_, landing_sum_, waist_, com_;
+};
+
+void CheckPlan(const JointMotion& planned) {
+  const bool stands = !planned.support.empty() &&
+                      std::none_of(planned.support.begin(), planned.support.end(),
+                                   [](const std::vector<int>& links) { return links.empty(); });
+  if (planned.time_s.size() < 3 || !stands) {
+    throw InputError(planned.source +
+                     ": a motion with times and a foot on the floor in every sample was expected");
+  }
+}
+
+/// What is commanded for the plan.
+Eigen::MatrixXd Commands(const Project& project, const StoredCalibration& calibration,
+                         const JointMotion& planned, DeployAs as) {
+  if (as == DeployAs::kNominal) return planned.q;
+  const RuntimeContent content =
+      as == DeployAs::kUrdf ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
+  CompensatedMotion corrected =
+      CompensateMotion(project, MakeRuntimeModel(project, calibration, content), planned);
+  if (!corrected.broken.empty()) {
+    throw InputError(planned.source + ": cannot be corrected for this robot (" + DeployName(as) +
+                     "): " + corrected.broken.front());
+  }
+  return std::move(corrected.planned.motion.q);
+}
+
+/// What a critically damped servo of this frequency must be told so that it follows q: the inverse
+/// of its lag, by differences of the samples.
+Eigen::MatrixXd FeedForward(const Eigen::MatrixXd& q, const Eigen::VectorXd& time_s,
+                            double frequency, double lag_s) {
+  Eigen::MatrixXd command = q;
+  for (Eigen::Index i = 1; i + 1 < q.rows(); ++i) {
+    const double step = 0.5 * (time_s[i + 1] - time_s[i - 1]);
+    const Eigen::RowVectorXd speed = (q.row(i + 1) - q.row(i - 1)) / (2.0 * step);
+    const Eigen::RowVectorXd change =
+        (q.row(i + 1) - 2.0 * q.row(i) + q.row(i - 1)) / (step * step);
+    command.row(i) += lag_s * speed + change / (frequency * frequency);
+  }
+  return command;
+}
+
+Json ErrorJson(const PlaceError& error) {
+  constexpr double kDegreesARadian = 180.0 / M_PI;
+  return {{"rms_mm", 1e3 * error.rms_m},
+          {"max_mm", 1e3 * error.max_m},
+          {"rms_deg", kDegreesARadian * error.rms_rad},
+          {"max_deg", kDegreesARadian * error.max_rad},
+          {"samples", error.samples}};
+}
+
+}  // namespace
+
+const char* DeployName(DeployAs as) {
+  constexpr std::array kNames = {"nominal", "urdf", "compensated"};
+  return kNames[static_cast<std::size_t>(as)];
+}
+
+std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibration& calibration,
+                                      const JointMotion& planned, const DeployOptions& options,
+                                      const Progress& progress) {
+  constexpr double kHeld = 20.0;  // times stiffer: what integration makes of a servo
+  CheckPlan(planned);
+  const DescribedRobot described = DescribeRobot(project);
+  const TrueRobot robot = DrawTrueRobot(
+      NominalRobot(described.tree, described.markers, FindLegs(described.tree, described.chains),
+                   described.torque_sensors),
+      options.truth);
+  PhysicsOptions physics = options.physics;
+  physics.servo_stiffness *= kHeld;
+  physics.sliding_servo_stiffness *= kHeld;
+  std::vector<Eigen::MatrixXd> commands(options.as.size());
+  ForAll(commands.size(), options.threads, [&](std::size_t i) {
+    commands[i] = FeedForward(Commands(project, calibration, planned, options.as[i]),
+                              planned.time_s, physics.servo_frequency, 2.0 / physics.servo_frequency - physics.time_step_s);
+  });
+  std::vector<Execution> executions(2 * options.as.size());
+  const auto play = [&](std::size_t i) {
+    Execution& execution = executions[i];
+    execution.as = options.as[i / 2];
+    execution.stabilised = i % 2 == 0;
+    Stabiliser stabiliser(project.tree, project.soles);
+    PlanWatch watch(project, robot, planned);
+    execution.run = StandThrough(
+        robot, project.soles, planned, physics,
+        {.stabiliser = execution.stabilised ? &stabiliser : nullptr,
+         .commanded = &commands[i / 2],
+         .watch = [&](Eigen::Index sample, const Eigen::VectorXd& posture,
+                      const VirtualRobot& body) { watch.Look(sample, posture, body); }});
+    watch.Store(execution);
+  };
+  ForAll(executions.size(), options.threads, play, progress);
+  return executions;
+}
+
+std::string FormatExecutions(const std::vector<Execution>& executions) {
+  Json json;
+  json["executions"] = Json::array();
+  for (const Execution& one : executions) {
+    json["executions"].push_back({{"as", DeployName(one.as)},
+                                  {"stabilised", one.stabilised},
+                                  {"stood", one.run.stood},
+                                  {"time_s", one.run.time_s},
+                                  {"hands", ErrorJson(one.hands)},
+                                  {"swinging_feet", ErrorJson(one.swinging_feet)},
+                                  {"landing", ErrorJson(one.landing)},
+                                  {"waist", ErrorJson(one.waist)},
+                                  {"centre_of_mass", ErrorJson(one.centre_of_mass)},
+                                  {"stabiliser_largest_shift_mm", 1e3 * one.run.largest_shift},
+                                  {"least_zmp_margin_mm", 1e3 * one.run.least_zmp_margin},
+                                  {"largest_lean_deg", one.run.largest_lean * 180.0 / M_PI}});
+  }
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/io/calibration_file.hpp"
+#include "elastocal/io/project.hpp"
+#include "elastocal/math/progress.hpp"
+#include "elastocal/simulation/stand_through.hpp"
+
+namespace elastocal {
+
+/// What the controller of a robot knows of it.
+enum class DeployAs {
+  kNominal,     ///< the URDF as it was: joints follow the plan
+  kUrdf,        ///< the calibrated URDF: joints put its rigid kinematics where the plan meant
+  kCompensated  ///< geometry and elasticity: the plan as `compensate` corrects it
+};
+
+/// "nominal", "urdf", "compensated".
+const char* DeployName(DeployAs as);
+
+/// How far something was from where the plan meant it, over all samples: root mean square and
+/// largest value.
+struct PlaceError {
+  double rms_m = 0.0, max_m = 0.0;
+  double rms_rad = 0.0, max_rad = 0.0;
+  int samples = 0;
+};
+
+/// A motion as a robot executed it. Poses are measured by the simulator, in the frame of the first
+/// foot that the plan has on the floor, and compared with those of the nominal robot in the plan.
+struct Execution {
+  DeployAs as = DeployAs::kNominal;
+  bool stabilised = false;
+  StandingRun run;
+  PlaceError hands;  ///< tips of chains that are no legs and have six joints or more
+  PlaceError swinging_feet;
+  PlaceError landing;  ///< of a swinging foot 50 ms before the plan sets it down
+  PlaceError waist;    ///< the root link
+  PlaceError centre_of_mass;
+};
+
+struct DeployOptions {
+  std::vector<DeployAs> as = {DeployAs::kNominal, DeployAs::kUrdf, DeployAs::kCompensated};
+  TruthOptions truth = {};  ///< the robot's errors: those of the robot that was calibrated
+  PhysicsOptions physics = {};
+  int threads = 2;  ///< robots at a time; the result does not depend on it
+};
+
+/// Plays a planned motion on one robot with errors that stands free, once for each way to know it,
+/// with and without a stabiliser. All controllers hold the positions that they command against the
+/// load (their servos integrate) and feed forward what their servos lag behind. Progress counts
+/// runs.
+///
+/// Throws InputError for a motion without time or support, or with samples on no foot; a
+/// calibration of another robot; and a motion that cannot be corrected within the limits of the
+/// joints.
+std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibration& calibration,
+                                      const JointMotion& planned, const DeployOptions& options,
+                                      const Progress& progress = {});
+
+/// For programs (JSON) and for people.
+std::string FormatExecutions(const std::vector<Execution>& executions);
+
+}  // namespace elastocal
