@@ -54,5 +54,6 @@ void AddAssess(CLI::App& app, Action& action);
 void AddReport(CLI::App& app, Action& action);
 void AddPlan(CLI::App& app, Action& action);
 void AddCompensate(CLI::App& app, Action& action);
+void AddExport(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

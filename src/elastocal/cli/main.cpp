@@ -104,6 +104,7 @@ int Run(int argc, char** argv) {
   AddAssess(app, action);
   AddReport(app, action);
   AddPlan(app, action);
+  AddExport(app, action);
   AddCompensate(app, action);
   if (argc == 3 && std::string(argv[1]) == "--generate") return Generate(app, argv[2]);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {

@@ -1,0 +1,79 @@
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/option_checks.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/pipeline/export_calibration.hpp"
+#include "elastocal/report/version.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+struct ExportCommand {
+  std::string calibration, project, output;
+  bool quiet = false;
+  ExportOptions options;
+};
+
+int Export(const ExportCommand& command) {
+  const CalibratedRobot robot = OpenCalibratedRobot(command.calibration, command.project);
+  OutputSet outputs;
+  outputs.Protect(robot.inputs);
+  outputs.Declare(command.output);
+  outputs.Prepare();
+  ExportOptions options = command.options;
+  options.version = ProgramVersion();
+  outputs.Set(command.output, ExportCalibration(robot, options));
+  outputs.Publish();
+  Print(command.quiet, fmt::format("Written: {}\n", command.output));
+  return kFine;
+}
+
+}  // namespace
+
+void AddExport(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ExportCommand>();
+  CLI::App* command = app.add_subcommand(
+      "export", "Write a calibration in a form that controllers and ROS read (docs/deploy.md)");
+  command
+      ->add_option("calibration", options->calibration,
+                   "Output folder of calibrate, or a calibration.yaml")
+      ->required();
+  std::string help = "One of";
+  std::vector<std::string> names;
+  for (const ExportFormat& format : ExportFormats()) {
+    help += fmt::format("{} {}: {}", names.empty() ? "" : ";", format.name, format.what);
+    names.push_back(format.name);
+  }
+  command->add_option("--format", options->options.format, help)
+      ->required()
+      ->transform(CLI::IsMember(names, CLI::ignore_case))
+      ->type_name("NAME");
+  command->add_option("-o,--output", options->output, "The file to write")
+      ->required()
+      ->check(IsNamed)
+      ->type_name("FILE");
+  command
+      ->add_option("--project", options->project,
+                   "Project file; default: the one that runs.json beside the calibration names")
+      ->type_name("FILE");
+  command
+      ->add_option("--prefix", options->options.prefix,
+                   "Beginning of all names in C; default: the robot's name")
+      ->check(IsNamed)
+      ->type_name("NAME");
+  command
+      ->add_option("--min-significance", options->options.least_significance,
+                   "Joints whose errors are all below so many standard deviations stay nominal")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->add_flag("--quiet,-q", options->quiet, "Print nothing but warnings and errors");
+  command->footer("Example: elastocal export out --format c99 -o talos_model.h");
+  command->callback([&action, options] { action = [options] { return Export(*options); }; });
+}
+
+}  // namespace elastocal::cli

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastocal/pipeline/calibrated_robot.hpp"
+
+namespace elastocal {
+
+/// A form in which a calibration leaves the program.
+struct ExportFormat {
+  std::string name;  ///< as the command line has it
+  std::string what;  ///< in a few words
+};
+
+/// c99, runtime, urdf, urdf_encoder, xacro, pal, ros2_control.
+std::vector<ExportFormat> ExportFormats();
+
+struct ExportOptions {
+  std::string format = "urdf";
+  std::string prefix;  ///< of names in C; empty: that of the robot
+  /// Only joints of which the calibration tells a displacement of at least so many standard
+  /// deviations are exported; the others stay nominal. 0: all.
+  double least_significance = 0.0;
+  std::string version;  ///< of the program, for comments
+};
+
+/// A calibration as text in a format:
+///
+/// - c99: one self-contained header (runtime/c_header.hpp), with elasticity,
+/// - runtime: the file that Compensator reads (runtime/runtime_model.hpp), with elasticity,
+/// - urdf: the user's URDF with changed joint origins,
+/// - urdf_encoder: the same with the joints' zeros apart, in comments of their joints,
+/// - xacro: what is added to the origins of the URDF, as xacro properties,
+/// - pal: the seven numbers of each joint (xyz, rpy, zero of the encoder) as YAML,
+/// - ros2_control: the zeros of the encoders as offsets of SimpleTransmission.
+///
+/// A URDF is read back and compared with the model at 1000 postures (1e-9) before it is returned.
+/// Throws InputError for an unknown format, with the nearest known one.
+std::string ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options);
+
+}  // namespace elastocal

@@ -1,0 +1,276 @@
+#include "elastocal/runtime/c_header.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+
+namespace elastocal {
+namespace {
+
+bool IsCName(const std::string& name) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  return !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
+         std::all_of(name.begin(), name.end(), fits);
+}
+
+std::string CNumber(double value) {
+  if (std::isinf(value)) return value > 0 ? "1e308" : "-1e308";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+template <typename List>
+std::string NumberList(const List& values) {
+  std::string text;
+  for (double value : values) text += (text.empty() ? "" : ", ") + CNumber(value);
+  return "{" + text + "}";
+}
+
+std::string IndexList(const int* values, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? ", " : "") + std::to_string(values[i]);
+  return "{" + text + "}";
+}
+
+std::string PoseText(const ec_pose& pose) {
+  return "{" + NumberList(pose.R) + ", " + NumberList(pose.p) + "}";
+}
+
+std::string FrameText(const ec_frame& frame) {
+  return "{" + std::to_string(frame.body) + ", " + PoseText(frame.pose) + "}";
+}
+
+std::string JointText(const ec_joint& joint) {
+  std::ostringstream out;
+  out << "{" << joint.parent << ", " << joint.coordinate << ", " << joint.prismatic << ", "
+      << CNumber(joint.multiplier) << ", " << CNumber(joint.offset) << ",\n     "
+      << PoseText(joint.twisted) << ",\n     " << CNumber(joint.theta) << ", " << CNumber(joint.r)
+      << ", " << CNumber(joint.centre) << ", " << NumberList(joint.compliance) << ",\n     "
+      << PoseText(joint.body) << "}";
+  return out.str();
+}
+
+std::string FootText(const ec_foot& foot) {
+  return "{" + FrameText(foot.sole) + ", " + NumberList(foot.centre) + ", " + NumberList(foot.up) +
+         ",\n     " + NumberList(foot.compliance) + "}";
+}
+
+std::string TipText(const ec_tip& tip) {
+  return "{" + FrameText(tip.frame) + ", " + std::to_string(tip.foot) + ", " +
+         std::to_string(tip.branch) + ", " + std::to_string(tip.freedom) + "}";
+}
+
+std::string UpperName(const std::string& name) {
+  std::string upper;
+  for (unsigned char c : name) {
+    upper += std::isalnum(c) != 0 ? static_cast<char>(std::toupper(c)) : '_';
+  }
+  return upper;
+}
+
+/// A comment may not end early.
+std::string CommentText(std::string text) {
+  for (std::size_t at = 0; (at = text.find("*/", at)) != std::string::npos;) text[at] = ' ';
+  return text;
+}
+
+/// One header in the making.
+class CHeaderWriter {
+ public:
+  CHeaderWriter(const Compensator& robot, const CHeaderOptions& options)
+      : robot_(robot.robot()), model_(robot.model()), options_(options), name_(options.prefix) {}
+
+  std::string Write() {
+    const std::string guard = UpperName(name_) + "_H";
+    out_ << "/* " << CommentText(options_.heading) << " */\n#ifndef " << guard << "\n#define "
+         << guard << "\n\n"
+         << kRuntimeCore << "\n";
+    Indices("Q", model_.coordinate_names, "entries of q");
+    Indices("JOINT", model_.joint_names, "entries of torques");
+    Indices("LINK", model_.link_names, "entries of the links of forward");
+    Indices("TIP", model_.tip_names, "entries of the targets of command_poses");
+    Feet();
+    Constants();
+    Robot();
+    State();
+    Functions();
+    out_ << "#endif /* " << guard << " */\n";
+    return out_.str();
+  }
+
+ private:
+  void Indices(const char* kind, const std::vector<std::string>& names, const char* what) {
+    const std::string begin = UpperName(name_) + "_" + kind + "_";
+    out_ << "/* " << what << " */\nenum {\n";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      out_ << "  " << begin << UpperName(names[i]) << " = " << i << ",\n";
+    }
+    out_ << "  " << UpperName(name_) << "_" << kind << "_COUNT = " << names.size() << "\n};\n\n";
+  }
+
+  void Feet() {
+    out_ << "/* feet that stand, to be added up; 0: the root link is held */\nenum {\n  "
+         << UpperName(name_) << "_HELD = 0";
+    for (std::size_t i = 0; i < model_.foot_names.size(); ++i) {
+      out_ << ",\n  " << UpperName(name_) << "_ON_" << UpperName(model_.foot_names[i]) << " = "
+           << (1U << i);
+    }
+    out_ << "\n};\n\n";
+  }
+
+  template <typename Items, typename Text>
+  void Table(const char* type, const char* name, const Items& items, const Text& text,
+             const std::vector<std::string>* names = nullptr) {
+    out_ << "static const " << type << " " << name_ << "_" << name << "["
+         << std::max<std::size_t>(1, items.size()) << "] = {";
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      out_ << (i > 0 ? "," : "") << "\n";
+      if (names != nullptr) Comments((*names)[i]);
+      out_ << "    " << text(items[i]);
+    }
+    out_ << (items.empty() ? "{0}" : "") << "};\n\n";
+  }
+
+  void Comments(const std::string& name) {
+    out_ << "    /* " << CommentText(name);
+    const auto lines = options_.comments.find(name);
+    if (lines != options_.comments.end()) {
+      for (const std::string& line : lines->second) out_ << "\n       " << CommentText(line);
+    }
+    out_ << " */\n";
+  }
+
+  void Numbers(const char* name, const double* values, std::size_t count) {
+    out_ << "static const double " << name_ << "_" << name << "[" << count << "] = {";
+    for (std::size_t i = 0; i < count; ++i) {
+      out_ << (i == 0 ? "" : ",") << (i % 6 == 0 ? "\n    " : " ") << CNumber(values[i]);
+    }
+    out_ << "};\n\n";
+  }
+
+  void Whole(const char* name, const int* values, std::size_t count) {
+    out_ << "static const int " << name_ << "_" << name << "[" << count
+         << "] = " << IndexList(values, count) << ";\n\n";
+  }
+
+  void Constants() {
+    Table("ec_joint", "nominal", model_.nominal, JointText);
+    Table("ec_joint", "calibrated", model_.calibrated, JointText, &model_.joint_names);
+    Table("ec_frame", "link", model_.links, FrameText);
+    // An empty list has one entry, which nothing reads.
+    std::vector<ec_foot> feet = model_.feet;
+    std::vector<std::string> names = model_.foot_names;
+    if (feet.empty()) {
+      feet.emplace_back();
+      names.emplace_back("none");
+    }
+    Table("ec_foot", "foot", feet, FootText, &names);
+    std::vector<ec_tip> tips = model_.tips;
+    if (tips.empty()) tips.emplace_back();
+    Table("ec_tip", "tip", tips, TipText);
+    Numbers("mass", model_.mass.data(), model_.mass.size());
+    Numbers("moment", model_.moment.data(), model_.moment.size());
+    Numbers("lower", model_.lower.data(), model_.lower.size());
+    Numbers("upper", model_.upper.data(), model_.upper.size());
+    Whole("leg_of_body", model_.leg_of_body.data(), model_.leg_of_body.size());
+    const auto coordinates = static_cast<std::size_t>(robot_.coordinates);
+    Whole("branch_of_q", robot_.branch_of_coordinate, coordinates);
+    Whole("column_of_q", robot_.column_of_coordinate, coordinates);
+    const int none = 0;
+    const bool any = robot_.branches > 0;
+    Whole("branch_size", any ? robot_.branch_size : &none,
+          any ? static_cast<std::size_t>(robot_.branches) : 1);
+  }
+
+  void Robot() {
+    out_ << "static const ec_robot " << name_ << "_robot = {\n    " << robot_.joints << ", "
+         << robot_.coordinates << ", " << robot_.links << ", " << robot_.feet << ", " << robot_.tips
+         << ", " << robot_.branches << ",\n    ";
+    for (const char* table :
+         {"nominal", "calibrated", "mass", "moment", "leg_of_body", "link", "foot", "tip",
+          "branch_of_q", "column_of_q", "branch_size", "lower", "upper"}) {
+      out_ << name_ << "_" << table << ", ";
+    }
+    out_ << "\n    " << CNumber(robot_.total_mass) << ", " << CNumber(robot_.gravity) << ", "
+         << CNumber(robot_.torque_gain) << ", " << CNumber(robot_.largest_turn) << ", "
+         << CNumber(robot_.largest_shift) << ", " << CNumber(robot_.largest_correction) << "};\n\n";
+  }
+
+  void State() {
+    int largest = 1;
+    for (int i = 0; i < robot_.branches; ++i) largest = std::max(largest, robot_.branch_size[i]);
+    const auto array = [&](const char* type, const char* name, int count) {
+      out_ << "  " << type << " " << name << "[" << std::max(1, count) << "];\n";
+    };
+    out_ << "/* Working memory and last good input of one controller: static or on its stack. */\n"
+            "typedef struct {\n";
+    for (const char* name : {"body"}) array("ec_pose", name, robot_.joints + 1);
+    array("ec_pose", "twisted", robot_.joints);
+    array("ec_pose", "target", robot_.tips);
+    array("ec_pose", "sole", robot_.feet);
+    array("double", "motion", 3 * robot_.joints);
+    array("double", "axis", 3 * robot_.joints);
+    array("double", "beyond", 4 * (robot_.joints + 1));
+    array("double", "load", 3 * robot_.joints);
+    array("double", "normal", largest * largest);
+    array("double", "gradient", largest);
+    array("double", "column", 6 * 64);
+    array("double", "good_q", robot_.coordinates);
+    array("double", "good_torque", robot_.joints);
+    array("double", "work_q", robot_.coordinates);
+    array("double", "centre", 3 * robot_.feet);
+    array("double", "share", robot_.feet);
+    out_ << "  ec_memory memory;\n} " << name_ << "_state;\n\n";
+    out_ << "/* To be called once before anything else. */\nstatic inline void " << name_
+         << "_init(" << name_ << "_state* s) {\n  ec_memory* m = &s->memory;\n";
+    for (const char* name :
+         {"body", "twisted", "target", "sole", "motion", "axis", "beyond", "load", "normal",
+          "gradient", "column", "good_q", "good_torque", "work_q", "centre", "share"}) {
+      out_ << "  m->" << name << " = s->" << name << ";\n";
+    }
+    out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";
+  }
+
+  void Functions() {
+    const std::string state = name_ + "_state* s", robot = "&" + name_ + "_robot";
+    out_ << "/* See ec_forward, ec_correct, ec_command and ec_command_poses above. */\n";
+    out_ << "static inline unsigned " << name_ << "_forward(" << state
+         << ", const double* q, const double* torque,\n    unsigned feet, ec_pose* links, "
+            "ec_pose* root) {\n  return ec_forward("
+         << robot << ", q, torque, feet, &s->memory, links, root);\n}\n\n";
+    out_ << "static inline unsigned " << name_ << "_correct(" << state
+         << ", const double* q, const double* torque,\n    unsigned feet, double* rigid, double* "
+            "displacement) {\n  return ec_correct("
+         << robot << ", q, torque, feet, &s->memory, rigid, displacement);\n}\n\n";
+    out_ << "static inline unsigned " << name_ << "_command(" << state
+         << ", const double* nominal, const double* torque,\n    unsigned feet, double* command, "
+            "double* residual) {\n  return ec_command("
+         << robot << ", nominal, torque, feet, &s->memory, command, residual);\n}\n\n";
+    out_ << "static inline unsigned " << name_ << "_command_poses(" << state
+         << ", const ec_pose* targets,\n    const double* nominal, const double* torque, unsigned "
+            "feet, double* command,\n    double* residual) {\n  return ec_command_poses("
+         << robot << ", targets, nominal, torque, feet, &s->memory, command, residual);\n}\n\n";
+  }
+
+  const ec_robot& robot_;
+  const RuntimeModel& model_;
+  const CHeaderOptions& options_;
+  const std::string name_;
+  std::ostringstream out_;
+};
+
+}  // namespace
+
+std::string MakeCHeader(RuntimeModel model, const CHeaderOptions& options) {
+  if (!IsCName(options.prefix)) {
+    throw std::invalid_argument("prefix '" + options.prefix + "': a C name was expected");
+  }
+  const Compensator robot(std::move(model), options.limits);
+  return CHeaderWriter(robot, options).Write();
+}
+
+}  // namespace elastocal

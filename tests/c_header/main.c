@@ -1,0 +1,34 @@
+/* Reads postures and prints what the header makes of them, as write_header.cpp does. */
+#include <stdio.h>
+
+#include "robot.h"
+
+static robot_state state;
+
+static void print(const double* values, int count) {
+  int i;
+  for (i = 0; i < count; ++i) printf("%a\n", values[i]);
+}
+
+int main(void) {
+  double q[ROBOT_Q_COUNT], out[ROBOT_Q_COUNT], six[6], residual[2];
+  ec_pose links[ROBOT_LINK_COUNT], root;
+  unsigned feet;
+  robot_init(&state);
+  while (scanf("%u", &feet) == 1) {
+    int i;
+    for (i = 0; i < ROBOT_Q_COUNT; ++i) {
+      if (scanf("%lf", &q[i]) != 1) return 1;
+    }
+    robot_forward(&state, q, 0, feet, links, &root);
+    print(links[5].p, 3);
+    print(root.p, 3);
+    robot_correct(&state, q, 0, feet, out, six);
+    print(out, ROBOT_Q_COUNT);
+    print(six, 6);
+    robot_command(&state, q, 0, feet, out, residual);
+    print(out, ROBOT_Q_COUNT);
+    print(residual, 1);
+  }
+  return 0;
+}

@@ -1,0 +1,26 @@
+# The header that `elastocal export --format c99` writes: each C compiler here takes it without a
+# warning, and the program gives the bits of the library.
+#   cmake -DWRITER=... -DSOURCE=... -DWORK=... -P run.cmake
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+execute_process(COMMAND ${WRITER} ${WORK} COMMAND_ERROR_IS_FATAL ANY)
+foreach(compiler gcc clang clang-14 g++)
+  find_program(${compiler}_found ${compiler})
+  if(NOT ${compiler}_found)
+    continue()
+  endif()
+  set(language -std=c99)
+  if(compiler STREQUAL g++)
+    set(language -x c++ -std=c++20 -Wold-style-cast)
+  endif()
+  execute_process(COMMAND ${${compiler}_found} ${language} -O2 -Wall -Wextra -Wpedantic -Wshadow
+    -Wconversion -Werror -I${WORK} ${SOURCE}/main.c -o ${WORK}/${compiler} -lm COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${WORK}/${compiler} INPUT_FILE ${WORK}/postures.txt
+    OUTPUT_FILE ${WORK}/${compiler}.txt COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${WORK}/expected.txt ${WORK}/${compiler}.txt
+    RESULT_VARIABLE differs)
+  if(differs)
+    message(FATAL_ERROR "${compiler}: other bits than the library's, see ${WORK}/${compiler}.txt")
+  endif()
+  message(STATUS "${compiler}: the same bits")
+endforeach()

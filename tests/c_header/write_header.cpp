@@ -1,0 +1,52 @@
+// Writes a C99 header of a robot with errors, postures, and what the library makes of them:
+//   write_header FOLDER
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/runtime/c_header.hpp"
+#include "tests/runtime_calibration.hpp"
+#include "tests/test_files.hpp"
+
+int main(int argc, char** argv) {
+  using namespace elastocal;
+  if (argc != 2) return 2;
+  const std::filesystem::path folder = argv[1];
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const RuntimeModel model = MakeRuntimeModel(project, RandomCalibration(project, 3));
+  std::ofstream(folder / "robot.h")
+      << MakeCHeader(model, {.prefix = "robot", .heading = "for the test */ of comments"});
+  std::ofstream postures(folder / "postures.txt"), expected(folder / "expected.txt");
+  Compensator robot(model);
+  Random random(1);
+  const auto print = [&](double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%a\n", value);
+    expected << text;
+  };
+  for (int i = 0; i < 20; ++i) {
+    Eigen::VectorXd q = project.motion.rest;
+    for (double& position : q) position += random.Uniform(-0.15, 0.15);
+    const StandingFeet feet = static_cast<StandingFeet>(i % 4);
+    postures << feet;
+    for (double position : q) {
+      char text[40];
+      std::snprintf(text, sizeof text, " %a", position);
+      postures << text;
+    }
+    postures << "\n";
+    robot.Forward(q, Eigen::VectorXd(), feet);
+    for (int row = 0; row < 3; ++row) print(robot.link_pose(5).translation()[row]);
+    for (int row = 0; row < 3; ++row) print(robot.root_pose().translation()[row]);
+    robot.Correct(q, Eigen::VectorXd(), feet);
+    for (double value : robot.rigid_positions()) print(value);
+    for (double value : robot.root_displacement()) print(value);
+    robot.Command(q, Eigen::VectorXd(), feet);
+    for (double value : robot.command()) print(value);
+    print(robot.residual_m());
+  }
+  return 0;
+}

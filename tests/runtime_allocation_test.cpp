@@ -1,0 +1,65 @@
+// No call of the compensator allocates: malloc, through which operator new goes as well, counts.
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/runtime/compensator.hpp"
+#include "tests/runtime_calibration.hpp"
+#include "tests/test_files.hpp"
+
+namespace {
+
+long allocations = 0;
+bool counting = false;
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  if (counting) ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {  // NOLINT
+  if (counting) ++allocations;
+  return __libc_malloc(size);
+}
+#endif
+
+namespace elastocal {
+namespace {
+
+TEST(RuntimeAllocation, NoCallAllocates) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  Compensator robot(MakeRuntimeModel(project, RandomCalibration(project, 1)));
+  const Eigen::VectorXd q = project.motion.rest, none;
+  const Eigen::VectorXd torque =
+      Eigen::VectorXd::Ones(static_cast<Eigen::Index>(project.tree.joints.size()));
+  std::vector<Eigen::Isometry3d> targets(robot.model().tips.size(), Eigen::Isometry3d::Identity());
+  allocations = 0;
+  counting = true;
+  for (StandingFeet feet : {0U, 1U, 2U, 3U, 7U}) {
+    robot.Forward(q, none, feet);
+    robot.Correct(q, torque, feet);
+    robot.Command(q, none, feet);
+    robot.Command(targets.data(), q, torque, feet);
+  }
+  counting = false;
+  EXPECT_EQ(allocations, 0);
+  counting = true;
+  const Eigen::VectorXd copy = q;  // the hook works
+  counting = false;
+  EXPECT_GT(allocations, 0);
+  EXPECT_EQ(copy, q);
+}
+
+}  // namespace
+}  // namespace elastocal
