@@ -125,6 +125,9 @@ int Plan(const PlanCommand& command) {
           ? PlanMotion(project, postures, options, progress)
           : PlanValidationMotion(project, KindNamed(command.kind), tries.seed, options, progress);
   PrintWarnings(plan.left_out, command.common.verbose);
+  if (project.soles.empty()) {
+    Print(quiet, "The project has no soles: the root link is held still, nothing is balanced\n\n");
+  }
   Print(quiet, SetTable(plan));
   if (plan.impossible.empty()) {
     Print(quiet, "\n" + LimitTable(plan.limits) +

@@ -193,7 +193,7 @@ class ClusterPlacer {
 
   Triple Choose(int body) const {
     constexpr std::size_t kCandidates = 40;
-    constexpr double kLargest = 0.14, kLeast = 0.03;
+    constexpr double kLargest = 0.13, kLeast = 0.03;
     const double largest = kLargest * longest_, least = kLeast * longest_;
     const auto candidates = Spread(CandidatesOf(body), kCandidates, 0.3 * largest);
     if (const auto triple = BestTriple(candidates, largest)) {

@@ -114,7 +114,7 @@ void AddSetups(ProjectDraft& draft) {
     ChainSetup setup = SetupOf(draft, paired ? limb.name : whole,
                                paired ? BodyLink(draft.tree, limb.from_body) : 0, limb.tip_link);
     setup.support = Feet(draft, limb.leg ? static_cast<int>(i) : -1);
-    if (limb.leg && draft.rest.stands) SetLegWorkspace(draft.tree, limb, draft.rest, setup);
+    if (limb.leg && draft.stands) SetLegWorkspace(draft.tree, limb, draft.rest, setup);
     const bool arm = !limb.leg && (paired || limb.from_body == 0) && limb.joints.size() > 2;
     if (arm) SetArmWorkspace(draft.tree, limb, draft.rest, legged, setup);
     draft.designs.push_back(std::move(setup));
@@ -126,11 +126,14 @@ void AddSetups(ProjectDraft& draft) {
   }
 }
 
+/// The palm keeps showing about where it shows at rest, so that cameras see its markers.
+constexpr double kCone = 60.0 * kRadiansPerDegree;
+
 /// Arms of a robot on legs are held ahead, unless somebody has said what its rest is.
 void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
   if (!semantics.states.empty() || draft.soles.empty()) return;
   bool held = false;
-  for (const ChainSetup& setup : draft.designs) {
+  for (ChainSetup& setup : draft.designs) {
     const auto limb = std::find_if(draft.limbs.limbs.begin(), draft.limbs.limbs.end(),
                                    [&](const Limb& l) { return l.tip_link == setup.tip_link; });
     if (limb == draft.limbs.limbs.end() || limb->leg || !setup.box) continue;
@@ -147,10 +150,15 @@ void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
         const double image = map->sign[static_cast<Eigen::Index>(i)] * draft.rest.q[coordinates[i]];
         draft.rest.q[c] = std::clamp(image, range.first[c], range.second[c]);
       }
+      setup.largest_turn = kCone;
       continue;
     }
     const auto pairs = PairsMovedBy(draft.tree, draft.spheres, setup.coordinates, semantics);
-    held |= HoldAhead(draft.tree, draft.spheres, pairs, setup, draft.sphere_margin, draft.rest.q);
+    if (!HoldAhead(draft.tree, draft.spheres, pairs, setup, draft.sphere_margin, draft.rest.q)) {
+      continue;
+    }
+    setup.largest_turn = kCone;
+    held = true;
   }
   if (held) draft.rest.source += ", the hands ahead";
 }
@@ -193,6 +201,22 @@ void JoinMirrors(ProjectDraft& draft) {
   draft.designs = std::move(joined);
 }
 
+/// Whether the legs have six joints of their own each, which `plan` needs to balance.
+bool CanBalance(const RobotTree& tree, const Limbs& limbs) {
+  for (const Limb& limb : limbs.limbs) {
+    if (!limb.leg) continue;
+    if (limb.joints.size() != 6) return false;
+    for (const int k : limb.joints) {
+      const Joint& joint = tree.joints[Size(k)];
+      const auto drivers =
+          std::count_if(tree.joints.begin(), tree.joints.end(),
+                        [&](const Joint& j) { return j.coordinate == joint.coordinate; });
+      if (drivers > 1 || joint.type != JointType::kRevolute) return false;
+    }
+  }
+  return true;
+}
+
 void WarnOfGuesses(ProjectDraft& draft) {
   int guessed = 0;
   for (const BodyShape& body : draft.shapes.bodies) guessed += body.guessed ? 1 : 0;
@@ -203,7 +227,7 @@ void WarnOfGuesses(ProjectDraft& draft) {
         "guessed from joints and masses");
   }
   for (const DraftedSole& sole : draft.soles) {
-    if (!sole.guessed_size && !sole.guessed_height) continue;
+    if (!draft.stands || (!sole.guessed_size && !sole.guessed_height)) continue;
     draft.warnings.push_back(
         "sole " + Quote(sole.link) + ": its " +
         (sole.guessed_height ? "height and size are guesses" : "size is a guess") +
@@ -211,8 +235,12 @@ void WarnOfGuesses(ProjectDraft& draft) {
   }
   if (!draft.soles.empty() && !draft.rest.stands) {
     draft.warnings.push_back(
-        "no posture of rest was found in which the soles are flat on one floor: correct "
-        "design.rest_deg");
+        "no posture of rest was found in which the soles are flat on one floor");
+  }
+  if (!draft.soles.empty() && !draft.stands) {
+    draft.warnings.push_back(
+        "the robot does not balance on one or two legs of six joints each: the draft takes its "
+        "root link to be held still, for instance on a stand");
   }
   for (const Joint& joint : draft.tree.joints) {
     if (joint.mimic || joint.limits.lower < joint.limits.upper) continue;
@@ -237,8 +265,9 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   draft.tree = ParseUrdf(draft.urdf, source);
   NameTips(described, draft);
   draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics);
-  draft.stands = draft.soles.size() <= 2 && !draft.soles.empty() && draft.rest.stands;
-  draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs);
+  draft.stands = draft.soles.size() <= 2 && !draft.soles.empty() && draft.rest.stands &&
+                 CanBalance(draft.tree, draft.limbs);
+  draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
   constexpr double kMargin = 0.004;  // of the longest branch: 5 mm on a robot of 1.75 m
   draft.sphere_margin =
       kMetresPerMm * std::max(1.0, std::round(kMargin * LongestBranch(draft.tree) / kMetresPerMm));

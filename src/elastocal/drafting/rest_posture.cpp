@@ -9,6 +9,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
 namespace {
@@ -132,6 +133,42 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
   return false;
 }
 
+/// Moves each joint outside the legs whose motor cannot hold the weight to the nearest position in
+/// which it can, the root link upright. Returns whether one was moved.
+bool LeanIntoTorques(const RobotTree& tree, const Limbs& limbs, Eigen::VectorXd& q) {
+  constexpr double kShare = 0.8;
+  constexpr int kSteps = 60, kRounds = 3;
+  const auto range = RangesOf(tree, 0.05);
+  std::vector<bool> leg(Size(tree.coordinate_count()), false);
+  for (const Limb& limb : limbs.limbs) {
+    for (const int k : limb.joints) {
+      if (limb.leg) leg[Size(tree.joints[Size(k)].coordinate)] = true;
+    }
+  }
+  bool moved = false;
+  for (int round = 0; round < kRounds; ++round) {
+    for (int c = 0; c < tree.coordinate_count(); ++c) {
+      const double effort = tree.joints[Size(tree.coordinate_joint[Size(c)])].limits.effort;
+      const auto used = [&](double position) {
+        Eigen::VectorXd there = q;
+        there[c] = position;
+        return std::abs(GravityTorques(tree, there)[c]) / effort;
+      };
+      if (leg[Size(c)] || effort <= 0.0 || used(q[c]) <= kShare) continue;
+      const double step = (range.second[c] - range.first[c]) / kSteps;
+      for (int i = 1; i <= kSteps; ++i) {
+        const double less = q[c] - i * step, more = q[c] + i * step;
+        const bool back = less >= range.first[c] && used(less) <= kShare;
+        if (!back && !(more <= range.second[c] && used(more) <= kShare)) continue;
+        q[c] = back ? less : more;
+        moved = true;
+        break;
+      }
+    }
+  }
+  return moved;
+}
+
 bool SameWord(const std::string& name, const std::string& word) {
   std::string letters;
   for (const char c : name) {
@@ -180,6 +217,9 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
     for (const int k : limbs.limbs[Size(sole.limb)].joints) {
       bend = std::max(bend, std::abs(rest.q[tree.joints[Size(k)].coordinate]));
     }
+  }
+  if (LeanIntoTorques(tree, limbs, rest.q)) {
+    rest.source += ", leaning where motors could not hold the weight otherwise";
   }
   constexpr double kLeastBend = 0.3;
   if (!soles.empty() && (!rest.stands || bend < kLeastBend) &&

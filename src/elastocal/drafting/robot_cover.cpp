@@ -115,11 +115,30 @@ class SymmetricCover {
   std::vector<std::vector<CollisionSphere>> covers_;
 };
 
+/// The shapes with those of fingers added to the hands.
+RobotShapes WithFingers(const RobotTree& tree, const RobotShapes& shapes, const Limbs& limbs,
+                        const Eigen::VectorXd& rest) {
+  RobotShapes joined = shapes;
+  const std::vector<Transform> poses = BodyPoses(tree, rest);
+  for (int body = 1; body < tree.body_count(); ++body) {
+    if (!limbs.tool[Size(body)]) continue;
+    int hand = body;
+    while (limbs.tool[Size(hand)]) hand = tree.joints[Size(hand - 1)].parent_body;
+    const Transform T_hand_body = poses[Size(hand)].inverse() * poses[Size(body)];
+    for (const Eigen::Vector3d& p : shapes.bodies[Size(body)].points) {
+      joined.bodies[Size(hand)].points.push_back(T_hand_body * p);
+    }
+    joined.bodies[Size(body)].points.clear();
+  }
+  return joined;
+}
+
 }  // namespace
 
 std::vector<CollisionSphere> CoverRobot(const RobotTree& tree, const RobotShapes& shapes,
-                                        const Limbs& limbs) {
-  std::vector<CollisionSphere> spheres = SymmetricCover(tree, shapes, limbs).Cover();
+                                        const Limbs& limbs, const Eigen::VectorXd& rest) {
+  const RobotShapes joined = WithFingers(tree, shapes, limbs, rest);
+  std::vector<CollisionSphere> spheres = SymmetricCover(tree, joined, limbs).Cover();
   std::set<std::string> names;
   for (CollisionSphere& sphere : spheres) {
     while (!names.insert(sphere.name).second) sphere.name += "_";

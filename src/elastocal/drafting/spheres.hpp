@@ -16,9 +16,10 @@ std::vector<CollisionSphere> CoverPoints(const std::vector<Eigen::Vector3d>& poi
 
 /// Spheres that cover all bodies of the robot, in the frames of the bodies' links, rounded to mm.
 /// Names are unique. What is symmetric to the root link's x-z plane in the zero posture gets
-/// spheres that are.
+/// spheres that are. Fingers, as they are at rest, are
+/// covered together with the hand.
 std::vector<CollisionSphere> CoverRobot(const RobotTree& tree, const RobotShapes& shapes,
-                                        const Limbs& limbs);
+                                        const Limbs& limbs, const Eigen::VectorXd& rest);
 
 /// Pairs of spheres whose distance changes with the joints `coordinates` and that do not lie
 /// against each other by design: not on neighbouring bodies, and not listed by the SRDF as never

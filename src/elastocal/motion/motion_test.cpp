@@ -8,6 +8,7 @@
 #include "elastocal/motion/move_builder.hpp"
 #include "elastocal/motion/plan.hpp"
 #include "elastocal/motion/sampled_motion.hpp"
+#include "elastocal/robot/statics.hpp"
 #include "tests/test_robots.hpp"
 
 namespace elastocal {
@@ -255,9 +256,37 @@ TEST_F(BalancedWalker, ThreadsDoNotMatter) {
   EXPECT_FALSE(Broken(CheckMotion(robot_, first), robot_.limits));
 }
 
+TEST(HeldRobot, VisitsItsPosturesWithoutBalanceAndWithTheTorquesOfStatics) {
+  const Walker walker = MakeWalker();
+  StandingRobot robot(walker.tree, {}, {});
+  StandUp(robot, NeutralPosture(robot.tree, 0.05), {});
+  PostureTour set{"all", {}, {robot.rest, robot.rest}, false, {}};
+  set.postures[0].head<3>() << 0.8, -0.5, 0.3;
+  set.postures[0][5] = -1.0;  // a hip: the legs hang
+  set.postures[1].head<3>() << -0.4, 0.6, -1.0;
+  const PlannedTour planned = PlanTour(robot, set, {});
+  EXPECT_TRUE(planned.left_out.empty());
+  ASSERT_EQ(planned.visits.size(), 2U);
+  MotionForces forces;
+  const MotionMargins margins = CheckMotion(robot, planned.motion, &forces);
+  EXPECT_FALSE(Broken(margins, robot.limits));
+  EXPECT_LT(margins.zmp.sample, 0);  // nothing stands
+  for (const Visit& visit : planned.visits) {
+    const int middle = (visit.begin + visit.end) / 2;
+    const Eigen::VectorXd q = planned.motion.q.row(middle).transpose();
+    EXPECT_LT((q - set.postures[static_cast<std::size_t>(visit.posture)]).norm(), 1e-12);
+    EXPECT_LT((forces.torques.row(middle).transpose() - GravityTorques(robot.tree, q)).norm(),
+              1e-9);
+    EXPECT_EQ(forces.T_world_root[static_cast<std::size_t>(middle)].matrix(),
+              robot.T_world_root.matrix());
+  }
+  // A limit that the way breaks is seen as in any other motion.
+  robot.limits.velocity_share = 1e-4;
+  EXPECT_FALSE(PlanTour(robot, set, {}).left_out.empty());
+}
+
 TEST(StandingRobot, RefusesWhatCannotStand) {
   Walker walker = MakeWalker();
-  EXPECT_THROW(StandingRobot(walker.tree, {}, {}), InputError);
   Sole on_arm{walker.hand, {-0.1, -0.1}, {0.1, 0.1}};
   EXPECT_THROW(StandingRobot(walker.tree, {on_arm}, {}), InputError);
 }

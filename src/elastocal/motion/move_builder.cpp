@@ -59,7 +59,7 @@ Eigen::Vector2d MoveBuilder::HandOver(int onto) const {
 }
 
 bool MoveBuilder::Balanced(const std::vector<int>& standing, PlacedPosture& pose) const {
-  if (options_.balanced) {
+  if (options_.balanced && !robot_.Held()) {
     return BalanceAtRest(robot_, standing, SupportCentre(robot_, standing), pose);
   }
   pose.T_world_root = robot_.T_world_root;
@@ -169,7 +169,7 @@ Eigen::MatrixXd MoveBuilder::WithEnds(const Eigen::MatrixXd& way) const {
 std::optional<Eigen::MatrixXd> MoveBuilder::BalanceAndCheck(const Stretch& stretch,
                                                             Refusal& why) const {
   BalanceOptions balance = options_.balance;
-  if (!options_.balanced) balance.passes = 0;
+  if (!options_.balanced || robot_.Held()) balance.passes = 0;
   BalancedStretch balanced = Balance(robot_, stretch, balance);
   if (!balanced.in_reach) {
     why = OutOfReach();

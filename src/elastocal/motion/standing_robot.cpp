@@ -49,9 +49,9 @@ double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
 
 StandingRobot::StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept)
     : tree(std::move(robot)), inertias(BodyInertias(tree)), soles(std::move(feet)), limits(kept) {
-  if (soles.empty() || soles.size() > 2) {
+  if (soles.size() > 2) {
     throw InputError("robot '" + tree.name + "' has " + std::to_string(soles.size()) +
-                     " feet; expected one or two to balance on");
+                     " feet; expected one or two to balance on, or none");
   }
   for (const Sole& sole : soles) legs.emplace_back(tree, sole.link);
 }
@@ -75,6 +75,10 @@ Eigen::VectorXd NeutralPosture(const RobotTree& tree, double position_margin) {
 
 void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOptions& options) {
   constexpr double kUpright = 0.01;
+  if (robot.Held()) {
+    robot.rest = posture;
+    return;
+  }
   const auto T_root_link =
       LinkTransforms(robot.tree, Eigen::VectorXd::Zero(robot.tree.coordinate_count()));
   PlacedPosture pose{posture, Transform::Identity()};
@@ -103,6 +107,7 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
 
 Eigen::Vector2d SupportCentre(const StandingRobot& robot, const std::vector<int>& feet) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  if (feet.empty()) return sum;
   for (const int foot : feet) {
     const Eigen::Vector2d centre = robot.soles[Size(foot)].centre();
     sum +=

@@ -26,11 +26,12 @@ struct MotionLimits {
   double least_knee = 0.3;  ///< least bend of the knee of a standing leg, rad
 };
 
-/// A robot with its feet on a level floor, z = 0 of the world.
+/// A robot with its feet on a level floor, z = 0 of the world, or one whose root link is held still
+/// at the world's origin (an arm, or a robot on a stand): it has no soles, and nothing balances.
 struct StandingRobot {
   RobotTree tree;
   std::vector<BodyInertia> inertias;
-  std::vector<Sole> soles;     ///< of the feet, one or two
+  std::vector<Sole> soles;     ///< of the feet, one or two; none: the root is held
   std::vector<LegChain> legs;  ///< one for each sole
   Clearances clearances;       ///< between its own parts; may be empty
   MotionLimits limits;
@@ -42,6 +43,7 @@ struct StandingRobot {
   StandingRobot(const StandingRobot&) = delete;  // legs refer to the tree
   StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept);
 
+  bool Held() const { return soles.empty(); }
   std::vector<int> AllFeet() const;
 };
 
@@ -53,7 +55,8 @@ struct StandOptions {
 /// Stands the robot up in a posture (by coordinate). The feet are flat and where they are under the
 /// root link in the zero posture. The root link is upright and as high above the feet as in the
 /// posture, or lower by the drop if its knees are less bent than the limits require. The centre of
-/// mass is over the middle of the support. Throws InputError if the legs cannot do this.
+/// mass is over the middle of the support. A held robot rests in the posture itself. Throws
+/// InputError if the legs cannot do this.
 void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOptions& options);
 
 /// The zero posture, moved inside the joints' limits by the position margin.

@@ -74,7 +74,10 @@ class LimitList {
 
 std::vector<LimitUse> LimitUses(const Project& project, const MotionMargins& margins,
                                 const MotionLimits& limits, double rate_hz) {
-  const auto mm = [](double metres) { return fmt::format("{:.1f}", 1e3 * metres); };
+  // Without the minus of what rounds to zero.
+  const auto mm = [](double metres) {
+    return fmt::format("{:.1f}", std::round(1e4 * metres) / 10.0 + 0.0);
+  };
   const auto percent = [](double share) { return fmt::format("{:.0f}", 100.0 * share); };
   const auto degrees = [](double angle) { return fmt::format("{:.2f}", angle * 180.0 / M_PI); };
   const auto tiny = [](double value) { return fmt::format("{:.0e}", value); };
@@ -184,6 +187,10 @@ std::vector<std::string> ValidationChains(const Project& project) {
 
 std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,
                                    const MotionTrialOptions& options, const Progress& progress) {
+  if (options.robots > 0 && project.soles.empty()) {
+    throw InputError(project.file.string() +
+                     ": no section 'standing' with the soles that robots could stand on");
+  }
   const DescribedRobot described = DescribeRobot(project);
   const TrueRobot nominal =
       NominalRobot(described.tree, described.markers, FindLegs(described.tree, described.chains),
