@@ -173,8 +173,9 @@ void AddContacts(ProjectDraft& draft, const Semantics& semantics) {
     touching = std::max(touching, search.touching_at_rest);
   }
   if (touching > 0) {
-    draft.warnings.push_back(std::to_string(touching) +
-                             " pairs of spheres touch in the posture of rest and are not checked");
+    draft.warnings.push_back(
+        "pairs of spheres that touch in the posture of rest are not checked: " +
+        std::to_string(touching));
   }
 }
 

@@ -127,7 +127,7 @@ TEST(Draft, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
 TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   for (const std::string side : {"left", "right"}) {
-    for (const std::string element :
+    for (const std::string& element :
          {"<link name=\"" + side + "_sole_link\"/>",
           "<joint name=\"leg_" + side + "_sole_fix_joint\" type=\"fixed\">"}) {
       const std::size_t begin = urdf.find(element);

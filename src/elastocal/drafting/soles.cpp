@@ -102,12 +102,9 @@ DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& 
     sole.parent_link = BodyLink(tree, limb.tip_body);
     sole.T_parent_sole = T_root_body.inverse() * T_root_sole;
   }
-  if (shape.guessed) {
-    sole.lower = {-kHeel * length, -kHalfWidth * length};
-    sole.upper = {kToe * length, kHalfWidth * length};
-  } else {
-    MeasureSole(foot, T_root_sole, kThickness, sole);
-  }
+  sole.lower = {-kHeel * length, -kHalfWidth * length};
+  sole.upper = {kToe * length, kHalfWidth * length};
+  if (!shape.guessed) MeasureSole(foot, T_root_sole, kThickness, sole);
   return sole;
 }
 

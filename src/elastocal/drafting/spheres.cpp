@@ -129,6 +129,15 @@ bool Neighbours(const RobotTree& tree, int a, int b) {
          (carrier(b) >= 0 && carrier(carrier(b)) == a);
 }
 
+/// Whether a place of the chain's tip is in its box made wider by a quarter.
+bool NearBox(const ChainSetup& chain, const Eigen::Vector3d& tip) {
+  constexpr double kWider = 0.25;
+  if (!chain.box) return true;
+  const Eigen::Vector3d more = kWider * (chain.box->upper - chain.box->lower);
+  return (tip.array() >= (chain.box->lower - more).array()).all() &&
+         (tip.array() <= (chain.box->upper + more).array()).all();
+}
+
 }  // namespace
 
 std::vector<CollisionSphere> CoverPoints(const Points3& points, double tolerance, int most) {
@@ -179,7 +188,7 @@ ContactSearch FindContacts(const RobotTree& tree, const std::vector<CollisionSph
                            const std::vector<SpherePair>& candidates, const Eigen::VectorXd& rest,
                            const ChainSetup& chain, double margin) {
   constexpr int kPostures = 1500, kDraws = 20000;
-  constexpr double kNearlyAlways = 0.9, kWider = 0.25;
+  constexpr double kNearlyAlways = 0.9;
   ContactSearch found;
   const Eigen::VectorXd at_rest = SphereDistances(spheres, candidates, LinkTransforms(tree, rest));
   std::vector<SpherePair> apart;
@@ -196,12 +205,7 @@ ContactSearch FindContacts(const RobotTree& tree, const std::vector<CollisionSph
     Eigen::VectorXd q = rest;
     for (const int c : chain.coordinates) q[c] = random.Uniform(range.first[c], range.second[c]);
     const std::vector<Transform> poses = LinkTransforms(tree, q);
-    if (chain.box) {
-      const Eigen::Vector3d more = kWider * (chain.box->upper - chain.box->lower);
-      const Eigen::Vector3d tip = poses[Size(chain.tip_link)].translation();
-      if ((tip.array() < (chain.box->lower - more).array()).any()) continue;
-      if ((tip.array() > (chain.box->upper + more).array()).any()) continue;
-    }
+    if (!NearBox(chain, poses[Size(chain.tip_link)].translation())) continue;
     ++postures;
     const Eigen::VectorXd distances = SphereDistances(spheres, apart, poses);
     for (std::size_t i = 0; i < apart.size(); ++i) {

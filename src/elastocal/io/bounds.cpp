@@ -113,6 +113,8 @@ std::vector<Bound> MakeBounds() {
       {"plan --move-s", "s", 0.1, 1e3, "a robot's dynamics; patience"},
       {"plan --rest-s", "s", 1, 1e3, "what a rest needs to be found; patience"},
       {"plan --zmp-margin-mm", "mm", 0, 1e3, "a foot"},
+      {"plan --lift-mm", "mm", 1, 1e3, "a leg"},
+      {"plan --inset-mm", "mm", 0.1, 1e3, "a foot"},
       {"plan --torque-share", "", 0.01, 1, "a share"},
       {"plan --velocity-share", "", 0.01, 1, "a share"},
       {"plan --floor-friction", "", 0, 10, "rubber has 1"},

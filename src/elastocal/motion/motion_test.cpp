@@ -280,9 +280,45 @@ TEST(HeldRobot, VisitsItsPosturesWithoutBalanceAndWithTheTorquesOfStatics) {
     EXPECT_EQ(forces.T_world_root[static_cast<std::size_t>(middle)].matrix(),
               robot.T_world_root.matrix());
   }
-  // A limit that the way breaks is seen as in any other motion.
-  robot.limits.velocity_share = 1e-4;
-  EXPECT_FALSE(PlanTour(robot, set, {}).left_out.empty());
+  // A limit that is broken is seen as in any other motion: the leg stretched ahead needs 11 N.m.
+  robot.limits.torque_share = 0.05;
+  EXPECT_EQ(PlanTour(robot, set, {}).left_out.size(), 1U);
+}
+
+TEST(StandingRobot, LengthsOfAMotionFollowFromItsSize) {
+  const Walker walker = MakeWalker();
+  const StandingRobot robot(walker.tree, walker.soles, {});
+  EXPECT_NEAR(robot.leg_length, 0.38 + 0.325 + 0.107, 1e-12);  // the hip's axes meet
+  EXPECT_NEAR(robot.half_sole, 0.06, 1e-12);
+  EXPECT_NEAR(robot.limits.zmp_margin, 0.3 * 0.06, 1e-12);
+  const PlanOptions sized = SizedOptions(robot, {});
+  EXPECT_NEAR(sized.lift_m, 0.123 * 0.812, 1e-12);
+  EXPECT_NEAR(sized.inset, 0.54 * 0.06, 1e-12);
+  PlanOptions given;
+  given.lift_m = 0.05;
+  EXPECT_EQ(SizedOptions(robot, given).lift_m, 0.05);
+}
+
+// Bent knees take 0.5 rad of the ankle's pitch already, and a foot lifted flat would take 0.8.
+TEST(StandingRobot, LiftsItsFootTiltedWhereTheAnkleBendsLittle) {
+  Walker walker = MakeWalker();
+  for (Joint& joint : walker.tree.joints) {
+    if (joint.name == "left_5" || joint.name == "right_5") joint.limits.lower = -0.6;
+  }
+  StandingRobot robot(walker.tree, walker.soles, {});
+  StandUp(robot, NeutralPosture(robot.tree, 0.05), {});
+  const PostureTour set{"right", {0}, {}, false, {}};
+  const PlannedTour planned = PlanTour(robot, set, {});
+  ASSERT_GT(planned.end, planned.begin);
+  EXPECT_FALSE(Broken(CheckMotion(robot, planned.motion), robot.limits));
+  const auto tilt = [&](int row) {
+    const auto poses = LinkTransforms(robot.tree, planned.motion.q.row(row).transpose());
+    const Transform T_left_right = poses[static_cast<std::size_t>(robot.soles[0].link)].inverse() *
+                                   poses[static_cast<std::size_t>(robot.soles[1].link)];
+    return RotationAngle(T_left_right.linear());
+  };
+  EXPECT_GT(tilt(planned.begin), 0.05);
+  EXPECT_LT(tilt(0), 1e-9);
 }
 
 TEST(StandingRobot, RefusesWhatCannotStand) {

@@ -20,8 +20,9 @@ struct MotionLimits {
   double position_margin = 0.01;  ///< distance to either end of a joint's range, rad or m
   double velocity_share = 0.9, torque_share = 0.9;
   double clearance = 0.005;  ///< least distance between parts that can touch, m
-  double zmp_margin =
-      0.020;  ///< least distance of the zero-moment point to the edge of the support polygon, m
+  /// Least distance of the zero-moment point to the edge of the support polygon, m. Negative: three
+  /// tenths of the narrowest sole's half width.
+  double zmp_margin = -1.0;
   double friction = 0.5;    ///< largest ratio of horizontal to vertical force at a foot
   double least_knee = 0.3;  ///< least bend of the knee of a standing leg, rad
 };
@@ -34,7 +35,7 @@ struct StandingRobot {
   std::vector<Sole> soles;     ///< of the feet, one or two; none: the root is held
   std::vector<LegChain> legs;  ///< one for each sole
   Clearances clearances;       ///< between its own parts; may be empty
-  MotionLimits limits;
+  MotionLimits limits;         ///< with the margin of the zero-moment point in m
   /// The posture of rest: balanced on all feet.
   Eigen::VectorXd rest;
   Transform T_world_root = Transform::Identity();  ///< in the posture of rest
@@ -44,6 +45,10 @@ struct StandingRobot {
   StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept);
 
   bool Held() const { return soles.empty(); }
+  /// Length of a leg from its first joint to the sole along its joints, and half the least width of
+  /// a sole, m: lengths of a motion are shares of them. 0 for a held robot.
+  double leg_length = 0.0, half_sole = 0.0;
+
   std::vector<int> AllFeet() const;
 };
 

@@ -29,8 +29,8 @@ void CheckOptions(const MotionPlanOptions& options) {
          limits.torque_share, share);
   expect(limits.velocity_share > 0.0 && limits.velocity_share <= 1.0,
          "share of the velocity limits", limits.velocity_share, share);
-  expect(limits.zmp_margin >= 0.0, "margin of the zero-moment point", limits.zmp_margin,
-         "0 or more");
+  expect(!std::isnan(limits.zmp_margin), "margin of the zero-moment point", limits.zmp_margin,
+         "a number");
   expect(options.plan.path.duration_s > 0.0, "time between two postures",
          options.plan.path.duration_s, "more than 0");
   expect(options.plan.hold_s >= 1.0, "time at rest in a posture", options.plan.hold_s,

@@ -61,7 +61,7 @@ struct MotionPlan {
 ///
 /// Without soles in the project, the root link is held still and nothing is balanced.
 ///
-/// Throws InputError for shares outside (0, 1] and negative margins in the options, for a chain
+/// Throws InputError for shares outside (0, 1] in the options, for a chain
 /// that stands on what is no sole, and where the robot cannot stand.
 MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& postures,
                       const MotionPlanOptions& options, const Progress& progress = {});
