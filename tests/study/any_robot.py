@@ -46,7 +46,7 @@ def held_out(folder):
     error = json.loads(summary.read_text()).get("held_out_rmse_3d_mm") or {}
     if "uncalibrated" not in error:
         return ""
-    best = min(error[model] for model in error if model != "uncalibrated")
+    best = min(error[model] for model in ("rigid", "full") if model in error)
     return f"{error['uncalibrated']:.2f} to {best:.2f}"
 
 

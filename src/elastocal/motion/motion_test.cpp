@@ -280,9 +280,9 @@ TEST(HeldRobot, VisitsItsPosturesWithoutBalanceAndWithTheTorquesOfStatics) {
     EXPECT_EQ(forces.T_world_root[static_cast<std::size_t>(middle)].matrix(),
               robot.T_world_root.matrix());
   }
-  // A limit that is broken is seen as in any other motion: the leg stretched ahead needs 11 N.m.
-  robot.limits.torque_share = 0.05;
-  EXPECT_EQ(PlanTour(robot, set, {}).left_out.size(), 1U);
+  // A limit that is broken is seen as in any other motion: the leg held ahead needs 30 of 150 N.m.
+  robot.limits.torque_share = 0.1;
+  EXPECT_FALSE(PlanTour(robot, set, {}).left_out.empty());
 }
 
 TEST(StandingRobot, LengthsOfAMotionFollowFromItsSize) {
