@@ -196,6 +196,7 @@ TEST(Draft, NamesRestAndPairsComeFromTheSrdf) {
   EXPECT_EQ(semantics.apart.count({"l2", "pole"}), 1U);
   EXPECT_THROW(ParseSemantics("<robot><group/></robot>", "x.srdf"), InputError);
   EXPECT_THROW(ParseSemantics("<srdf/>", "x.srdf"), InputError);
+  EXPECT_THROW(ParseSemantics(urdf, "a URDF"), InputError);
 }
 
 TEST(Draft, TheSameTextGivesTheSameDraft) {

@@ -49,6 +49,10 @@ Semantics ParseSemantics(const std::string& text, const std::string& source) {
       semantics.apart.insert(std::minmax(one, other));
     }
   }
+  if (semantics.groups.empty() && semantics.states.empty() && semantics.end_links.empty() &&
+      semantics.apart.empty()) {
+    root.Fail("there is no group, state, end effector or pair of links in it; is this an SRDF?");
+  }
   return semantics;
 }
 
