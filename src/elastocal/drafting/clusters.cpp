@@ -104,11 +104,9 @@ std::optional<Triple> BestTriple(const std::vector<Candidate>& candidates, doubl
 
 class ClusterPlacer {
  public:
-  ClusterPlacer(const RobotTree& tree, const RobotShapes& shapes, const Limbs& limbs,
-                const Eigen::VectorXd& rest)
+  ClusterPlacer(const RobotTree& tree, const RobotShapes& shapes, const Eigen::VectorXd& rest)
       : tree_(tree),
         shapes_(shapes),
-        limbs_(limbs),
         T_rest_(BodyPoses(tree, rest)),
         T_zero_(BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()))),
         longest_(LongestBranch(tree)) {
@@ -212,7 +210,6 @@ class ClusterPlacer {
 
   const RobotTree& tree_;
   const RobotShapes& shapes_;
-  const Limbs& limbs_;
   std::vector<Transform> T_rest_, T_zero_;
   double longest_, floor_;
   std::set<int> placed_;
@@ -243,7 +240,7 @@ std::vector<int> MarkedBodies(const RobotTree& tree, const RobotShapes& shapes, 
 
 std::vector<DraftedCluster> PlaceClusters(const RobotTree& tree, const RobotShapes& shapes,
                                           const Limbs& limbs, const Eigen::VectorXd& rest) {
-  ClusterPlacer placer(tree, shapes, limbs, rest);
+  ClusterPlacer placer(tree, shapes, rest);
   placer.Place(0, -1);
   for (std::size_t i = 0; i < limbs.limbs.size(); ++i) {
     const Limb& limb = limbs.limbs[i];
