@@ -13,8 +13,8 @@ namespace {
 
 TEST_F(Program, HelpHasAnExampleForEveryCommand) {
   EXPECT_EQ(RunProgram("--help").exit_code, 0);
-  for (const char* command : {"init", "inspect", "design", "assess", "plan", "simulate", "calibrate",
-                              "validate", "compare", "report", "demo"}) {
+  for (const char* command : {"init", "inspect", "design", "assess", "plan", "simulate",
+                              "calibrate", "validate", "compare", "report", "demo"}) {
     const ProgramResult help = RunProgram(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Example: elastocal " + std::string(command)), std::string::npos);
