@@ -43,6 +43,7 @@ using Action = std::function<int()>;
 int RunCommandLine(const std::vector<std::string>& arguments);
 
 /// Each adds its command; `action` is set when the command is on the command line.
+void AddInit(CLI::App& app, Action& action);
 void AddInspect(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
 void AddValidate(CLI::App& app, Action& action);

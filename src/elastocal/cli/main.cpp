@@ -94,6 +94,7 @@ int Run(int argc, char** argv) {
       "Exit codes: 0 fine, 2 usage, 3 bad input, 4 not converged or infeasible.\n"
       "Example: elastocal demo");
   Action action;
+  AddInit(app, action);
   AddInspect(app, action);
   AddCalibrate(app, action);
   AddValidate(app, action);

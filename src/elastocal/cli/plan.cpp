@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -23,7 +25,7 @@ struct PlanCommand {
   CommonOptions common;
   std::string project, postures, output, trajectory, folder;
   std::string kind;  ///< of a validation motion; empty: postures are given
-  double zmp_margin_mm = 1e3 * MotionLimits().zmp_margin;
+  std::optional<double> zmp_margin_mm, lift_mm, inset_mm;
   bool unbalanced = false, unstabilised = false;
   MotionPlanOptions options;
   MotionTrialOptions tries{.robots = 0};
@@ -114,7 +116,9 @@ int Plan(const PlanCommand& command) {
   const bool quiet = command.common.Silent();
   const Progress progress = TerminalProgress("planned chain", quiet);
   MotionPlanOptions options = command.options;
-  options.limits.zmp_margin = 1e-3 * command.zmp_margin_mm;
+  if (command.zmp_margin_mm) options.limits.zmp_margin = 1e-3 * *command.zmp_margin_mm;
+  if (command.lift_mm) options.plan.lift_m = 1e-3 * *command.lift_mm;
+  if (command.inset_mm) options.plan.inset = 1e-3 * *command.inset_mm;
   options.plan.balanced = !command.unbalanced;
   MotionTrialOptions tries = command.tries;
   tries.seed = command.common.seed.value_or(1);
@@ -125,6 +129,9 @@ int Plan(const PlanCommand& command) {
           ? PlanMotion(project, postures, options, progress)
           : PlanValidationMotion(project, KindNamed(command.kind), tries.seed, options, progress);
   PrintWarnings(plan.left_out, command.common.verbose);
+  if (project.soles.empty()) {
+    Print(quiet, "The project has no soles: the root link is held still, nothing is balanced\n\n");
+  }
   Print(quiet, SetTable(plan));
   if (plan.impossible.empty()) {
     Print(quiet, "\n" + LimitTable(plan.limits) +
@@ -148,7 +155,10 @@ int Plan(const PlanCommand& command) {
   Print(quiet, fmt::format("\nWritten: {}\n", command.output));
   PrintWarnings(report.warnings, command.common.verbose);
   PrintReportPlace(report.folder, report.why_none, quiet);
-  return kFine;
+  const auto fell = std::count_if(trials.begin(), trials.end(),
+                                  [](const MotionTrial& trial) { return !trial.run.stood; });
+  if (fell > 0) spdlog::error("{} of {} robots fell", fell, trials.size());
+  return fell > 0 ? kNotConverged : kFine;
 }
 
 }  // namespace
@@ -186,8 +196,18 @@ void AddPlan(CLI::App& app, Action& action) {
   MotionPlanOptions& plan = options->options;
   number("--move-s", plan.plan.path.duration_s, "Time between two postures, s");
   number("--rest-s", plan.plan.hold_s, "At rest in each posture, s");
-  number("--zmp-margin-mm", options->zmp_margin_mm,
-         "Least distance of the zero-moment point to the edge of the support, mm");
+  const auto length = [&](const std::string& name, std::optional<double>& value, const char* help) {
+    command->add_option(name, value, help)->check(InBounds("plan " + name));
+  };
+  length("--zmp-margin-mm", options->zmp_margin_mm,
+         "Least distance of the zero-moment point to the edge of the support, mm; default: 0.3 of "
+         "half the width of the sole");
+  length("--lift-mm", options->lift_mm,
+         "Height to which a foot is lifted before its leg moves freely, mm; default: 0.123 of the "
+         "leg's length");
+  length("--inset-mm", options->inset_mm,
+         "How far the zero-moment point stays from the middle of a sole, towards the foot that "
+         "leaves or meets the floor, mm; default: 0.54 of half the width of the sole");
   number("--torque-share", plan.limits.torque_share, "Share of the torque limits to be used");
   number("--velocity-share", plan.limits.velocity_share, "Share of the velocity limits to be used");
   number("--floor-friction", options->tries.floor_friction,

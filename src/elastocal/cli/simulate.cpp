@@ -133,6 +133,7 @@ int Simulate(const SimulateCommand& command) {
   outputs.Set(command.common.json_file, FormatSimulationSummary(run));
   outputs.Publish();
   Print(quiet, DescribeSimulation(run) + WrittenRecording(command.output));
+  PrintWarnings(SimulationWarnings(project, simulation), command.common.verbose);
   return kFine;
 }
 

@@ -23,16 +23,25 @@ void Largest(Worst& worst, double value, Eigen::Index sample, int index) {
   worst = {value, static_cast<int>(sample), index};
 }
 
-void CheckJoints(const RobotTree& tree, const RobotState& state, Eigen::Index sample,
+/// By how much the margin of a joint with a small range (a finger) is less than that of others.
+double LessMargin(const JointLimits& limits, double margin) {
+  constexpr double kShare = 0.02;
+  return std::max(0.0, margin - kShare * (limits.upper - limits.lower));
+}
+
+void CheckJoints(const StandingRobot& robot, const RobotState& state, Eigen::Index sample,
                  MotionMargins& margins) {
+  const RobotTree& tree = robot.tree;
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     const Joint& joint = tree.joints[k];
     const double position = JointPosition(joint, state.q);
     const double speed = joint.multiplier * state.velocity[joint.coordinate];
     const double acceleration = joint.multiplier * state.acceleration[joint.coordinate];
     const int index = static_cast<int>(k);
-    Least(margins.position, std::min(position - joint.limits.lower, joint.limits.upper - position),
-          sample, index);
+    const double less = LessMargin(joint.limits, robot.limits.position_margin);
+    Least(margins.position,
+          std::min(position - joint.limits.lower, joint.limits.upper - position) + less, sample,
+          index);
     Largest(margins.velocity, std::abs(speed) / joint.limits.velocity, sample, index);
     Largest(margins.acceleration, std::abs(acceleration), sample, index);
   }
@@ -99,11 +108,16 @@ MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motio
   const double step = 1.0 / motion.rate_hz;
   MotionMargins margins;
   margins.clearance.value = margins.floor.value = std::numeric_limits<double>::infinity();
+  if (robot.Held()) margins.zmp.value = margins.knee.value = margins.floor.value;
   std::vector<Transform> T_world_root(Size(samples));
   std::vector<std::vector<Transform>> T_root_link(Size(samples));
   for (Eigen::Index i = 0; i < samples; ++i) {
-    const int foot = motion.standing[Size(i)].front();
     T_root_link[Size(i)] = LinkTransforms(robot.tree, motion.q.row(i).transpose());
+    if (robot.Held()) {
+      T_world_root[Size(i)] = robot.T_world_root;
+      continue;
+    }
+    const int foot = motion.standing[Size(i)].front();
     T_world_root[Size(i)] = robot.T_world_sole[Size(foot)] *
                             T_root_link[Size(i)][Size(robot.soles[Size(foot)].link)].inverse();
   }
@@ -121,17 +135,21 @@ MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motio
       soles.push_back(robot.soles[Size(foot)]);
       T_world_sole.push_back(robot.T_world_sole[Size(foot)]);
     }
-    const auto wrenches = ShareWrench(soles, T_world_sole, floor.force, floor.moment);
+    const auto wrenches = robot.Held()
+                              ? std::vector<LinkWrench>()
+                              : ShareWrench(soles, T_world_sole, floor.force, floor.moment);
     const auto held = InverseDynamics(robot.tree, robot.inertias, state, kGravity, wrenches);
     std::vector<Transform>& T_world_link = T_root_link[Size(i)];
     for (Transform& T : T_world_link) T = T_world_root[Size(i)] * T;
 
-    CheckJoints(robot.tree, state, i, margins);
+    CheckJoints(robot, state, i, margins);
     CheckTorques(robot.tree, held.torques, i, margins);
     CheckFeet(robot, standing, T_world_link, i, margins);
     CheckKnees(robot, standing, state.q, i, margins);
-    Least(margins.zmp, InsideMargin(SupportPolygon(soles, T_world_sole), zmp), i, -1);
-    Largest(margins.friction, floor.force.head<2>().norm() / floor.force.z(), i, -1);
+    if (!robot.Held()) {
+      Least(margins.zmp, InsideMargin(SupportPolygon(soles, T_world_sole), zmp), i, -1);
+      Largest(margins.friction, floor.force.head<2>().norm() / floor.force.z(), i, -1);
+    }
     if (robot.clearances) {
       const Eigen::VectorXd distances = robot.clearances(state.q);
       Eigen::Index pair = 0;

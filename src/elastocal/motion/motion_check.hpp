@@ -19,7 +19,9 @@ struct Worst {
 
 /// Worst values of a motion over all samples.
 struct MotionMargins {
-  Worst position;      ///< least distance of a joint to the end of its range, rad or m
+  /// Least distance of a joint to the end of its range, rad or m. To that of a joint whose range is
+  /// less than 50 margins, what 2 % of the range are less than the margin is added.
+  Worst position;
   Worst velocity;      ///< largest share of a joint's velocity limit
   Worst torque;        ///< largest share of a joint's effort limit, see CheckMotion
   Worst acceleration;  ///< largest of a joint, rad/s^2 or m/s^2

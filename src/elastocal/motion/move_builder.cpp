@@ -43,10 +43,18 @@ Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vecto
   return all;
 }
 
-constexpr double kLeastHeight = 0.02;  // m, least height of a swinging foot in a posture
+// Least height of a swinging foot in a posture, as a share of the leg's length.
+constexpr double kLeastHeight = 0.025;
 constexpr double kEnds = 0.5;  // s, hold at either end, in which the root link starts and stops
 
 }  // namespace
+
+PlanOptions SizedOptions(const StandingRobot& robot, PlanOptions options) {
+  constexpr double kInset = 0.54, kLift = 0.123;
+  if (options.inset <= 0.0) options.inset = kInset * robot.half_sole;
+  if (options.lift_m <= 0.0) options.lift_m = kLift * robot.leg_length;
+  return options;
+}
 
 Eigen::Index MoveBuilder::SamplesOf(double seconds) const {
   return static_cast<Eigen::Index>(std::lround(seconds * options_.rate_hz));
@@ -59,7 +67,7 @@ Eigen::Vector2d MoveBuilder::HandOver(int onto) const {
 }
 
 bool MoveBuilder::Balanced(const std::vector<int>& standing, PlacedPosture& pose) const {
-  if (options_.balanced) {
+  if (options_.balanced && !robot_.Held()) {
     return BalanceAtRest(robot_, standing, SupportCentre(robot_, standing), pose);
   }
   pose.T_world_root = robot_.T_world_root;
@@ -74,7 +82,7 @@ std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
   if (!options_.balanced) return std::nullopt;
   const MotionMargins margins =
       CheckMotion(robot_, {options_.rate_hz, pose.q.transpose(), {standing}});
-  if (margins.floor.value < kLeastHeight) {
+  if (margins.floor.value < kLeastHeight * robot_.leg_length) {
     return Refusal{Constraint::kFloor, margins.floor.value, margins.floor.index};
   }
   MotionLimits limits = robot_.limits;
@@ -88,12 +96,12 @@ std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
   // Leaning or turning the waist moves the support leg away from a swinging one.
   constexpr std::array<double, 5> kTilts = {0.0, 0.06, -0.06, 0.12, -0.12};  // rad, about x
   constexpr std::array<double, 5> kTurns = {0.0, 0.12, -0.12, 0.24, -0.24};  // rad, about z
-  constexpr double kSpare =
-      0.006;  // m, additional distance, if possible, so that there is a way too
+  // Additional distance, if possible, so that there is a way too, as a share of the leg's length.
+  constexpr double kSpare = 0.0075;
   if (standing.size() == robot_.soles.size()) {
     return AtHeights(q, standing, near, {robot_.T_world_root.linear(), 0.0}, why);
   }
-  for (const double spare : {kSpare, 0.0}) {
+  for (const double spare : {kSpare * robot_.leg_length, 0.0}) {
     for (const double tilt : kTilts) {
       for (const double turn : kTurns) {
         Refusal refusal;
@@ -114,7 +122,7 @@ std::optional<PlacedPosture> MoveBuilder::AtHeights(const Eigen::VectorXd& q,
                                                     const PlacedPosture& near, const Manner& manner,
                                                     Refusal& why) const {
   constexpr int kHeights = 5;
-  constexpr double kAboveFloor = 0.03, kLower = 0.03;  // m
+  constexpr double kAboveFloor = 0.037, kLower = 0.037;  // shares of the leg's length
   PlacedPosture pose{q, near.T_world_root};
   pose.T_world_root.linear() = manner.attitude;
   double& height = pose.T_world_root.translation().z();
@@ -127,10 +135,10 @@ std::optional<PlacedPosture> MoveBuilder::AtHeights(const Eigen::VectorXd& q,
     if (!refusal) return pose;
     if (i == 0) why = *refusal;
     if (refusal->constraint == Constraint::kFloor) {
-      height += kAboveFloor - refusal->value;
+      height += kAboveFloor * robot_.leg_length - refusal->value;
     } else if (refusal->constraint == Constraint::kReach ||
                refusal->constraint == Constraint::kKnee) {
-      height -= kLower;
+      height -= kLower * robot_.leg_length;
     } else {
       why = *refusal;
       break;
@@ -169,7 +177,7 @@ Eigen::MatrixXd MoveBuilder::WithEnds(const Eigen::MatrixXd& way) const {
 std::optional<Eigen::MatrixXd> MoveBuilder::BalanceAndCheck(const Stretch& stretch,
                                                             Refusal& why) const {
   BalanceOptions balance = options_.balance;
-  if (!options_.balanced) balance.passes = 0;
+  if (!options_.balanced || robot_.Held()) balance.passes = 0;
   BalancedStretch balanced = Balance(robot_, stretch, balance);
   if (!balanced.in_reach) {
     why = OutOfReach();
@@ -266,7 +274,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const PlacedPosture& from,
 
 std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, const PlacedPosture& to,
                                                  const std::vector<int>& standing, int foot,
-                                                 Refusal& why) const {
+                                                 double tilt, Refusal& why) const {
   Stretch stretch;
   stretch.rate_hz = options_.rate_hz;
   stretch.standing = standing;
@@ -278,13 +286,15 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, cons
     return ShareOfWay(stretch.q.rows(), ends + SamplesOf(first * options_.lift_s),
                       ends + SamplesOf((1.0 - last) * options_.lift_s));
   };
-  const Eigen::VectorXd lifted = options_.first_lift_m * part(0.0, 0.4) +
-                                 (options_.lift_m - options_.first_lift_m) * part(0.6, 1.0);
+  constexpr double kFirst = 0.1;
+  const Eigen::VectorXd second = part(0.6, 1.0);
+  const Eigen::VectorXd lifted =
+      options_.lift_m * (kFirst * part(0.0, 0.4) + (1.0 - kFirst) * second);
   const Eigen::VectorXd shifted = part(0.25, 0.75);
   stretch.led = foot;
-  for (const double height : lifted) {
-    stretch.T_world_led.push_back(Eigen::Translation3d(0.0, 0.0, height) *
-                                  robot_.T_world_sole[Size(foot)]);
+  for (Eigen::Index i = 0; i < lifted.size(); ++i) {
+    stretch.T_world_led.push_back(Eigen::Translation3d(0.0, 0.0, lifted[i]) *
+                                  robot_.T_world_sole[Size(foot)] * RotY(tilt * second[i]));
   }
   const Eigen::RowVector2d begin = HandOver(standing.front()).transpose();
   const Eigen::RowVector2d way = SupportCentre(robot_, standing).transpose() - begin;

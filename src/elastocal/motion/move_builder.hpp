@@ -8,12 +8,15 @@
 
 namespace elastocal {
 
+/// The options with the lengths that follow from the robot's size.
+PlanOptions SizedOptions(const StandingRobot& robot, PlanOptions options);
+
 /// Makes motions from rest to rest on given feet, and checks each of them. All motions hold for a
 /// moment at both ends, which is part of the hold of the posture; the root link starts and stops
 /// moving in it.
 class MoveBuilder {
  public:
-  /// Keeps references.
+  /// Keeps references. `options` are those of SizedOptions.
   MoveBuilder(const StandingRobot& robot, const PlanOptions& options)
       : robot_(robot), options_(options) {}
 
@@ -50,9 +53,10 @@ class MoveBuilder {
   std::optional<Eigen::MatrixXd> Shift(const PlacedPosture& from, const PlacedPosture& to, int onto,
                                        Refusal& why) const;
 
-  /// Motion that lifts a foot straight up by options.lift_m while the others stand.
+  /// Motion that lifts a foot straight up by options.lift_m while the others stand, and turns it by
+  /// `tilt` about its y axis [rad] on the second half of the way.
   std::optional<Eigen::MatrixXd> Lift(const PlacedPosture& from, const PlacedPosture& to,
-                                      const std::vector<int>& standing, int foot,
+                                      const std::vector<int>& standing, int foot, double tilt,
                                       Refusal& why) const;
 
   Eigen::Index SamplesOf(double seconds) const;

@@ -1,6 +1,7 @@
 #include "elastocal/motion/plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "elastocal/math/numbers.hpp"
@@ -47,8 +48,8 @@ class TourPlanner {
   TourPlanner(const StandingRobot& robot, const PostureTour& set, const PlanOptions& options)
       : robot_(robot),
         set_(set),
-        options_(options),
-        build_(robot, options),
+        options_(SizedOptions(robot, options)),
+        build_(robot, options_),
         here_{robot.rest, robot.T_world_root} {
     result_.name = set.name;
   }
@@ -83,7 +84,6 @@ class TourPlanner {
   bool StepOntoFeet(Refusal& why) {
     if (!OneFoot()) return true;
     const int stands = set_.standing.front();
-    const int swings = 1 - stands;
     PlacedPosture over = here_;
     if (options_.balanced &&
         !BalanceAtRest(robot_, robot_.AllFeet(), build_.HandOver(stands), over)) {
@@ -91,13 +91,26 @@ class TourPlanner {
     }
     const auto shifted = build_.Shift(here_, over, stands, why);
     if (!shifted) return false;
-    const Transform T_world_lifted =
-        Eigen::Translation3d(0.0, 0.0, options_.lift_m) * robot_.T_world_sole[Size(swings)];
+    shifted_ = *shifted;
+    // Flat or, where the ankle does not bend so far, with the toes or the heel down.
+    constexpr std::array<double, 9> kTilts = {0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.45, -0.45};
+    for (const double tilt : kTilts) {
+      Refusal refusal;
+      if (LiftFoot(over, tilt, refusal)) return true;
+      if (tilt == 0.0) why = refusal;
+    }
+    return false;
+  }
+
+  /// Lifts the foot on which the set does not stand, the weight being over the other one.
+  bool LiftFoot(const PlacedPosture& over, double tilt, Refusal& why) {
+    const int swings = 1 - set_.standing.front();
+    const Transform T_world_lifted = Eigen::Translation3d(0.0, 0.0, options_.lift_m) *
+                                     robot_.T_world_sole[Size(swings)] * RotY(tilt);
     const auto up = build_.AtRestWithFoot(set_.standing, swings, T_world_lifted, over, why);
     if (!up) return false;
-    const auto lifted = build_.Lift(over, *up, set_.standing, swings, why);
+    const auto lifted = build_.Lift(over, *up, set_.standing, swings, tilt, why);
     if (!lifted) return false;
-    shifted_ = *shifted;
     lifted_ = *lifted;
     rows_.Add(shifted_, robot_.AllFeet());
     rows_.Add(lifted_, set_.standing);
@@ -199,7 +212,7 @@ class TourPlanner {
 
   const StandingRobot& robot_;
   const PostureTour& set_;
-  const PlanOptions& options_;
+  const PlanOptions options_;
   MoveBuilder build_;
   PlacedPosture here_, hub_;
   Eigen::MatrixXd shifted_, lifted_;

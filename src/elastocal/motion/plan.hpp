@@ -45,10 +45,12 @@ struct PlanOptions {
   double lift_s = 5.0;   ///< time to lift a foot and shift the rest of the weight
   /// When a foot leaves or meets the floor, the zero-moment point is this far from the middle of
   /// the other foot, towards the one that moves, m. If legs are longer than the model says, the
-  /// foot that touches the floor first pushes the robot away from it.
-  double inset = 0.035;
-  double lift_m = 0.10;         ///< height to which a foot is lifted before its leg moves freely
-  double first_lift_m = 0.010;  ///< part of it before the rest of the weight is shifted
+  /// foot that touches the floor first pushes the robot away from it. 0: 0.54 of half the width of
+  /// the sole.
+  double inset = 0.0;
+  /// Height to which a foot is lifted before its leg moves freely, m. A tenth of it is lifted
+  /// before the rest of the weight is shifted. 0: 0.123 of the leg's length.
+  double lift_m = 0.0;
   int slower = 2;  ///< how often a move is tried again, 1.5 times as slow, before it is given up
 };
 
@@ -81,8 +83,8 @@ struct PlannedTour {
 /// PlanJointPath the ways, and Balance balances them. CheckMotion checks each way; if it breaks
 /// limits, it is made slower or led by the posture of rest. A posture that cannot be held or
 /// reached is left out. For a set on one foot, the weight is first shifted and the other foot
-/// lifted straight up; at the end the same is done backwards, so that the foot lands where it
-/// stood.
+/// lifted straight up, flat or, where its ankle does not bend so far, tilted; at the end the same
+/// is done backwards, so that the foot lands where it stood.
 PlannedTour PlanTour(const StandingRobot& robot, const PostureTour& set,
                      const PlanOptions& options);
 

@@ -34,6 +34,20 @@ bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_so
   return false;
 }
 
+/// Sum of the distances between the joints that carry a link, from the first one to the link, m.
+double LengthOf(const RobotTree& tree, int link) {
+  const auto poses = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  double length = 0.0;
+  Eigen::Vector3d end = poses[Size(link)].translation();
+  const std::vector<int> joints = JointsToBody(tree, tree.links[Size(link)].body);
+  for (auto k = joints.rbegin(); k != joints.rend(); ++k) {
+    const Eigen::Vector3d here = poses[Size(tree.joints[Size(*k)].child_link)].translation();
+    length += (end - here).norm();
+    end = here;
+  }
+  return length;
+}
+
 /// Height of the root link above the soles: of the posture, if its knees are bent, and otherwise
 /// that of straight legs less the drop.
 double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
@@ -49,11 +63,19 @@ double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
 
 StandingRobot::StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept)
     : tree(std::move(robot)), inertias(BodyInertias(tree)), soles(std::move(feet)), limits(kept) {
-  if (soles.empty() || soles.size() > 2) {
+  if (soles.size() > 2) {
     throw InputError("robot '" + tree.name + "' has " + std::to_string(soles.size()) +
-                     " feet; expected one or two to balance on");
+                     " feet; expected one or two to balance on, or none");
   }
-  for (const Sole& sole : soles) legs.emplace_back(tree, sole.link);
+  for (const Sole& sole : soles) {
+    legs.emplace_back(tree, sole.link);
+    const double half = 0.5 * (sole.upper - sole.lower).minCoeff();
+    half_sole = legs.size() == 1 ? half : std::min(half_sole, half);
+  }
+  if (Held()) return;
+  leg_length = LengthOf(tree, soles[0].link);
+  constexpr double kZmpShare = 0.3;
+  if (limits.zmp_margin < 0.0) limits.zmp_margin = kZmpShare * half_sole;
 }
 
 std::vector<int> StandingRobot::AllFeet() const {
@@ -75,6 +97,10 @@ Eigen::VectorXd NeutralPosture(const RobotTree& tree, double position_margin) {
 
 void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOptions& options) {
   constexpr double kUpright = 0.01;
+  if (robot.Held()) {
+    robot.rest = posture;
+    return;
+  }
   const auto T_root_link =
       LinkTransforms(robot.tree, Eigen::VectorXd::Zero(robot.tree.coordinate_count()));
   PlacedPosture pose{posture, Transform::Identity()};
@@ -103,6 +129,7 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
 
 Eigen::Vector2d SupportCentre(const StandingRobot& robot, const std::vector<int>& feet) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  if (feet.empty()) return sum;
   for (const int foot : feet) {
     const Eigen::Vector2d centre = robot.soles[Size(foot)].centre();
     sum +=

@@ -20,20 +20,22 @@ struct MotionLimits {
   double position_margin = 0.01;  ///< distance to either end of a joint's range, rad or m
   double velocity_share = 0.9, torque_share = 0.9;
   double clearance = 0.005;  ///< least distance between parts that can touch, m
-  double zmp_margin =
-      0.020;  ///< least distance of the zero-moment point to the edge of the support polygon, m
+  /// Least distance of the zero-moment point to the edge of the support polygon, m. Negative: three
+  /// tenths of the narrowest sole's half width.
+  double zmp_margin = -1.0;
   double friction = 0.5;    ///< largest ratio of horizontal to vertical force at a foot
   double least_knee = 0.3;  ///< least bend of the knee of a standing leg, rad
 };
 
-/// A robot with its feet on a level floor, z = 0 of the world.
+/// A robot with its feet on a level floor, z = 0 of the world, or one whose root link is held still
+/// at the world's origin (an arm, or a robot on a stand): it has no soles, and nothing balances.
 struct StandingRobot {
   RobotTree tree;
   std::vector<BodyInertia> inertias;
-  std::vector<Sole> soles;     ///< of the feet, one or two
+  std::vector<Sole> soles;     ///< of the feet, one or two; none: the root is held
   std::vector<LegChain> legs;  ///< one for each sole
   Clearances clearances;       ///< between its own parts; may be empty
-  MotionLimits limits;
+  MotionLimits limits;         ///< with the margin of the zero-moment point in m
   /// The posture of rest: balanced on all feet.
   Eigen::VectorXd rest;
   Transform T_world_root = Transform::Identity();  ///< in the posture of rest
@@ -41,6 +43,11 @@ struct StandingRobot {
 
   StandingRobot(const StandingRobot&) = delete;  // legs refer to the tree
   StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept);
+
+  bool Held() const { return soles.empty(); }
+  /// Length of a leg from its first joint to the sole along its joints, and half the least width of
+  /// a sole, m: lengths of a motion are shares of them. 0 for a held robot.
+  double leg_length = 0.0, half_sole = 0.0;
 
   std::vector<int> AllFeet() const;
 };
@@ -53,7 +60,8 @@ struct StandOptions {
 /// Stands the robot up in a posture (by coordinate). The feet are flat and where they are under the
 /// root link in the zero posture. The root link is upright and as high above the feet as in the
 /// posture, or lower by the drop if its knees are less bent than the limits require. The centre of
-/// mass is over the middle of the support. Throws InputError if the legs cannot do this.
+/// mass is over the middle of the support. A held robot rests in the posture itself. Throws
+/// InputError if the legs cannot do this.
 void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOptions& options);
 
 /// The zero posture, moved inside the joints' limits by the position margin.

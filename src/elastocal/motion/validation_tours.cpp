@@ -75,6 +75,7 @@ std::vector<PostureTour> ValidationTours(const StandingRobot& robot, const Motio
 
 std::vector<int> FeetOf(const StandingRobot& robot, const std::vector<int>& links) {
   std::vector<int> feet;
+  if (robot.Held() && links.empty()) return feet;
   for (std::size_t i = 0; i < robot.soles.size(); ++i) {
     if (std::find(links.begin(), links.end(), robot.soles[i].link) != links.end()) {
       feet.push_back(static_cast<int>(i));

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "elastocal/pipeline/project_warnings.hpp"
 #include "elastocal/robot/parameter_names.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "elastocal/robot/subtree.hpp"
@@ -90,8 +91,10 @@ RobotInspection InspectRobot(const Project& project, const InspectionOptions& op
     const ErrorModel all = MakeErrorModel(project.tree, project.markers, project.placement);
     CheckPatterns(all.parameters, identifiability.hold);
   }
-  RobotInspection inspection{
-      PlaceJoints(project.tree, project.placement), {}, TotalMass(project.tree), {}};
+  RobotInspection inspection{PlaceJoints(project.tree, project.placement),
+                             {},
+                             TotalMass(project.tree),
+                             ProjectWarnings(project)};
   for (const Chain& chain : project.chains) {
     const std::vector<Marker> markers = MarkersOf(project, chain);
     if (markers.empty()) continue;

@@ -29,8 +29,8 @@ void CheckOptions(const MotionPlanOptions& options) {
          limits.torque_share, share);
   expect(limits.velocity_share > 0.0 && limits.velocity_share <= 1.0,
          "share of the velocity limits", limits.velocity_share, share);
-  expect(limits.zmp_margin >= 0.0, "margin of the zero-moment point", limits.zmp_margin,
-         "0 or more");
+  expect(!std::isnan(limits.zmp_margin), "margin of the zero-moment point", limits.zmp_margin,
+         "a number");
   expect(options.plan.path.duration_s > 0.0, "time between two postures",
          options.plan.path.duration_s, "more than 0");
   expect(options.plan.hold_s >= 1.0, "time at rest in a posture", options.plan.hold_s,
@@ -74,7 +74,10 @@ class LimitList {
 
 std::vector<LimitUse> LimitUses(const Project& project, const MotionMargins& margins,
                                 const MotionLimits& limits, double rate_hz) {
-  const auto mm = [](double metres) { return fmt::format("{:.1f}", 1e3 * metres); };
+  // Without the minus of what rounds to zero.
+  const auto mm = [](double metres) {
+    return fmt::format("{:.1f}", std::round(1e4 * metres) / 10.0 + 0.0);
+  };
   const auto percent = [](double share) { return fmt::format("{:.0f}", 100.0 * share); };
   const auto degrees = [](double angle) { return fmt::format("{:.2f}", angle * 180.0 / M_PI); };
   const auto tiny = [](double value) { return fmt::format("{:.0e}", value); };
@@ -184,6 +187,10 @@ std::vector<std::string> ValidationChains(const Project& project) {
 
 std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,
                                    const MotionTrialOptions& options, const Progress& progress) {
+  if (options.robots > 0 && project.soles.empty()) {
+    throw InputError(project.file.string() +
+                     ": no section 'standing' with the soles that robots could stand on");
+  }
   const DescribedRobot described = DescribeRobot(project);
   const TrueRobot nominal =
       NominalRobot(described.tree, described.markers, FindLegs(described.tree, described.chains),

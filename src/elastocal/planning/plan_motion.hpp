@@ -59,9 +59,10 @@ struct MotionPlan {
 /// robot's own parts, balance on one foot or two with changes between. The same input gives the
 /// same motion. Progress counts chains.
 ///
-/// Throws InputError for shares outside (0, 1] and negative margins in the options, where the
-/// project has no soles, for a chain that stands on what is no sole, and where the robot cannot
-/// stand.
+/// Without soles in the project, the root link is held still and nothing is balanced.
+///
+/// Throws InputError for shares outside (0, 1] in the options, for a chain
+/// that stands on what is no sole, and where the robot cannot stand.
 MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& postures,
                       const MotionPlanOptions& options, const Progress& progress = {});
 
@@ -89,7 +90,8 @@ struct MotionTrial {
   StandingRun run;
 };
 
-/// Plays a motion on robots with errors that stand free (MuJoCo). Progress counts robots.
+/// Plays a motion on robots with errors that stand free (MuJoCo). Progress counts robots. Throws
+/// InputError for a project without soles.
 std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,
                                    const MotionTrialOptions& options,
                                    const Progress& progress = {});

@@ -30,9 +30,11 @@ const std::string& JointName(const Project& project, int k) {
 
 std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
                                                  const MotionLimits& limits) {
-  if (project.soles.empty()) {
-    throw InputError(project.file.string() +
-                     ": no section 'standing' with the soles that the robot stands on");
+  for (const ChainSetup& setup : project.motion.chains) {
+    if (!project.soles.empty() || setup.support.empty()) continue;
+    throw InputError(project.file.string() + ": chain '" + setup.name +
+                     "' of the section 'design' stands on feet, but there is no section 'standing' "
+                     "with their soles");
   }
   // Postures may be designed right at the margin.
   constexpr double kShareOfMargin = 0.8;

@@ -12,8 +12,9 @@
 namespace elastocal {
 
 /// The project's robot, standing in its posture of rest, with what keeps its parts apart: the
-/// contacts of all chains of the section `design`. Throws InputError where the project has no
-/// soles, or the robot cannot stand.
+/// contacts of all chains of the section `design`. Without soles its root link is held still.
+/// Throws InputError where a chain of the section `design` stands on feet and there are no soles,
+/// and where the robot cannot stand.
 std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
                                                  const MotionLimits& limits);
 

@@ -13,6 +13,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/planning/truth_file.hpp"
+#include "elastocal/robot/physical_inertia.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -105,6 +106,19 @@ TrialFiles Staged(const TrialFiles& files, OutputSet& outputs) {
 }
 
 }  // namespace
+
+std::vector<std::string> SimulationWarnings(const Project& project, const Simulation& simulation) {
+  std::vector<std::string> warnings = InertiaWarnings(project.tree);
+  const std::vector<PlannedTrial>& trials = simulation.experiment.trials;
+  const bool held = std::all_of(trials.begin(), trials.end(),
+                                [](const PlannedTrial& trial) { return trial.support.empty(); });
+  if (held && !simulation.experiment.legs.empty()) {
+    warnings.push_back(
+        "the robot cannot stand on one or two flat feet: its root link is held still in all "
+        "trials");
+  }
+  return warnings;
+}
 
 Simulation PrepareSimulation(const Project& project, const SimulationOptions& options) {
   const DescribedRobot robot = DescribeRobot(project);

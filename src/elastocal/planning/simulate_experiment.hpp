@@ -38,6 +38,10 @@ struct Simulation {
 /// there, for a motion that cannot be played, and for `matched` without a calibration trial.
 Simulation PrepareSimulation(const Project& project, const SimulationOptions& options);
 
+/// What a person should know of a simulation before trusting it, a sentence each: inertias that no
+/// body has, legs on which the robot does not stand.
+std::vector<std::string> SimulationWarnings(const Project& project, const Simulation& simulation);
+
 /// The files of a recording folder that a simulation fills.
 struct SimulationFiles {
   std::filesystem::path folder, experiment, truth;

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "elastocal/robot/physical_inertia.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -173,7 +175,7 @@ class MjcfWriter {
       if (link.body != body) continue;
       const Eigen::Matrix3d R = link.T_body_link.linear();
       const Eigen::Matrix3d lever = Skew(link.T_body_link * link.com - com);
-      inertia += R * link.inertia * R.transpose() - link.mass * lever * lever;
+      inertia += R * PhysicalInertia(link.inertia) * R.transpose() - link.mass * lever * lever;
     }
     const std::array entries{inertia(0, 0), inertia(1, 1), inertia(2, 2),
                              inertia(0, 1), inertia(0, 2), inertia(1, 2)};

@@ -68,6 +68,7 @@ class Planner {
   Planner(const RobotTree& tree, const std::vector<NamedChain>& chains,
           const MotionOptions& options)
       : tree_(tree), chains_(chains), options_(options), legs_(FindLegs(tree, chains)) {
+    if (!Sampler("stand").stands()) legs_.clear();
     for (const Leg& leg : legs_) feet_.push_back(leg.foot_link);
     for (std::size_t c = 0; c < chains.size(); ++c) {
       const NamedChain& chain = chains[c];

@@ -74,7 +74,9 @@ struct PlannedTrial {
 /// none). For validation, there are trials of head, arms and trunk together and of each leg: a
 /// sinusoidal motion of one joint after the other, random postures, and five repetitions of one
 /// motion. Chains that begin beyond the waist are exercised with those that carry them and have no
-/// trial of their own. Head, arms and trunk move while the robot stands on all feet.
+/// trial of their own. Head, arms and trunk move while the robot stands on all feet. The root link
+/// of a robot that cannot stand on one or two flat feet is held still, and its legs are exercised
+/// like arms.
 std::vector<PlannedTrial> PlanTrials(const RobotTree& tree, const std::vector<NamedChain>& chains,
                                      const MotionOptions& options);
 

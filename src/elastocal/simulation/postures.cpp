@@ -109,8 +109,11 @@ PostureSampler::PostureSampler(const RobotTree& tree, const std::vector<Leg>& le
   for (const Leg& leg : legs_) {
     if (const auto bent = Bend(leg, stand_, 0.5 * (options_.least_drop + options_.largest_drop))) {
       stand_ = *bent;
+    } else {
+      stands_ = false;
     }
   }
+  stands_ = stands_ && legs_.size() <= 2;
 }
 
 std::optional<Eigen::VectorXd> PostureSampler::Bend(const Leg& leg, Eigen::VectorXd q,

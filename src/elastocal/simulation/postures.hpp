@@ -58,6 +58,8 @@ class PostureSampler {
   /// The robot stands on all feet with slightly bent knees; without legs, it is in the home
   /// posture.
   const Eigen::VectorXd& stand() const { return stand_; }
+  /// Whether it can do so, and on how many legs robots that balance do: one or two.
+  bool stands() const { return stands_; }
 
   /// As in stand(), with the joints of `chain` drawn at random in their ranges. The end of an arm
   /// is in the workspace of hands; if hardly any posture has it there (a robot of other shape), the
@@ -92,6 +94,7 @@ class PostureSampler {
   std::vector<Transform> T_root_link_zero_;
   double height_, scale_;
   Eigen::VectorXd stand_;
+  bool stands_ = true;
 };
 
 }  // namespace elastocal

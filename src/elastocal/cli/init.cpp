@@ -1,0 +1,118 @@
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/option_checks.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/cli/text_table.hpp"
+#include "elastocal/drafting/draft.hpp"
+#include "elastocal/io/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/tables/read_file.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+struct InitCommand {
+  CommonOptions common;
+  std::string urdf, srdf, output;
+  bool force = false;
+};
+
+/// A project that somebody may have corrected is not replaced without being asked.
+void RefuseToReplace(const std::filesystem::path& file, bool force) {
+  if (force || FileTypeOf(file) == std::filesystem::file_type::not_found) return;
+  throw InputError(file.string() + " is there already; --force replaces it");
+}
+
+/// Where the robot description will be: itself, if it is in the folder already and needs no links.
+std::filesystem::path PlaceOfUrdf(const std::filesystem::path& urdf,
+                                  const std::filesystem::path& folder, bool changed) {
+  const std::filesystem::path copy = folder / urdf.filename();
+  std::error_code none;
+  if (!std::filesystem::equivalent(copy, urdf, none)) return copy;
+  if (!changed) return {};
+  return folder / (urdf.stem().string() + "_soles" + urdf.extension().string());
+}
+
+std::string ChainTable(const ProjectDraft& draft) {
+  TextTable table({"chain", "from", "tip", "postures designed", "contacts checked"});
+  for (const DraftedChain& chain : draft.chains) {
+    std::string designed = "", contacts = "";
+    for (const ChainSetup& setup : draft.designs) {
+      if (setup.name == chain.name) {
+        designed = "yes";
+        contacts = std::to_string(setup.contacts.size());
+      }
+      if (setup.mirror == chain.name) designed = "mirror of " + setup.name;
+    }
+    table.Add({chain.name, draft.tree.links[Size(chain.from_link)].name,
+               draft.tree.links[Size(chain.tip_link)].name, designed, contacts});
+  }
+  return table.Render();
+}
+
+int Init(const InitCommand& command) {
+  const std::filesystem::path folder = command.output;
+  const std::filesystem::path project = folder / "project.yaml";
+  const std::string urdf = ReadFile(command.urdf);
+  Semantics semantics;
+  if (!command.srdf.empty()) semantics = ParseSemantics(ReadFile(command.srdf), command.srdf);
+  const ProjectDraft draft = DraftProject(urdf, command.urdf, semantics);
+  const std::filesystem::path copy = PlaceOfUrdf(command.urdf, folder, draft.urdf != urdf);
+
+  RefuseToReplace(project, command.force);
+  if (!copy.empty()) RefuseToReplace(copy, command.force);
+  OutputSet outputs;
+  outputs.Protect({command.urdf, command.srdf});
+  outputs.Declare(project);
+  outputs.Declare(copy);
+  DeclareJson(command.common.json_file, outputs);
+  outputs.Prepare();
+  const std::filesystem::path described = copy.empty() ? std::filesystem::path(command.urdf) : copy;
+  outputs.Set(project, FormatDraft(draft, described.filename().string()));
+  outputs.Set(copy, draft.urdf);
+  outputs.Set(command.common.json_file, FormatDraftSummary(draft));
+  outputs.Publish();
+
+  const bool quiet = command.common.Silent();
+  Print(quiet, fmt::format("Robot {}: {} joints, {} markers, {} spheres\n\n{}\n", draft.tree.name,
+                           draft.tree.joints.size(), 3 * draft.clusters.size(),
+                           draft.spheres.size(), ChainTable(draft)));
+  Print(quiet, "Posture of rest: " + draft.rest.source + "\n");
+  Print(quiet, fmt::format("Wrote {}{}\nLook at it, correct what is wrong, then: elastocal inspect "
+                           "{}\n",
+                           project.string(), copy.empty() ? "" : " and " + copy.string(),
+                           project.string()));
+  PrintWarnings(draft.warnings, command.common.verbose);
+  return kFine;
+}
+
+}  // namespace
+
+void AddInit(CLI::App& app, Action& action) {
+  auto options = std::make_shared<InitCommand>();
+  CLI::App* command = app.add_subcommand("init", "Draft a project from a robot description");
+  command->add_option("urdf", options->urdf, "Robot description (URDF)")->required();
+  command
+      ->add_option("--srdf", options->srdf,
+                   "Semantic description: names of limbs, posture of rest, links that never touch")
+      ->type_name("FILE");
+  command
+      ->add_option("-o,--output", options->output,
+                   "Folder for project.yaml and a copy of the robot description")
+      ->required()
+      ->check(IsNamed)
+      ->type_name("DIR");
+  command->add_flag("--force", options->force, "Replace a project that is there already");
+  AddOutputOptions(*command, options->common);
+  command->footer("Example: elastocal init models/talos/talos.urdf -o my_robot");
+  command->callback([&action, options] { action = [options] { return Init(*options); }; });
+}
+
+}  // namespace elastocal::cli

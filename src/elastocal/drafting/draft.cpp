@@ -1,0 +1,285 @@
+#include "elastocal/drafting/draft.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastocal/drafting/arm_rest.hpp"
+#include "elastocal/drafting/workspaces.hpp"
+#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/posture/chain_problem.hpp"
+#include "elastocal/posture/mirror.hpp"
+#include "elastocal/robot/moving_chain.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+const DraftedSole* SoleOf(const ProjectDraft& draft, int limb) {
+  for (const DraftedSole& sole : draft.soles) {
+    if (sole.limb == limb) return &sole;
+  }
+  return nullptr;
+}
+
+/// The limbs' tips in the tree that has all soles.
+void NameTips(const RobotTree& before, ProjectDraft& draft) {
+  for (std::size_t i = 0; i < draft.limbs.limbs.size(); ++i) {
+    Limb& limb = draft.limbs.limbs[i];
+    const DraftedSole* sole = SoleOf(draft, static_cast<int>(i));
+    limb.tip_link =
+        FindLink(draft.tree, sole != nullptr ? sole->link : before.links[Size(limb.tip_link)].name);
+  }
+  for (int b = 0; b < draft.tree.body_count(); ++b) {
+    draft.shapes.bodies[Size(b)].link = BodyLink(draft.tree, b);
+  }
+}
+
+/// Limbs on a moving trunk have two chains: of their own joints, and from the root link. What has
+/// no mirror image is one chain from the root link, and a trunk without a head is one itself.
+void AddChains(ProjectDraft& draft) {
+  bool trunk_done = false;
+  int trunk = 0;
+  for (const Limb& limb : draft.limbs.limbs) {
+    const std::string whole = limb.from_body == 0 ? limb.name : "torso_" + limb.name;
+    if (limb.from_body != 0) trunk = limb.from_body;
+    if (limb.from_body != 0 && limb.mirror >= 0) {
+      draft.chains.push_back({limb.name, BodyLink(draft.tree, limb.from_body), limb.tip_link});
+    } else if (limb.from_body != 0) {
+      trunk_done = true;
+    }
+    draft.chains.push_back({whole, 0, limb.tip_link});
+  }
+  if (trunk != 0 && !trunk_done) draft.chains.push_back({"torso", 0, BodyLink(draft.tree, trunk)});
+}
+
+std::vector<int> Feet(const ProjectDraft& draft, int without) {
+  std::vector<int> feet;
+  if (!draft.stands) return feet;
+  for (const DraftedSole& sole : draft.soles) {
+    if (sole.limb != without) feet.push_back(draft.limbs.limbs[Size(sole.limb)].tip_link);
+  }
+  return feet;
+}
+
+ChainSetup SetupOf(const ProjectDraft& draft, const std::string& name, int from, int tip) {
+  ChainSetup setup;
+  setup.name = name;
+  setup.from_link = from;
+  setup.tip_link = tip;
+  setup.coordinates = ChainCoordinates(draft.tree, from, tip);
+  return setup;
+}
+
+/// The whole of the draft that is needed to mirror a set-up.
+MotionSetup MotionOf(const ProjectDraft& draft) {
+  MotionSetup motion;
+  motion.rest = draft.rest.q;
+  motion.spheres = draft.spheres;
+  return motion;
+}
+
+/// Whether postures of a set-up, mirrored, are postures of the limb on the other side.
+bool CanBeMirrored(const ProjectDraft& draft, const ChainSetup& setup, const DraftedChain& other) {
+  constexpr double kSameLimit = 0.02;
+  const std::vector<int> there = ChainCoordinates(draft.tree, other.from_link, other.tip_link);
+  const auto map = FindMirror(draft.tree, setup.coordinates, there);
+  if (!map) return false;
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    const auto limits = [&](int c) {
+      return draft.tree.joints[Size(draft.tree.coordinate_joint[Size(c)])].limits;
+    };
+    const double sign = map->sign[static_cast<Eigen::Index>(i)];
+    const JointLimits here = limits(setup.coordinates[i]), image = limits(there[i]);
+    const double lower = sign > 0.0 ? image.lower : -image.upper;
+    const double upper = sign > 0.0 ? image.upper : -image.lower;
+    // Equal infinities differ by no number.
+    if (here.lower != lower && !(std::abs(here.lower - lower) < kSameLimit)) return false;
+    if (here.upper != upper && !(std::abs(here.upper - upper) < kSameLimit)) return false;
+  }
+  std::string reason;
+  return MirrorSetup(draft.tree, MotionOf(draft), setup, other.name, other.from_link,
+                     other.tip_link, &reason)
+      .has_value();
+}
+
+/// A set-up for each limb, with its workspace.
+void AddSetups(ProjectDraft& draft) {
+  const bool legged = !draft.soles.empty();
+  for (std::size_t i = 0; i < draft.limbs.limbs.size(); ++i) {
+    const Limb& limb = draft.limbs.limbs[i];
+    const bool paired = limb.mirror >= 0;
+    const std::string whole = limb.from_body == 0 ? limb.name : "torso_" + limb.name;
+    ChainSetup setup = SetupOf(draft, paired ? limb.name : whole,
+                               paired ? BodyLink(draft.tree, limb.from_body) : 0, limb.tip_link);
+    setup.support = Feet(draft, limb.leg ? static_cast<int>(i) : -1);
+    if (limb.leg && draft.stands) SetLegWorkspace(draft.tree, limb, draft.rest, setup);
+    const bool arm = !limb.leg && (paired || limb.from_body == 0) && limb.joints.size() > 2;
+    if (arm) SetArmWorkspace(draft.tree, limb, draft.rest, legged, setup);
+    draft.designs.push_back(std::move(setup));
+  }
+  for (const DraftedChain& chain : draft.chains) {
+    if (chain.name != "torso") continue;
+    draft.designs.push_back(SetupOf(draft, "torso", 0, chain.tip_link));
+    draft.designs.back().support = Feet(draft, -1);
+  }
+}
+
+/// The palm keeps showing about where it shows at rest, so that cameras see its markers.
+constexpr double kCone = 60.0 * kRadiansPerDegree;
+
+/// Arms of a robot on legs are held ahead, unless somebody has said what its rest is.
+void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
+  if (!semantics.states.empty() || draft.soles.empty()) return;
+  bool held = false;
+  for (ChainSetup& setup : draft.designs) {
+    const auto limb = std::find_if(draft.limbs.limbs.begin(), draft.limbs.limbs.end(),
+                                   [&](const Limb& l) { return l.tip_link == setup.tip_link; });
+    if (limb == draft.limbs.limbs.end() || limb->leg || !setup.box) continue;
+    const Limb* other = limb->mirror < 0 ? nullptr : &draft.limbs.limbs[Size(limb->mirror)];
+    const bool second = other != nullptr && other < &*limb;
+    const auto coordinates = other == nullptr
+                                 ? std::vector<int>()
+                                 : ChainCoordinates(draft.tree, setup.from_link, other->tip_link);
+    const auto map = second ? FindMirror(draft.tree, coordinates, setup.coordinates) : std::nullopt;
+    if (map) {
+      const auto range = RangesOf(draft.tree, 0.021);
+      for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        const int c = setup.coordinates[i];
+        const double image = map->sign[static_cast<Eigen::Index>(i)] * draft.rest.q[coordinates[i]];
+        draft.rest.q[c] = std::clamp(image, range.first[c], range.second[c]);
+      }
+      setup.largest_turn = kCone;
+      continue;
+    }
+    const auto pairs = PairsMovedBy(draft.tree, draft.spheres, setup.coordinates, semantics);
+    if (!HoldAhead(draft.tree, draft.spheres, pairs, setup, draft.sphere_margin, draft.rest.q)) {
+      continue;
+    }
+    setup.largest_turn = kCone;
+    held = true;
+  }
+  if (held) draft.rest.source += ", the hands ahead";
+}
+
+void AddContacts(ProjectDraft& draft, const Semantics& semantics) {
+  int touching = 0;
+  for (ChainSetup& setup : draft.designs) {
+    const auto candidates = PairsMovedBy(draft.tree, draft.spheres, setup.coordinates, semantics);
+    ContactSearch search = FindContacts(draft.tree, draft.spheres, candidates, draft.rest.q, setup,
+                                        draft.sphere_margin);
+    setup.contacts = std::move(search.pairs);
+    touching = std::max(touching, search.touching_at_rest);
+  }
+  if (touching > 0) {
+    draft.warnings.push_back(
+        "pairs of spheres that touch in the posture of rest are not checked: " +
+        std::to_string(touching));
+  }
+}
+
+/// Of two limbs that are mirror images, the first one is designed for both.
+void JoinMirrors(ProjectDraft& draft) {
+  std::vector<ChainSetup> joined;
+  std::vector<std::string> mirrored;
+  for (ChainSetup setup : draft.designs) {
+    if (std::find(mirrored.begin(), mirrored.end(), setup.name) != mirrored.end()) continue;
+    for (const Limb& limb : draft.limbs.limbs) {
+      if (limb.name != setup.name || limb.mirror < 0) continue;
+      const Limb& other = draft.limbs.limbs[Size(limb.mirror)];
+      const DraftedChain image{other.name, BodyLink(draft.tree, other.from_body), other.tip_link};
+      const bool first = std::none_of(joined.begin(), joined.end(), [&](const ChainSetup& before) {
+        return before.name == image.name;
+      });
+      if (first && CanBeMirrored(draft, setup, image)) {
+        setup.mirror = image.name;
+        mirrored.push_back(image.name);
+      }
+    }
+    joined.push_back(std::move(setup));
+  }
+  draft.designs = std::move(joined);
+}
+
+/// Whether the legs have six joints of their own each, which `plan` needs to balance.
+bool CanBalance(const RobotTree& tree, const Limbs& limbs) {
+  for (const Limb& limb : limbs.limbs) {
+    if (!limb.leg) continue;
+    if (limb.joints.size() != 6) return false;
+    for (const int k : limb.joints) {
+      const Joint& joint = tree.joints[Size(k)];
+      const auto drivers =
+          std::count_if(tree.joints.begin(), tree.joints.end(),
+                        [&](const Joint& j) { return j.coordinate == joint.coordinate; });
+      if (drivers > 1 || joint.type != JointType::kRevolute) return false;
+    }
+  }
+  return true;
+}
+
+void WarnOfGuesses(ProjectDraft& draft) {
+  int guessed = 0;
+  for (const BodyShape& body : draft.shapes.bodies) guessed += body.guessed ? 1 : 0;
+  if (guessed > 0) {
+    draft.warnings.push_back(
+        std::to_string(guessed) + " of " + std::to_string(draft.tree.body_count()) +
+        " bodies have no box, cylinder or sphere in the URDF: markers and spheres are on shapes "
+        "guessed from joints and masses");
+  }
+  for (const DraftedSole& sole : draft.soles) {
+    if (!draft.stands || (!sole.guessed_size && !sole.guessed_height)) continue;
+    draft.warnings.push_back(
+        "sole " + Quote(sole.link) + ": its " +
+        (sole.guessed_height ? "height and size are guesses" : "size is a guess") +
+        ", because the URDF has no shape of the foot; measure it");
+  }
+  if (!draft.soles.empty() && !draft.rest.stands) {
+    draft.warnings.push_back(
+        "no posture of rest was found in which the soles are flat on one floor");
+  }
+  if (!draft.soles.empty() && !draft.stands) {
+    draft.warnings.push_back(
+        "the robot does not balance on one or two legs of six joints each: the draft takes its "
+        "root link to be held still, for instance on a stand");
+  }
+  for (const Joint& joint : draft.tree.joints) {
+    if (joint.mimic || joint.limits.lower < joint.limits.upper) continue;
+    draft.warnings.push_back("joint " + Quote(joint.name) + " cannot move: its limits are equal");
+  }
+}
+
+}  // namespace
+
+ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
+                          const Semantics& semantics) {
+  const RobotTree described = ParseUrdf(urdf, source);
+  if (described.joints.empty()) {
+    throw InputError(source + ": the robot has no movable joint; nothing can be calibrated");
+  }
+  ProjectDraft draft;
+  draft.shapes = ReadBodyShapes(described, urdf, source);
+  draft.warnings = draft.shapes.warnings;
+  draft.limbs = FindLimbs(described, draft.shapes, semantics);
+  draft.soles = FindSoles(described, draft.shapes, draft.limbs);
+  draft.urdf = AddSoleLinks(urdf, described, draft.soles);
+  draft.tree = ParseUrdf(draft.urdf, source);
+  NameTips(described, draft);
+  draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics);
+  draft.stands = draft.soles.size() <= 2 && !draft.soles.empty() && draft.rest.stands &&
+                 CanBalance(draft.tree, draft.limbs);
+  draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
+  constexpr double kMargin = 0.004;  // of the longest branch: 5 mm on a robot of 1.75 m
+  draft.sphere_margin =
+      kMetresPerMm * std::max(1.0, std::round(kMargin * LongestBranch(draft.tree) / kMetresPerMm));
+  AddChains(draft);
+  AddSetups(draft);
+  HoldArmsAhead(draft, semantics);
+  draft.clusters = PlaceClusters(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
+  AddContacts(draft, semantics);
+  JoinMirrors(draft);
+  WarnOfGuesses(draft);
+  return draft;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/drafting/clusters.hpp"
+#include "elastocal/drafting/limbs.hpp"
+#include "elastocal/drafting/rest_posture.hpp"
+#include "elastocal/drafting/soles.hpp"
+#include "elastocal/drafting/spheres.hpp"
+#include "elastocal/robot/motion_setup.hpp"
+
+namespace elastocal {
+
+/// A chain of a draft.
+struct DraftedChain {
+  std::string name;
+  int from_link = 0, tip_link = 0;
+};
+
+/// Everything that a project file says of a robot, as far as its description tells.
+struct ProjectDraft {
+  std::string urdf;  ///< the text, with the links of soles that were missing
+  RobotTree tree;    ///< of that text
+  RobotShapes shapes;
+  Limbs limbs;
+  std::vector<DraftedChain> chains;
+  std::vector<DraftedCluster> clusters;
+  std::vector<DraftedSole> soles;
+  std::vector<CollisionSphere> spheres;
+  double sphere_margin = 0.0;  ///< m
+  RestPosture rest;
+  std::vector<ChainSetup> designs;
+  /// Whether the soles are written: the robot stands on one or two.
+  bool stands = false;
+  std::vector<std::string> warnings;  ///< what a person should look at first
+};
+
+/// Drafts a project from a URDF and, if there is one, its SRDF. `source` names the URDF in
+/// messages. The same texts give the same draft. Throws InputError for texts that cannot be read
+/// and for a robot without movable joints.
+ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
+                          const Semantics& semantics);
+
+/// The draft as a project file (docs/formats.md) with comments that say where its values are from.
+/// `urdf` is the path of the robot description as seen from the file.
+std::string FormatDraft(const ProjectDraft& draft, const std::string& urdf);
+
+/// The draft for programs (JSON).
+std::string FormatDraftSummary(const ProjectDraft& draft);
+
+}  // namespace elastocal

@@ -1,0 +1,231 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/drafting/draft.hpp"
+#include "elastocal/math/numbers.hpp"
+
+namespace elastocal {
+namespace {
+
+/// A name as YAML reads it back as text.
+std::string Word(const std::string& text) {
+  constexpr std::array kReserved = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"};
+  std::string lower;
+  bool plain = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    plain = plain && u < 128 && (std::isalnum(u) != 0 || c == '_' || c == '-' || c == '.');
+    lower += static_cast<char>(std::tolower(u));
+  }
+  plain = plain && std::find(kReserved.begin(), kReserved.end(), lower) == kReserved.end();
+  if (plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
+  return quoted + "\"";
+}
+
+/// A length in mm without decimals that say nothing; never "-0".
+std::string Mm(double metres) { return fmt::format("{:.0f}", std::round(metres * 1e3) + 0.0); }
+
+template <typename Point>
+std::string MmList(const Point& p) {
+  std::string text;
+  for (Eigen::Index i = 0; i < p.size(); ++i) text += (i == 0 ? "" : ", ") + Mm(p[i]);
+  return "[" + text + "]";
+}
+
+class DraftWriter {
+ public:
+  explicit DraftWriter(const ProjectDraft& draft) : draft_(draft), tree_(draft.tree) {}
+
+  std::string Write(const std::string& urdf) {
+    text_ = fmt::format(
+        "# Drafted by elastocal init. Everything here follows from the robot description and from\n"
+        "# rules; look at it, correct what is wrong, and measure where the markers really are.\n"
+        "# docs/formats.md explains each key. Lengths in mm, angles in degrees, positions in the\n"
+        "# frame of the link named. Settings left out have their default values.\n\n"
+        "robot: {{urdf: {}}}\n\n",
+        Word(urdf));
+    WriteChains();
+    WriteMarkers();
+    text_ +=
+        "# Joints with a torque sensor are not in a URDF. List them here; without them, statics\n"
+        "# give the torques.\n# torque_sensors: [" +
+        Word(tree_.joints[0].name) + "]\n\n";
+    WriteSpheres();
+    WriteDesign();
+    WriteSoles();
+    return text_;
+  }
+
+ private:
+  const std::string& LinkName(int link) const { return tree_.links[Size(link)].name; }
+
+  void WriteChains() {
+    text_ +=
+        "# Limbs of the robot, from the link `from` (default: the root link) to the link `tip`.\n"
+        "chains:\n";
+    for (const DraftedChain& chain : draft_.chains) {
+      const std::string from =
+          chain.from_link == 0 ? "" : "from: " + Word(LinkName(chain.from_link)) + ", ";
+      text_ += fmt::format("  - {{name: {}, {}tip: {}}}\n", Word(chain.name), from,
+                           Word(LinkName(chain.tip_link)));
+    }
+    text_ += "\n";
+  }
+
+  void WriteMarkers() {
+    text_ += fmt::format(
+        "# Clusters of three: {} markers, at places on the links' shapes where cameras see them, "
+        "no\n"
+        "# two distances in a cluster alike. Put yours where it suits and correct the positions "
+        "to\n"
+        "# about 10 mm; calibration estimates them.\n"
+        "markers:\n  reference: {}  # on the root link\n  clusters:\n",
+        3 * draft_.clusters.size(), Word(draft_.clusters[0].name));
+    for (const DraftedCluster& cluster : draft_.clusters) {
+      text_ +=
+          fmt::format("    - {{name: {}, link: {}, positions_mm: [{}, {}, {}]}}{}\n",
+                      Word(cluster.name), Word(LinkName(BodyLink(tree_, cluster.body))),
+                      MmList(cluster.points[0]), MmList(cluster.points[1]),
+                      MmList(cluster.points[2]), cluster.guessed ? "  # guessed: no shape" : "");
+    }
+    text_ += "\n";
+  }
+
+  void WriteSpheres() {
+    text_ += fmt::format(
+        "# {} spheres that cover the links, to keep limbs apart.\n"
+        "collision:\n  margin_mm: {}\n  spheres:\n",
+        draft_.spheres.size(), Mm(draft_.sphere_margin));
+    for (const CollisionSphere& sphere : draft_.spheres) {
+      const int body = tree_.links[Size(sphere.link)].body;
+      text_ += fmt::format("    - {{name: {}, link: {}, centre_mm: {}, radius_mm: {}}}{}\n",
+                           Word(sphere.name), Word(LinkName(sphere.link)),
+                           MmList(sphere.p_link_centre), Mm(sphere.radius),
+                           draft_.shapes.bodies[Size(body)].guessed ? "  # guessed" : "");
+    }
+    text_ += "\n";
+  }
+
+  void WriteRest() {
+    text_ += "  # The posture of rest: " + draft_.rest.source + ".\n";
+    std::string list;
+    for (int c = 0; c < tree_.coordinate_count(); ++c) {
+      const Joint& joint = tree_.joints[Size(tree_.coordinate_joint[Size(c)])];
+      const bool turns = joint.type == JointType::kRevolute;
+      // The reader itself moves what is left out from zero into the limits.
+      const double value = draft_.rest.q[c] / (turns ? kRadiansPerDegree : kMetresPerMm);
+      if (std::abs(value) < 5e-4) continue;
+      list += fmt::format("    {}: {:.3f}{}\n", Word(joint.name), value, turns ? "" : "  # mm");
+    }
+    text_ += list.empty() ? "" : "  rest_deg:\n" + list;
+  }
+
+  void WriteDesign() {
+    text_ += "# What the calibration postures keep to, chain by chain.\ndesign:\n";
+    WriteRest();
+    text_ += "  chains:\n";
+    for (const ChainSetup& setup : draft_.designs) WriteSetup(setup);
+    text_ += "\n";
+  }
+
+  void WriteSetup(const ChainSetup& setup) {
+    text_ += fmt::format("    - chain: {}\n", Word(setup.name));
+    if (!setup.mirror.empty()) text_ += fmt::format("      mirror: {}\n", Word(setup.mirror));
+    if (!setup.support.empty()) {
+      std::string feet;
+      for (const int link : setup.support)
+        feet += (feet.empty() ? "" : ", ") + Word(LinkName(link));
+      text_ += fmt::format("      support: [{}]\n", feet);
+    }
+    if (setup.box) {
+      text_ +=
+          fmt::format("      box_mm: {{lower: {}, upper: {}}}  # of the tip, from the root link\n",
+                      MmList(setup.box->lower), MmList(setup.box->upper));
+    }
+    if (setup.largest_turn < 0.999 * M_PI) {
+      text_ += fmt::format("      cone_deg: {:.0f}\n", setup.largest_turn / kRadiansPerDegree);
+    }
+    if (setup.floor_z) {
+      text_ += fmt::format("      floor_mm: {}  # a little above the soles\n", Mm(*setup.floor_z));
+    }
+    if (setup.contacts.empty()) return;
+    text_ += "      contacts:\n";
+    for (const auto& [a, b] : setup.contacts) {
+      text_ += fmt::format("        - [{}, {}]\n", Word(draft_.spheres[Size(a)].name),
+                           Word(draft_.spheres[Size(b)].name));
+    }
+  }
+
+  void WriteSoles() {
+    if (!draft_.stands) {
+      text_ +=
+          draft_.soles.empty()
+              ? "# No legs were found: the root link is held still.\n"
+              : "# The robot does not balance on one or two flat soles of legs with six joints\n"
+                "# each: the root link is held still, for instance on a stand.\n";
+      return;
+    }
+    text_ +=
+        "# The undersides of the feet: x ahead, y to the left, z upwards in the link's frame.\n"
+        "standing:\n  soles:\n";
+    for (const DraftedSole& sole : draft_.soles) {
+      std::string note = sole.added ? "  # the link was added to the copy of the URDF" : "";
+      if (sole.guessed_height) {
+        note += "; height and size are guesses, measure them";
+      } else if (sole.guessed_size) {
+        note += note.empty() ? "  # the size is a guess, measure it" : "; the size is a guess";
+      }
+      text_ += fmt::format("    - {{link: {}, lower_mm: {}, upper_mm: {}}}{}\n", Word(sole.link),
+                           MmList(sole.lower), MmList(sole.upper), note);
+    }
+  }
+
+  const ProjectDraft& draft_;
+  const RobotTree& tree_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string FormatDraft(const ProjectDraft& draft, const std::string& urdf) {
+  return DraftWriter(draft).Write(urdf);
+}
+
+std::string FormatDraftSummary(const ProjectDraft& draft) {
+  using Json = nlohmann::ordered_json;
+  Json chains = Json::array(), designs = Json::array(), soles = Json::array();
+  for (const DraftedChain& chain : draft.chains) {
+    chains.push_back({{"name", chain.name},
+                      {"from", draft.tree.links[Size(chain.from_link)].name},
+                      {"tip", draft.tree.links[Size(chain.tip_link)].name}});
+  }
+  for (const ChainSetup& setup : draft.designs) {
+    designs.push_back(
+        {{"chain", setup.name}, {"mirror", setup.mirror}, {"contacts", setup.contacts.size()}});
+  }
+  for (const DraftedSole& sole : draft.soles) {
+    soles.push_back({{"link", sole.link},
+                     {"added", sole.added},
+                     {"guessed_size", sole.guessed_size},
+                     {"guessed_height", sole.guessed_height}});
+  }
+  const Json json = {{"robot", draft.tree.name},
+                     {"chains", chains},
+                     {"markers", 3 * draft.clusters.size()},
+                     {"spheres", draft.spheres.size()},
+                     {"rest", draft.rest.source},
+                     {"stands", draft.stands},
+                     {"soles", soles},
+                     {"design", designs},
+                     {"warnings", draft.warnings}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal

@@ -1,0 +1,232 @@
+// Drafted projects: of the embedded humanoid against its hand-written project, of small robots
+// made up here.
+#include "elastocal/drafting/draft.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+ProjectDraft DraftFile(const std::string& file) {
+  return DraftProject(ReadFile(SourceFile(file)), file, {});
+}
+
+/// The draft as its reader sees it.
+Project ReadBack(const ProjectDraft& draft, const ScratchFolder& folder) {
+  folder.Write("robot.urdf", draft.urdf);
+  return ReadProject(folder.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
+}
+
+double Length(const Project& project, int marker, int other) {
+  return (project.markers[Size(marker)].p_link_marker - project.markers[Size(other)].p_link_marker)
+      .norm();
+}
+
+TEST(Draft, TalosHasTheLimbsOfItsHandWrittenProject) {
+  const ScratchFolder folder;
+  const Project drafted = ReadBack(DraftFile("models/talos/talos.urdf"), folder);
+  const Project written = ReadProject(SourceFile("models/talos/project.yaml"));
+  EXPECT_EQ(drafted.markers.size(), written.markers.size());
+  // Chains by their ends, with as many markers each.
+  const auto ends = [](const Project& project) {
+    std::map<std::pair<std::string, std::string>, std::size_t> found;
+    for (const Chain& chain : project.chains) {
+      found[{project.tree.links[Size(chain.from_link)].name,
+             project.tree.links[Size(chain.tip_link)].name}] = ChainMarkers(project, chain).size();
+    }
+    return found;
+  };
+  EXPECT_EQ(ends(drafted), ends(written));
+  // The soles are a box of 210 x 130 mm; their links are in the URDF.
+  ASSERT_EQ(drafted.soles.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(drafted.tree.links[Size(drafted.soles[i].link)].name,
+              written.tree.links[Size(written.soles[i].link)].name);
+    EXPECT_LT((drafted.soles[i].lower - written.soles[i].lower).norm(), 1e-9);
+    EXPECT_LT((drafted.soles[i].upper - written.soles[i].upper).norm(), 1e-9);
+  }
+  ASSERT_EQ(drafted.motion.chains.size(), 3U);
+  EXPECT_EQ(drafted.motion.chains[1].mirror, "right_arm");
+  EXPECT_EQ(drafted.motion.chains[2].mirror, "right_leg");
+}
+
+TEST(Draft, ClustersAreFatTrianglesOfDifferentSides) {
+  for (const char* robot :
+       {"models/talos/talos.urdf", "tests/robots/mini_humanoid.urdf", "tests/robots/arm6.urdf"}) {
+    const ScratchFolder folder;
+    const Project project = ReadBack(DraftFile(robot), folder);
+    for (const MarkerCluster& cluster : project.clusters) {
+      const std::vector<int>& m = cluster.markers;
+      std::array<double, 3> sides = {Length(project, m[0], m[1]), Length(project, m[1], m[2]),
+                                     Length(project, m[2], m[0])};
+      std::sort(sides.begin(), sides.end());
+      // 0.88, and what rounding to millimetres changes of sides of 20 mm and more.
+      EXPECT_LT(sides[0], 0.93 * sides[1]) << robot << " " << cluster.name;
+      EXPECT_LT(sides[1], 0.93 * sides[2]) << robot << " " << cluster.name;
+      // The height above the longest side by Heron's formula.
+      const double s = 0.5 * (sides[0] + sides[1] + sides[2]);
+      const double area = std::sqrt(s * (s - sides[0]) * (s - sides[1]) * (s - sides[2]));
+      EXPECT_GT(2.0 * area / sides[2], 0.3 * sides[2]) << robot << " " << cluster.name;
+    }
+  }
+}
+
+TEST(Draft, SpheresCoverTheShapesOfTalosWithin15Millimetres) {
+  const ProjectDraft draft = DraftFile("models/talos/talos.urdf");
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(draft.tree.coordinate_count());
+  const auto poses = LinkTransforms(draft.tree, zero);
+  for (const BodyShape& body : draft.shapes.bodies) {
+    for (const Eigen::Vector3d& p : body.points) {
+      double outside = std::numeric_limits<double>::infinity();
+      for (const CollisionSphere& sphere : draft.spheres) {
+        if (sphere.link != body.link) continue;
+        outside = std::min(outside, (p - sphere.p_link_centre).norm() - sphere.radius);
+      }
+      EXPECT_LT(outside, 0.015) << draft.tree.links[Size(body.link)].name;
+    }
+  }
+  EXPECT_LT(draft.spheres.size(), 70U);
+}
+
+TEST(Draft, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
+  for (const char* robot : {"models/talos/talos.urdf", "tests/robots/mini_humanoid.urdf"}) {
+    const ScratchFolder folder;
+    const Project project = ReadBack(DraftFile(robot), folder);
+    const auto poses = LinkTransforms(project.tree, project.motion.rest);
+    for (const ChainSetup& chain : project.motion.chains) {
+      if (chain.contacts.empty()) continue;
+      EXPECT_GE(SphereDistances(project.motion.spheres, chain.contacts, poses).minCoeff(),
+                project.motion.sphere_margin - 1e-4)
+          << robot;
+    }
+    const auto zero =
+        LinkTransforms(project.tree, Eigen::VectorXd::Zero(project.tree.coordinate_count()));
+    for (const Sole& sole : project.soles) {
+      // Angles are written with a thousandth of a degree.
+      EXPECT_LT(RotationAngle(poses[Size(sole.link)].linear() *
+                              zero[Size(sole.link)].linear().transpose()),
+                1e-4);
+      EXPECT_GT(poses[Size(sole.link)].translation().z(),
+                zero[Size(sole.link)].translation().z() + 0.01);
+    }
+  }
+}
+
+TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  for (const std::string side : {"left", "right"}) {
+    for (const std::string& element :
+         {"<link name=\"" + side + "_sole_link\"/>",
+          "<joint name=\"leg_" + side + "_sole_fix_joint\" type=\"fixed\">"}) {
+      const std::size_t begin = urdf.find(element);
+      ASSERT_NE(begin, std::string::npos) << element;
+      const bool joint = element.starts_with("<joint");
+      const std::size_t end = joint ? urdf.find("</joint>", begin) + 8 : begin + element.size();
+      urdf.erase(begin, end - begin);
+    }
+  }
+  const ScratchFolder folder;
+  const Project project = ReadBack(DraftProject(urdf, "talos.urdf", {}), folder);
+  const auto zero =
+      LinkTransforms(project.tree, Eigen::VectorXd::Zero(project.tree.coordinate_count()));
+  ASSERT_EQ(project.soles.size(), 2U);
+  for (const Sole& sole : project.soles) {
+    EXPECT_TRUE(project.tree.links[Size(sole.link)].name.ends_with("_leg_sole"));
+    // -0.27105 - 0.38 - 0.325 - 0.107: hip, knee, ankle, underside of the foot's box.
+    EXPECT_NEAR(zero[Size(sole.link)].translation().z(), -1.08305, 1e-6);
+    EXPECT_NEAR((sole.upper - sole.lower).x(), 0.210, 1e-3);
+    EXPECT_NEAR((sole.upper - sole.lower).y(), 0.130, 1e-3);
+  }
+}
+
+/// A pole with a slider and two arms, all of one rod each; `shape` is the geometry of the root.
+std::string PoleUrdf(const std::string& shape, const std::string& mass) {
+  const auto joint = [](const std::string& name, const std::string& parent, double y) {
+    return "<link name='" + name +
+           "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
+           "ixz='0' iyz='0'/></inertial></link><joint name='" +
+           name + "_joint' type='revolute'><parent link='" + parent + "'/><child link='" + name +
+           "'/><origin xyz='0.2 " + std::to_string(y) +
+           " 0.3'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='100'/>"
+           "</joint>";
+  };
+  return "<robot name='pole'><link name='pole'><inertial><mass value='" + mass +
+         "'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision>"
+         "<geometry>" +
+         shape + "</geometry></collision></link>" + joint("l1", "pole", 0.2) +
+         joint("l2", "l1", 0.0) + joint("r1", "pole", -0.2) + joint("r2", "r1", 0.0) + "</robot>";
+}
+
+TEST(Draft, AShapeThatIsTooLightForItsSizeIsLeftOut) {
+  const std::string box = "<box size='0.2 0.3 0.4'/>";  // 24 litres
+  EXPECT_FALSE(DraftProject(PoleUrdf(box, "10"), "pole", {}).shapes.bodies[0].guessed);
+  const ProjectDraft light = DraftProject(PoleUrdf(box, "0.4"), "pole", {});
+  EXPECT_TRUE(light.shapes.bodies[0].guessed);
+  ASSERT_FALSE(light.warnings.empty());
+  EXPECT_NE(light.warnings[0].find("24 litres"), std::string::npos) << light.warnings[0];
+  EXPECT_THROW(DraftProject(PoleUrdf("<sphere radius='1e9'/>", "10"), "pole", {}), InputError);
+}
+
+TEST(Draft, NamesRestAndPairsComeFromTheSrdf) {
+  const std::string urdf = PoleUrdf("<sphere radius='0.1'/>", "10");
+  const Semantics semantics = ParseSemantics(
+      "<robot name='pole'><group name='west wing'><joint name='l1_joint'/><joint "
+      "name='l2_joint'/></group><group_state name='home' group='west wing'><joint "
+      "name='l2_joint' value='0.5'/><joint name='root' value='0 0 1'/></group_state>"
+      "<disable_collisions link1='l2' link2='pole' reason='Never'/></robot>",
+      "pole.srdf");
+  const ProjectDraft draft = DraftProject(urdf, "pole", semantics);
+  ASSERT_EQ(draft.chains.size(), 2U);
+  EXPECT_EQ(draft.chains[0].name, "west_wing");
+  EXPECT_EQ(draft.chains[1].name, "right_arm");
+  EXPECT_EQ(draft.rest.q[1], 0.5);
+  EXPECT_EQ(draft.rest.source, "the state 'home' of the SRDF");
+  EXPECT_EQ(semantics.apart.count({"l2", "pole"}), 1U);
+  EXPECT_THROW(ParseSemantics("<robot><group/></robot>", "x.srdf"), InputError);
+  EXPECT_THROW(ParseSemantics("<srdf/>", "x.srdf"), InputError);
+  EXPECT_THROW(ParseSemantics(urdf, "a URDF"), InputError);
+}
+
+TEST(Draft, TheSameTextGivesTheSameDraft) {
+  const std::string first = FormatDraft(DraftFile("tests/robots/mini_humanoid.urdf"), "a");
+  EXPECT_EQ(first, FormatDraft(DraftFile("tests/robots/mini_humanoid.urdf"), "a"));
+}
+
+TEST(Draft, OtherPeoplesRobotsCanBeReadBack) {
+  const std::vector<std::pair<std::string, std::string>> robots = {
+      {"talos/talos_full_v2.urdf", "talos/talos.srdf"},
+      {"simple_humanoid/simple_humanoid.urdf", "simple_humanoid/simple_humanoid.srdf"},
+      {"solo12/solo12.urdf", "solo12/solo.srdf"},
+      {"panda/panda.urdf", "panda/panda.srdf"},
+      {"tiago/tiago_arm.urdf", ""}};
+  int found = 0;
+  for (const auto& [urdf, srdf] : robots) {
+    const auto file = SharedFile("robots/" + urdf);
+    if (!std::filesystem::exists(file)) continue;
+    ++found;
+    Semantics semantics;
+    if (!srdf.empty()) semantics = ParseSemantics(ReadFile(SharedFile("robots/" + srdf)), srdf);
+    const ScratchFolder folder;
+    const Project project = ReadBack(DraftProject(ReadFile(file), urdf, semantics), folder);
+    EXPECT_FALSE(project.motion.chains.empty()) << urdf;
+    for (const Chain& chain : project.chains) {
+      EXPECT_GE(ChainMarkers(project, chain).size(), 3U) << urdf << " " << chain.name;
+    }
+  }
+  if (found == 0) GTEST_SKIP() << "no shared robots";
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,230 @@
+#include "elastocal/drafting/limbs.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "elastocal/math/numbers.hpp"
+
+namespace elastocal {
+namespace {
+
+/// How far the branch beyond a body reaches: the longest sum of distances between its joints, m.
+double Reach(const RobotTree& tree, int body) {
+  double longest = 0.0;
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const Joint& joint = tree.joints[k];
+    if (joint.parent_body != body) continue;
+    const Eigen::Vector3d offset =
+        tree.links[Size(joint.parent_link)].T_body_link * joint.T_parent_child.translation();
+    longest = std::max(longest, offset.norm() + Reach(tree, static_cast<int>(k) + 1));
+  }
+  return longest;
+}
+
+std::vector<int> Branches(const RobotTree& tree, int body) {
+  std::vector<int> bodies;
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    if (tree.joints[k].parent_body == body) bodies.push_back(static_cast<int>(k) + 1);
+  }
+  return bodies;
+}
+
+void MarkBeyond(const RobotTree& tree, int body, std::vector<bool>& marked) {
+  for (const int next : Branches(tree, body)) {
+    marked[Size(next)] = true;
+    MarkBeyond(tree, next, marked);
+  }
+}
+
+/// Bodies that belong to a gripper or to fingers.
+std::vector<bool> FindTools(const RobotTree& tree) {
+  constexpr double kShort = 0.22;
+  constexpr double kFinger = 0.12;  // m: no finger slides further
+  constexpr std::size_t kLeastJoints = 3;
+  const double longest = LongestBranch(tree);
+  std::vector<bool> tool(Size(tree.body_count()), false);
+  for (int body = 1; body < tree.body_count(); ++body) {
+    const std::vector<int> branches = Branches(tree, body);
+    if (JointsToBody(tree, body).size() < kLeastJoints || branches.empty()) continue;
+    if (Reach(tree, body) > kShort * longest) continue;
+    const bool mimics = std::any_of(branches.begin(), branches.end(),
+                                    [&](int b) { return tree.joints[Size(b - 1)].mimic; });
+    const Joint& only = tree.joints[Size(branches[0] - 1)];
+    const bool jaw =
+        only.type == JointType::kPrismatic && only.limits.upper - only.limits.lower <= kFinger;
+    if (branches.size() > 1 || mimics || jaw) MarkBeyond(tree, body, tool);
+  }
+  return tool;
+}
+
+/// The nearest body towards the root on which several limbs begin.
+int BranchBody(const RobotTree& tree, const std::vector<bool>& tool, int tip) {
+  int body = tip;
+  while (body != 0) {
+    body = tree.joints[Size(body - 1)].parent_body;
+    int limbs = 0;
+    for (const int b : Branches(tree, body)) limbs += tool[Size(b)] ? 0 : 1;
+    if (limbs > 1) return body;
+  }
+  return 0;
+}
+
+std::string FileName(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    name += plain && static_cast<unsigned char>(c) < 128 ? c : '_';
+  }
+  return name.empty() ? "limb" : name;
+}
+
+int LinkNamed(const RobotTree& tree, const std::string& name) {
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    if (tree.links[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+/// Whether a group is the end of this limb and nothing else.
+bool Names(const SemanticGroup& group, const RobotTree& tree, const Limb& limb) {
+  const int tip = group.tip_link.empty() ? -1 : LinkNamed(tree, group.tip_link);
+  if (tip >= 0) return tree.links[Size(tip)].body == limb.tip_body;
+  bool last = false;
+  for (const std::string& name : group.joints) {
+    const auto joint = std::find_if(tree.joints.begin(), tree.joints.end(),
+                                    [&](const Joint& j) { return j.name == name; });
+    if (joint == tree.joints.end()) continue;  // a fixed one
+    const int k = static_cast<int>(joint - tree.joints.begin());
+    if (std::find(limb.joints.begin(), limb.joints.end(), k) == limb.joints.end()) return false;
+    last = last || k == limb.joints.back();
+  }
+  return last;
+}
+
+/// The link that the SRDF calls the end, or the one of the last body that is furthest out.
+int TipLink(const RobotTree& tree, const Semantics& semantics, const Limb& limb) {
+  std::vector<std::string> named = semantics.end_links;
+  for (const SemanticGroup& group : semantics.groups) {
+    if (!group.tip_link.empty()) named.push_back(group.tip_link);
+  }
+  for (const std::string& name : named) {
+    const int link = LinkNamed(tree, name);
+    if (link >= 0 && tree.links[Size(link)].body == limb.tip_body) return link;
+  }
+  int furthest = BodyLink(tree, limb.tip_body);
+  double distance = 1e-6;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    if (tree.links[i].body != limb.tip_body) continue;
+    const double d = tree.links[i].T_body_link.translation().norm();
+    if (d > distance + 1e-6) {
+      distance = d;
+      furthest = static_cast<int>(i);
+    }
+  }
+  return furthest;
+}
+
+/// Whether two limbs are mirror images as far as one sees: as many joints, each where the other's
+/// is reflected.
+bool LookAlike(const RobotTree& tree, const std::vector<Transform>& T_root_body, const Limb& a,
+               const Limb& b) {
+  constexpr double kSamePlace = 0.02, kAside = 0.01;
+  if (a.from_body != b.from_body || a.joints.size() != b.joints.size()) return false;
+  const double longest = LongestBranch(tree);
+  bool aside = false;
+  for (std::size_t i = 0; i < a.joints.size(); ++i) {
+    const Eigen::Vector3d here = T_root_body[Size(a.joints[i]) + 1].translation();
+    const Eigen::Vector3d there = T_root_body[Size(b.joints[i]) + 1].translation();
+    const Eigen::Vector3d image(here.x(), -here.y(), here.z());
+    if ((there - image).norm() > kSamePlace * longest) return false;
+    if (tree.joints[Size(a.joints[i])].type != tree.joints[Size(b.joints[i])].type) return false;
+    aside = aside || std::abs(here.y()) > kAside * longest;
+  }
+  return aside;
+}
+
+void PairMirrors(const RobotTree& tree, std::vector<Limb>& limbs) {
+  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    for (std::size_t j = i + 1; j < limbs.size(); ++j) {
+      if (limbs[i].mirror >= 0 || limbs[j].mirror >= 0) continue;
+      if (!LookAlike(tree, poses, limbs[i], limbs[j])) continue;
+      limbs[i].mirror = static_cast<int>(j);
+      limbs[j].mirror = static_cast<int>(i);
+    }
+  }
+}
+
+void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb>& limbs) {
+  constexpr double kSameFloor = 0.08, kBelow = 0.25;
+  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  const double longest = LongestBranch(tree);
+  std::vector<double> lowest(limbs.size(), 0.0);
+  double floor = 0.0;
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    const int body = limbs[i].tip_body;
+    for (const Eigen::Vector3d& p : shapes.bodies[Size(body)].points) {
+      lowest[i] = std::min(lowest[i], (poses[Size(body)] * p).z());
+    }
+    floor = std::min(floor, lowest[i]);
+  }
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    Limb& limb = limbs[i];
+    const double origin = poses[Size(limb.tip_body)].translation().z();
+    limb.leg = limb.from_body == 0 && limb.mirror >= 0 && origin < -kBelow * longest &&
+               lowest[i] < floor + kSameFloor * longest;
+  }
+}
+
+/// "left_leg" and the like, by where the limb's tip is in the zero posture.
+std::string PlaceName(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb) {
+  if (limbs.size() == 1) return "arm";
+  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  const Eigen::Vector3d tip = poses[Size(limb.tip_body)].translation();
+  const auto legs = std::count_if(limbs.begin(), limbs.end(), [](const Limb& l) { return l.leg; });
+  const bool leg = limb.leg;
+  if (limb.mirror < 0) return leg ? "leg" : "head";
+  std::string name = tip.y() > 0.0 ? "left_" : "right_";
+  if (leg && legs > 2) name = (tip.x() > 0.0 ? "front_" : "hind_") + name;
+  return name + (leg ? "leg" : "arm");
+}
+
+}  // namespace
+
+Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics) {
+  Limbs found;
+  found.tool = FindTools(tree);
+  for (int body = 1; body < tree.body_count(); ++body) {
+    const std::vector<int> branches = Branches(tree, body);
+    const bool ends =
+        std::all_of(branches.begin(), branches.end(), [&](int b) { return found.tool[Size(b)]; });
+    if (found.tool[Size(body)] || !ends) continue;
+    Limb limb;
+    limb.tip_body = body;
+    limb.from_body = BranchBody(tree, found.tool, body);
+    limb.joints = JointsToBody(tree, body);
+    limb.tip_link = TipLink(tree, semantics, limb);
+    found.limbs.push_back(std::move(limb));
+  }
+  PairMirrors(tree, found.limbs);
+  FindFeet(tree, shapes, found.limbs);
+  std::set<std::string> used;
+  for (Limb& limb : found.limbs) {
+    std::string name = PlaceName(tree, found.limbs, limb);
+    for (const SemanticGroup& group : semantics.groups) {
+      if (!Names(group, tree, limb)) continue;
+      name = group.name;
+      break;
+    }
+    limb.name = FileName(name);
+    for (int i = 2; !used.insert(limb.name).second; ++i) {
+      limb.name = FileName(name) + "_" + std::to_string(i);
+    }
+  }
+  return found;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,246 @@
+#include "elastocal/drafting/rest_posture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/statics.hpp"
+
+namespace elastocal {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// A chain of joints from the root link to a link, placed by damped least squares.
+class Placer {
+ public:
+  Placer(const RobotTree& tree, int link, const std::vector<int>& joints, Eigen::VectorXd lower,
+         Eigen::VectorXd upper)
+      : tree_(tree),
+        link_(link),
+        joints_(joints),
+        lower_(std::move(lower)),
+        upper_(std::move(upper)) {}
+
+  /// Moves the joints within their limits until the link has its place, attitude and heading.
+  bool Place(const Transform& wanted, Eigen::VectorXd& q) const {
+    constexpr int kIterations = 200;
+    constexpr double kReached = 1e-6, kDamping = 1e-6, kLargestStep = 0.2;
+    for (int i = 0; i < kIterations; ++i) {
+      Eigen::MatrixXd J;
+      const Transform found = Evaluate(q, J);
+      Vector6 error;
+      error << wanted.translation() - found.translation(),
+          RotationVector(wanted.linear() * found.linear().transpose());
+      if (error.norm() < kReached) return true;
+      const Eigen::MatrixXd normal =
+          J.transpose() * J + kDamping * Eigen::MatrixXd::Identity(J.cols(), J.cols());
+      Eigen::VectorXd step = normal.ldlt().solve(J.transpose() * error);
+      step *= std::min(1.0, kLargestStep / std::max(1e-12, step.cwiseAbs().maxCoeff()));
+      for (std::size_t k = 0; k < joints_.size(); ++k) {
+        const int c = tree_.joints[Size(joints_[k])].coordinate;
+        q[c] = std::clamp(q[c] + step[static_cast<Eigen::Index>(k)], lower_[c], upper_[c]);
+      }
+    }
+    return false;
+  }
+
+ private:
+  Transform Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& J) const {
+    const std::vector<Transform> poses = LinkTransforms(tree_, q);
+    const Eigen::Vector3d end = poses[Size(link_)].translation();
+    J.resize(6, static_cast<Eigen::Index>(joints_.size()));
+    for (std::size_t k = 0; k < joints_.size(); ++k) {
+      const Joint& joint = tree_.joints[Size(joints_[k])];
+      const Transform& T = poses[Size(joint.child_link)];
+      const Eigen::Vector3d axis = T.linear() * joint.axis;
+      const bool turns = joint.type == JointType::kRevolute;
+      const auto column = static_cast<Eigen::Index>(k);
+      J.col(column).head<3>() = turns ? axis.cross(end - T.translation()) : axis;
+      J.col(column).tail<3>() = turns ? axis : Eigen::Vector3d(Eigen::Vector3d::Zero());
+      J.col(column) *= joint.multiplier;
+    }
+    return poses[Size(link_)];
+  }
+
+  const RobotTree& tree_;
+  int link_;
+  const std::vector<int>& joints_;
+  Eigen::VectorXd lower_, upper_;
+};
+
+/// Whether all soles are flat at one height, and that height.
+bool Flat(const RobotTree& tree, const std::vector<DraftedSole>& soles, const Eigen::VectorXd& q,
+          double& height) {
+  constexpr double kFlat = 0.035, kSame = 0.01;
+  const std::vector<Transform> poses = LinkTransforms(tree, q);
+  double lowest = 1e9, highest = -1e9;
+  for (const DraftedSole& sole : soles) {
+    const Transform& T = poses[Size(FindLink(tree, sole.link))];
+    if ((T.linear().col(2) - Eigen::Vector3d::UnitZ()).norm() > kFlat) return false;
+    lowest = std::min(lowest, T.translation().z());
+    highest = std::max(highest, T.translation().z());
+  }
+  height = -0.5 * (lowest + highest);
+  return !soles.empty() && highest - lowest < kSame;
+}
+
+/// Lowers the root link with the feet where they are in the zero posture, by as much as the legs
+/// allow up to a usual share of their length. Returns whether they stand.
+bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<DraftedSole>& soles,
+              Eigen::VectorXd& q) {
+  constexpr double kKnee = 0.8;  // rad: as two joints ahead and behind then move by half of it
+  const auto range = RangesOf(tree, 0.03);
+  const Eigen::VectorXd &lower = range.first, &upper = range.second;
+  const auto zero = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  for (const double drop : {0.06, 0.05, 0.04, 0.03, 0.02, 0.01}) {
+    Eigen::VectorXd bent = q;
+    bool all = true;
+    for (const DraftedSole& sole : soles) {
+      const std::vector<int>& joints = limbs.limbs[Size(sole.limb)].joints;
+      const int link = FindLink(tree, sole.link);
+      Transform wanted = zero[Size(link)];
+      wanted.translation().z() *= 1.0 - drop;
+      const Placer placer(tree, link, joints, lower, upper);
+      bool placed = false;
+      for (std::size_t knee = 1; knee + 1 < joints.size() && !placed; ++knee) {
+        for (const double bend : {kKnee, -kKnee}) {
+          Eigen::VectorXd start = bent;
+          const auto set = [&](std::size_t i, double value) {
+            const int c = tree.joints[Size(joints[i])].coordinate;
+            start[c] = std::clamp(value, lower[c], upper[c]);
+          };
+          set(knee - 1, -0.5 * bend);
+          set(knee, bend);
+          set(knee + 1, -0.5 * bend);
+          if (!placer.Place(wanted, start)) continue;
+          bent = start;
+          placed = true;
+          break;
+        }
+      }
+      all = all && placed;
+    }
+    if (!all) continue;
+    q = bent;
+    return true;
+  }
+  return false;
+}
+
+/// Moves each joint outside the legs whose motor cannot hold the weight to the nearest position in
+/// which it can, the root link upright. Returns whether one was moved.
+bool LeanIntoTorques(const RobotTree& tree, const Limbs& limbs, Eigen::VectorXd& q) {
+  constexpr double kShare = 0.8;
+  constexpr int kSteps = 60, kRounds = 3;
+  const auto range = RangesOf(tree, 0.05);
+  std::vector<bool> leg(Size(tree.coordinate_count()), false);
+  for (const Limb& limb : limbs.limbs) {
+    for (const int k : limb.joints) {
+      if (limb.leg) leg[Size(tree.joints[Size(k)].coordinate)] = true;
+    }
+  }
+  bool moved = false;
+  for (int round = 0; round < kRounds; ++round) {
+    for (int c = 0; c < tree.coordinate_count(); ++c) {
+      const double effort = tree.joints[Size(tree.coordinate_joint[Size(c)])].limits.effort;
+      const auto used = [&](double position) {
+        Eigen::VectorXd there = q;
+        there[c] = position;
+        return std::abs(GravityTorques(tree, there)[c]) / effort;
+      };
+      if (leg[Size(c)] || effort <= 0.0 || used(q[c]) <= kShare) continue;
+      const double step = (range.second[c] - range.first[c]) / kSteps;
+      for (int i = 1; i <= kSteps; ++i) {
+        const double less = q[c] - i * step, more = q[c] + i * step;
+        const bool back = less >= range.first[c] && used(less) <= kShare;
+        if (!back && !(more <= range.second[c] && used(more) <= kShare)) continue;
+        q[c] = back ? less : more;
+        moved = true;
+        break;
+      }
+    }
+  }
+  return moved;
+}
+
+bool SameWord(const std::string& name, const std::string& word) {
+  std::string letters;
+  for (const char c : name) {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  return letters.find(word) != std::string::npos;
+}
+
+/// The state that robots usually rest in, or null.
+const std::pair<std::string, std::map<std::string, double>>* UsualState(
+    const Semantics& semantics) {
+  constexpr std::array kUsual = {"halfsitting", "standing", "stand", "ready",
+                                 "home",        "default",  "rest"};
+  for (const char* word : kUsual) {
+    for (const auto& state : semantics.states) {
+      if (SameWord(state.first, word)) return &state;
+    }
+  }
+  return semantics.states.empty() ? nullptr : &semantics.states.front();
+}
+
+}  // namespace
+
+RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
+                       const std::vector<DraftedSole>& soles, const Semantics& semantics) {
+  const auto [lower, upper] = RangesOf(tree, 0.021);
+  RestPosture rest;
+  rest.q = Eigen::VectorXd::Zero(tree.coordinate_count()).cwiseMax(lower).cwiseMin(upper);
+  rest.source = "the zero posture, within the limits";
+  if (const auto* state = UsualState(semantics)) {
+    Eigen::VectorXd q = rest.q;
+    for (const Joint& joint : tree.joints) {
+      const auto value = state->second.find(joint.name);
+      if (value == state->second.end() || joint.mimic) continue;
+      q[joint.coordinate] =
+          std::clamp(value->second, lower[joint.coordinate], upper[joint.coordinate]);
+    }
+    rest.q = q;
+    rest.source = "the state '" + state->first + "' of the SRDF";
+  }
+  rest.stands = Flat(tree, soles, rest.q, rest.root_height);
+  double bend = 0.0;
+  for (const DraftedSole& sole : soles) {
+    for (const int k : limbs.limbs[Size(sole.limb)].joints) {
+      bend = std::max(bend, std::abs(rest.q[tree.joints[Size(k)].coordinate]));
+    }
+  }
+  if (LeanIntoTorques(tree, limbs, rest.q)) {
+    rest.source += ", leaning where motors could not hold the weight otherwise";
+  }
+  constexpr double kLeastBend = 0.3;
+  if (!soles.empty() && (!rest.stands || bend < kLeastBend) &&
+      BendLegs(tree, limbs, soles, rest.q)) {
+    rest.source += ", with bent knees";
+    rest.stands = Flat(tree, soles, rest.q, rest.root_height);
+  }
+  return rest;
+}
+
+std::pair<Eigen::VectorXd, Eigen::VectorXd> RangesOf(const RobotTree& tree, double margin) {
+  Eigen::VectorXd lower(tree.coordinate_count()), upper(tree.coordinate_count());
+  for (int i = 0; i < tree.coordinate_count(); ++i) {
+    const Joint& joint = tree.joints[Size(tree.coordinate_joint[Size(i)])];
+    const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
+    const double least = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
+    const double most = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
+    lower[i] = least + margin * (most - least);
+    upper[i] = most - margin * (most - least);
+  }
+  return {lower, upper};
+}
+
+}  // namespace elastocal

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/drafting/semantics.hpp"
+#include "elastocal/drafting/soles.hpp"
+
+namespace elastocal {
+
+/// The posture of rest of a draft.
+struct RestPosture {
+  Eigen::VectorXd q;         ///< by coordinate, within the limits less a margin of 2 % of the range
+  std::string source;        ///< in words: "the state 'half_sitting' of the SRDF"
+  bool stands = false;       ///< all soles lie flat on one floor
+  double root_height = 0.0;  ///< of the root link above the soles, m; 0 without soles
+};
+
+/// Chooses a posture of rest: a state of the SRDF (half sitting, standing, home, ...) if the robot
+/// stands flat in it, otherwise the zero posture moved into the limits, with the knees of the legs
+/// bent. `tree` has the links of all soles.
+RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
+                       const std::vector<DraftedSole>& soles, const Semantics& semantics);
+
+/// The limits less a share of the range; half a turn or 0.5 m where there are none. By coordinate.
+std::pair<Eigen::VectorXd, Eigen::VectorXd> RangesOf(const RobotTree& tree, double margin);
+
+}  // namespace elastocal

@@ -1,0 +1,59 @@
+#include "elastocal/drafting/semantics.hpp"
+
+#include <algorithm>
+
+#include "elastocal/io/xml_element.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+SemanticGroup ReadGroup(const XmlElement& element) {
+  SemanticGroup group;
+  group.name = element.Text("name");
+  for (const XmlElement& part : element.Children()) {
+    if (part.Tag() == "chain" && group.tip_link.empty()) group.tip_link = part.Text("tip_link");
+    if (part.Tag() == "joint") group.joints.push_back(part.Text("name"));
+  }
+  return group;
+}
+
+std::map<std::string, double> ReadState(const XmlElement& element) {
+  std::map<std::string, double> positions;
+  for (const XmlElement& joint : element.Children()) {
+    if (joint.Tag() != "joint") continue;
+    if (const auto value = ParseNumber(joint.Text("value"))) positions[joint.Text("name")] = *value;
+  }
+  return positions;
+}
+
+}  // namespace
+
+Semantics ParseSemantics(const std::string& text, const std::string& source) {
+  const XmlText xml(text, source);
+  const XmlElement root = xml.Root();
+  if (root.Tag() != "robot") {
+    root.Fail("found <" + std::string(root.Tag()) + ">; an SRDF begins with <robot>");
+  }
+  Semantics semantics;
+  for (const XmlElement& element : root.Children()) {
+    if (element.Tag() == "group") semantics.groups.push_back(ReadGroup(element));
+    if (element.Tag() == "end_effector") {
+      semantics.end_links.push_back(element.Text("parent_link"));
+    }
+    if (element.Tag() == "group_state") {
+      semantics.states.emplace_back(element.Text("name"), ReadState(element));
+    }
+    if (element.Tag() == "disable_collisions") {
+      const std::string one = element.Text("link1"), other = element.Text("link2");
+      semantics.apart.insert(std::minmax(one, other));
+    }
+  }
+  if (semantics.groups.empty() && semantics.states.empty() && semantics.end_links.empty() &&
+      semantics.apart.empty()) {
+    root.Fail("there is no group, state, end effector or pair of links in it; is this an SRDF?");
+  }
+  return semantics;
+}
+
+}  // namespace elastocal

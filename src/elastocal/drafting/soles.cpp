@@ -1,0 +1,149 @@
+#include "elastocal/drafting/soles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "elastocal/math/numbers.hpp"
+
+namespace elastocal {
+namespace {
+
+// Of a foot of which nothing is known, as shares of the leg's length: how far the sole is below the
+// last joint and how far it reaches backwards, ahead and to either side.
+constexpr double kFootHeight = 0.12, kHeel = 0.10, kToe = 0.17, kHalfWidth = 0.075;
+
+struct FootPoints {
+  std::vector<Eigen::Vector3d> root;  ///< of the shapes, in the root link's frame, m
+  double floor = std::numeric_limits<double>::infinity();
+};
+
+/// A link of the foot's body that lies flat at this height, or nothing.
+std::optional<int> FlatLink(const RobotTree& tree, int body, const std::vector<Transform>& T_root,
+                            double lowest, double highest) {
+  constexpr double kFlat = 0.01;
+  std::optional<int> best;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    if (tree.links[i].body != body) continue;
+    const double height = T_root[i].translation().z();
+    const bool flat = (T_root[i].linear().col(2) - Eigen::Vector3d::UnitZ()).norm() < kFlat;
+    if (!flat || height < lowest || height > highest) continue;
+    if (!best || height < T_root[Size(*best)].translation().z()) best = static_cast<int>(i);
+  }
+  return best;
+}
+
+/// Text in an attribute of XML.
+std::string XmlEscaped(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  }
+  return escaped;
+}
+
+/// A name that no link has yet.
+std::string NewLinkName(const RobotTree& tree, const std::string& wanted) {
+  std::string name = wanted;
+  const auto known = [&](const Link& link) { return link.name == name; };
+  for (int i = 2; std::any_of(tree.links.begin(), tree.links.end(), known); ++i) {
+    name = wanted + "_" + std::to_string(i);
+  }
+  return name;
+}
+
+/// The rectangle that touches the floor, seen from the sole's frame.
+void MeasureSole(const FootPoints& foot, const Transform& T_root_sole, double thickness,
+                 DraftedSole& sole) {
+  sole.lower.setConstant(std::numeric_limits<double>::infinity());
+  sole.upper.setConstant(-std::numeric_limits<double>::infinity());
+  for (const Eigen::Vector3d& p : foot.root) {
+    if (p.z() > foot.floor + thickness) continue;
+    const Eigen::Vector2d xy = (T_root_sole.inverse() * p).head<2>();
+    sole.lower = sole.lower.cwiseMin(xy);
+    sole.upper = sole.upper.cwiseMax(xy);
+  }
+}
+
+DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& limb,
+                     const std::vector<Transform>& T_root_link) {
+  constexpr double kThickness = 0.005, kSamePlane = 0.003;
+  const Transform T_root_body = T_root_link[Size(BodyLink(tree, limb.tip_body))];
+  const Transform T_root_hip = T_root_link[Size(tree.joints[Size(limb.joints[0])].child_link)];
+  const double ankle = T_root_body.translation().z();
+  const double length = (T_root_hip.translation().z() - ankle) * (1.0 + kFootHeight);
+  FootPoints foot;
+  for (const Eigen::Vector3d& p : shape.points) {
+    foot.root.push_back(T_root_body * p);
+    foot.floor = std::min(foot.floor, foot.root.back().z());
+  }
+  DraftedSole sole;
+  sole.guessed_size = shape.guessed;
+  std::optional<int> link;
+  if (shape.guessed) {
+    link = FlatLink(tree, limb.tip_body, T_root_link, ankle - length, ankle - 0.01 * length);
+    sole.guessed_height = !link;
+    foot.floor = link ? T_root_link[Size(*link)].translation().z() : ankle - kFootHeight * length;
+  } else {
+    link = FlatLink(tree, limb.tip_body, T_root_link, foot.floor - kSamePlane,
+                    foot.floor + kSamePlane);
+  }
+  Transform T_root_sole = Transform::Identity();
+  T_root_sole.translation() << T_root_body.translation().head<2>(), foot.floor;
+  sole.added = !link;
+  if (link) {
+    sole.link = tree.links[Size(*link)].name;
+    T_root_sole = T_root_link[Size(*link)];
+  } else {
+    sole.link = NewLinkName(tree, limb.name + "_sole");
+    sole.parent_link = BodyLink(tree, limb.tip_body);
+    sole.T_parent_sole = T_root_body.inverse() * T_root_sole;
+  }
+  sole.lower = {-kHeel * length, -kHalfWidth * length};
+  sole.upper = {kToe * length, kHalfWidth * length};
+  if (!shape.guessed) MeasureSole(foot, T_root_sole, kThickness, sole);
+  return sole;
+}
+
+}  // namespace
+
+std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& shapes,
+                                   const Limbs& limbs) {
+  const auto T_root_link = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  std::vector<DraftedSole> soles;
+  for (std::size_t i = 0; i < limbs.limbs.size(); ++i) {
+    const Limb& limb = limbs.limbs[i];
+    if (!limb.leg) continue;
+    soles.push_back(FindSole(tree, shapes.bodies[Size(limb.tip_body)], limb, T_root_link));
+    soles.back().limb = static_cast<int>(i);
+  }
+  return soles;
+}
+
+std::string AddSoleLinks(const std::string& urdf, const RobotTree& tree,
+                         const std::vector<DraftedSole>& soles) {
+  std::string added;
+  for (const DraftedSole& sole : soles) {
+    if (!sole.added) continue;
+    const Eigen::Vector3d p = sole.T_parent_sole.translation();
+    const Eigen::Vector3d rpy = ToRpy(sole.T_parent_sole.linear(), Eigen::Vector3d::Zero());
+    added += fmt::format(
+        "  <!-- Added by elastocal init: the underside of a foot, z up. -->\n"
+        "  <link name=\"{0}\"/>\n"
+        "  <joint name=\"{0}_fixed\" type=\"fixed\">\n"
+        "    <parent link=\"{1}\"/>\n"
+        "    <child link=\"{0}\"/>\n"
+        "    <origin xyz=\"{2:.6f} {3:.6f} {4:.6f}\" rpy=\"{5:.9f} {6:.9f} {7:.9f}\"/>\n"
+        "  </joint>\n",
+        sole.link, XmlEscaped(tree.links[Size(sole.parent_link)].name), p.x(), p.y(), p.z(),
+        rpy.x(), rpy.y(), rpy.z());
+  }
+  const std::size_t end = urdf.rfind("</robot");
+  if (added.empty() || end == std::string::npos) return urdf;
+  return urdf.substr(0, end) + added + urdf.substr(end);
+}
+
+}  // namespace elastocal

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/drafting/limbs.hpp"
+#include "elastocal/robot/collision.hpp"
+#include "elastocal/robot/motion_setup.hpp"
+
+namespace elastocal {
+
+/// Spheres around points: as few as keep their radii near the thickness of the whole, at most
+/// `most`. No point is further than `tolerance` [m] outside a sphere.
+std::vector<CollisionSphere> CoverPoints(const std::vector<Eigen::Vector3d>& points,
+                                         double tolerance, int most);
+
+/// Spheres that cover all bodies of the robot, in the frames of the bodies' links, rounded to mm.
+/// Names are unique. What is symmetric to the root link's x-z plane in the zero posture gets
+/// spheres that are. Fingers, as they are at rest, are
+/// covered together with the hand.
+std::vector<CollisionSphere> CoverRobot(const RobotTree& tree, const RobotShapes& shapes,
+                                        const Limbs& limbs, const Eigen::VectorXd& rest);
+
+/// Pairs of spheres whose distance changes with the joints `coordinates` and that do not lie
+/// against each other by design: not on neighbouring bodies, and not listed by the SRDF as never
+/// checked.
+std::vector<SpherePair> PairsMovedBy(const RobotTree& tree,
+                                     const std::vector<CollisionSphere>& spheres,
+                                     const std::vector<int>& coordinates,
+                                     const Semantics& semantics);
+
+struct ContactSearch {
+  std::vector<SpherePair> pairs;  ///< that can touch, the most frequent first
+  int touching_at_rest = 0;       ///< pairs that touch in the posture of rest, left out
+};
+
+/// Of `candidates`, the pairs that can touch while the chain moves over its ranges, or over its box
+/// made wider by a quarter, and all else rests: found in 1500 random postures. Left out are those
+/// that touch at rest or nearly always, and those that never do.
+ContactSearch FindContacts(const RobotTree& tree, const std::vector<CollisionSphere>& spheres,
+                           const std::vector<SpherePair>& candidates, const Eigen::VectorXd& rest,
+                           const ChainSetup& chain, double margin);
+
+}  // namespace elastocal

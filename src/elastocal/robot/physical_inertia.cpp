@@ -1,0 +1,59 @@
+#include "elastocal/robot/physical_inertia.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Eigenvalues>
+
+#include "elastocal/math/numbers.hpp"
+
+namespace elastocal {
+namespace {
+
+/// By how much the two smaller principal moments are to be raised; 0 for a physical inertia.
+/// `moments` in ascending order.
+double MissingMoment(const Eigen::Vector3d& moments) {
+  constexpr double kRounding = 1e-9;
+  const double least = std::max(0.0, -moments[0]);
+  const double missing = 0.5 * (moments[2] - moments[0] - moments[1]);
+  return std::max(least, missing > kRounding * moments[2] ? missing : 0.0);
+}
+
+}  // namespace
+
+Eigen::Matrix3d PhysicalInertia(const Eigen::Matrix3d& inertia) {
+  constexpr double kSpare = 1e-6;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
+  const double missing = MissingMoment(solver.eigenvalues());
+  if (missing <= 0.0) return inertia;
+  Eigen::Vector3d moments = solver.eigenvalues();
+  moments.head<2>().array() += missing * (1.0 + kSpare);
+  moments[2] = std::max(moments[2], moments[1]);
+  return solver.eigenvectors() * moments.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+std::vector<std::string> InertiaWarnings(const RobotTree& tree) {
+  std::vector<std::string> warnings;
+  std::vector<double> mass(Size(tree.body_count()), 0.0);
+  for (const Link& link : tree.links) {
+    mass[Size(link.body)] += link.mass;
+    const auto say = [&](const std::string& what) {
+      warnings.push_back("link '" + link.name + "': " + what);
+    };
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(link.inertia);
+    if (MissingMoment(solver.eigenvalues()) > 0.0) {
+      say("no body has the inertia of the URDF (a principal moment is negative or larger than the "
+          "sum of the others); the simulator takes a balanced one");
+    } else if (link.mass > 0.0 && link.inertia.isZero()) {
+      say("it has a mass but no inertia");
+    }
+  }
+  for (int body = 1; body < tree.body_count(); ++body) {
+    if (mass[Size(body)] > 0.0) continue;
+    const Link& link = tree.links[Size(tree.joints[Size(body - 1)].child_link)];
+    warnings.push_back("link '" + link.name +
+                       "': it has no mass, which statics and the simulator need");
+  }
+  return warnings;
+}
+
+}  // namespace elastocal

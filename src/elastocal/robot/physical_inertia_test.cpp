@@ -1,0 +1,53 @@
+#include "elastocal/robot/physical_inertia.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "elastocal/math/transform.hpp"
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+TEST(PhysicalInertia, LeavesWhatExistsAsItIs) {
+  Eigen::Matrix3d inertia = Eigen::Vector3d(0.2, 0.3, 0.5).asDiagonal();  // a flat plate: A + B = C
+  EXPECT_EQ(PhysicalInertia(inertia), inertia);
+  inertia(0, 1) = inertia(1, 0) = 0.01;
+  EXPECT_EQ(PhysicalInertia(inertia), inertia);
+}
+
+TEST(PhysicalInertia, RaisesTheSmallerMomentsByHalfOfWhatIsMissing) {
+  // (5 - 1 - 2) / 2 = 1 for each.
+  const Eigen::Matrix3d R = (RotX(0.4) * RotZ(-1.1)).linear();
+  const Eigen::Matrix3d turned = R * Eigen::Vector3d(5.0, 1.0, 2.0).asDiagonal() * R.transpose();
+  const Eigen::Matrix3d expected = R * Eigen::Vector3d(5.0, 2.0, 3.0).asDiagonal() * R.transpose();
+  EXPECT_LT((PhysicalInertia(turned) - expected).norm(), 1e-5);  // a millionth to spare
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(PhysicalInertia(turned)).eigenvalues();
+  EXPECT_GT(moments[0] + moments[1], moments[2]);
+}
+
+TEST(PhysicalInertia, NegativeMomentsBecomePhysical) {
+  const Eigen::Matrix3d inertia = Eigen::Vector3d(-0.1, 0.2, 0.2).asDiagonal();
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(PhysicalInertia(inertia)).eigenvalues();
+  EXPECT_GE(moments[0], 0.0);
+  EXPECT_GE(moments[0] + moments[1], moments[2] - 1e-12);
+}
+
+TEST(PhysicalInertia, WarningsNameTheLink) {
+  RobotTree tree = MakeRoot();
+  const int link = AddJoint(tree, "joint", 0, Offset(0, 0, 1), {0, 0, 1});
+  EXPECT_EQ(InertiaWarnings(tree).size(), 1U);  // no mass
+  tree.links[static_cast<std::size_t>(link)].mass = 1.0;
+  EXPECT_EQ(InertiaWarnings(tree).size(), 1U);  // no inertia
+  tree.links[static_cast<std::size_t>(link)].inertia = 0.1 * Eigen::Matrix3d::Identity();
+  EXPECT_TRUE(InertiaWarnings(tree).empty());
+  tree.links[static_cast<std::size_t>(link)].inertia(2, 2) = 0.3;
+  ASSERT_EQ(InertiaWarnings(tree).size(), 1U);
+  EXPECT_NE(InertiaWarnings(tree)[0].find(tree.links[static_cast<std::size_t>(link)].name),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace elastocal

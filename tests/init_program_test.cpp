@@ -1,0 +1,67 @@
+// The command init as its users run it.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/io/output_files.hpp"
+#include "tests/run_program.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+TEST(InitProgram, WritesAProjectThatInspectAndDesignTakeAsItIs) {
+  const ScratchFolder folder;
+  const std::string out = (folder.path() / "arm").string();
+  const std::string urdf = SourceFile("tests/robots/arm6.urdf").string();
+  const ProgramResult made =
+      RunProgram("init " + urdf + " -o " + out + " --json " + out + "/init.json");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(ReadFile(out + "/arm6.urdf"), ReadFile(urdf));
+  const auto json = nlohmann::json::parse(ReadFile(out + "/init.json"));
+  EXPECT_EQ(json["chains"][0]["tip"], "tool");
+  EXPECT_FALSE(json["stands"]);
+  const ProgramResult inspected = RunProgram("inspect " + out + "/project.yaml");
+  EXPECT_EQ(inspected.exit_code, 0) << inspected.err;
+  const std::string postures = out + "/postures.yaml", motion = out + "/motion.csv";
+  const ProgramResult designed =
+      RunProgram("design " + out + "/project.yaml --count 6 -o " + postures);
+  EXPECT_EQ(designed.exit_code, 0) << designed.err;
+  const ProgramResult planned =
+      RunProgram("plan " + out + "/project.yaml --postures " + postures + " -o " + motion);
+  EXPECT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_NE(ReadFile(motion).find(",none,"), std::string::npos);  // the root link is held
+}
+
+TEST(InitProgram, ReplacesNothingUnasked) {
+  const ScratchFolder folder;
+  const std::string urdf = SourceFile("tests/robots/arm6.urdf").string();
+  const std::string mine = folder.Write("project.yaml", "my own work");
+  const ProgramResult refused = RunProgram("init " + urdf + " -o " + folder.path().string());
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
+  EXPECT_EQ(ReadFile(mine), "my own work");
+  EXPECT_EQ(RunProgram("init " + urdf + " --force -o " + folder.path().string()).exit_code, 0);
+  EXPECT_TRUE(ReadFile(mine).starts_with("# Drafted by elastocal init."));
+}
+
+TEST(InitProgram, BadInputIsNamedAndNothingIsWritten) {
+  const ScratchFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  const std::string still = folder.Write("still.urdf", "<robot name='r'><link name='a'/></robot>");
+  const std::string bad_srdf = folder.Write("bad.srdf", "<robot name='r'><group/></robot>");
+  const std::string urdf = SourceFile("tests/robots/arm6.urdf").string();
+  for (const auto& [words, part] : {std::pair<std::string, std::string>{still, "no movable joint"},
+                                    {urdf + " --srdf " + bad_srdf, "bad.srdf:1"},
+                                    {urdf + " --srdf none.srdf", "none.srdf"},
+                                    {folder.path().string(), "folder"},
+                                    {"none.urdf", "none.urdf"}}) {
+    const ProgramResult result = RunProgram("init " + words + " -o " + out);
+    EXPECT_EQ(result.exit_code, 3) << words;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(out)) << words;
+  }
+}
+
+}  // namespace
+}  // namespace elastocal
