@@ -78,8 +78,8 @@ Eigen::MatrixX3d LeftAfterRegistration(const ContactModel& model, const Touches&
   for (int p = 0; p < static_cast<int>(model.setup.plates.size()); ++p) {
     const int count = static_cast<int>(TouchesOfPlate(touches, p).size());
     if (count > 0 && count < kFewestTouches) {
-      throw InputError(touches.files.front() + ": plate '" + model.setup.plates[p].name +
-                       "' has " + std::to_string(count) + " touches; at least " +
+      throw InputError(touches.files.front() + ": plate '" + model.setup.plates[p].name + "' has " +
+                       std::to_string(count) + " touches; at least " +
                        std::to_string(kFewestTouches) +
                        " were expected to register its table anew");
     }
