@@ -119,13 +119,17 @@ int RunContactCalibration(const CalibrateOptions& options, const Project& projec
 
   auto inputs_read = std::async(std::launch::async, RecordInputs, inputs);
   const auto progress = TerminalSteps("reading and fitting", options.common.quiet);
-  ContactRun run = CalibrateContacts(
-      project, recordings,
-      {.folds = options.folds,
-       .threads = options.threads,
-       .zero_offsets =
-           options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin,
-       .progress = [&](int done, int total) { progress("cross-validation", done, total); }});
+  Progress of_folds;
+  if (progress) {
+    of_folds = [&](int done, int total) { progress("cross-validation", done, total); };
+  }
+  ContactRun run =
+      CalibrateContacts(project, recordings,
+                        {.folds = options.folds,
+                         .threads = options.threads,
+                         .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
+                                                                           : ZeroOffsets::kOrigin,
+                         .progress = of_folds});
   const auto files = MakeContactFiles(project, run);
   const std::string no_report = SetResults(
       folder, files, MakeRunRecord("calibrate", options.common, inputs_read.get()), outputs);
