@@ -8,6 +8,7 @@
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -180,8 +181,12 @@ TouchTables ReadTouchTables(const std::vector<std::filesystem::path>& files, con
   tables.setup = project.contact->setup;
   std::vector<TouchFile> read;
   Eigen::Index rows = 0;
-  for (const std::filesystem::path& file : files) {
-    if (std::filesystem::is_directory(file)) {
+  for (auto at = files.begin(); at != files.end(); ++at) {
+    const std::filesystem::path& file = *at;
+    if (std::find(files.begin(), at, file) != at) {
+      throw InputError(file.string() + ": the file is given twice; its touches would count twice");
+    }
+    if (FileTypeOf(file) == std::filesystem::file_type::directory) {
       throw InputError(file.string() +
                        ": this is a folder; tables of touches (CSV) were expected, because the "
                        "project has contact");

@@ -107,6 +107,7 @@ TrialFiles Staged(const TrialFiles& files, OutputSet& outputs) {
 }  // namespace
 
 Simulation PrepareSimulation(const Project& project, const SimulationOptions& options) {
+  CheckHasMarkers(project);
   const DescribedRobot robot = DescribeRobot(project);
   VirtualExperimentOptions settings = options.experiment;
   Simulation simulation;
