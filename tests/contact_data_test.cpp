@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-// Touches of a real TALOS (METHOD, not invented): a flat gripper on a table, both feet on the
+// Touches of a real TALOS: a flat gripper on a table, both feet on the
 // floor.
 
 constexpr double kDegree = M_PI / 180.0;
@@ -73,7 +73,7 @@ TEST_F(TalosTable, ATouchInTheAirIsNamed) {
   run.calibrated.estimate = EstimateContacts(run.model, touches, {});
   const std::vector<std::string> texts = DescribeOutliers(run);
   ASSERT_EQ(texts.size(), 1u);
-  EXPECT_NE(texts[0].find("right.csv, line 11: "), std::string::npos) << texts[0];
+  EXPECT_NE(texts[0].find("right.csv:11: "), std::string::npos) << texts[0];
 }
 
 }  // namespace

@@ -90,17 +90,17 @@ TEST_F(TouchTableInput, SaysWhatIsWrong) {
   };
   ExpectInputError([&] { Read(TableText(project_, 3, "leg_left_3_joint")); },
                    {"t.csv", "leg_left_3_joint", "is missing"});
-  ExpectInputError([&] { Read(replaced(",a\n", ",nan,a\n")); }, {"t.csv, line 4"});
+  ExpectInputError([&] { Read(replaced(",a\n", ",nan,a\n")); }, {"t.csv:4: "});
   std::string nan = fine;
   nan.replace(nan.find('\n') + 1, nan.find(',', nan.find('\n')) - nan.find('\n') - 1, "nan");
-  ExpectInputError([&] { Read(nan); }, {"t.csv, line 2"});
+  ExpectInputError([&] { Read(nan); }, {"t.csv:2: ", "'nan'"});
   std::string degrees = fine;
   degrees.replace(degrees.find('\n') + 1,
                   degrees.find(',', degrees.find('\n')) - degrees.find('\n') - 1, "45");
-  ExpectInputError([&] { Read(degrees); }, {"line 2", "degrees; radians were expected"});
+  ExpectInputError([&] { Read(degrees); }, {"t.csv:2: ", "degrees; radians were expected"});
   ExpectInputError([&] { Read(fine, "", ""); }, {"note", "recording.ignore"});
   ExpectInputError([&] { Read(fine, ", sessions: {column: start}"); }, {"'start'", "sessions"});
-  ExpectInputError([&] { Read(fine, ", plate_column: note", ""); }, {"line 2", "no plate 'a'"});
+  ExpectInputError([&] { Read(fine, ", plate_column: note", ""); }, {"t.csv:2: ", "no plate 'a'"});
   ExpectInputError([&] { Read(fine.substr(0, fine.find('\n') + 1)); }, {"no row"});
   ExpectInputError(
       [&] {
@@ -108,8 +108,15 @@ TEST_F(TouchTableInput, SaysWhatIsWrong) {
              TableText(project_, 1).substr(TableText(project_, 1).find('\n') + 1));
       },
       {"all the same"});
-  // In the zero posture the hands hang beside the body.
-  ExpectInputError([&] { Read(fine); }, {"no plate lies flat"});
+  // Near the zero posture the arms hang: the hands' x axes are level.
+  std::ofstream(file_) << fine;
+  ExpectInputError(
+      [&] {
+        ReadTouchTables({file_}, ProjectOf(std::string(kFeet) + "plates: [{name: left, link: " +
+                                               "gripper_left_base_link, normal: [1, 0, 0]}]",
+                                           "recording: {ignore: [note]}\n"));
+      },
+      {"no plate lies flat"});
 }
 
 TEST_F(TouchTableInput, APlateUpsideDownIsNamed) {

@@ -10,11 +10,12 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSettled = 1e-4;      // relative change of a standard deviation
-constexpr double kSlightStep = 1e-9;   // of the cost
-constexpr double kLeastNoise = 1e-9;   // m and rad: roundings
-constexpr double kHuberShare = 0.99;   // of touches that count whole
-constexpr double kOwnWeight = 1.0;     // numbers that the first guess of a variance stands for
+constexpr double kSettled = 1e-4;         // relative change of a standard deviation
+constexpr double kRoughlySettled = 1e-2;  // of a fit that only looks for outliers
+constexpr double kSlightStep = 1e-9;      // of the cost
+constexpr double kLeastNoise = 1e-9;      // m and rad: roundings
+constexpr double kHuberShare = 0.99;      // of touches that count whole
+constexpr double kOwnWeight = 1.0;        // numbers that the first guess of a variance stands for
 constexpr double kLeastRows = 0.01;    // share of rows that is left over where it is all but zero
 constexpr double kGrossFreedom = 4.0;  // of the Student distribution of touches
 
@@ -145,7 +146,7 @@ bool UpdateContacts(const ContactModel& model, const Touches& touches,
     change = UpdateSpread(SumBySource(residuals, touches, explained), options.robust, fit.spread);
   }
   change = std::max(change, UpdateWeights(residuals, fit.spread, fit.weights));
-  return change < kSettled && small;
+  return options.robust ? change < kRoughlySettled : change < kSettled && small;
 }
 
 }  // namespace
@@ -201,6 +202,8 @@ ContactEstimate EstimateContacts(const ContactModel& model, const Touches& touch
     estimate.outliers.push_back({i, of});
     start.weights[i] = 0.0;
   }
+  start.values = robust.values;
+  start.spread = robust.spread;
   estimate.fit = FitContacts(model, touches, start, {.freedom = freedom});
   return estimate;
 }

@@ -42,6 +42,21 @@ ContactOutcome Estimate(const ContactModel& model, const Touches& touches, bool 
   return outcome;
 }
 
+/// Errors of the geometry without its compliances; nothing where none is elastic.
+std::optional<TouchFigures> WithoutCompliances(const ContactModel& model, const Touches& touches,
+                                               const ContactFit& fit) {
+  ContactFit rigid = fit;
+  bool elastic = false;
+  for (int i = 0; i < model.robot.parameter_count(); ++i) {
+    if (!IsCompliance(model.robot.parameters[i].kind)) continue;
+    elastic = elastic || rigid.values.robot[i] > 0.0;
+    rigid.values.robot[i] = 0.0;
+  }
+  if (!elastic) return std::nullopt;
+  rigid = FitContacts(model, touches, rigid, {.freedom = {.robot = false}});
+  return MakeFigures(model, touches, LeftOfTouches(model, touches, rigid.values));
+}
+
 /// Standard deviations of the priors, by parameter; NaN for those that are not estimated.
 Eigen::VectorXd PriorSds(const ContactModel& model, const ContactSpread& spread) {
   const std::vector<SourceOfParameter> sources = SourcesOfParameters(model);
@@ -128,6 +143,14 @@ void JudgeContacts(ContactRun& run) {
   if (!held_out) {
     verdict.remarks.push_back("no touch was left out (--kfold 0): nothing was validated");
   }
+  if (run.urdf_alone) {
+    verdict.remarks.push_back(fmt::format(
+        "these figures hold with compensation of elasticity; the URDF alone leaves {:.1f} mm and "
+        "{:.2f} degrees in the fit (uncalibrated {:.1f} mm and {:.2f} degrees)",
+        1e3 * run.urdf_alone->all.height, kDegreeHere * run.urdf_alone->all.tilt(),
+        1e3 * run.uncalibrated.in_sample.all.height,
+        kDegreeHere * run.uncalibrated.in_sample.all.tilt()));
+  }
   if (run.calibrated.held_out.unsettled > 0) {
     verdict.remarks.push_back(fmt::format("{} of {} folds have not converged",
                                           run.calibrated.held_out.unsettled,
@@ -170,6 +193,7 @@ ContactRun CalibrateContacts(const Project& project,
                      : LeftOfTouches(run.model, run.touches, outcome.estimate.fit.values);
   };
   run.gain_in_sds = GainInSds(left(run.uncalibrated), left(run.calibrated), fit.spread);
+  run.urdf_alone = WithoutCompliances(run.model, run.touches, fit);
   run.result = ResultOf(run.model, fit, 3 * run.touches.count());
   JudgeContacts(run);
   if (run.deployable()) {

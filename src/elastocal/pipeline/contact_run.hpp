@@ -38,6 +38,9 @@ struct ContactRun {
   ContactModel model;
   ContactOutcome uncalibrated;  ///< plates, tables and sessions only
   ContactOutcome calibrated;
+  /// Where joints are elastic: the geometry without its compliances, plates, tables and sessions
+  /// fitted again. What a URDF does without compensation.
+  std::optional<TouchFigures> urdf_alone;
   ClosureEvidence closure;
   double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) touches, see GainInSds
   CalibrationResult result;  ///< the parameters of the robot
@@ -56,8 +59,8 @@ ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options);
 
-/// What the touches that are left out, and how far they are off, are called: "left.csv, line 7:
-/// ...", one sentence each.
+/// What the touches that are left out, and how far they are off, are called: "left.csv:7: ...", one
+/// sentence each.
 std::vector<std::string> DescribeOutliers(const ContactRun& run);
 
 /// summary.json (docs/formats.md).
