@@ -27,7 +27,7 @@ const SECTIONS = [
 // Of a robot that touched tables there are no markers to show.
 const SECTIONS_OF_TOUCHES = [
   contactVerdictSection, contactSection, table1Section, robotSection, historySection, findingsSection,
-  reproduceSection, missingSection,
+  reproduceSection,
 ];
 
 /** A part that fails says so in its place and leaves the others alone. */

@@ -69,11 +69,8 @@ std::string OffsetText(const CalibrationResult& result) {
 
 std::string DescribeContactRun(const ContactRun& run) {
   const bool folded = run.calibrated.held_out.folds > 0;
-  const auto figures = [&](const ContactOutcome& outcome) -> const TouchFigures& {
-    return folded ? outcome.held_out.figures : outcome.in_sample;
-  };
-  const TouchErrors& before = figures(run.uncalibrated).all;
-  const TouchErrors& after = figures(run.calibrated).all;
+  const TouchErrors& before = ContactRun::Judged(run.uncalibrated).all;
+  const TouchErrors& after = ContactRun::Judged(run.calibrated).all;
   std::string text;
   if (!run.deployable()) {
     text = "Verdict: do not deploy. " + run.verdict.objections.front() + "\n";
@@ -93,8 +90,11 @@ std::string DescribeContactRun(const ContactRun& run) {
   header.front() = folded ? fmt::format("left out, {} folds", run.calibrated.held_out.folds)
                           : std::string("in the fit");
   TextTable table(header);
-  AddFigures("uncalibrated", run.model, figures(run.uncalibrated), table);
-  AddFigures("calibrated", run.model, figures(run.calibrated), table);
+  AddFigures("uncalibrated", run.model, ContactRun::Judged(run.uncalibrated), table);
+  if (run.geometric) {
+    AddFigures("URDF alone", run.model, ContactRun::Judged(*run.geometric), table);
+  }
+  AddFigures("calibrated", run.model, ContactRun::Judged(run.calibrated), table);
   text += table.Render();
   const std::string compliance = ComplianceText(run.result);
   if (!compliance.empty()) text += "\nCompliance\n" + compliance;

@@ -105,7 +105,9 @@ Json ContactJson(const ContactRun& run) {
     json["kfold"]["uncalibrated"] = FiguresJson(run.model, run.uncalibrated.held_out.figures);
     json["kfold"]["of_touches"] = TouchList(run);
   }
-  if (run.urdf_alone) json["urdf_alone"] = FiguresJson(run.model, *run.urdf_alone);
+  if (run.geometric) {
+    json["urdf_alone"] = FiguresJson(run.model, ContactRun::Judged(*run.geometric));
+  }
   json["gain_in_sds"] = run.gain_in_sds;
   json["plates"] = PlatesJson(run);
   json["spread"] = SpreadJson(fit.spread);

@@ -42,19 +42,19 @@ ContactOutcome Estimate(const ContactModel& model, const Touches& touches, bool 
   return outcome;
 }
 
-/// Errors of the geometry without its compliances; nothing where none is elastic.
-std::optional<TouchFigures> WithoutCompliances(const ContactModel& model, const Touches& touches,
-                                               const ContactFit& fit) {
-  ContactFit rigid = fit;
-  bool elastic = false;
-  for (int i = 0; i < model.robot.parameter_count(); ++i) {
-    if (!IsCompliance(model.robot.parameters[i].kind)) continue;
-    elastic = elastic || rigid.values.robot[i] > 0.0;
-    rigid.values.robot[i] = 0.0;
-  }
-  if (!elastic) return std::nullopt;
-  rigid = FitContacts(model, touches, rigid, {.freedom = {.robot = false}});
-  return MakeFigures(model, touches, LeftOfTouches(model, touches, rigid.values));
+/// The same model without compliances; nothing where none is elastic.
+std::optional<ContactModel> WithoutCompliances(const ContactModel& model, const Touches& touches,
+                                               const Project& project) {
+  const auto elastic = [](const Parameter& parameter) { return IsCompliance(parameter.kind); };
+  const std::vector<Parameter>& parameters = model.robot.parameters;
+  if (std::none_of(parameters.begin(), parameters.end(), elastic)) return std::nullopt;
+  ContactSetup setup = model.setup;
+  setup.hold.push_back("*.compliance_*");
+  const Elasticity& elasticity = model.robot.elasticity;
+  ContactModel rigid = MakeContactModel(project.tree, project.placement, setup, elasticity.torsion,
+                                        elasticity.bending);
+  KeepTouchedUnknowns(touches, rigid);
+  return rigid;
 }
 
 /// Standard deviations of the priors, by parameter; NaN for those that are not estimated.
@@ -112,15 +112,10 @@ CalibrationResult ResultOf(const ContactModel& model, const ContactFit& fit, int
   return result;
 }
 
-/// On touches that took no part where there are folds.
-const TouchFigures& JudgedFigures(const ContactOutcome& outcome) {
-  return outcome.held_out.folds > 0 ? outcome.held_out.figures : outcome.in_sample;
-}
-
 void JudgeContacts(ContactRun& run) {
   Verdict& verdict = run.verdict;
-  const TouchErrors& before = JudgedFigures(run.uncalibrated).all;
-  const TouchErrors& after = JudgedFigures(run.calibrated).all;
+  const TouchErrors& before = ContactRun::Judged(run.uncalibrated).all;
+  const TouchErrors& after = ContactRun::Judged(run.calibrated).all;
   const bool held_out = run.calibrated.held_out.folds > 0;
   const std::string on = held_out ? "on touches that were left out" : "on the touches of the fit";
   if (run.calibrated.estimate.fit.termination != Termination::kConverged) {
@@ -143,13 +138,12 @@ void JudgeContacts(ContactRun& run) {
   if (!held_out) {
     verdict.remarks.push_back("no touch was left out (--kfold 0): nothing was validated");
   }
-  if (run.urdf_alone) {
+  if (run.geometric) {
+    const TouchErrors& urdf = ContactRun::Judged(*run.geometric).all;
     verdict.remarks.push_back(fmt::format(
-        "these figures hold with compensation of elasticity; the URDF alone leaves {:.1f} mm and "
-        "{:.2f} degrees in the fit (uncalibrated {:.1f} mm and {:.2f} degrees)",
-        1e3 * run.urdf_alone->all.height, kDegreeHere * run.urdf_alone->all.tilt(),
-        1e3 * run.uncalibrated.in_sample.all.height,
-        kDegreeHere * run.uncalibrated.in_sample.all.tilt()));
+        "these figures hold with compensation of elasticity; the URDF alone leaves {:.2f} mm and "
+        "{:.2f} degrees {}",
+        1e3 * urdf.height, kDegreeHere * urdf.tilt(), on));
   }
   if (run.calibrated.held_out.unsettled > 0) {
     verdict.remarks.push_back(fmt::format("{} of {} folds have not converged",
@@ -193,11 +187,15 @@ ContactRun CalibrateContacts(const Project& project,
                      : LeftOfTouches(run.model, run.touches, outcome.estimate.fit.values);
   };
   run.gain_in_sds = GainInSds(left(run.uncalibrated), left(run.calibrated), fit.spread);
-  run.urdf_alone = WithoutCompliances(run.model, run.touches, fit);
-  run.result = ResultOf(run.model, fit, 3 * run.touches.count());
+  const int equations = 3 * run.touches.count();
+  const auto rigid = WithoutCompliances(run.model, run.touches, project);
+  if (rigid) run.geometric = Estimate(*rigid, run.touches, true, options, folds);
+  run.result = ResultOf(run.model, fit, equations);
   JudgeContacts(run);
   if (run.deployable()) {
-    run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(), run.result,
+    const CalibrationResult in_urdf =
+        rigid ? ResultOf(*rigid, run.geometric->estimate.fit, equations) : run.result;
+    run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(), in_urdf,
                                   options.zero_offsets);
     run.warnings.insert(run.warnings.end(), run.urdf->warnings.begin(), run.urdf->warnings.end());
   }

@@ -38,9 +38,9 @@ struct ContactRun {
   ContactModel model;
   ContactOutcome uncalibrated;  ///< plates, tables and sessions only
   ContactOutcome calibrated;
-  /// Where joints are elastic: the geometry without its compliances, plates, tables and sessions
-  /// fitted again. What a URDF does without compensation.
-  std::optional<TouchFigures> urdf_alone;
+  /// Where joints are elastic: the robot without compliances. The URDF has its geometry, because a
+  /// URDF has no springs.
+  std::optional<ContactOutcome> geometric;
   ClosureEvidence closure;
   double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) touches, see GainInSds
   CalibrationResult result;  ///< the parameters of the robot
@@ -49,6 +49,10 @@ struct ContactRun {
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
   std::vector<std::string> warnings;
 
+  /// On touches that were left out, where there are folds, else on those of the fit.
+  static const TouchFigures& Judged(const ContactOutcome& outcome) {
+    return outcome.held_out.folds > 0 ? outcome.held_out.figures : outcome.in_sample;
+  }
   bool deployable() const { return verdict.objections.empty(); }
 };
 

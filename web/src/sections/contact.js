@@ -46,9 +46,19 @@ const KEYS = ['file', 'line', 'plate', 'session', 'height_mm', 'tilt_x_deg', 'ti
 
 function errorRows(contact) {
   const figures = judged(contact);
+  const urdf = contact.urdf_alone;
   const cells = (of) => [count(of.touches), fixed(of.height_mm), fixed(of.tilt_x_deg, 3), fixed(of.tilt_y_deg, 3), fixed(of.max_height_mm)];
-  return [['uncalibrated', figures.uncalibrated], ['calibrated', figures]].flatMap(([name, of]) => [
+  return [['uncalibrated', figures.uncalibrated], urdf && ['URDF alone', urdf], ['calibrated', figures]].filter(Boolean).flatMap(([name, of]) => [
     [name, ...cells(of)], ...Object.entries(of.by_side).map(([side, own]) => [`${name}, ${side}`, ...cells(own)])]);
+}
+
+const COLUMNS = [{text: 'Robot'}, {text: 'Touches', number: true}, {text: 'Height', unit: 'mm', number: true}, {text: 'Tilt x', unit: 'deg', number: true}, {text: 'Tilt y', unit: 'deg', number: true}, {text: 'Largest height', unit: 'mm', number: true}];
+
+/** Touches of another day. */
+function validationFigure(validation) {
+  if (!validation?.contact) return null;
+  return figure({title: 'On another recording', note: `${validation.recording}; the table ${validation.contact.table === 'refitted' ? 'was registered anew on the other touches' : 'is where it was in the calibration'}.`,
+    body: table({caption: 'Errors on another recording', columns: COLUMNS, rows: errorRows({fit: validation.contact})})});
 }
 
 /** Errors of the touches, by plate, and the tables that were found. */
@@ -56,10 +66,9 @@ export function contactSection(report) {
   const {contact} = report.summary;
   const touches = contact.kfold?.of_touches ?? [];
   return section('touches', 'Touches', 'Touches of the tables', `Errors ${where(contact)}, as root mean squares. Height is along the normal of the table; tilts are about the axes of the plate.`,
-    figure({title: 'Errors of touches', body: table({caption: 'Errors of touches',
-      columns: [{text: 'Robot'}, {text: 'Touches', number: true}, {text: 'Height', unit: 'mm', number: true}, {text: 'Tilt x', unit: 'deg', number: true}, {text: 'Tilt y', unit: 'deg', number: true}, {text: 'Largest height', unit: 'mm', number: true}],
-      rows: errorRows(contact)}),
+    figure({title: 'Errors of touches', body: table({caption: 'Errors of touches', columns: COLUMNS, rows: errorRows(contact)}),
     data: touches.length > 0 ? {name: 'touches.csv', text: () => toCsv(KEYS, touches.map((t) => [t.file, t.line, t.plate, t.session, t.height_mm, ...t.tilt_deg]))} : undefined}),
+    validationFigure(report.validation),
     figure({title: 'Plates and tables', note: 'A plate\u2019s tilt on its link and the plane of its table, seen from the first foot.', body: table({caption: 'Plates and tables',
       columns: [{text: 'Plate'}, {text: 'Touches', number: true}, {text: 'Tilts of the plate', unit: 'deg', number: true}, {text: 'Height of the table', unit: 'mm', number: true}, {text: 'Tilts of the table', unit: 'deg', number: true}],
       rows: contact.plates.map((p) => [p.name, count(p.touches), p.tilts_deg.map((t) => fixed(t)).join(', '), fixed(p.table_height_mm, 1), p.table_tilts_deg.map((t) => fixed(t)).join(', ')])})}));
