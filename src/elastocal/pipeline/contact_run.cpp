@@ -173,9 +173,14 @@ ContactRun CalibrateContacts(const Project& project,
   const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
     return patterns ? MatchingJoints(project.tree, *patterns) : std::vector<int>();
   };
-  run.model =
-      MakeContactModel(project.tree, project.placement, tables.setup,
-                       joints(project.elasticity.torsion), joints(project.elasticity.bending));
+  try {
+    run.model =
+        MakeContactModel(project.tree, project.placement, tables.setup,
+                         joints(project.elasticity.torsion), joints(project.elasticity.bending));
+  } catch (const InputError& error) {
+    throw InputError(project.file.string() +
+                     ": contact.common or identifiability.hold: " + error.what());
+  }
   KeepTouchedUnknowns(run.touches, run.model);
   run.closure = CheckClosure(run.model, run.touches);
   const int folds = options.folds.value_or(std::min(kUsualFolds, run.touches.count()));
