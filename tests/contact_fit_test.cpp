@@ -18,7 +18,8 @@ TEST(ContactFit, PredictsOtherTouchesExactlyAfterTouchesWithoutNoise) {
   const Touches others = SimulateTouches(model, truth, 10, 1, Eigen::Vector3d::Zero(), random);
   ContactFit start = StartContacts(model, seen);
   start.spread[ContactSource::kHeight] = start.spread[ContactSource::kTilt] = 1e-9;
-  const ContactFit fit = FitContacts(model, seen, start, {.estimate_spread = false});
+  const ContactFit fit =
+      FitContacts(model, seen, start, {.estimate_spread = false, .max_updates = 30});
   // 180 numbers determine all that touches see.
   const Eigen::MatrixX3d left = LeftOfTouches(model, others, fit.values);
   EXPECT_LT(left.cwiseAbs().maxCoeff(), 1e-8);
