@@ -3,6 +3,7 @@ import './print.css';
 
 import {h} from './lib/dom.js';
 import {isDark, setTheme} from './lib/theme.js';
+import {contactSection, contactVerdictSection} from './sections/contact.js';
 import {designSection} from './sections/design.js';
 import {findingsSection} from './sections/findings.js';
 import {historySection} from './sections/history.js';
@@ -21,6 +22,12 @@ const SECTIONS = [
   verdictSection, robotSection, table1Section, modelsSection, residualsSection, identifiabilitySection,
   signalSection, designSection, motionSection, historySection, findingsSection, reproduceSection,
   missingSection,
+];
+
+// Of a robot that touched tables there are no markers to show.
+const SECTIONS_OF_TOUCHES = [
+  contactVerdictSection, contactSection, table1Section, robotSection, historySection, findingsSection,
+  reproduceSection,
 ];
 
 /** A part that fails says so in its place and leaves the others alone. */
@@ -48,7 +55,7 @@ function contents(sections) {
 }
 
 function show(report) {
-  const sections = SECTIONS.map((make) => build(make, report)).filter(Boolean);
+  const sections = (report.summary?.contact ? SECTIONS_OF_TOUCHES : SECTIONS).map((make) => build(make, report)).filter(Boolean);
   const title = report.summary?.robot ?? report.folder ?? '';
   document.title = `${title} – elastocal report`;
   document.getElementById('app').append(

@@ -7,6 +7,7 @@
 
 #include "elastocal/cli/calibration_report.hpp"
 #include "elastocal/cli/calibration_run.hpp"
+#include "elastocal/cli/contact_commands.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
@@ -21,6 +22,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
                                                       options.recordings.end());
   const Project project = ReadProject(options.project);
+  if (project.contact) return RunContactCalibration(options, project);
   const std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   OutputSet outputs;
   outputs.Protect(inputs);
@@ -62,8 +64,9 @@ void AddCalibrate(CLI::App& app, Action& action) {
       "calibrate", "Estimate the robot's errors from a recording; write the calibrated URDF");
   command->add_option("project", options->project, "Project file (YAML)")->required();
   command
-      ->add_option("--recording", options->recordings,
-                   "Table of static postures (CSV), or folders with experiment.yaml")
+      ->add_option(
+          "--recording", options->recordings,
+          "Table of static postures (CSV), folders with experiment.yaml, or tables of touches")
       ->required()
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "Folder for the results")

@@ -7,10 +7,12 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/contact_commands.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/measurements.hpp"
@@ -25,6 +27,7 @@ struct ValidateOptions {
   std::string project, calibration, recording;
   std::string output;  ///< folder; empty: none
   bool frozen = false;
+  std::string refit;  ///< "table"; empty: nothing
 };
 
 std::string Table(const TransferValidation& validation, bool frozen) {
@@ -62,6 +65,13 @@ int Validate(const ValidateOptions& options) {
   const bool quiet = options.common.Silent();
   const std::filesystem::path folder = options.output;
   const Project project = ReadProject(options.project);
+  if (project.contact) {
+    if (options.frozen) throw InputError("--frozen is about markers; touches have --refit table");
+    return RunContactValidation({options.common, options.calibration, options.recording,
+                                 options.output, options.refit == "table"},
+                                project);
+  }
+  if (!options.refit.empty()) throw InputError("--refit table is about touches of a table");
   std::vector<std::filesystem::path> inputs = InputFiles(project, {options.recording});
   inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
   OutputSet outputs;
@@ -114,6 +124,12 @@ void AddValidate(CLI::App& app, Action& action) {
   command->add_flag("--frozen", options->frozen,
                     "Fit nothing: waist and markers as in the calibration (cameras and markers "
                     "must not have been moved)");
+  command
+      ->add_option(
+          "--refit", options->refit,
+          "Of touches: what is registered anew, each touch by the others of the file: table")
+      ->transform(CLI::IsMember({"table"}, CLI::ignore_case))
+      ->type_name("WHAT");
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal validate project.yaml --calibration out "

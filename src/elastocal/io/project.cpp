@@ -63,7 +63,7 @@ void ReadChains(const YamlValue& section, Project& project) {
 /// Patterns can only be checked when joints and markers are known.
 void CheckHeld(const YamlValue& section, const Project& project) {
   const auto hold = section.Find("hold");
-  if (!hold || project.identifiability.hold.empty()) return;
+  if (!hold || project.identifiability.hold.empty() || project.contact) return;
   const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   for (const YamlValue& pattern : hold->Items()) {
     const std::string text = pattern.Text();
@@ -158,17 +158,23 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
   const YamlValue root = YamlValue::Parse(text, file.string());
   root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "force_torque_sensors",
                    "recording", "placement", "measurement", "identifiability", "calibration",
-                   "elasticity", "collision", "design", "standing"});
+                   "elasticity", "collision", "design", "standing", "contact"});
   Project project;
   project.file = file;
   ReadRobot(root.Get("robot"), project);
   if (const auto section = root.Find("chains")) ReadChains(*section, project);
-  ReadMarkers(root.Get("markers"), project);
+  const auto contact = root.Find("contact");
+  const auto markers = root.Find("markers");
+  if (contact && markers) {
+    contact->Fail("a project has markers or contact; both in one estimate are not possible yet");
+  }
+  if (!contact) ReadMarkers(root.Get("markers"), project);
   if (const auto section = root.Find("torque_sensors")) ReadTorqueSensors(*section, project);
   if (const auto section = root.Find("force_torque_sensors")) {
     ReadForceTorqueSensors(*section, project);
   }
   if (const auto section = root.Find("recording")) ReadRecordingColumns(*section, project);
+  if (contact) ReadContact(*contact, project);
   ReadSettings(root, project);
   return project;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "elastocal/calibration/options.hpp"
+#include "elastocal/contact/contact_model.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_samples.hpp"
@@ -50,6 +52,24 @@ struct ElasticityChoice {
   bool torque_bias = false;  ///< of the torque sensors of these legs
 };
 
+/// How touches of one start of the robot are told from those of another.
+struct SessionRule {
+  /// Columns of a touch table; touches with the same texts in all of them are of one session. None:
+  /// each file is one session.
+  std::vector<std::string> columns;
+  /// Above 0: the columns are numbers, of which round(number / quantum) modulo `modulo` counts.
+  double quantum = 0.0;
+  std::int64_t modulo = 0;
+};
+
+/// A robot that touches tables, instead of markers that cameras see.
+struct ContactProject {
+  ContactSetup setup;             ///< as far as the project tells: see PlaceFeet
+  std::vector<char> foot_placed;  ///< by foot: whether the project says where it stands
+  std::string plate_column;       ///< names the plate of each touch; empty: see FindTouchingPlates
+  SessionRule sessions;
+};
+
 /// Everything a project file says, checked and in SI units.
 struct Project {
   std::filesystem::path file, urdf;
@@ -67,7 +87,8 @@ struct Project {
   CalibrationOptions calibration;
   ElasticityChoice elasticity;
   std::vector<Sole> soles;  ///< that the robot can stand on; none: it is not planned for
-  MotionSetup motion;       ///< what the calibration postures and motions keep to
+  std::optional<ContactProject> contact;  ///< recordings are tables of touches, without markers
+  MotionSetup motion;                     ///< what the calibration postures and motions keep to
 };
 
 /// Reads a project file and the URDF that it names (docs/formats.md).
@@ -81,6 +102,13 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
 /// The error model of the project's robot for a recording of these trials (none: of a table of
 /// postures). Legs are the chains on whose tip alone a trial stands.
 ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& trials);
+
+/// Joints whose names match any of the patterns, ascending.
+std::vector<int> MatchingJoints(const RobotTree& tree, const std::vector<std::string>& patterns);
+
+/// Throws InputError for a project without markers, whose recordings are touches: what only
+/// `calibrate`, `validate`, `compare` and `report` can do anything with.
+void CheckHasMarkers(const Project& project);
 
 /// Index of a chain of the project. Throws InputError with the nearest known name where there is
 /// none.

@@ -60,14 +60,6 @@ void ReadChoice(const YamlValue& section, const char* key, Enum& option,
 }
 
 /// Joints, ascending, whose names match a pattern.
-std::vector<int> MatchingJoints(const RobotTree& tree, const std::vector<std::string>& patterns) {
-  std::vector<Parameter> names;
-  for (const Joint& joint : tree.joints) {
-    names.push_back({joint.name, ParameterKind::kTheta, ParameterUnit::kRadian});
-  }
-  return MatchParameters(names, patterns);
-}
-
 void ReadPatterns(const YamlValue& section, const char* key, const RobotTree& tree,
                   std::optional<std::vector<std::string>>& patterns) {
   const auto list = section.Find(key);
@@ -82,6 +74,21 @@ void ReadPatterns(const YamlValue& section, const char* key, const RobotTree& tr
 }
 
 }  // namespace
+
+std::vector<int> MatchingJoints(const RobotTree& tree, const std::vector<std::string>& patterns) {
+  std::vector<Parameter> names;
+  for (const Joint& joint : tree.joints) {
+    names.push_back({joint.name, ParameterKind::kTheta, ParameterUnit::kRadian});
+  }
+  return MatchParameters(names, patterns);
+}
+
+void CheckHasMarkers(const Project& project) {
+  if (!project.markers.empty()) return;
+  throw InputError(project.file.string() +
+                   ": the project has no markers; with touches (contact) there are only calibrate, "
+                   "validate, compare and report");
+}
 
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {
   section.ExpectKeys({"parallel_tolerance_deg"});
@@ -156,6 +163,7 @@ void ReadElasticity(const YamlValue& section, Project& project) {
 }
 
 ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& trials) {
+  CheckHasMarkers(project);
   std::set<int> standing, on_floor;  // links on which a trial stands alone; joints of any support
   for (const Trial& trial : trials) {
     if (trial.support.size() == 1) standing.insert(trial.support[0]);

@@ -25,6 +25,7 @@ void ReadStanding(const YamlValue& section, Project& project);
 void SetMotionDefaults(Project& project);
 void ReadCollision(const YamlValue& section, Project& project);
 void ReadDesign(const YamlValue& section, Project& project);
+void ReadContact(const YamlValue& section, Project& project);
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options);
 
 constexpr double kOneDegree = M_PI / 180.0;  // rad

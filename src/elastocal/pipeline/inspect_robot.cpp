@@ -83,6 +83,7 @@ Json ChainJson(const ChainInspection& chain) {
 }  // namespace
 
 RobotInspection InspectRobot(const Project& project, const InspectionOptions& options) {
+  CheckHasMarkers(project);
   IdentifiabilityOptions identifiability = project.identifiability;
   if (options.seed) identifiability.seed = *options.seed;
   if (options.hold) identifiability.hold = *options.hold;

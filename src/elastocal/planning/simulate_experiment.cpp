@@ -121,6 +121,7 @@ std::vector<std::string> SimulationWarnings(const Project& project, const Simula
 }
 
 Simulation PrepareSimulation(const Project& project, const SimulationOptions& options) {
+  CheckHasMarkers(project);
   const DescribedRobot robot = DescribeRobot(project);
   VirtualExperimentOptions settings = options.experiment;
   Simulation simulation;

@@ -1,0 +1,184 @@
+#include "elastocal/cli/contact_commands.hpp"
+
+#include <cmath>
+#include <future>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "elastocal/cli/report_page.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/cli/text_table.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/contact_run.hpp"
+#include "elastocal/pipeline/contact_validation.hpp"
+#include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+constexpr double kToDegrees = 180.0 / M_PI;
+constexpr double kPerHundredNm = 100.0 * kToDegrees;  // rad/(N.m) to degrees per 100 N.m
+
+void AddFigures(const std::string& name, const ContactModel& model, const TouchFigures& figures,
+                TextTable& table) {
+  const auto add = [&](const std::string& of, const TouchErrors& errors) {
+    table.Add({name + of, std::to_string(errors.touches),
+               fmt::format("{:.2f}", 1e3 * errors.height),
+               fmt::format("{:.3f}", kToDegrees * errors.tilt_x),
+               fmt::format("{:.3f}", kToDegrees * errors.tilt_y),
+               fmt::format("{:.2f}", 1e3 * errors.largest_height)});
+  };
+  add("", figures.all);
+  for (std::size_t p = 0; p < figures.by_plate.size(); ++p) {
+    if (figures.by_plate[p].touches == 0) continue;
+    if (figures.by_plate[p].touches == figures.all.touches) continue;
+    add("  " + model.setup.plates[p].name, figures.by_plate[p]);
+  }
+}
+
+const std::vector<std::string> kFigureHeader = {"touches",    "number",     "height mm",
+                                                "tilt x deg", "tilt y deg", "max height mm"};
+
+std::string ComplianceText(const CalibrationResult& result) {
+  std::string text;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[i];
+    if (!IsCompliance(parameter.kind) || !std::isfinite(result.sd[i])) continue;
+    if (parameter.unit != ParameterUnit::kRadianPerNewtonMetre) continue;
+    text += fmt::format("  {} {:.2f} +- {:.2f} degrees per 100 N.m ({})\n", parameter.name,
+                        kPerHundredNm * result.delta[i], kPerHundredNm * result.sd[i],
+                        StatusName(result.status[i]));
+  }
+  return text;
+}
+
+/// Joint offsets that differ from zero, in degrees.
+std::string OffsetText(const CalibrationResult& result) {
+  std::string text;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[i];
+    if (parameter.kind != ParameterKind::kTheta || !std::isfinite(result.sd[i])) continue;
+    if (!Significant(result, i)) continue;
+    text += fmt::format("  {} {:+.2f} +- {:.2f} degrees\n", parameter.name,
+                        kToDegrees * result.delta[i], kToDegrees * result.sd[i]);
+  }
+  return text.empty() ? "  none\n" : text;
+}
+
+std::string DescribeContactRun(const ContactRun& run) {
+  const bool folded = run.calibrated.held_out.folds > 0;
+  const TouchErrors& before = ContactRun::Judged(run.uncalibrated).all;
+  const TouchErrors& after = ContactRun::Judged(run.calibrated).all;
+  std::string text;
+  if (!run.deployable()) {
+    text = "Verdict: do not deploy. " + run.verdict.objections.front() + "\n";
+  } else {
+    text = fmt::format(
+        "Verdict: height of touches from {:.2f} to {:.2f} mm, tilt from {:.2f} to {:.2f} degrees\n"
+        "  {}\n",
+        1e3 * before.height, 1e3 * after.height, kToDegrees * before.tilt(),
+        kToDegrees * after.tilt(),
+        folded ? "On touches that were left out. Before deploying, validate on another day."
+               : "In the fit. Before deploying, cross-validate (--kfold) and validate.");
+  }
+  text += fmt::format("{}: {} touches in {} sessions, {:.0f} numbers determined by them\n\n",
+                      run.model.robot.tree.name, run.touches.count(), run.touches.sessions.size(),
+                      run.result.posterior.effective_parameters);
+  std::vector<std::string> header = kFigureHeader;
+  header.front() = folded ? fmt::format("left out, {} folds", run.calibrated.held_out.folds)
+                          : std::string("in the fit");
+  TextTable table(header);
+  AddFigures("uncalibrated", run.model, ContactRun::Judged(run.uncalibrated), table);
+  if (run.geometric) {
+    AddFigures("URDF alone", run.model, ContactRun::Judged(*run.geometric), table);
+  }
+  AddFigures("calibrated", run.model, ContactRun::Judged(run.calibrated), table);
+  text += table.Render();
+  const std::string compliance = ComplianceText(run.result);
+  if (!compliance.empty()) text += "\nCompliance\n" + compliance;
+  text += "\nJoint offsets that are not zero\n" + OffsetText(run.result) + "\n";
+  for (const std::string& remark : run.verdict.remarks) text += "Remark: " + remark + "\n";
+  return text;
+}
+
+}  // namespace
+
+int RunContactCalibration(const CalibrateOptions& options, const Project& project) {
+  const bool quiet = options.common.Silent();
+  const std::filesystem::path folder = options.output;
+  const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
+                                                      options.recordings.end());
+  const std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
+  OutputSet outputs;
+  outputs.Protect(inputs);
+  DeclareResults(folder, CalibrationFileNames(project), outputs);
+  DeclareJson(options.common.json_file, outputs);
+  outputs.Prepare();
+
+  auto inputs_read = std::async(std::launch::async, RecordInputs, inputs);
+  const auto progress = TerminalSteps("reading and fitting", options.common.quiet);
+  Progress of_folds;
+  if (progress) {
+    of_folds = [&](int done, int total) { progress("cross-validation", done, total); };
+  }
+  ContactRun run =
+      CalibrateContacts(project, recordings,
+                        {.folds = options.folds,
+                         .threads = options.threads,
+                         .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
+                                                                           : ZeroOffsets::kOrigin,
+                         .progress = of_folds});
+  const auto files = MakeContactFiles(project, run);
+  const std::string no_report = SetResults(
+      folder, files, MakeRunRecord("calibrate", options.common, inputs_read.get()), outputs);
+  outputs.Set(options.common.json_file, files.at("summary.json"));
+  outputs.Publish();
+
+  Print(quiet, DescribeContactRun(run));
+  PrintWarnings(run.warnings, options.common.verbose);
+  for (const std::string& objection : run.verdict.objections) spdlog::error("{}", objection);
+  if (!run.deployable()) spdlog::error("no calibrated URDF is written");
+  Print(quiet, fmt::format("\nWritten to {}\n", options.output));
+  PrintReportPlace(folder, no_report, quiet);
+  return run.deployable() ? kFine : kNotConverged;
+}
+
+int RunContactValidation(const ContactValidateOptions& options, const Project& project) {
+  const bool quiet = options.common.Silent();
+  const std::filesystem::path folder = options.output;
+  std::vector<std::filesystem::path> inputs = InputFiles(project, {options.recording});
+  inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
+  OutputSet outputs;
+  outputs.Protect(inputs);
+  if (!folder.empty()) DeclareResults(folder, {"validation.json"}, outputs);
+  DeclareJson(options.common.json_file, outputs);
+  outputs.Prepare();
+
+  const ContactValidation run =
+      ValidateContacts(project, options.calibration, options.recording, options.refit_table);
+  const std::string json = MakeContactValidationJson(run);
+  outputs.Set(options.common.json_file, json);
+  std::string no_report;
+  if (!folder.empty()) {
+    no_report =
+        SetResults(folder, {{"validation.json", json}},
+                   MakeRunRecord("validate", options.common, RecordInputs(inputs)), outputs);
+  }
+  outputs.Publish();
+
+  std::vector<std::string> header = kFigureHeader;
+  header.front() = run.table_refitted ? "table registered anew" : "table as it was";
+  TextTable table(header);
+  AddFigures("uncalibrated", run.model, run.uncalibrated, table);
+  AddFigures("calibrated", run.model, run.calibrated, table);
+  Print(quiet,
+        fmt::format("{}, {} touches\n\n", run.recording, run.touches.count()) + table.Render());
+  PrintWarnings(run.warnings, options.common.verbose);
+  if (!run.better()) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
+  if (!folder.empty()) PrintReportPlace(folder, no_report, quiet);
+  return run.better() ? kFine : kNotConverged;
+}
+
+}  // namespace elastocal::cli

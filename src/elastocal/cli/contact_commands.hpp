@@ -1,0 +1,21 @@
+#pragma once
+
+#include "elastocal/cli/calibration_run.hpp"
+#include "elastocal/io/project.hpp"
+
+namespace elastocal::cli {
+
+/// `calibrate` for a project with contact: prints what touches tell and writes the output folder.
+int RunContactCalibration(const CalibrateOptions& options, const Project& project);
+
+struct ContactValidateOptions {
+  CommonOptions common;
+  std::string calibration, recording;
+  std::string output;  ///< folder; empty: none
+  bool refit_table = false;
+};
+
+/// `validate` for such a project.
+int RunContactValidation(const ContactValidateOptions& options, const Project& project);
+
+}  // namespace elastocal::cli

@@ -1,0 +1,103 @@
+#include "elastocal/pipeline/contact_validation.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/contact/standing_robot.hpp"
+#include "elastocal/io/calibration_file.hpp"
+#include "elastocal/io/contact_file.hpp"
+#include "elastocal/io/touch_table.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/contact_json.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+/// The joints with a stored compliance of these suffixes.
+std::vector<int> ElasticJointsOf(const StoredCalibration& stored, const RobotTree& tree,
+                                 const std::vector<std::string>& suffixes) {
+  std::set<int> joints;
+  for (const auto& [name, value] : stored.joint_errors) {
+    for (const std::string& suffix : suffixes) {
+      if (name.ends_with(suffix)) {
+        joints.insert(FindJoint(tree, name.substr(0, name.size() - suffix.size())));
+      }
+    }
+  }
+  return {joints.begin(), joints.end()};
+}
+
+/// The stored errors of the robot's parameters; those it does not have are of joints that touches
+/// do not move.
+Eigen::VectorXd StoredErrors(const StoredCalibration& stored, const ErrorModel& robot) {
+  Eigen::VectorXd errors = Eigen::VectorXd::Zero(robot.parameter_count());
+  for (int i = 0; i < robot.parameter_count(); ++i) {
+    const auto found = stored.joint_errors.find(robot.parameters[i].name);
+    if (found != stored.joint_errors.end()) errors[i] = found->second;
+  }
+  return errors;
+}
+
+Eigen::MatrixX3d Predict(const ContactValidation& run, const StoredContact& stored,
+                         const Eigen::VectorXd& errors) {
+  ContactValues values{errors, stored.plate_tilts, stored.tables, {}};
+  return run.table_refitted ? LeftAfterRegistration(run.model, run.touches, values, stored.spread)
+                            : LeftOfTouches(run.model, run.touches, values);
+}
+
+}  // namespace
+
+ContactValidation ValidateContacts(const Project& project, const std::filesystem::path& calibration,
+                                   const std::filesystem::path& recording, bool refit_table) {
+  const std::filesystem::path file = FindCalibrationFiles(calibration).calibration;
+  const StoredCalibration stored = ReadCalibration(file);
+  const StoredContacts contacts = ReadContacts(file, project);
+  TouchTables tables = ReadTouchTables({recording}, project, &contacts.feet);
+  ContactValidation run;
+  run.calibration_file = file.string();
+  run.recording = recording.string();
+  run.table_refitted = refit_table;
+  run.touches = std::move(tables.touches);
+  run.warnings = std::move(tables.warnings);
+  // What is in common or held says nothing about values that are known.
+  tables.setup.common.clear();
+  run.model =
+      MakeContactModel(project.tree, project.placement, tables.setup,
+                       ElasticJointsOf(stored, project.tree, {".compliance_z"}),
+                       ElasticJointsOf(stored, project.tree, {".compliance_x", ".compliance_y"}));
+  if (stored.nominal != NominalFingerprint(run.model.robot)) {
+    throw InputError(file.string() + ": made for robot '" + stored.robot +
+                     "' with other nominal geometry than " + project.urdf.string() +
+                     "; expected the URDF that was calibrated, not the calibrated one");
+  }
+  CheckParameters(stored, run.model.robot, {});
+  const Eigen::MatrixX3d before =
+      Predict(run, contacts.uncalibrated, Eigen::VectorXd::Zero(run.model.robot.parameter_count()));
+  const Eigen::MatrixX3d after =
+      Predict(run, contacts.calibrated, StoredErrors(stored, run.model.robot));
+  run.uncalibrated = MakeFigures(run.model, run.touches, before);
+  run.calibrated = MakeFigures(run.model, run.touches, after);
+  run.gain_in_sds = GainInSds(before, after, contacts.calibrated.spread);
+  return run;
+}
+
+std::string MakeContactValidationJson(const ContactValidation& run) {
+  nlohmann::ordered_json json;
+  json["status"] = run.better() ? "better" : "not better";
+  json["calibration"] = run.calibration_file;
+  json["recording"] = run.recording;
+  json["postures"] = run.touches.count();
+  json["contact"] = FiguresJson(run.model, run.calibrated);
+  json["contact"]["table"] = run.table_refitted ? "refitted" : "as calibrated";
+  json["contact"]["uncalibrated"] = FiguresJson(run.model, run.uncalibrated);
+  json["contact"]["gain_in_sds"] = run.gain_in_sds;
+  json["warnings"] = run.warnings;
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastocal/contact/touch_figures.hpp"
+#include "elastocal/io/project.hpp"
+
+namespace elastocal {
+
+/// A calibration on touches of another day.
+struct ContactValidation {
+  std::string calibration_file, recording;
+  Touches touches;
+  ContactModel model;
+  /// Whether each touch was predicted by tables that the other touches of the file place; else by
+  /// those of the calibration.
+  bool table_refitted = false;
+  TouchFigures uncalibrated, calibrated;
+  double gain_in_sds = 0.0;  ///< see GainInSds
+  std::vector<std::string> warnings;
+
+  /// Whether the calibrated robot errs less than the uncalibrated one, in the sum of squares over
+  /// the noise.
+  bool better() const { return gain_in_sds > 0.0; }
+};
+
+/// Predicts the touches of `recording` by a stored calibration, with the tables where they were
+/// (`refit_table` false) or registered anew (LeftAfterRegistration). Sessions of another day are
+/// unknown: they have no effect. Throws InputError: files that cannot be read; a calibration of
+/// another robot or without touches.
+ContactValidation ValidateContacts(const Project& project, const std::filesystem::path& calibration,
+                                   const std::filesystem::path& recording, bool refit_table);
+
+/// validation.json: the figures for programs (docs/formats.md).
+std::string MakeContactValidationJson(const ContactValidation& run);
+
+}  // namespace elastocal
