@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
@@ -98,11 +99,22 @@ class OutlierSearch {
   }
 
   /// Heavy tails, and a covariance that the fit has made smaller or, of what is left out, larger.
-  bool IsGross(double square, Eigen::Index rows, double explained, bool used) const {
+  bool IsGross(double square, Eigen::Index rows, double explained, bool used) {
     const auto size = static_cast<double>(rows);
     const double share = std::min(1.0 - kLeastVariance, explained / size);
     const double variance = used ? 1.0 - share : 1.0 + share;
-    return square / variance > size * FisherQuantile(level_, size, kTailFreedom);
+    const auto [limit, added] = gross_limits_.try_emplace(rows);
+    if (added) limit->second = size * FisherQuantile(level_, size, kTailFreedom);
+    return square / variance > limit->second;
+  }
+
+  /// Of the squared distance of a marker in so many directions.
+  double MarkerLimit(Eigen::Index rank) {
+    const auto [limit, added] = marker_limits_.try_emplace(rank);
+    if (added) {
+      limit->second = Threshold(marker_level_, static_cast<double>(rank), fit_.degrees_of_freedom);
+    }
+    return limit->second;
   }
 
   void Judge(int b) {
@@ -175,7 +187,7 @@ class OutlierSearch {
   /// Of a displacement M in the rows z with covariance P. Displacements that do not change the
   /// shape (of three markers: across their plane) do not count.
   ShapeTest TestShape(const Eigen::MatrixXd& M, const Eigen::VectorXd& z,
-                      const Eigen::MatrixXd& P) const {
+                      const Eigen::MatrixXd& P) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> reach(M.transpose() * M);
     const Eigen::ArrayXd sizes = reach.eigenvalues().array();
     const Eigen::Index rank = (sizes > kLeastReach * sizes.maxCoeff()).count();
@@ -184,8 +196,7 @@ class OutlierSearch {
     ShapeTest test;
     test.square = SquaredDistance(along.transpose() * z, along.transpose() * P * along);
     test.displacement = (along.transpose() * along).ldlt().solve(along.transpose() * z).norm();
-    test.excess =
-        test.square / Threshold(marker_level_, static_cast<double>(rank), fit_.degrees_of_freedom);
+    test.excess = test.square / MarkerLimit(rank);
     return test;
   }
 
@@ -218,7 +229,7 @@ class OutlierSearch {
     Eigen::Matrix3d covariance;
     Predict(static_cast<int>(others - selection_.bodies.begin()), expected, covariance);
     const double square = SquaredDistance(raw - expected, covariance + explained);
-    if (square > Threshold(marker_level_, 3.0, fit_.degrees_of_freedom)) Name(b, 0, square);
+    if (square > MarkerLimit(3)) Name(b, 0, square);
   }
 
   /// Where the others of its body have a marker's residual, and the covariance of that.
@@ -256,6 +267,7 @@ class OutlierSearch {
   std::optional<NormalEquations> equations_;
   Eigen::MatrixXd covariance_;
   double level_ = 0.0, marker_level_ = 0.0;
+  std::map<Eigen::Index, double> gross_limits_, marker_limits_;  // by rows: quantiles take long
   OutlierVerdict verdict_;
 };
 

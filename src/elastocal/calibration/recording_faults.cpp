@@ -13,7 +13,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
-constexpr double kLeastShare = 0.03;
+constexpr double kLeastExplained = 0.03;
 constexpr double kLeastSds = 8.0;
 constexpr int kSplits = 12;  // of the recording, after which an offset of a joint may begin
 
@@ -123,7 +123,7 @@ class FaultSearch {
     fault.share = addition.gain / squares_;
     const bool certain = std::abs(fault.size) > kLeastSds * fault.sd;
     const bool matters =
-        std::abs(fault.size) > LeastSize(fault.kind, slides) && fault.share > kLeastShare;
+        std::abs(fault.size) > LeastSize(fault.kind, slides) && fault.share > kLeastExplained;
     if (certain && matters) found_.push_back(fault);
   }
 

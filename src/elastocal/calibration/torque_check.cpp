@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/statics.hpp"
@@ -20,10 +21,12 @@ constexpr double kLeastSlope = 0.5;
 constexpr double kMostSlope = 2.0;
 constexpr double kLeastCorrelation = 0.5;
 constexpr std::size_t kLeastPairs = 5;
+constexpr double kLeftOfExchange = 0.25;  // of the squares
 
 /// Static and measured torques of one joint.
 struct Pairs {
   std::vector<double> expected, measured;
+  std::vector<int> posture;
   double weight = 0.0;  ///< the largest carried, N
 };
 
@@ -56,6 +59,47 @@ std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs) {
     return std::nullopt;
   found.kind = TorqueContradiction::kBiased;
   return found;
+}
+
+/// What is left of the measured torques of one joint beside the static ones of another, in the
+/// postures of both, the means apart: squares, and of the first joint's own static torques.
+struct SensorFit {
+  double squares = 0.0, own = 0.0;
+  Eigen::Index count = 0;
+};
+
+SensorFit Beside(const Pairs& measured, const Pairs& expected) {
+  std::vector<double> m, e, own;
+  for (std::size_t i = 0, j = 0; i < measured.posture.size() && j < expected.posture.size();) {
+    if (measured.posture[i] == expected.posture[j]) {
+      m.push_back(measured.measured[i]);
+      own.push_back(measured.expected[i++]);
+      e.push_back(expected.expected[j++]);
+    } else if (measured.posture[i] < expected.posture[j]) {
+      ++i;
+    } else {
+      ++j;
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(m.size());
+  if (count == 0) return {};
+  const auto centred = [&](const std::vector<double>& values) -> Eigen::ArrayXd {
+    const Eigen::Map<const Eigen::ArrayXd> all(values.data(), count);
+    return all - all.mean();
+  };
+  return {(centred(m) - centred(e)).square().sum(), (centred(m) - centred(own)).square().sum(),
+          count};
+}
+
+/// Whether the sensors of two joints are exchanged.
+bool AreExchanged(const Pairs& a, const Pairs& b) {
+  const SensorFit with_b = Beside(a, b);
+  const SensorFit with_a = Beside(b, a);
+  if (static_cast<std::size_t>(with_b.count) < kLeastPairs) return false;
+  const double left = with_b.squares + with_a.squares;
+  const double own = with_b.own + with_a.own;
+  const double least = 2.0 * kLeastSpread * kLeastSpread * static_cast<double>(with_b.count);
+  return own > least && left < kLeftOfExchange * own;
 }
 
 /// Whether the joint is between the root and one of the links.
@@ -95,11 +139,25 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
       if (!std::isfinite(measured) || shared) continue;
       pairs[k].expected.push_back(expected[model.tree.joints[k].coordinate]);
       pairs[k].measured.push_back(measured);
+      pairs[k].posture.push_back(i);
       pairs[k].weight = std::max(pairs[k].weight, recording.gravity.norm() * carried[k].mass);
     }
   }
   std::vector<ContradictoryTorque> found;
+  std::vector<char> exchanged(joints, 0);
+  for (std::size_t a = 0; a < joints; ++a) {
+    for (std::size_t b = a + 1; b < joints; ++b) {
+      if (exchanged[a] != 0 || exchanged[b] != 0 || !AreExchanged(pairs[a], pairs[b])) continue;
+      exchanged[a] = exchanged[b] = 1;
+      for (const auto& [joint, other] : {std::pair(a, b), std::pair(b, a)}) {
+        found.push_back({.joint = static_cast<int>(joint),
+                         .kind = TorqueContradiction::kExchanged,
+                         .other = static_cast<int>(other)});
+      }
+    }
+  }
   for (std::size_t k = 0; k < joints; ++k) {
+    if (exchanged[k] != 0) continue;
     if (const auto one = Judge(static_cast<int>(k), pairs[k])) found.push_back(*one);
   }
   return found;
@@ -120,6 +178,9 @@ std::string Describe(const ContradictoryTorque& found, const RobotTree& tree) {
     case TorqueContradiction::kUnrelated:
       std::snprintf(text, sizeof text, "do not follow those of statics");
       break;
+    case TorqueContradiction::kExchanged:
+      return tree.joints[found.joint].name + ": its torques are exchanged with those of " +
+             tree.joints[found.other].name;
   }
   return tree.joints[found.joint].name + ": its torques " + text;
 }

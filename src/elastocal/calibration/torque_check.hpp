@@ -13,6 +13,7 @@ enum class TorqueContradiction {
   kScaled,     ///< they are a multiple (or another unit)
   kBiased,     ///< they are off by a constant
   kUnrelated,  ///< they do not follow
+  kExchanged,  ///< they follow those of another joint, whose sensor's follow this one's
 };
 
 struct ContradictoryTorque {
@@ -20,11 +21,13 @@ struct ContradictoryTorque {
   TorqueContradiction kind = TorqueContradiction::kUnrelated;
   double slope = 0.0;  ///< of measured torque by that of statics
   double bias = 0.0;   ///< mean of measured less static torque, N.m or N
+  int other = -1;      ///< joint that the sensor is exchanged with
 };
 
 /// Torque sensors that contradict statics in the postures of a recording of trials, by far more
 /// than masses of links, friction and deflection could make them: a slope below 0.5 or above 2, a
-/// bias of more than 10 N.m (N) and a quarter of the largest torque, a correlation below a half.
+/// bias of more than 10 N.m (N) and a quarter of the largest torque, a correlation below a half; or
+/// two sensors that fit each other's statics far better than their own (a quarter of the squares).
 /// Statics of the joints of a leg on one foot, of the others in any posture, at nominal geometry;
 /// the waist as its markers have it. Only sensors whose static torque varies by 5 N.m (N) or more
 /// (sd; for a bias: any) in five postures or more are judged; none where the robot description has

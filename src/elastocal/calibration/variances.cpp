@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "elastocal/math/statistics.hpp"
 
@@ -26,11 +27,19 @@ void Add(const Eigen::ArrayXd& shares, const Eigen::VectorXd& residual,
   component.means.push_back(squares / rows);
 }
 
-double Huber(double square, Eigen::Index rows) {
-  if (rows == 0) return 1.0;
-  const double limit = ChiSquareQuantile(kHuberQuantile, static_cast<double>(rows));
-  return square <= limit ? 1.0 : std::sqrt(limit / square);
-}
+/// Huber's weights, which keep the quantiles that they need: most bodies have as many rows.
+class HuberWeight {
+ public:
+  double operator()(double square, Eigen::Index rows) {
+    if (rows == 0) return 1.0;
+    const auto [limit, added] = limits_.try_emplace(rows);
+    if (added) limit->second = ChiSquareQuantile(kHuberQuantile, static_cast<double>(rows));
+    return square <= limit->second ? 1.0 : std::sqrt(limit->second / square);
+  }
+
+ private:
+  std::map<Eigen::Index, double> limits_;
+};
 
 }  // namespace
 
@@ -101,6 +110,7 @@ Noise EstimateNoise(const CalibrationOptions& options, const Noise& before,
 RobustWeights EstimateWeights(const FitProblem& problem, const Selection& selection,
                               const Noise& noise, const BodyResiduals& residuals,
                               Robustness robustness) {
+  HuberWeight huber;
   RobustWeights weights;
   weights.bodies.resize(selection.bodies.size());
   weights.ties.assign(static_cast<std::size_t>(problem.recording.posture_count()), 1.0);
@@ -112,10 +122,10 @@ RobustWeights EstimateWeights(const FitProblem& problem, const Selection& select
         (residuals.Residual(b).array() * residuals.Sds(b).array()).square() /
         body.Variances(noise, problem.group[body.posture]);
     const Eigen::Index shared = body.shared_rows();
-    weights.bodies[b].shared = Huber(squares.head(shared).sum(), shared);
+    weights.bodies[b].shared = huber(squares.head(shared).sum(), shared);
     if (robustness == Robustness::kMedians) {
       const Eigen::Index own = squares.size() - shared;
-      weights.bodies[b].own = Huber(squares.tail(own).sum(), own);
+      weights.bodies[b].own = huber(squares.tail(own).sum(), own);
     }
   }
   for (std::size_t t = 0; t < residuals.tied_postures().size(); ++t) {
@@ -128,7 +138,7 @@ RobustWeights EstimateWeights(const FitProblem& problem, const Selection& select
     Eigen::ArrayXd sds(6);
     sds.head<3>().setConstant(noise(group, NoiseSource::kWaistPosition));
     sds.tail<3>().setConstant(noise(group, NoiseSource::kWaistRotation));
-    weights.ties[posture] = Huber(
+    weights.ties[posture] = huber(
         (residuals.Residual(block).array() * residuals.Sds(block).array() / sds).square().sum(), 6);
   }
   return weights;

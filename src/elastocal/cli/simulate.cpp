@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -32,6 +33,7 @@ struct SimulateCommand {
   int threads = 2;
   std::string deploy;           ///< folder of a calibration that is put to use
   std::vector<std::string> as;  ///< how; empty: in all ways
+  std::optional<std::uint64_t> robot_seed;
   bool nominal = false, free = false, matched = false, force = false;
   std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
 };
@@ -60,6 +62,7 @@ SimulationOptions MakeOptions(const SimulateCommand& command, const Project& pro
   SimulationOptions options;
   options.experiment = Settings(command);
   options.experiment.seed = command.common.seed.value_or(1);
+  options.experiment.robot_seed = command.robot_seed;
   options.trials = command.trials;
   options.matched = command.matched;
   if (command.postures.empty() && command.motion.empty()) return options;
@@ -204,6 +207,10 @@ void AddSimulate(CLI::App& app, Action& action) {
   command->add_flag("--force", options->force,
                     "Replace recordings in the folder that were not simulated");
   AddCommonOptions(*command, options->common);
+  command->add_option(
+      "--robot-seed", options->robot_seed,
+      "Seed of the robot's errors, if another than --seed: the same robot, recorded "
+      "again with other postures and noise");
   VirtualExperimentOptions defaults;
   for (const SimulationSetting& setting : SimulationSettings(defaults)) {
     const std::string value = SettingText(setting);

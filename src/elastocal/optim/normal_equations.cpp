@@ -22,9 +22,7 @@ NormalEquations::NormalEquations(const LeastSquaresProblem& problem) : problem_(
   const auto size = static_cast<Eigen::Index>(unknowns_.size());
   information_.setZero(size, size);
   gradient_.setZero(size);
-  for (std::size_t block = 0; block < layout_.size(); ++block) {
-    if (problem_.residual_blocks[block].active) AddBlock(static_cast<int>(block));
-  }
+  for (const std::vector<int>& blocks : alike_) AddBlocks(blocks);
   EliminateNuisance();
   information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
 }
@@ -71,6 +69,24 @@ void NormalEquations::LayOut() {
     group.size = layout_[group.blocks.front()].width;
     nuisance_rows_ += group.size;
   }
+  FindAlike();
+}
+
+void NormalEquations::FindAlike() {
+  struct Batch {
+    std::size_t index = 0;
+    Eigen::Index rows = kBatchRows;
+  };
+  std::map<std::vector<int>, Batch> last;
+  for (std::size_t block = 0; block < layout_.size(); ++block) {
+    Batch& batch = last[layout_[block].unknowns];
+    if (batch.rows >= kBatchRows) {
+      batch = {alike_.size(), 0};
+      alike_.emplace_back();
+    }
+    alike_[batch.index].push_back(static_cast<int>(block));
+    batch.rows += problem_.Residual(static_cast<int>(block)).size();
+  }
 }
 
 Eigen::MatrixXd NormalEquations::OwnJacobian(int block) const {
@@ -85,11 +101,40 @@ Eigen::MatrixXd NormalEquations::NuisanceJacobian(int block) const {
   return problem_.Jacobian(block).middleCols(layout.nuisance, layout.width);
 }
 
-void NormalEquations::AddBlock(int block) {
-  const std::vector<int>& to = layout_[block].unknowns;
-  const Eigen::MatrixXd J = OwnJacobian(block);
+Eigen::MatrixXd NormalEquations::OwnJacobians(const std::vector<int>& blocks) const {
+  Eigen::Index rows = 0;
+  for (int block : blocks) rows += problem_.Residual(block).size();
+  Eigen::MatrixXd J(rows, static_cast<Eigen::Index>(layout_[blocks.front()].unknowns.size()));
+  rows = 0;
+  for (int block : blocks) {
+    const auto& own = problem_.Jacobian(block);
+    if (layout_[block].group < 0) {
+      J.middleRows(rows, own.rows()) = own;
+    } else {
+      J.middleRows(rows, own.rows()) = own(Eigen::all, layout_[block].columns);
+    }
+    rows += own.rows();
+  }
+  return J;
+}
+
+void NormalEquations::AddBlocks(const std::vector<int>& blocks) {
+  std::vector<int> active;
+  for (int block : blocks) {
+    if (problem_.residual_blocks[block].active) active.push_back(block);
+  }
+  if (active.empty()) return;
+  const std::vector<int>& to = layout_[active.front()].unknowns;
+  const Eigen::MatrixXd J = OwnJacobians(active);
+  Eigen::VectorXd residual(J.rows());
+  Eigen::Index row = 0;
+  for (int block : active) {
+    const auto& of = problem_.Residual(block);
+    residual.segment(row, of.size()) = of;
+    row += of.size();
+  }
   const Eigen::MatrixXd part = J.transpose() * J;
-  const Eigen::VectorXd slope = J.transpose() * problem_.Residual(block);
+  const Eigen::VectorXd slope = J.transpose() * residual;
   for (std::size_t c = 0; c < to.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);
     gradient_[to[c]] += slope[column];
@@ -177,11 +222,16 @@ Eigen::MatrixXd NormalEquations::Explained(int block, const Eigen::MatrixXd& cov
 std::vector<Eigen::VectorXd> NormalEquations::ExplainedVariances(
     const Eigen::MatrixXd& covariance) const {
   std::vector<Eigen::VectorXd> variances(layout_.size());
-  for (std::size_t block = 0; block < layout_.size(); ++block) {
-    const std::vector<int>& at = layout_[block].unknowns;
-    const Eigen::MatrixXd J = OwnJacobian(static_cast<int>(block));
+  for (const std::vector<int>& blocks : alike_) {
+    const std::vector<int>& at = layout_[blocks.front()].unknowns;
+    const Eigen::MatrixXd J = OwnJacobians(blocks);
     const Eigen::MatrixXd spread = J * Eigen::MatrixXd(covariance(at, at));
-    variances[block] = spread.cwiseProduct(J).rowwise().sum();
+    const Eigen::VectorXd all = spread.cwiseProduct(J).rowwise().sum();
+    Eigen::Index row = 0;
+    for (int block : blocks) {
+      variances[block] = all.segment(row, problem_.Residual(block).size());
+      row += variances[block].size();
+    }
   }
   // gain C, of many groups at once.
   Rows reach;

@@ -85,16 +85,21 @@ class NormalEquations {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   void LayOut();
-  void AddBlock(int block);
+  void FindAlike();
+  void AddBlocks(const std::vector<int>& blocks);
   void EliminateNuisance();
   std::vector<std::vector<Group*>> Batches();
   auto Gain(const Group& group) const { return gains_.middleRows(group.row, group.size); }
   Eigen::MatrixXd OwnJacobian(int block) const;
+  Eigen::MatrixXd OwnJacobians(const std::vector<int>& blocks) const;
   Eigen::MatrixXd NuisanceJacobian(int block) const;
 
   const LeastSquaresProblem& problem_;
   std::vector<int> unknowns_, position_;  // position_: of an entry of x among the unknowns; -1
   std::vector<Layout> layout_;            // by residual block
+  // Blocks of the same unknowns, in batches: one large product takes less time than many small
+  // ones.
+  std::vector<std::vector<int>> alike_;
   std::vector<Group> groups_;
   Eigen::Index nuisance_rows_ = 0;
   Rows gains_;  // of all groups x unknowns

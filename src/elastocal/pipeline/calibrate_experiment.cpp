@@ -6,8 +6,10 @@
 
 #include <Eigen/Cholesky>
 
+#include "elastocal/calibration/up_check.hpp"
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
@@ -125,8 +127,16 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.comparison = CompareModels(std::move(calibrated), robot.model, recording, robot.base,
                                  settings, OfStep(options.progress, "fit"));
 
-  run.faults =
-      FindFaults(project, options, as_recorded, robot, recording, run.comparison.largest());
+  if (const auto up = FindWrongUp(robot.model, recording)) run.faults.push_back(Describe(*up));
+  for (const RecordingMistake& mistake : FindRecordingMistakes(
+           project, options.seed, as_recorded, recording, run.comparison.largest())) {
+    run.faults.push_back(DescribeMistake(mistake));
+  }
+  // What a mistake leaves would look like other faults.
+  if (run.faults.empty()) {
+    run.faults =
+        FindFaults(project, options, as_recorded, robot, recording, run.comparison.largest());
+  }
 
   // Eq. 12: how well the recorded postures tell the parameters apart.
   run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording);

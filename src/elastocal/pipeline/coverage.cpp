@@ -25,6 +25,34 @@ bool Shows(const Recording& recording, const std::string& chain,
   return false;
 }
 
+bool Exercises(const Trial& trial, const std::string& chain) {
+  return std::find(trial.chains.begin(), trial.chains.end(), chain) != trial.chains.end();
+}
+
+/// The trial that moves the joints of a chain most without being said to exercise it.
+std::string MovingTrial(const Project& project, const Chain& chain, const Recording& recording) {
+  std::vector<int> coordinates;
+  for (int joint : JointsToBody(project.tree, project.tree.links[chain.tip_link].body)) {
+    coordinates.push_back(project.tree.joints[joint].coordinate);
+  }
+  std::string moving;
+  double most = 0.0;
+  for (std::size_t t = 0; t < recording.trials.size(); ++t) {
+    if (Exercises(recording.trials[t], chain.name)) continue;
+    std::vector<int> postures;
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (recording.trial[i] == static_cast<int>(t)) postures.push_back(i);
+    }
+    if (postures.empty()) continue;
+    const Eigen::MatrixXd q = recording.q(postures, coordinates);
+    const double range = (q.colwise().maxCoeff() - q.colwise().minCoeff()).sum();
+    if (range <= most) continue;
+    most = range;
+    moving = recording.trials[t].name;
+  }
+  return moving;
+}
+
 }  // namespace
 
 std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured) {
@@ -41,13 +69,13 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
     ChainCoverage of{chain.name,
                      Shows(measured.calibration, chain.name, markers),
                      Shows(measured.validation, chain.name, markers),
-                     {}};
+                     {},
+                     {},
+                     MovingTrial(project, chain, measured.calibration)};
     for (const TrialSummary& trial : measured.trials) {
-      const auto& chains = trial.trial.chains;
-      if (trial.refused.empty() || trial.trial.kind != TrialKind::kCalibration ||
-          std::find(chains.begin(), chains.end(), chain.name) == chains.end()) {
-        continue;
-      }
+      if (!Exercises(trial.trial, chain.name)) continue;
+      if (trial.trial.kind != TrialKind::kCalibration) of.validation_trial = trial.trial.name;
+      if (trial.refused.empty() || trial.trial.kind != TrialKind::kCalibration) continue;
       of.refused.push_back("trial " + trial.trial.name + ": " + trial.refused);
     }
     coverage.push_back(std::move(of));
@@ -67,6 +95,13 @@ void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict)
       objections.push_back("chain " + of.chain + " is not calibrated (" + reasons +
                            "): record it again or, to deploy the others, take its trials out of "
                            "experiment.yaml");
+    }
+    if (!of.calibrated && of.refused.empty() && !of.validation_trial.empty()) {
+      objections.push_back(
+          "chain " + of.chain + " is not calibrated: trial " + of.validation_trial +
+          " for validation exercises it, and no trial for calibration" +
+          (of.moving_trial.empty() ? "" : "; trial " + of.moving_trial + " moves its joints most") +
+          ": is `chains` of the trials in experiment.yaml right?");
     }
     if (of.calibrated && !of.judged && any_judged) {
       verdict.remarks.push_back("chain " + of.chain +

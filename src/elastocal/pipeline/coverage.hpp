@@ -17,14 +17,18 @@ struct ChainCoverage {
   bool calibrated = false;
   bool judged = false;               ///< whether markers on it were seen in trials for validation
   std::vector<std::string> refused;  ///< trials for calibration of it that cannot be used, and why
+  std::string validation_trial;      ///< one that is said to exercise it; empty: none
+  /// The trial for calibration that moves its joints most without being said to exercise it.
+  std::string moving_trial;
 };
 
 /// Of the chains that carry markers, in the project's order.
 std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured);
 
 /// Adds an objection for each chain that stays uncalibrated because its trials cannot be used: who
-/// records a chain expects it to be calibrated. And a remark for each that was calibrated and is
-/// not judged although others are.
+/// records a chain expects it to be calibrated. Another for each chain that trials for validation
+/// exercise and no trial for calibration: more likely, `chains` of a trial is wrong. And a remark
+/// for each that was calibrated and is not judged although others are.
 void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict);
 
 }  // namespace elastocal

@@ -45,6 +45,24 @@ TEST_F(CoverageOfChains, AChainWhoseTrialsAreAllRefusedIsNotDeployed) {
   EXPECT_TRUE(verdict.remarks.empty());
 }
 
+TEST_F(CoverageOfChains, AChainThatOnlyTrialsForValidationExerciseIsNotDeployed) {
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  const Recording moved = measured.calibration;
+  measured.calibration.trial = {0, 0};
+  measured.calibration.q.setZero(2, moved.q.cols());
+  measured.calibration.q.row(1).setConstant(0.5);
+  measured.calibration.markers.setZero(2, moved.markers.cols());
+  TrialSummary validation;
+  validation.trial = {.name = "tour", .kind = TrialKind::kRandom, .chains = {"right_arm"}};
+  measured.trials = {validation};
+  Verdict verdict;
+  JudgeCoverage(FindCoverage(project_, measured), verdict);
+  ASSERT_EQ(verdict.objections.size(), 1u);
+  EXPECT_EQ(verdict.objections[0].find("chain right_arm is not calibrated: trial tour"), 0u);
+  EXPECT_NE(verdict.objections[0].find("trial left_arm moves its joints most"), std::string::npos);
+}
+
 TEST_F(CoverageOfChains, WhatIsNotJudgedIsSaidWhereOthersAre) {
   Measurements measured;
   measured.calibration = Shown("left_arm");

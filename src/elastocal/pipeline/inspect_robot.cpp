@@ -1,9 +1,13 @@
 #include "elastocal/pipeline/inspect_robot.hpp"
 
+#include <cmath>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "elastocal/pipeline/project_warnings.hpp"
 #include "elastocal/robot/parameter_names.hpp"
+#include "elastocal/robot/special_geometry.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "elastocal/robot/subtree.hpp"
 
@@ -11,6 +15,8 @@ namespace elastocal {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr double kNearlyOne = 5e-3;  // m: between parallel axes
 
 ChainInspection InspectChain(const std::string& name, const RobotTree& tree,
                              const std::vector<Marker>& markers, const Project& project,
@@ -80,6 +86,28 @@ Json ChainJson(const ChainInspection& chain) {
           {"lost_by_special_markers", names(chain.lost)}};
 }
 
+/// What it means for the user that axes are nearly special.
+std::string DescribeNearly(const RobotTree& tree, const SpecialGeometry& group) {
+  std::string names;
+  for (int joint : group.joints) names += (names.empty() ? "" : ", ") + tree.joints[joint].name;
+  const double off = Deviation(tree, group);
+  const std::string meaning =
+      "; are numbers of the robot description rounded? The estimate does not hinge on it, but "
+      "inverse kinematics in closed form does";
+  if (group.kind == SpecialGeometry::Kind::kSphericalWrist) {
+    return fmt::format("the axes of {} nearly, but not exactly, meet in one point ({:.3g} mm)",
+                       names, 1e3 * off) +
+           meaning;
+  }
+  const double distance = AxisDistance(tree, group.joints[0], group.joints[1]);
+  const bool one = distance < kNearlyOne;
+  return fmt::format("the axes of {} are nearly, but not exactly, {} ({:.3g} deg{})", names,
+                     one ? "one axis" : "parallel", off * 180.0 / M_PI,
+                     one ? fmt::format(", {:.3g} mm", 1e3 * distance) : "") +
+         meaning + ", and parameters that move one axis along or about the other are told badly" +
+         " (QR counts them as identifiable)";
+}
+
 }  // namespace
 
 RobotInspection InspectRobot(const Project& project, const InspectionOptions& options) {
@@ -109,6 +137,9 @@ RobotInspection InspectRobot(const Project& project, const InspectionOptions& op
     if (chain.lost.empty()) continue;
     inspection.warnings.push_back(chain.name + ": special marker positions lose " +
                                   JoinNames(chain.model.parameters, chain.lost));
+  }
+  for (const SpecialGeometry& group : FindNearlySpecialGeometry(project.tree)) {
+    inspection.warnings.push_back(DescribeNearly(project.tree, group));
   }
   return inspection;
 }

@@ -87,7 +87,16 @@ void WarnOfFewWaistMarkers(const ErrorModel& model, std::vector<std::string>& wa
                      "the waist leans on the markers of the chains");
 }
 
-/// The project's clusters as far as their markers were seen.
+std::string DescribeKnock(const Knock& knock, const Recording& recording) {
+  return fmt::format(
+      "cluster {}: the data before and after disagree by {:.1f} mm (up to {}; from {} on): was "
+      "it knocked? Its markers are taken as two sets",
+      knock.cluster, 1e3 * knock.distance, DescribePosture(recording, knock.last_before),
+      DescribePosture(recording, knock.posture));
+}
+
+}  // namespace
+
 std::vector<LabelCluster> SeenClusters(const Project& project, const Recording& recording) {
   const std::vector<std::string>& names = recording.marker_names;
   std::vector<LabelCluster> clusters;
@@ -101,16 +110,6 @@ std::vector<LabelCluster> SeenClusters(const Project& project, const Recording& 
   }
   return clusters;
 }
-
-std::string DescribeKnock(const Knock& knock, const Recording& recording) {
-  return fmt::format(
-      "cluster {}: the data before and after disagree by {:.1f} mm (up to {}; from {} on): was "
-      "it knocked? Its markers are taken as two sets",
-      knock.cluster, 1e3 * knock.distance, DescribePosture(recording, knock.last_before),
-      DescribePosture(recording, knock.posture));
-}
-
-}  // namespace
 
 RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint64_t> seed,
                                 Measurements& measured, KnockSearch search) {

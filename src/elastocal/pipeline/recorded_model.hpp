@@ -17,6 +17,9 @@ struct RecordedModel {
   std::vector<Knock> knocks;  ///< found in the recording; their clusters are taken as two
 };
 
+/// The project's clusters as far as their markers are in the recording, by its columns.
+std::vector<LabelCluster> SeenClusters(const Project& project, const Recording& recording);
+
 enum class KnockSearch { kAll, kNone };
 
 /// The error model of the robot with the markers of `measured.calibration` (eq. 2, 3, 5 and 6), its

@@ -125,14 +125,21 @@ void WriteTrials(const VirtualExperiment& experiment, const std::vector<std::siz
   writer.yaml << YAML::EndMap;
 }
 
+void WriteSeed(const VirtualExperimentOptions& options, TruthWriter& writer) {
+  writer.Key("seed");
+  writer.yaml << options.seed;
+  if (!options.robot_seed) return;
+  writer.Key("robot_seed");
+  writer.yaml << *options.robot_seed;
+}
+
 }  // namespace
 
 std::string FormatTruth(const VirtualExperiment& experiment, const std::vector<std::size_t>& trials,
                         const std::vector<SensorTruth>& sensors) {
   TruthWriter writer;
   writer.yaml << YAML::BeginMap;
-  writer.Key("seed");
-  writer.yaml << experiment.options.seed;
+  WriteSeed(experiment.options, writer);
   WriteLegs(experiment, writer);
   WriteTrials(experiment, trials, sensors, writer);
   WriteJoints(experiment, experiment.described_tree, writer);
@@ -153,8 +160,7 @@ std::string FormatMatchedTruth(const MatchedExperiment& experiment,
   writer.yaml << YAML::BeginMap;
   writer.Key("matched");
   writer.yaml << true;
-  writer.Key("seed");
-  writer.yaml << experiment.plan.options.seed;
+  WriteSeed(experiment.plan.options, writer);
   WriteTrials(experiment.plan, trials, sensors, writer);
   writer.Key("parameters");
   writer.yaml << YAML::BeginMap;

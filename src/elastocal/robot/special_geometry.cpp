@@ -9,6 +9,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kExact = 1e-6;  // m and rad
+constexpr double kNearlyParallel = M_PI / 180.0;
+constexpr double kNearlyMeeting = 5e-3;  // m
 
 struct AxisLine {
   Vector3d point, direction;
@@ -54,7 +56,11 @@ double Deviation(const RobotTree& tree, const SpecialGeometry& group) {
   return WristSpread(axis(0), axis(1), axis(2));
 }
 
-std::vector<SpecialGeometry> FindSpecialGeometry(const RobotTree& tree) {
+namespace {
+
+/// Groups whose deviation is from `least` on and below `most_angle` or `most_spread`.
+std::vector<SpecialGeometry> FindGroups(const RobotTree& tree, double least, double most_angle,
+                                        double most_spread) {
   using Kind = SpecialGeometry::Kind;
   std::vector<SpecialGeometry> groups;
   const auto revolute = [&](int k) {
@@ -64,13 +70,33 @@ std::vector<SpecialGeometry> FindSpecialGeometry(const RobotTree& tree) {
   for (int c = 0; c < static_cast<int>(tree.joints.size()); ++c) {
     const int b = Previous(tree, c);
     if (!revolute(c) || !revolute(b)) continue;
-    if (angle(b, c) < kExact) groups.push_back({Kind::kParallelAxes, {b, c}});
+    const double off = angle(b, c);
+    if (off >= least && off < most_angle) groups.push_back({Kind::kParallelAxes, {b, c}});
     const int a = Previous(tree, b);
-    if (!revolute(a) || angle(b, c) < 0.1 || angle(a, b) < 0.1) continue;
+    if (!revolute(a) || off < 0.1 || angle(a, b) < 0.1) continue;
     const SpecialGeometry wrist{Kind::kSphericalWrist, {a, b, c}};
-    if (Deviation(tree, wrist) < kExact) groups.push_back(wrist);
+    const double spread = Deviation(tree, wrist);
+    if (spread >= least && spread < most_spread) groups.push_back(wrist);
   }
   return groups;
+}
+
+}  // namespace
+
+std::vector<SpecialGeometry> FindSpecialGeometry(const RobotTree& tree) {
+  return FindGroups(tree, 0.0, kExact, kExact);
+}
+
+std::vector<SpecialGeometry> FindNearlySpecialGeometry(const RobotTree& tree) {
+  return FindGroups(tree, kExact, kNearlyParallel, kNearlyMeeting);
+}
+
+double AxisDistance(const RobotTree& tree, int first, int second) {
+  const Eigen::VectorXd q = Eigen::VectorXd::Zero(tree.coordinate_count());
+  const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
+  const AxisLine a = AxisAtZero(tree, T_root_link, first);
+  const AxisLine b = AxisAtZero(tree, T_root_link, second);
+  return (b.point - a.point).cross(a.direction).norm();
 }
 
 }  // namespace elastocal

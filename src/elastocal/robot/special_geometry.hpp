@@ -18,6 +18,15 @@ struct SpecialGeometry {
 /// Groups of joints in this description whose relation holds exactly (1 micrometre, 1 microradian).
 std::vector<SpecialGeometry> FindSpecialGeometry(const RobotTree& tree);
 
+/// Groups of joints whose relation holds nearly, but not exactly: axes less than a degree from
+/// parallel, axes of a wrist that meet within 5 mm. A description says so after a calibration, or
+/// where numbers were rounded; no robot is meant to be so.
+std::vector<SpecialGeometry> FindNearlySpecialGeometry(const RobotTree& tree);
+
+/// Distance between the axes of two joints at zero posture, m: of parallel ones, how far they are
+/// from being one.
+double AxisDistance(const RobotTree& tree, int first, int second);
+
 /// Deviation of a group of joints in `tree` (the same joints, with other origins) from the
 /// relation: the distance of the points where the axes of a wrist should meet, m, or the angle
 /// between axes that should be parallel, rad.

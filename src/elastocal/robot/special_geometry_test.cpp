@@ -79,5 +79,20 @@ TEST(SpecialGeometry, DeviationOfACorrectedRobot) {
   }
 }
 
+TEST(SpecialGeometry, WhatHoldsNearlyIsFoundApart) {
+  RobotTree tree = TalosLeg();
+  EXPECT_TRUE(FindNearlySpecialGeometry(tree).empty());
+  tree.joints[3].T_parent_child = tree.joints[3].T_parent_child * RotX(2e-3);
+  tree.joints[2].T_parent_child = Offset(1e-3, 0, 0) * tree.joints[2].T_parent_child;
+  const std::vector<SpecialGeometry> found = FindNearlySpecialGeometry(tree);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].joints, Joints({0, 1, 2}));
+  EXPECT_NEAR(Deviation(tree, found[0]), 1e-3, 1e-9);
+  EXPECT_EQ(found[1].joints, Joints({2, 3}));
+  EXPECT_NEAR(Deviation(tree, found[1]), 2e-3, 1e-9);
+  EXPECT_NEAR(AxisDistance(tree, 2, 3), 0.38, 1e-9);  // the thigh
+  EXPECT_EQ(Found(tree, Kind::kParallelAxes), std::vector<Joints>({{3, 4}}));
+}
+
 }  // namespace
 }  // namespace elastocal

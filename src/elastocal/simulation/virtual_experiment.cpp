@@ -62,7 +62,7 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
   }
   VirtualExperiment experiment;
   experiment.options = options;
-  experiment.options.truth.seed = options.seed;
+  experiment.options.truth.seed = options.robot_seed.value_or(options.seed);
   experiment.options.motion.seed = options.seed;
   experiment.options.sensors.seed = options.seed;
   experiment.described_tree = described.tree;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct DescribedRobot {
 /// All options of a virtual experiment. `seed` replaces the seeds of the parts.
 struct VirtualExperimentOptions {
   std::uint64_t seed = 1;
+  /// Seed of the robot's errors if it is another one than `seed`: the same robot with other
+  /// postures, places and noise, as in a second recording of it.
+  std::optional<std::uint64_t> robot_seed = {};
   TruthOptions truth;
   PhysicsOptions physics;
   MotionOptions motion;

@@ -47,6 +47,17 @@ TEST(VirtualExperiment, TheSameSeedGivesTheSameNumbers) {
   EXPECT_NE(other.robot.offset, first.robot.offset);
 }
 
+TEST(VirtualExperiment, RecordsTheSameRobotAgainWithOtherPostures) {
+  const VirtualExperiment first = PrepareExperiment(DescribedBiped(), Short());
+  VirtualExperimentOptions options = Short();
+  options.seed = 2;
+  options.robot_seed = Short().seed;
+  const VirtualExperiment again = PrepareExperiment(DescribedBiped(), options);
+  EXPECT_EQ(again.robot.offset, first.robot.offset);
+  const double late = 0.8 * first.trials[0].motion.duration_s();
+  EXPECT_NE(PostureAt(again.trials[0].motion, late), PostureAt(first.trials[0].motion, late));
+}
+
 TEST(VirtualExperiment, APerfectRobotFollowsTheForwardKinematics) {
   VirtualExperimentOptions options = Short();
   SwitchOffImperfections(options);

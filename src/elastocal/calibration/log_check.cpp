@@ -1,0 +1,214 @@
+#include "elastocal/calibration/log_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "elastocal/calibration/positions_by_markers.hpp"
+#include "elastocal/math/statistics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeastRange = 0.1;               // rad: of a joint whose sign can be judged
+constexpr double kLeastSlideRange = 0.03;         // m
+constexpr double kLeastDiscrepancy = 0.06;        // rad: beyond errors of a robot
+constexpr double kLeastSlideDiscrepancy = 0.015;  // m
+constexpr double kFarBetter = 0.5;                // of the discrepancy is left at most
+constexpr double kStill = 2e-5;                   // rad or m: encoders count in steps
+constexpr int kLeastFrozen = 3;                   // postures
+constexpr int kLeastJudged = 4;                   // of a trial
+
+bool Slides(const RobotTree& tree, int coordinate) {
+  return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
+}
+
+/// Median of the absolute values: single postures may be shown wrong.
+double Typical(const Eigen::VectorXd& values) {
+  return values.size() == 0 ? 0.0 : Median(values.cwiseAbs());
+}
+
+double Range(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
+
+/// What the logged and the shown positions of the trials say.
+class SuspicionSearch {
+ public:
+  SuspicionSearch(const ErrorModel& model, const Recording& recording)
+      : tree_(model.tree), recording_(recording), shown_(PositionsByMarkers(model, recording)) {
+    for (int joint : model.active_joints) {
+      const int coordinate = tree_.joints[joint].coordinate;
+      if (std::find(coordinates_.begin(), coordinates_.end(), coordinate) == coordinates_.end()) {
+        coordinates_.push_back(coordinate);
+      }
+    }
+  }
+
+  std::vector<LogSuspicion> Run() {
+    for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
+      std::vector<int> postures;
+      for (int i = 0; i < recording_.posture_count(); ++i) {
+        if (recording_.trial[i] == trial) postures.push_back(i);
+      }
+      if (static_cast<int>(postures.size()) < kLeastJudged) continue;
+      for (int a : coordinates_) {
+        TrySign(a, postures);
+        TryFrozen(a, postures);
+        for (int b : coordinates_) {
+          if (a < b) TryExchange(a, b, postures);
+        }
+      }
+    }
+    std::vector<LogSuspicion> found;
+    for (auto& [key, suspicion] : found_) {
+      const auto count = static_cast<double>(suspicion.postures.size());
+      suspicion.before = std::sqrt(suspicion.before / count);
+      suspicion.after = std::sqrt(suspicion.after / count);
+      found.push_back(std::move(suspicion));
+    }
+    std::stable_sort(found.begin(), found.end(), [](const LogSuspicion& a, const LogSuspicion& b) {
+      return Explains(a) > Explains(b);
+    });
+    return found;
+  }
+
+ private:
+  static double Explains(const LogSuspicion& suspicion) {
+    return static_cast<double>(suspicion.postures.size()) *
+           (suspicion.before * suspicion.before - suspicion.after * suspicion.after);
+  }
+
+  double LeastRange(int c) const { return Slides(tree_, c) ? kLeastSlideRange : kLeastRange; }
+  double LeastDiscrepancy(int c) const {
+    return Slides(tree_, c) ? kLeastSlideDiscrepancy : kLeastDiscrepancy;
+  }
+  Eigen::VectorXd Logged(int c, const std::vector<int>& postures) const {
+    return recording_.q(postures, c);
+  }
+  Eigen::VectorXd Shown(int c, const std::vector<int>& postures) const {
+    return shown_(postures, c);
+  }
+
+  /// The same mistake in several trials is one.
+  void Add(LogContradiction kind, int a, int b, const std::vector<int>& postures, double before,
+           double after) {
+    LogSuspicion& suspicion = found_[{static_cast<int>(kind), a, b}];
+    suspicion.kind = kind;
+    suspicion.coordinate = a;
+    suspicion.other = b;
+    suspicion.postures.insert(suspicion.postures.end(), postures.begin(), postures.end());
+    const auto count = static_cast<double>(postures.size());
+    suspicion.before += count * before * before;
+    suspicion.after += count * after * after;
+  }
+
+  void TrySign(int c, const std::vector<int>& postures) {
+    const Eigen::VectorXd logged = Logged(c, postures);
+    const Eigen::VectorXd shown = Shown(c, postures);
+    if (Range(logged) < LeastRange(c)) return;
+    const double before = Typical(shown - logged);
+    const double after = Typical(shown + logged);
+    if (before < LeastDiscrepancy(c) || after > kFarBetter * before) return;
+    Add(LogContradiction::kSign, c, -1, postures, before, after);
+  }
+
+  void TryExchange(int a, int b, const std::vector<int>& postures) {
+    if (Slides(tree_, a) != Slides(tree_, b)) return;
+    const auto both = [&](int of_a, int of_b) {
+      return std::hypot(Typical(Shown(a, postures) - Logged(of_a, postures)),
+                        Typical(Shown(b, postures) - Logged(of_b, postures)));
+    };
+    const double before = both(a, b);
+    const double after = both(b, a);
+    if (before < LeastDiscrepancy(a) || after > kFarBetter * before) return;
+    Add(LogContradiction::kExchange, a, b, postures, before, after);
+  }
+
+  void TryFrozen(int c, const std::vector<int>& postures) {
+    if (Range(Logged(c, postures)) < LeastRange(c)) return;  // it was not to move
+    std::vector<int> longest;
+    std::vector<int> run;
+    for (int i : postures) {
+      if (!run.empty() && std::abs(recording_.q(i, c) - recording_.q(run.front(), c)) > kStill) {
+        run.clear();
+      }
+      run.push_back(i);
+      if (run.size() > longest.size()) longest = run;
+    }
+    if (static_cast<int>(longest.size()) < kLeastFrozen) return;
+    std::vector<int> others;
+    std::set_difference(postures.begin(), postures.end(), longest.begin(), longest.end(),
+                        std::back_inserter(others));
+    // The first posture may have been reached before it froze.
+    const double before = Typical(Shown(c, longest) - Logged(c, longest));
+    const double after = Typical(Shown(c, others) - Logged(c, others));
+    if (before < LeastDiscrepancy(c) || after > kFarBetter * before) return;
+    Add(LogContradiction::kFrozen, c, -1, longest, before, after);
+  }
+
+  const RobotTree& tree_;
+  const Recording& recording_;
+  const Eigen::MatrixXd shown_;
+  std::vector<int> coordinates_;
+  std::map<std::array<int, 3>, LogSuspicion> found_;
+};
+
+}  // namespace
+
+std::vector<LogSuspicion> FindLogSuspicions(const ErrorModel& model, const Recording& recording) {
+  if (recording.trials.empty()) return {};
+  return SuspicionSearch(model, recording).Run();
+}
+
+Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspicion) {
+  Recording corrected = recording;
+  if (suspicion.kind == LogContradiction::kFrozen) {
+    std::vector<int> kept;
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (!std::binary_search(suspicion.postures.begin(), suspicion.postures.end(), i)) {
+        kept.push_back(i);
+      }
+    }
+    return SelectPostures(recording, kept);
+  }
+  for (int i : suspicion.postures) {
+    if (suspicion.kind == LogContradiction::kSign) {
+      corrected.q(i, suspicion.coordinate) *= -1.0;
+    } else {
+      std::swap(corrected.q(i, suspicion.coordinate), corrected.q(i, suspicion.other));
+    }
+  }
+  return corrected;
+}
+
+std::string DescribeSuspicion(const LogSuspicion& suspicion, const RobotTree& tree,
+                              const Recording& recording) {
+  const auto name = [&](int coordinate) {
+    return tree.joints[tree.coordinate_joint[coordinate]].name;
+  };
+  std::string text = name(suspicion.coordinate);
+  switch (suspicion.kind) {
+    case LogContradiction::kSign:
+      text += ": the sign of its positions is reversed";
+      break;
+    case LogContradiction::kExchange:
+      text += " and " + name(suspicion.other) + ": their positions are exchanged";
+      break;
+    case LogContradiction::kFrozen:
+      text += ": its positions are frozen, while it moved, in " +
+              std::to_string(suspicion.postures.size()) + " postures";
+      break;
+  }
+  std::vector<int> trials;
+  for (int i : suspicion.postures) {
+    if (trials.empty() || trials.back() != recording.trial[i]) trials.push_back(recording.trial[i]);
+  }
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    text += (k == 0 ? " in trial " : ", ") + recording.trials[trials[k]].name;
+  }
+  return text;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/robot/error_model.hpp"
+
+namespace elastocal {
+
+/// What is wrong with the positions that were logged for a joint.
+enum class LogContradiction {
+  kSign,      ///< they have the opposite sign
+  kExchange,  ///< two joints have each other's
+  kFrozen,    ///< they stayed the same while the joint moved
+};
+
+/// A mistake in the joint log, as the markers show it.
+struct LogSuspicion {
+  LogContradiction kind = LogContradiction::kSign;
+  int coordinate = 0;         ///< of the robot tree
+  int other = -1;             ///< the one that it is exchanged with
+  std::vector<int> postures;  ///< ascending, in which the log is wrong
+  double before = 0.0;  ///< PositionsByMarkers less the log there, median of the absolute, rad or m
+  double after = 0.0;   ///< the same once the mistake is undone; of kFrozen, elsewhere
+};
+
+/// Mistakes in the joint log of a recording of trials that are far larger than errors of a robot:
+/// the sign of a joint, two joints exchanged, a joint frozen in part of a trial. Each is told trial
+/// by trial, by the nominal robot, before anything is estimated. A suspicion is no proof: whether
+/// the recording fits once it is undone, a fit has to say. The one that explains most first; empty
+/// for a table of postures.
+std::vector<LogSuspicion> FindLogSuspicions(const ErrorModel& model, const Recording& recording);
+
+/// The recording without that mistake: positions corrected, or the postures left out in which a
+/// joint was frozen.
+Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspicion);
+
+/// "arm_left_7_joint: the sign of its positions is reversed in trial a"
+std::string DescribeSuspicion(const LogSuspicion& suspicion, const RobotTree& tree,
+                              const Recording& recording);
+
+}  // namespace elastocal

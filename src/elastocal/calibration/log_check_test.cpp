@@ -1,0 +1,143 @@
+#include "elastocal/calibration/log_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/calibration/label_check.hpp"
+#include "elastocal/calibration/positions_by_markers.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/math/statistics.hpp"
+#include "elastocal/robot/kinematics.hpp"
+#include "tests/standing_biped.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kPlayed = 12;  // postures of a trial
+
+/// A biped with errors of usual size plays random postures in two trials, each at a place of its
+/// own.
+class LogCheckTest : public testing::Test {
+ protected:
+  LogCheckTest()
+      : recording_(robot_.Empty({{.name = "a", .chains = {}, .support = {robot_.left}},
+                                 {.name = "b", .chains = {}, .support = {robot_.right}}},
+                                kPlayed)) {
+    Random random(5);
+    Eigen::VectorXd truth = Eigen::VectorXd::Zero(robot_.model.parameter_count());
+    for (int i = 0; i < robot_.model.parameter_count(); ++i) {
+      const Parameter& parameter = robot_.model.parameters[i];
+      if (parameter.kind == ParameterKind::kWaistPose || IsElastic(parameter.kind)) continue;
+      truth[i] = random.Normal(parameter.unit == ParameterUnit::kRadian ? 0.01 : 2e-3);
+    }
+    Geometry geometry = ApplyErrors(robot_.model, truth);
+    for (int i = 0; i < recording_.posture_count(); ++i) {
+      recording_.q.row(i) = 0.8 * RandomPosture(robot_.biped.tree, random).transpose();
+      const Transform T = Transform(Eigen::Translation3d(1.0, i < kPlayed ? 2.0 : 3.0, 0.9)) *
+                          RotZ(0.5 + 0.02 * random.Normal(1.0)) * RotX(0.02 * random.Normal(1.0));
+      PlaceWaist(T, Vector6d::Zero(), geometry);
+      recording_.markers.row(i) =
+          MarkerPositions(robot_.model, geometry, recording_.q.row(i).transpose())
+              .reshaped()
+              .transpose();
+    }
+  }
+
+  int Coordinate(const std::string& joint) const {
+    return robot_.biped.tree.joints[FindJoint(robot_.biped.tree, joint)].coordinate;
+  }
+
+  std::vector<LabelCluster> Clusters() const {
+    std::vector<LabelCluster> clusters;
+    for (const char* name : {"WAIST", "TRUNK", "LFOOT", "RFOOT"}) {
+      clusters.push_back({name, {}});
+      for (int m = 0; m < robot_.model.marker_count(); ++m) {
+        if (robot_.model.markers[m].name.starts_with(name)) clusters.back().markers.push_back(m);
+      }
+    }
+    return clusters;
+  }
+
+  /// The first suspicion in words.
+  std::string First(const Recording& recording) const {
+    const auto found = FindLogSuspicions(robot_.model, recording);
+    return found.empty() ? "" : DescribeSuspicion(found.front(), robot_.biped.tree, recording);
+  }
+
+  const StandingBiped robot_ = {};
+  Recording recording_;
+};
+
+TEST_F(LogCheckTest, TheMarkersShowThePositionsOfTheJoints) {
+  Recording changed = recording_;
+  changed.q.col(Coordinate("left_4")).array() += 0.3;
+  const Eigen::MatrixXd shown = PositionsByMarkers(robot_.model, changed);
+  // Errors of the robot and of the markers: half a degree, millimetres on levers of 0.1 m.
+  // Six joints are told from one cluster at the end, so near singular postures they are rough.
+  EXPECT_LT((shown - recording_.q).norm() / std::sqrt(double(shown.size())), 0.06);
+  const Eigen::VectorXd knee = (shown - recording_.q).col(Coordinate("left_4"));
+  EXPECT_LT(Median(knee.cwiseAbs()), 0.05);  // told by a cluster 0.4 m away
+}
+
+TEST_F(LogCheckTest, NothingIsSaidOfACleanRecording) {
+  EXPECT_EQ(First(recording_), "");
+  EXPECT_TRUE(FindLabelSuspicions(robot_.model, recording_, Clusters()).empty());
+}
+
+TEST_F(LogCheckTest, AReversedSignIsTold) {
+  for (const char* joint : {"left_2", "right_5", "left_6"}) {
+    Recording changed = recording_;
+    changed.q.col(Coordinate(joint)) *= -1.0;
+    EXPECT_EQ(First(changed),
+              std::string(joint) + ": the sign of its positions is reversed in trial a, b");
+    const auto found = FindLogSuspicions(robot_.model, changed);
+    ASSERT_FALSE(found.empty());
+    EXPECT_TRUE(WithoutMistake(changed, found.front()).q == recording_.q);
+  }
+}
+
+TEST_F(LogCheckTest, AnExchangeOfJointsInOneTrialIsTold) {
+  Recording changed = recording_;
+  const int hip = Coordinate("left_3");
+  const int ankle = Coordinate("left_5");
+  changed.q.col(hip).head(kPlayed) = recording_.q.col(ankle).head(kPlayed);
+  changed.q.col(ankle).head(kPlayed) = recording_.q.col(hip).head(kPlayed);
+  EXPECT_EQ(First(changed), "left_3 and left_5: their positions are exchanged in trial a");
+  EXPECT_TRUE(WithoutMistake(changed, FindLogSuspicions(robot_.model, changed).front()).q ==
+              recording_.q);
+}
+
+TEST_F(LogCheckTest, AFrozenJointIsTold) {
+  Recording changed = recording_;
+  changed.q.col(Coordinate("right_4"))
+      .segment(kPlayed + 5, 6)
+      .setConstant(recording_.q(kPlayed + 5, Coordinate("right_4")));
+  EXPECT_EQ(First(changed),
+            "right_4: its positions are frozen, while it moved, in 6 postures in trial b");
+  const auto found = FindLogSuspicions(robot_.model, changed);
+  EXPECT_EQ(WithoutMistake(changed, found.front()).posture_count(), 2 * kPlayed - 6);
+}
+
+TEST_F(LogCheckTest, ExchangedLabelsAreTold) {
+  Recording changed = recording_;
+  const auto clusters = Clusters();
+  for (int k = 0; k < 3; ++k) {  // the feet, in the second trial
+    changed.markers.block(kPlayed, 3 * clusters[2].markers[k], kPlayed, 3)
+        .swap(changed.markers.block(kPlayed, 3 * clusters[3].markers[k], kPlayed, 3));
+  }
+  auto found = FindLabelSuspicions(robot_.model, changed, clusters);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(DescribeSuspicion(found[0], changed),
+            "the labels of LFOOT and RFOOT are exchanged in trial b");
+  EXPECT_TRUE(WithoutExchange(changed, found[0]).markers == recording_.markers);
+
+  changed = recording_;
+  changed.markers.middleCols<3>(3 * clusters[0].markers[0])
+      .swap(changed.markers.middleCols<3>(3 * clusters[0].markers[1]));
+  found = FindLabelSuspicions(robot_.model, changed, clusters);
+  ASSERT_EQ(found.size(), 2u);  // one a trial
+  EXPECT_EQ(DescribeSuspicion(found[0], changed).substr(0, 37),
+            "the labels of WAIST_1 and WAIST_2 are");
+}
+
+}  // namespace
+}  // namespace elastocal

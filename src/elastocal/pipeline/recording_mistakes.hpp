@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/io/project.hpp"
+#include "elastocal/pipeline/measurements.hpp"
+
+namespace elastocal {
+
+/// A mistake in a recording that was tried: undone, the recording fits far better.
+struct RecordingMistake {
+  std::string what;     ///< in words
+  double before = 0.0;  ///< rms distance of all markers from the fit, m; infinite: no robot fits
+  double after = 0.0;   ///< the same once it is undone
+};
+
+/// Mistakes of a recording of trials that a fit proves. Suspicions come from the nominal robot
+/// (FindLogSuspicions, FindLabelSuspicions); each is undone, the robot is calibrated again, and it
+/// is a mistake if the error falls to less than half (that of `result` on the recording `fitted`).
+/// Then the next is sought in the corrected recording, at most three in all. Without suspicions,
+/// which no clean recording has, nothing is fitted. `measured` as recorded.
+std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
+                                                    std::optional<std::uint64_t> seed,
+                                                    const Measurements& measured,
+                                                    const Recording& fitted,
+                                                    const CalibrationResult& result);
+
+/// "the sign of ... is reversed ...; without that the error falls from 14.2 to 0.31 mm"
+std::string DescribeMistake(const RecordingMistake& mistake);
+
+}  // namespace elastocal
