@@ -1,7 +1,9 @@
 # The packages that each component needs, in one place for this build and for the installed
-# elastocalConfig.cmake: an entry is a name and, where it matters, the least version. The component
-# planning needs those of calibration as well.
-set(ELASTOCAL_COMPONENTS calibration planning)
+# elastocalConfig.cmake: an entry is a name and, where it matters, the least version. A component
+# needs those of the ones before it as well.
+set(ELASTOCAL_COMPONENTS runtime calibration planning)
+set(ELASTOCAL_runtime_DEPENDENCIES
+  "Eigen3 3.4")
 set(ELASTOCAL_calibration_DEPENDENCIES
   "Eigen3 3.4"
   "Boost"

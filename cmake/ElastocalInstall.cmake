@@ -1,6 +1,7 @@
 # Installs the program, the libraries with their headers, the embedded models, and the CMake package
 # that find_package(elastocal COMPONENTS ...) reads.
 #
+#   runtime      the robot at run time, for controllers: only Eigen is needed
 #   calibration  the layer `pipeline` and all that it uses: neither MuJoCo nor Ipopt is needed
 #   planning     all other layers
 #
@@ -20,9 +21,11 @@ function(elastocal_used_layers layer out)
 endfunction()
 
 get_property(layers GLOBAL PROPERTY ELASTOCAL_LAYERS)
+elastocal_used_layers(runtime runtime_layers)
 elastocal_used_layers(pipeline calibration_layers)
+list(REMOVE_ITEM calibration_layers ${runtime_layers})
 set(planning_layers ${layers})
-list(REMOVE_ITEM planning_layers ${calibration_layers})
+list(REMOVE_ITEM planning_layers ${runtime_layers} ${calibration_layers})
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/elastocal)
 add_library(elastocal_all INTERFACE)

@@ -1,6 +1,5 @@
 // No call of the compensator allocates: malloc, through which operator new goes as well, counts.
 #include <cstdlib>
-#include <new>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -18,17 +17,11 @@ bool counting = false;
 
 }  // namespace
 
-void* operator new(std::size_t size) {
-  if (counting) ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* malloc(std::size_t size) {  // NOLINT
+// The sanitizers have a malloc of their own.
+#if defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define ELASTOCAL_COUNTS_ALLOCATIONS
+extern "C" void* __libc_malloc(std::size_t size);  // NOLINT
+extern "C" void* malloc(std::size_t size) {        // NOLINT
   if (counting) ++allocations;
   return __libc_malloc(size);
 }
@@ -38,6 +31,9 @@ namespace elastocal {
 namespace {
 
 TEST(RuntimeAllocation, NoCallAllocates) {
+#ifndef ELASTOCAL_COUNTS_ALLOCATIONS
+  GTEST_SKIP() << "malloc cannot be replaced here";
+#endif
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   Compensator robot(MakeRuntimeModel(project, RandomCalibration(project, 1)));
   const Eigen::VectorXd q = project.motion.rest, none;

@@ -20,7 +20,7 @@ endmacro()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
 run(${prefix}/bin/elastocal --help)
-foreach(component planning calibration)
+foreach(component planning calibration runtime)
   configure(${component} COMMAND_ERROR_IS_FATAL ANY)
   run(${CMAKE_COMMAND} --build ${WORK}/${component})
 endforeach()
@@ -31,6 +31,12 @@ execute_process(COMMAND ${WORK}/calibration/calibrate ${project} ${WORK}/recordi
   OUTPUT_VARIABLE output ECHO_OUTPUT_VARIABLE COMMAND_ERROR_IS_FATAL ANY)
 if(NOT output MATCHES "to 0\\.3[0-9] mm")  # 0.2 mm a coordinate is 0.35 mm in 3-D
   message(FATAL_ERROR "expected 'to 0.3. mm'")
+endif()
+
+# A controller refuses a model that is not there, in words.
+execute_process(COMMAND ${WORK}/runtime/stand ${WORK}/absent.txt ERROR_VARIABLE error RESULT_VARIABLE status)
+if(status EQUAL 0 OR NOT error MATCHES "absent.txt: cannot be read")
+  message(FATAL_ERROR "expected a refusal: ${error}")
 endif()
 
 configure(calibrations ERROR_VARIABLE error RESULT_VARIABLE status)

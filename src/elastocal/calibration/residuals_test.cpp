@@ -39,10 +39,12 @@ class Residuals : public ::testing::Test {
   Noise noise_{Eigen::ArrayXXd::Constant(1, kNoiseSourceCount, 0.2e-3)};
   RobustWeights weights_;
   Placement placement_;
-  BodyResiduals problem_{{model_, recording_, group_, selection_, loads_, prior_, noise_, weights_},
-                         free_,
-                         fixed_,
-                         placement_};
+  CalibrationOptions options_;
+  BodyResiduals problem_{
+      {model_, recording_, group_, selection_, loads_, prior_, noise_, weights_, options_},
+      free_,
+      fixed_,
+      placement_};
 };
 
 TEST_F(Residuals, UnseenMarkersTakeNoPart) {
@@ -55,8 +57,8 @@ TEST_F(Residuals, ErrorsAndUnknownsAreOneToOne) {
   const Eigen::VectorXd x = Random(3).NormalVector(static_cast<Eigen::Index>(free_.size()), 1.0);
   const Eigen::VectorXd delta = problem_.ToErrors(x);
   const BodyResiduals again(
-      {model_, recording_, group_, selection_, loads_, prior_, noise_, weights_}, free_, delta,
-      placement_);
+      {model_, recording_, group_, selection_, loads_, prior_, noise_, weights_, options_}, free_,
+      delta, placement_);
   EXPECT_LT((again.Start() - x).norm(), 1e-14);
   for (int i = 0; i < model_.parameter_count(); ++i) {
     if (std::binary_search(free_.begin(), free_.end(), i)) continue;
