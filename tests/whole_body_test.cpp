@@ -30,12 +30,14 @@ TEST(WholeBody, JacobianEqualsDifferences) {
   const Prior prior;
   const Noise noise{Eigen::ArrayXXd::Constant(3, kNoiseSourceCount, 1e-3)};
   const RobustWeights weights;
+  const CalibrationOptions options;
   std::vector<int> free(robot.model.parameters.size());
   std::iota(free.begin(), free.end(), 0);
   std::erase_if(free,
                 [&](int i) { return robot.model.parameters[i].kind == ParameterKind::kWaistPose; });
-  BodyResiduals problem({robot.model, recording, group, selection, loads, prior, noise, weights},
-                        free, truth, placement);
+  BodyResiduals problem(
+      {robot.model, recording, group, selection, loads, prior, noise, weights, options}, free,
+      truth, placement);
   Eigen::VectorXd x = problem.Start();
   Random random(7);
   for (double& value : x) value += random.Uniform(0.0, 0.3);
