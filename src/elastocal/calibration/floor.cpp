@@ -1,5 +1,7 @@
 #include "elastocal/calibration/floor.hpp"
 
+#include <cmath>
+
 #include "elastocal/math/rotation_vector.hpp"
 
 namespace elastocal {
@@ -17,6 +19,12 @@ FloorResidual EvaluateFloor(const Transform& T_ref_foot, const Transform& T_ref_
   result.by_foot.row(2) << R.row(2), Eigen::RowVector3d::Zero();
   result.height_by_first << -up.transpose() * T_ref_first.linear(), Eigen::RowVector3d::Zero();
   return result;
+}
+
+FloorUse UseOfFloor(const FloorResidual& placed) {
+  constexpr double kMostTilt = 8.0 * M_PI / 180.0, kMostHeight = 0.020;
+  return {placed.residual.head<2>().norm() <= kMostTilt,
+          std::abs(placed.residual[2]) <= kMostHeight};
 }
 
 std::vector<int> FloorFootings(const Placement& placement) {

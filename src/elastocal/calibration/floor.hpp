@@ -30,6 +30,14 @@ struct FloorResidual {
 FloorResidual EvaluateFloor(const Transform& T_ref_foot, const Transform& T_ref_first,
                             const Eigen::Vector3d& up, const Eigen::Vector3d& up_foot);
 
+/// Whether a footing, as it was placed, may be flat on one floor with the first one: it leans by no
+/// more than 8 degrees, and is no more than 20 mm higher or lower. What is beyond cannot be errors
+/// of a robot: it is a ramp, a step, or a wrong `up`.
+struct FloorUse {
+  bool tilt = false, height = false;
+};
+FloorUse UseOfFloor(const FloorResidual& placed);
+
 /// The footings on legs, the first of which the heights of all others refer to.
 std::vector<int> FloorFootings(const Placement& placement);
 

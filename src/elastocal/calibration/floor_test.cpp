@@ -56,5 +56,18 @@ TEST(Floor, DerivativesAreThoseOfDifferences) {
   }
 }
 
+TEST(Floor, StepsAndRampsAreNotTakenForErrorsOfTheRobot) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  Transform T = Transform::Identity();
+  T.translation().z() = 0.015;
+  T.linear() = RotationFromVector(Eigen::Vector3d(0.1, 0.0, 0.0));
+  FloorUse use = UseOfFloor(EvaluateFloor(T, Transform::Identity(), z, z));
+  EXPECT_TRUE(use.tilt && use.height);
+  T.translation().z() = 0.025;
+  T.linear() = RotationFromVector(Eigen::Vector3d(0.2, 0.0, 0.0));
+  use = UseOfFloor(EvaluateFloor(T, Transform::Identity(), z, z));
+  EXPECT_FALSE(use.tilt || use.height);
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "elastocal/calibration/floor.hpp"
 #include "elastocal/math/rotation_vector.hpp"
@@ -92,8 +93,16 @@ void BodyResiduals::MakeFloorBlocks() {
     ResidualBlock block{3, {unknowns_.FootingBlock(footing)}, true};
     const int first = unknowns_.FootingBlock(floor_footings_.front());
     if (block.parameter_blocks.front() != first) block.parameter_blocks.push_back(first);
-    sds_.emplace_back(Eigen::Vector3d(in_.options.floor_tilt_sd, in_.options.floor_tilt_sd,
-                                      in_.options.floor_height_sd));
+    const int leg = placement_.footings[static_cast<std::size_t>(footing)].leg;
+    const auto at = static_cast<std::size_t>(footing);
+    const auto reference = static_cast<std::size_t>(floor_footings_.front());
+    const FloorUse use =
+        UseOfFloor(EvaluateFloor(placement_.T_ref_footing[at], placement_.T_ref_footing[reference],
+                                 -in_.recording.gravity.normalized(), UpOfFoot(in_.model, leg)));
+    const double unknown = std::numeric_limits<double>::infinity();
+    const double tilt = use.tilt ? in_.options.floor_tilt_sd : unknown;
+    sds_.emplace_back(
+        Eigen::Vector3d(tilt, tilt, use.height ? in_.options.floor_height_sd : unknown));
     residual_blocks.push_back(std::move(block));
   }
 }

@@ -35,6 +35,7 @@ Recording MakeStandingRecording(const ErrorModel& model, const Eigen::VectorXd& 
   for (const PlayedTrial& played : trials) {
     const int leg = SupportingLeg(model, played.trial.support);
     Transform T_ref_foot = RandomPose(0.5, 0.0, random);
+    T_ref_foot.translation().z() = 0.0;  // one floor
     T_ref_foot.linear() = RotZ(random.Normal(1.0)).linear();
     for (Eigen::Index i = 0; i < played.q.rows(); ++i, ++row) {
       const Eigen::VectorXd q = played.q.row(i).transpose();

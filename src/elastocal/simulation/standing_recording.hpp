@@ -24,10 +24,10 @@ struct StandingOptions {
 
 /// Makes a recording of a robot with the errors `delta` that stands on its feet and is deflected by
 /// its weight. It uses the estimator's own model forwards (eq. 1 to 7), with noise. The support
-/// foot of each trial stands at a random place and stays there. In a trial on both feet the waist
-/// sways by a few millimetres, and torques in the legs are not simulated (how two legs share the
-/// load is not part of the model). Such a recording shows that the estimator finds what it models,
-/// and says nothing about what it does not model.
+/// foot of each trial stands flat at a random place of one level floor and stays there. In a trial
+/// on both feet the waist sways by a few millimetres, and torques in the legs are not simulated
+/// (how two legs share the load is not part of the model). Such a recording shows that the
+/// estimator finds what it models, and says nothing about what it does not model.
 Recording MakeStandingRecording(const ErrorModel& model, const Eigen::VectorXd& delta,
                                 const std::vector<PlayedTrial>& trials,
                                 const StandingOptions& options);
