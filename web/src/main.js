@@ -4,6 +4,7 @@ import './print.css';
 import {h} from './lib/dom.js';
 import {isDark, setTheme} from './lib/theme.js';
 import {contactSection, contactVerdictSection} from './sections/contact.js';
+import {deploymentSection} from './sections/deployment.js';
 import {designSection} from './sections/design.js';
 import {findingsSection} from './sections/findings.js';
 import {historySection} from './sections/history.js';
@@ -19,7 +20,7 @@ import {verdictSection} from './sections/verdict.js';
 
 // In the order in which an engineer asks: can I use it, what is off, can I believe it.
 const SECTIONS = [
-  verdictSection, robotSection, table1Section, modelsSection, residualsSection, identifiabilitySection,
+  verdictSection, robotSection, table1Section, modelsSection, deploymentSection, residualsSection, identifiabilitySection,
   signalSection, designSection, motionSection, historySection, findingsSection, reproduceSection,
   missingSection,
 ];

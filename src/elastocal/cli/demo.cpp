@@ -139,7 +139,11 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
     calibrate.push_back(in("recording_" + kind));
   }
   simulations.Finish(options.common.Silent());
-  return RunShown(calibrate, options);
+  exit_code = RunShown(calibrate, options);
+  if (exit_code != kFine) return exit_code;
+  return RunShown({"simulate", project, "--deploy", options.output, "--motion", in("sine.csv"),
+                   "-o", options.output, "--seed", seed_text},
+                  options);
 }
 
 /// The last line: what to look at.

@@ -24,13 +24,20 @@ std::string DescribeExecutions(const std::vector<Execution>& executions) {
                    "waist mm", "centre of mass mm", "landing, largest", "shift mm", "zmp mm"});
   for (const Execution& one : executions) {
     table.Add({DeployName(one.as), one.stabilised ? "yes" : "no",
-               one.run.stood ? "yes" : fmt::format("fell at {:.0f} s", one.run.time_s),
+               !one.refused.empty() ? "not played"
+               : one.run.stood      ? "yes"
+                                    : fmt::format("fell at {:.0f} s", one.run.time_s),
                PlaceCell(one.hands), PlaceCell(one.swinging_feet), PlaceCell(one.waist),
                PlaceCell(one.centre_of_mass), LandingCell(one.landing),
                one.stabilised ? fmt::format("{:.1f}", 1e3 * one.run.largest_shift) : "",
                fmt::format("{:.1f}", 1e3 * one.run.least_zmp_margin)});
   }
-  return "Distance from the plan, root mean square (and largest)\n" + table.Render() +
+  std::string refused;
+  for (const Execution& one : executions) {
+    if (one.refused.empty() || one.stabilised) continue;
+    refused += fmt::format("{} was not played: {}\n", DeployName(one.as), one.refused);
+  }
+  return refused + "Distance from the plan, root mean square (and largest)\n" + table.Render() +
          "shift: of the root link by the stabiliser; zmp: least distance of the zero-moment point "
          "to the edge\n";
 }

@@ -93,7 +93,7 @@ int Deploy(const SimulateCommand& command) {
   DeployOptions options;
   const VirtualExperimentOptions settings = Settings(command);
   options.truth = settings.truth;
-  options.truth.seed = command.common.seed.value_or(1);
+  options.truth.seed = command.robot_seed.value_or(command.common.seed.value_or(1));
   options.physics = settings.physics;
   options.threads = command.threads;
   if (!command.as.empty()) options.as.clear();

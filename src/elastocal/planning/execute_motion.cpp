@@ -164,19 +164,21 @@ void CheckPlan(const JointMotion& planned) {
   }
 }
 
-/// What is commanded for the plan.
-Eigen::MatrixXd Commands(const Project& project, const StoredCalibration& calibration,
-                         const JointMotion& planned, DeployAs as) {
-  if (as == DeployAs::kNominal) return planned.q;
+/// What is commanded for the plan, or why nothing can be.
+struct Commanded {
+  Eigen::MatrixXd q;
+  std::string refused;
+};
+
+Commanded Commands(const Project& project, const StoredCalibration& calibration,
+                   const JointMotion& planned, DeployAs as) {
+  if (as == DeployAs::kNominal) return {planned.q, ""};
   const RuntimeContent content =
       as == DeployAs::kUrdf ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
   CompensatedMotion corrected =
       CompensateMotion(project, MakeRuntimeModel(project, calibration, content), planned);
-  if (!corrected.broken.empty()) {
-    throw InputError(planned.source + ": cannot be corrected for this robot (" + DeployName(as) +
-                     "): " + corrected.broken.front());
-  }
-  return std::move(corrected.planned.motion.q);
+  return {std::move(corrected.planned.motion.q),
+          corrected.broken.empty() ? "" : corrected.broken.front()};
 }
 
 /// What a critically damped servo of this frequency must be told so that it follows q: the inverse
@@ -223,22 +225,25 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
   PhysicsOptions physics = options.physics;
   physics.servo_stiffness *= kHeld;
   physics.sliding_servo_stiffness *= kHeld;
-  std::vector<Eigen::MatrixXd> commands(options.as.size());
+  std::vector<Commanded> commands(options.as.size());
   ForAll(commands.size(), options.threads, [&](std::size_t i) {
-    commands[i] = FeedForward(Commands(project, calibration, planned, options.as[i]),
-                              planned.time_s, physics.servo_frequency, 2.0 / physics.servo_frequency - physics.time_step_s);
+    commands[i] = Commands(project, calibration, planned, options.as[i]);
+    commands[i].q = FeedForward(commands[i].q, planned.time_s, physics.servo_frequency,
+                                2.0 / physics.servo_frequency - physics.time_step_s);
   });
   std::vector<Execution> executions(2 * options.as.size());
   const auto play = [&](std::size_t i) {
     Execution& execution = executions[i];
     execution.as = options.as[i / 2];
     execution.stabilised = i % 2 == 0;
+    execution.refused = commands[i / 2].refused;
+    if (!execution.refused.empty()) return;
     Stabiliser stabiliser(project.tree, project.soles);
     PlanWatch watch(project, robot, planned);
     execution.run = StandThrough(
         robot, project.soles, planned, physics,
         {.stabiliser = execution.stabilised ? &stabiliser : nullptr,
-         .commanded = &commands[i / 2],
+         .commanded = &commands[i / 2].q,
          .watch = [&](Eigen::Index sample, const Eigen::VectorXd& posture,
                       const VirtualRobot& body) { watch.Look(sample, posture, body); }});
     watch.Store(execution);
@@ -253,6 +258,7 @@ std::string FormatExecutions(const std::vector<Execution>& executions) {
   for (const Execution& one : executions) {
     json["executions"].push_back({{"as", DeployName(one.as)},
                                   {"stabilised", one.stabilised},
+                                  {"refused", one.refused},
                                   {"stood", one.run.stood},
                                   {"time_s", one.run.time_s},
                                   {"hands", ErrorJson(one.hands)},

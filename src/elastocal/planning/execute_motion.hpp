@@ -33,6 +33,9 @@ struct PlaceError {
 struct Execution {
   DeployAs as = DeployAs::kNominal;
   bool stabilised = false;
+  /// Why the motion cannot be corrected for this robot within its limits, and was not played; empty
+  /// where it was.
+  std::string refused = {};
   StandingRun run;
   PlaceError hands;  ///< tips of chains that are no legs and have six joints or more
   PlaceError swinging_feet;
@@ -53,9 +56,8 @@ struct DeployOptions {
 /// load (their servos integrate) and feed forward what their servos lag behind. Progress counts
 /// runs.
 ///
-/// Throws InputError for a motion without time or support, or with samples on no foot; a
-/// calibration of another robot; and a motion that cannot be corrected within the limits of the
-/// joints.
+/// Throws InputError for a motion without time or support, or with samples on no foot, and for a
+/// calibration of another robot.
 std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibration& calibration,
                                       const JointMotion& planned, const DeployOptions& options,
                                       const Progress& progress = {});

@@ -24,7 +24,8 @@ struct ReportSources {
 };
 
 /// Those of the files of a folder, by name, that a page shows: summary.json, report_data.json,
-/// robot_data.json, validation.json, comparison.json, runs.json; what design writes
+/// robot_data.json, validation.json, comparison.json, deployment.json, runs.json; what design
+/// writes
 /// (`*_curves.csv`,
 /// `*_summary.json`) and plan (motion.csv, or X.csv beside X_margins.json).
 std::vector<std::string> ReportFiles(const std::vector<std::string>& names);

@@ -1,0 +1,38 @@
+// The robot at run time: what a controller pays for a call, on whole TALOS.
+#include <benchmark/benchmark.h>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/runtime/compensator.hpp"
+#include "tests/runtime_calibration.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+struct Calls {
+  Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  Compensator robot{MakeRuntimeModel(project, RandomCalibration(project, 1))};
+  Eigen::VectorXd q = project.motion.rest, none;
+};
+
+void Forward(benchmark::State& state) {
+  Calls calls;
+  for (auto _ : state) benchmark::DoNotOptimize(calls.robot.Forward(calls.q, calls.none, 1));
+}
+BENCHMARK(Forward)->Unit(benchmark::kMicrosecond);
+
+void Correct(benchmark::State& state) {
+  Calls calls;
+  for (auto _ : state) benchmark::DoNotOptimize(calls.robot.Correct(calls.q, calls.none, 1));
+}
+BENCHMARK(Correct)->Unit(benchmark::kMicrosecond);
+
+void Command(benchmark::State& state) {
+  Calls calls;
+  for (auto _ : state) benchmark::DoNotOptimize(calls.robot.Command(calls.q, calls.none, 1));
+}
+BENCHMARK(Command)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace elastocal
