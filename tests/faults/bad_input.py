@@ -191,7 +191,7 @@ def strange_places(tries, base):
         for label, place in places.items():
             tries.add("places of inputs", f"{what}: {label}", words(place),
                       os.path.basename(str(place)) or "is empty")
-    outputs = dict(places, full="/dev/full", processes="/proc/x/y", root="/")
+    outputs = dict(places, full="/dev/full", processes="/proc/x/y", kernel="/sys")
     outputs.pop("device")
     for label in ("pipe", "terminal", "none", "not UTF-8"):
         outputs.pop(label)

@@ -1,5 +1,7 @@
 #include "elastocal/pipeline/calibrated_robot.hpp"
 
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/input_error.hpp"
@@ -48,9 +50,10 @@ fs::path RecordedProject(const fs::path& folder) {
 
 CalibratedRobot OpenCalibratedRobot(const fs::path& given, const fs::path& project) {
   const fs::path file = FindCalibrationFiles(given).calibration;
+  StoredCalibration calibration = ReadCalibration(file);
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const fs::path project_file = project.empty() ? RecordedProject(folder) : project;
-  CalibratedRobot robot{ReadProject(project_file), ReadCalibration(file), {}};
+  CalibratedRobot robot{ReadProject(project_file), std::move(calibration), {}};
   robot.inputs = {project_file, robot.project.urdf, file};
   return robot;
 }
