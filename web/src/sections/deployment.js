@@ -3,7 +3,7 @@ import {figure, section} from '../lib/figure.js';
 import {fixed} from '../lib/format.js';
 import {table} from '../lib/table.js';
 
-const PLACES = [['Hands', 'hands'], ['Swinging feet', 'swinging_feet'], ['Waist', 'waist'], ['Centre of mass', 'centre_of_mass']];
+const PLACES = [['Hands', 'hands'], ['Swinging feet', 'swinging_feet'], ['Waist', 'waist']];
 const KNOWS = {nominal: 'the nominal URDF', urdf: 'the calibrated URDF', compensated: 'geometry and elasticity'};
 
 const place = (error) => error?.samples ? `${fixed(error.rms_mm)} (${fixed(error.max_mm)})` : '';
@@ -17,11 +17,11 @@ export function deploymentSection(report) {
     figure({title: 'Distance from the plan', body: table({caption: 'Distance from the plan',
       columns: [{text: 'The controller knows'}, {text: 'Stabiliser'}, {text: 'Stood'},
         ...PLACES.map(([text]) => ({text, unit: 'mm', number: true})),
-        {text: 'Landing', unit: 'mm', number: true}, {text: 'Landing', unit: 'deg', number: true},
+        {text: 'Landing', unit: 'mm, deg', number: true},
         {text: 'Stabiliser\u2019s shift', unit: 'mm', number: true}],
       rows: runs.map((run) => [KNOWS[run.as] ?? run.as, run.stabilised ? 'yes' : 'no',
         run.refused ? 'not played' : run.stood ? 'yes' : `fell at ${fixed(run.time_s, 0)} s`, ...PLACES.map(([, key]) => place(run[key])),
-        run.landing?.samples ? fixed(run.landing.max_mm) : '', run.landing?.samples ? fixed(run.landing.max_deg) : '',
+        run.landing?.samples ? `${fixed(run.landing.max_mm)}, ${fixed(run.landing.max_deg)}` : '',
         run.stabilised ? fixed(run.stabiliser_largest_shift_mm, 1) : ''])}),
     data: {name: 'deployment.csv', text: () => toCsv(['as', 'stabilised', 'stood', ...PLACES.flatMap(([, key]) => [`${key}_rms_mm`, `${key}_max_mm`])],
       runs.map((run) => [run.as, run.stabilised, run.stood, ...PLACES.flatMap(([, key]) => [run[key]?.rms_mm, run[key]?.max_mm])]))}}));
