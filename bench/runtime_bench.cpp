@@ -18,22 +18,25 @@ struct Calls {
 
 void Forward(benchmark::State& state) {
   Calls calls;
-  for ([[maybe_unused]] auto _ : state)
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     benchmark::DoNotOptimize(calls.robot.Forward(calls.q, calls.none, 1));
+  }
 }
 BENCHMARK(Forward)->Unit(benchmark::kMicrosecond);
 
 void Correct(benchmark::State& state) {
   Calls calls;
-  for ([[maybe_unused]] auto _ : state)
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     benchmark::DoNotOptimize(calls.robot.Correct(calls.q, calls.none, 1));
+  }
 }
 BENCHMARK(Correct)->Unit(benchmark::kMicrosecond);
 
 void Command(benchmark::State& state) {
   Calls calls;
-  for ([[maybe_unused]] auto _ : state)
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     benchmark::DoNotOptimize(calls.robot.Command(calls.q, calls.none, 1));
+  }
 }
 BENCHMARK(Command)->Unit(benchmark::kMicrosecond);
 

@@ -51,10 +51,10 @@ TEST(RuntimeAllocation, NoCallAllocates) {
   counting = false;
   EXPECT_EQ(allocations, 0);
   counting = true;
-  const Eigen::VectorXd copy = q;  // the hook works
+  const std::vector<double> taken(3, 1.0);  // the hook works
   counting = false;
   EXPECT_GT(allocations, 0);
-  EXPECT_EQ(copy, q);
+  EXPECT_EQ(taken.size(), 3U);
 }
 
 }  // namespace

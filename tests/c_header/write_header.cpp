@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   for (int i = 0; i < 20; ++i) {
     Eigen::VectorXd q = project.motion.rest;
     for (double& position : q) position += random.Uniform(-0.15, 0.15);
-    const StandingFeet feet = static_cast<StandingFeet>(i % 4);
+    const auto feet = static_cast<StandingFeet>(i % 4);
     postures << feet;
     for (double position : q) {
       char text[40];
