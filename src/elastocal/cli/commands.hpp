@@ -36,6 +36,9 @@ struct CommonOptions {
 void AddCommonOptions(CLI::App& command, CommonOptions& options);
 void AddOutputOptions(CLI::App& command, CommonOptions& options);
 
+/// The calibration that a command puts to use, and the project it belongs to.
+void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string& project);
+
 /// What a parsed command line is to do; the result is the exit code.
 using Action = std::function<int()>;
 

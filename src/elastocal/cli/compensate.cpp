@@ -99,20 +99,13 @@ void AddCompensate(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "compensate",
       "Correct a planned motion so that hands, feet and waist go where the plan meant");
-  command
-      ->add_option("calibration", options->calibration,
-                   "Output folder of calibrate, or a calibration.yaml")
-      ->required();
+  AddCalibratedRobot(*command, options->calibration, options->project);
   command->add_option("--motion", options->motion, "Planned joint trajectory (CSV with time)")
       ->required()
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "The corrected trajectory (CSV)")
       ->required()
       ->check(IsNamed)
-      ->type_name("FILE");
-  command
-      ->add_option("--project", options->project,
-                   "Project file; default: the one that runs.json beside the calibration names")
       ->type_name("FILE");
   command
       ->add_option("--as", options->as,

@@ -39,10 +39,7 @@ void AddExport(CLI::App& app, Action& action) {
   auto options = std::make_shared<ExportCommand>();
   CLI::App* command = app.add_subcommand(
       "export", "Write a calibration in a form that controllers and ROS read (docs/deploy.md)");
-  command
-      ->add_option("calibration", options->calibration,
-                   "Output folder of calibrate, or a calibration.yaml")
-      ->required();
+  AddCalibratedRobot(*command, options->calibration, options->project);
   std::string help = "One of";
   std::vector<std::string> names;
   for (const ExportFormat& format : ExportFormats()) {
@@ -56,10 +53,6 @@ void AddExport(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->output, "The file to write")
       ->required()
       ->check(IsNamed)
-      ->type_name("FILE");
-  command
-      ->add_option("--project", options->project,
-                   "Project file; default: the one that runs.json beside the calibration names")
       ->type_name("FILE");
   command
       ->add_option("--prefix", options->options.prefix,

@@ -49,6 +49,16 @@ void AddOutputOptions(CLI::App& command, CommonOptions& options) {
                    "same together");
 }
 
+void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string& project) {
+  command
+      .add_option("calibration", calibration, "Output folder of calibrate, or a calibration.yaml")
+      ->required();
+  command
+      .add_option("--project", project,
+                  "Project file; default: the one that runs.json beside the calibration names")
+      ->type_name("FILE");
+}
+
 namespace {
 
 /// What is wrong with the first word of the command line where it is no command; else empty.

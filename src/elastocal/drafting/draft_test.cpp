@@ -129,7 +129,7 @@ TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
   for (const std::string side : {"left", "right"}) {
     for (const std::string& element :
          {"<link name=\"" + side + "_sole_link\"/>",
-          "<joint name=\"leg_" + side + "_sole_fix_joint\" type=\"fixed\">"}) {
+          "<joint name=\"leg_" + side + R"(_sole_fix_joint" type="fixed">)"}) {
       const std::size_t begin = urdf.find(element);
       ASSERT_NE(begin, std::string::npos) << element;
       const bool joint = element.starts_with("<joint");

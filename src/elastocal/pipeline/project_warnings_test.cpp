@@ -37,10 +37,9 @@ std::vector<std::string> Warnings(const std::string& tip_limit, const std::strin
 }
 
 bool Says(const std::vector<std::string>& warnings, const std::string& text) {
-  for (const std::string& warning : warnings) {
-    if (warning.find(text) != std::string::npos) return true;
-  }
-  return false;
+  return std::any_of(warnings.begin(), warnings.end(), [&](const std::string& warning) {
+    return warning.find(text) != std::string::npos;
+  });
 }
 
 TEST(ProjectWarnings, NameWhatCostsSomething) {
