@@ -1,5 +1,7 @@
 #include "elastocal/pipeline/project_warnings.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/scratch_folder.hpp"
