@@ -28,8 +28,9 @@ double TypicalError(ParameterKind kind) {
 }  // namespace
 
 const char* PriorGroupName(PriorGroup group) {
-  static constexpr const char* kNames[] = {"angles",     "lengths",     "torsion",    "bending",
-                                           "base_force", "base_moment", "torque_bias"};
+  static constexpr const char* kNames[] = {"angles",      "lengths",    "torsion",
+                                           "bending",     "base_force", "base_moment",
+                                           "torque_bias", "corrections"};
   return kNames[static_cast<int>(group)];
 }
 
@@ -45,13 +46,17 @@ PriorGroup GroupOf(ParameterKind kind) {
       return PriorGroup::kLegMoment;
     case ParameterKind::kTorqueBias:
       return PriorGroup::kTorqueBias;
+    case ParameterKind::kCorrection:
+      return PriorGroup::kCorrections;
     default:
       return IsAngle(kind) ? PriorGroup::kAngles : PriorGroup::kLengths;
   }
 }
 
 double MostWidening(PriorGroup group) {
-  return group == PriorGroup::kAngles || group == PriorGroup::kLengths ? 10.0 : 100.0;
+  const bool elastic = group != PriorGroup::kAngles && group != PriorGroup::kLengths &&
+                       group != PriorGroup::kCorrections;
+  return elastic ? 100.0 : 10.0;
 }
 
 Prior::Prior() {
@@ -64,7 +69,8 @@ Prior::Prior() {
 }
 
 double Prior::Of(const RobotTree& tree, const Parameter& parameter) const {
-  double own = (*this)[parameter.kind];
+  double own =
+      parameter.kind == ParameterKind::kCorrection ? parameter.typical : (*this)[parameter.kind];
   if (own == 0.0) {
     const Joint& joint = tree.joints[parameter.joint];
     const double effort = joint.limits.effort;
@@ -76,6 +82,7 @@ double Prior::Of(const RobotTree& tree, const Parameter& parameter) const {
 }
 
 double ParameterScale(const Parameter& parameter) {
+  if (parameter.kind == ParameterKind::kCorrection) return parameter.typical;
   return IsExternal(parameter.kind) ? kExternalScale : TypicalError(parameter.kind);
 }
 

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "elastocal/robot/parameters.hpp"
 #include "elastocal/robot/posture_loads.hpp"
@@ -10,10 +12,19 @@
 namespace elastocal {
 
 /// Kinds of parameters whose prior is widened together.
-enum class PriorGroup { kAngles, kLengths, kTorsion, kBending, kLegForce, kLegMoment, kTorqueBias };
-inline constexpr int kPriorGroupCount = 7;
+enum class PriorGroup {
+  kAngles,
+  kLengths,
+  kTorsion,
+  kBending,
+  kLegForce,
+  kLegMoment,
+  kTorqueBias,
+  kCorrections
+};
+inline constexpr int kPriorGroupCount = 8;
 
-/// angles, lengths, torsion, bending, base_force, base_moment, torque_bias
+/// angles, lengths, torsion, bending, base_force, base_moment, torque_bias, corrections
 const char* PriorGroupName(PriorGroup group);
 
 /// The group of a joint's or leg's parameter.
@@ -41,7 +52,7 @@ struct Prior {
   /// sensors 2 N.m. Torsion and bending 0: by `deflection`.
   std::array<double, kParameterKindCount> sd;
   /// How far a revolute joint gives way, about and across its axis, under its largest torque (the
-  /// URDF's effort), rad: strong joints are stiff.
+  /// URDF's effort), rad: strong joints are stiff. Corrections: as they say themselves.
   double deflection = 0.01;
   PriorScale scale = {};  ///< by which all are multiplied
 
@@ -70,6 +81,12 @@ enum class SupportForm {
 enum class OutlierPolicy {
   kRemove,  ///< they are named and left out
   kKeep,    ///< they are named and kept, at the weight that heavy tails give them
+};
+
+/// Which causes beyond geometry and springs are estimated (corrections.hpp).
+struct ExtraCauses {
+  bool automatic = true;           ///< those that held-out errors ask for; else:
+  std::vector<std::string> names;  ///< `*` stands for any run of characters; none: none
 };
 
 struct CalibrationOptions {
@@ -101,6 +118,7 @@ struct CalibrationOptions {
   /// floor.hpp): slopes [rad], and heights against each other [m]; infinite: it is not used.
   double floor_tilt_sd = 0.1 * M_PI / 180.0, floor_height_sd = 1e-3;
   LoadOptions load = {};
+  ExtraCauses extra = {};
   int max_iterations = 100;
 };
 

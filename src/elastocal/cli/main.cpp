@@ -108,6 +108,7 @@ int Run(int argc, char** argv) {
   AddInspect(app, action);
   AddCalibrate(app, action);
   AddValidate(app, action);
+  AddDiagnose(app, action);
   AddCompare(app, action);
   AddDemo(app, action);
   AddSimulate(app, action);

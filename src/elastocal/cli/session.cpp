@@ -31,6 +31,10 @@ double InUserUnits(const Parameter& parameter, double value) {
     case ParameterUnit::kRadianPerNewtonMetre:
     case ParameterUnit::kMetrePerNewton:
       return value * 1e6;
+    case ParameterUnit::kMetrePerHour:
+      return value * 1e3;
+    case ParameterUnit::kPerNewton:
+      return value * 1e6;
     default:
       return value;
   }
@@ -46,6 +50,10 @@ const char* UserUnit(const Parameter& parameter) {
       return "urad/(N.m)";
     case ParameterUnit::kMetrePerNewton:
       return "um/N";
+    case ParameterUnit::kMetrePerHour:
+      return "mm/h";
+    case ParameterUnit::kPerNewton:
+      return "um/(N.m)";
     default:
       return UnitName(parameter.unit);
   }

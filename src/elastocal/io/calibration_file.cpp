@@ -59,6 +59,14 @@ NamedUnits UnitsOf(const std::string& parameter) {
     if (suffix == angle) return {{"rad", "rad"}, M_PI};
   }
   if (suffix == "torque_bias") return {{"N.m", "N"}};
+  if (suffix == "gear" || suffix.starts_with("coupling_")) return {{"1", "1"}, 1.0};
+  if (suffix.starts_with("suspension_r")) return {{"rad/(N.m)", "rad/(N.m)"}};
+  if (suffix.starts_with("suspension_")) return {{"1/N", "1/N"}};
+  if (suffix.starts_with("drift_")) return {{"m/h", "m/h"}};
+  for (const char* correction : {"eccentricity_sin", "eccentricity_cos", "ellipticity_sin",
+                                 "ellipticity_cos", "backlash", "hysteresis", "stiffening"}) {
+    if (suffix == correction) return {{"rad", "m"}, M_PI};
+  }
   if (suffix.starts_with("compliance_")) return {{"rad/(N.m)", "m/N"}};
   constexpr double kLongest = 1000.0;  // m: markers and waist in the frame of any laboratory
   return {{"m", "m"}, kLongest};
@@ -200,6 +208,8 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   yaml << YAML::Key << "marker_sd_mm" << YAML::Value << FormatNumber(1e3 * result.marker_sd);
   yaml << YAML::Key << "prior_scale" << YAML::Value << YAML::Flow << YAML::BeginMap;
   for (int g = 0; g < kPriorGroupCount; ++g) {
+    const bool corrections = g == static_cast<int>(PriorGroup::kCorrections);
+    if (corrections && result.model.elasticity.corrections.empty()) continue;
     yaml << YAML::Key << PriorGroupName(static_cast<PriorGroup>(g)) << YAML::Value
          << FormatNumber(result.prior_scale.factor[g]);
   }
@@ -282,6 +292,7 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
 void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
                      const std::vector<std::string>& chains) {
   std::set<std::string> owners(chains.begin(), chains.end());
+  owners.insert("waist");  // of corrections of the root link
   for (const Joint& joint : model.tree.joints) owners.insert(joint.name);
   std::set<std::string> calibrated;
   for (const auto& [name, value] : stored.joint_errors) {

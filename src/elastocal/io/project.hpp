@@ -50,6 +50,10 @@ struct ElasticityChoice {
   std::optional<std::vector<std::string>> bending = {};  ///< ... and across it
   bool base = true;          ///< legs that stand alone in a trial: lumped compliance, eq. 6
   bool torque_bias = false;  ///< of the torque sensors of these legs
+  /// Causes beyond springs that the model has, as chosen (`calibration.extra` says how); and the
+  /// mean time of the postures, h, where they have times.
+  std::vector<std::string> extra = {};
+  std::optional<double> hours = {};
 };
 
 /// How touches of one start of the robot are told from those of another.

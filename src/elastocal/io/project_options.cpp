@@ -73,6 +73,17 @@ void ReadPatterns(const YamlValue& section, const char* key, const RobotTree& tr
   }
 }
 
+/// auto, none, or a list of causes.
+void ReadExtra(const YamlValue& value, ExtraCauses& extra) {
+  extra.automatic = false;
+  if (!value.IsScalar()) {
+    for (const YamlValue& name : value.Items()) extra.names.push_back(name.Text());
+    return;
+  }
+  extra.automatic = value.Text() == "auto";
+  value.Expect(extra.automatic || value.Text() == "none", "auto, none or a list of causes");
+}
+
 }  // namespace
 
 std::vector<int> MatchingJoints(const RobotTree& tree, const std::vector<std::string>& patterns) {
@@ -129,8 +140,8 @@ void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options) {
   section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "plausible_marker_sd_mm",
                       "outlier_probability", "support_threshold", "correlation_threshold",
-                      "max_iterations", "support", "load", "slip_mm", "outliers", "floor_tilt_deg",
-                      "floor_height_mm"});
+                      "max_iterations", "support", "load", "extra", "slip_mm", "outliers",
+                      "floor_tilt_deg", "floor_height_mm"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
   section.Read("widen_prior", options.widen_prior);
   section.ReadBounded("marker_sd_mm", options.marker_sd, kOneMm);
@@ -147,6 +158,7 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
                          {{"torques", LoadSource::kTorques},
                           {"wrench", LoadSource::kWrench},
                           {"statics", LoadSource::kStatics}});
+  if (const auto extra = section.Find("extra")) ReadExtra(*extra, options.extra);
   section.ReadBounded("slip_mm", options.slip, kOneMm);
   section.ReadBounded("floor_tilt_deg", options.floor_tilt_sd, kOneDegree);
   section.ReadBounded("floor_height_mm", options.floor_height_sd, kOneMm);
@@ -176,6 +188,10 @@ ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& tr
   Elasticity elasticity;
   elasticity.base = project.elasticity.base;
   elasticity.torque_bias = project.elasticity.torque_bias;
+  if (!project.elasticity.extra.empty()) {
+    elasticity.corrections = CorrectionsOf(
+        PossibleCorrections(project.tree, project.elasticity.hours), project.elasticity.extra);
+  }
   for (const Chain& chain : project.chains) {
     if (!standing.contains(chain.tip_link)) continue;
     elasticity.legs.push_back({chain.name, chain.tip_link});

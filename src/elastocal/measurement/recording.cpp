@@ -1,6 +1,13 @@
 #include "elastocal/measurement/recording.hpp"
 
+#include <cmath>
+
 namespace elastocal {
+namespace {
+
+constexpr double kLeastMotion = 2e-3;  // rad or m: less is no motion
+
+}  // namespace
 
 bool Seen(const Recording& recording, int posture, int marker) {
   return MarkerPosition(recording, posture, marker).allFinite();
@@ -8,6 +15,19 @@ bool Seen(const Recording& recording, int posture, int marker) {
 
 Eigen::Vector3d MarkerPosition(const Recording& recording, int posture, int marker) {
   return recording.markers.block<1, 3>(posture, 3 * marker).transpose();
+}
+
+void NoteApproach(Recording& recording) {
+  recording.approach.setZero(recording.q.rows(), recording.q.cols());
+  for (Eigen::Index i = 1; i < recording.q.rows(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!recording.trial.empty() && recording.trial[at] != recording.trial[at - 1]) continue;
+    for (Eigen::Index c = 0; c < recording.q.cols(); ++c) {
+      const double step = recording.q(i, c) - recording.q(i - 1, c);
+      const bool moved = std::abs(step) > kLeastMotion;
+      recording.approach(i, c) = moved ? std::copysign(1.0, step) : recording.approach(i - 1, c);
+    }
+  }
 }
 
 Recording SelectPostures(const Recording& recording, const std::vector<int>& postures) {
@@ -31,6 +51,7 @@ Recording SelectPostures(const Recording& recording, const std::vector<int>& pos
     selected.frames.clear();
     for (int posture : postures) selected.frames.push_back(recording.frames[posture]);
   }
+  if (recording.approach.rows() > 0) selected.approach = recording.approach(postures, Eigen::all);
   if (recording.time_s.size() > 0) selected.time_s = recording.time_s(postures);
   if (!recording.line.empty()) {
     selected.line.clear();

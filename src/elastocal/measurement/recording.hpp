@@ -47,6 +47,9 @@ struct Recording {
   std::vector<Trial> trials;  ///< empty for a posture table
   std::vector<int> trial;     ///< for each posture, index into `trials`; empty if that is
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the frame of `markers`, m/s^2
+  /// postures x coordinates of q: direction of the last motion of each, -1 or 1; 0 where unknown.
+  /// No rows: nothing known. See NoteApproach.
+  Eigen::MatrixXd approach;
   Eigen::VectorXd time_s;   ///< of each posture, for trials on the cameras' clock; may be empty
   std::vector<int> frames;  ///< number of frames of which each posture is the mean; empty: one each
   std::vector<int> line;    ///< line of each posture in the file; empty if there is no file
@@ -60,6 +63,10 @@ bool Seen(const Recording& recording, int posture, int marker);
 
 /// Measured position of a marker, m.
 Eigen::Vector3d MarkerPosition(const Recording& recording, int posture, int marker);
+
+/// Fills `approach` from the order of the postures, of trials within each: a joint that did not
+/// move came to where it is as before.
+void NoteApproach(Recording& recording);
 
 /// The given postures of a recording, in the given order.
 Recording SelectPostures(const Recording& recording, const std::vector<int>& postures);

@@ -109,6 +109,10 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
   run.elasticity = ChooseElasticity(measured.calibration, options.seed, options.threads, project);
 
+  // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
+  run.causes = ChooseCauses(measured, options.seed, project);
+  run.extra = project.elasticity.extra;
+
   // Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
   // that give way under their loads (eq. 5 and 6): delta is eq. 7. A QR decomposition of the
   // regressor (eq. 4) over random postures tells which of it can be identified (section 2.1).

@@ -11,6 +11,7 @@
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/coverage.hpp"
 #include "elastocal/pipeline/measurements.hpp"
@@ -48,9 +49,12 @@ struct CalibrationRun {
   std::vector<std::string> faults;
   std::vector<ChainCoverage> coverage;      ///< what was recorded of each chain
   std::vector<ElasticityTrial> elasticity;  ///< tried, where the project leaves it open
-  CrossValidation cross_validation;         ///< folds 0: none
-  std::vector<TrialSummary> trials;         ///< of recording folders: what was used of each trial
-  std::vector<Knock> knocks;                ///< clusters that were knocked, and are taken as two
+  /// Causes beyond geometry and springs that were estimated, and what the search for them found.
+  std::vector<std::string> extra;
+  std::optional<CauseReport> causes;
+  CrossValidation cross_validation;  ///< folds 0: none
+  std::vector<TrialSummary> trials;  ///< of recording folders: what was used of each trial
+  std::vector<Knock> knocks;         ///< clusters that were knocked, and are taken as two
   Recording validation;              ///< trials that took no part in the estimate; may be empty
   std::optional<HeldOut> held_out;   ///< errors on them, where there are any
   ByModel<double> waist_error = {};  ///< m, see WaistError; NaN where the truth is unknown

@@ -103,6 +103,7 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
     std::swap(read.calibration, read.validation);
   }
   for (Recording* recording : {&read.calibration, &read.validation}) {
+    NoteApproach(*recording);
     HideClosedChains(project.tree, project.markers, *recording);
   }
   Measurements measured;
@@ -134,6 +135,7 @@ Measurements ReadMeasurements(const Project& project, const std::vector<fs::path
   PostureTable table = ReadPostureTable(recordings[0], project);
   Measurements measured;
   measured.calibration = std::move(table.recording);
+  NoteApproach(measured.calibration);
   measured.warnings = std::move(table.warnings);
   return measured;
 }

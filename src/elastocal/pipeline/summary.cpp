@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/calibration/leg_stiffness.hpp"
+#include "elastocal/pipeline/diagnose.hpp"
 
 namespace elastocal {
 namespace {
@@ -240,6 +241,8 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["equations"] = result.equations;
   json["marker_sd_mm"] = 1e3 * result.marker_sd;
   for (int g = 0; g < kPriorGroupCount; ++g) {
+    const bool corrections = g == static_cast<int>(PriorGroup::kCorrections);
+    if (corrections && result.model.elasticity.corrections.empty()) continue;
     json["prior_scale"][PriorGroupName(static_cast<PriorGroup>(g))] = result.prior_scale.factor[g];
   }
   for (std::size_t g = 0; g < static_cast<std::size_t>(result.noise.group_count()); ++g) {
@@ -281,6 +284,8 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["outliers"] = Outliers(run);
   json["short_models"] = ShortModels(run);
   json["elasticity_tried"] = ElasticityJson(run.elasticity);
+  if (!run.extra.empty()) json["extra"] = run.extra;
+  if (run.causes) json["diagnosis"] = DescribeDiagnosis(*run.causes);
   json["excitation"] = ExcitationJson(run);
   json["iterations"] = result.iterations;
   json["initial_cost"] = result.initial_cost;

@@ -7,6 +7,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 
 namespace elastocal {
@@ -21,6 +22,7 @@ bool HasConverged(const Refit& refit) {
 /// The joints that the calibration found elastic, whatever the project would leave open.
 ElasticityChoice ElasticityOf(const StoredCalibration& calibration, const Project& project) {
   ElasticityChoice choice = project.elasticity;
+  choice.extra = StoredCauses(project.tree, calibration.joint_errors);
   choice.torsion.emplace();
   choice.bending.emplace();
   for (const Joint& joint : project.tree.joints) {

@@ -69,6 +69,16 @@ void AddJointCompliances(const ErrorModel& model, int k, std::vector<Parameter>&
   }
 }
 
+/// Those of a joint; -1: of the root link.
+void AddCorrections(const ErrorModel& model, int joint, std::vector<Parameter>& parameters) {
+  const std::vector<Correction>& corrections = model.elasticity.corrections;
+  for (std::size_t i = 0; i < corrections.size(); ++i) {
+    if (corrections[i].joint != joint) continue;
+    parameters.push_back({corrections[i].name, Kind::kCorrection, corrections[i].unit, joint, -1,
+                          -1, -1, static_cast<int>(i), corrections[i].typical});
+  }
+}
+
 /// A joint that two legs share has one sensor and hence one bias, which counts for the first leg.
 void AddLegParameters(const ErrorModel& model, int leg, std::set<int>& biased,
                       std::vector<Parameter>& parameters) {
@@ -146,9 +156,11 @@ void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
   model.active_joints = ActiveJoints(model.tree, markers, model.legs);
   model.parameters.clear();
   AddBaseParameters(model.parameters);
+  AddCorrections(model, -1, model.parameters);
   for (int joint : model.active_joints) {
     AddJointParameters(model.tree, joint, model.placements[joint], model.parameters);
     AddJointCompliances(model, joint, model.parameters);
+    AddCorrections(model, joint, model.parameters);
   }
   std::set<int> biased;
   for (int leg = 0; leg < model.leg_count() && model.elasticity.base; ++leg) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "elastocal/robot/corrections.hpp"
 #include "elastocal/robot/parameters.hpp"
 #include "elastocal/robot/placement.hpp"
 #include "elastocal/robot/robot_tree.hpp"
@@ -39,6 +40,8 @@ struct Elasticity {
   std::vector<Leg> legs = {};     ///< that the robot stands on alone, be they elastic or not
   bool base = true;          ///< these legs have a lumped compliance from foot to waist, eq. 6 ...
   bool torque_bias = false;  ///< ... and their torque sensors unknown biases
+  /// What is not elastic either; each is a parameter where its joint moves a marker.
+  std::vector<Correction> corrections = {};
 };
 
 /// The robot with its markers and the named errors that can be estimated (paper section 2.1). Only
@@ -52,9 +55,9 @@ struct ErrorModel {
   Elasticity elasticity;                          ///< as requested
   std::vector<SupportLeg> legs;                   ///< those of `elasticity`, with their joints
   std::vector<int> active_joints;                 ///< joints that have parameters, ascending
-  /// In this order: T0; joints from the waist outwards, each with its geometric parameters and then
-  /// compliance_z, _x, _y; legs, if `base`, each with six compliances and then torque biases;
-  /// markers.
+  /// In this order: T0 and corrections of the root link; joints from the waist outwards, each with
+  /// its geometric parameters, then compliance_z, _x, _y, then corrections; legs, if `base`, each
+  /// with six compliances and then torque biases; markers.
   std::vector<Parameter> parameters;
 
   int parameter_count() const { return static_cast<int>(parameters.size()); }

@@ -20,6 +20,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
     : model_(model),
       first_parameter_(model.tree.joints.size(), -1),
       compliances_(model.tree.joints.size(), 0),
+      corrections_(model.tree.joints.size(), 0),
       frames_(model.tree.body_count()),
       positions_(3, model.marker_count()),
       T_ref_foot_(model.legs.size(), Transform::Identity()) {
@@ -28,9 +29,14 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
   for (int i = screw_count - 1; i >= kWaistParameterCount; --i) {
     const Parameter& parameter = model.parameters[i];
     if (parameter.leg >= 0) continue;
+    if (parameter.joint < 0) {
+      ++root_corrections_;
+      continue;
+    }
     first_parameter_[parameter.joint] = i;
     ++parameter_count[parameter.joint];
     if (IsCompliance(parameter.kind)) ++compliances_[parameter.joint];
+    if (parameter.kind == ParameterKind::kCorrection) ++corrections_[parameter.joint];
   }
   screws_.setZero(screw_count, 6);
 
@@ -51,7 +57,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
 
 GeneralizedJacobian::BodyLayout GeneralizedJacobian::LayOut(
     int body, const std::vector<int>& parameter_count) const {
-  BodyLayout layout{body, {{0, kWaistParameterCount}}, {}};
+  BodyLayout layout{body, {{0, kWaistParameterCount + root_corrections_}}, {}};
   for (int joint : JointsToBody(model_.tree, body)) {
     Segment& last = layout.segments.back();
     if (last.begin + last.size == first_parameter_[joint]) {
@@ -85,6 +91,40 @@ void GeneralizedJacobian::SetCompliances(int joint, int row,
   }
 }
 
+void GeneralizedJacobian::SetCorrections(int joint, int row, const MdhFrame& deflected,
+                                         const JointLoads& loads) {
+  const bool revolute = model_.tree.joints[joint].type == JointType::kRevolute;
+  for (const int end = row + corrections_[joint]; row < end; ++row) {
+    const int correction = model_.parameters[row].correction;
+    const double shape = loads.shapes.size() > 0 ? loads.shapes[correction] : 0.0;
+    if (revolute) {
+      SetRotation(screws_, row, shape * deflected.R.col(2), deflected.p);
+    } else {
+      SetTranslation(screws_, row, shape * deflected.R.col(2));
+    }
+  }
+}
+
+void GeneralizedJacobian::SetRootCorrections(const Geometry& geometry, const JointLoads& loads) {
+  const int end = kWaistParameterCount + root_corrections_;
+  if (loads.shapes.size() == 0) {
+    screws_.middleRows(kWaistParameterCount, root_corrections_).setZero();
+    return;
+  }
+  const Vector3d turn = RootCorrection(model_, geometry, loads).tail<3>();
+  const Eigen::Matrix3d before = frames_[0].R * RotationFromVector(-turn);
+  const Eigen::Matrix3d axes = before * LeftJacobian(turn);
+  for (int row = kWaistParameterCount; row < end; ++row) {
+    const int index = model_.parameters[row].correction;
+    const int axis = model_.elasticity.corrections[index].axis;
+    if (axis < 3) {
+      SetTranslation(screws_, row, loads.shapes[index] * before.col(axis));
+    } else {
+      SetRotation(screws_, row, loads.shapes[index] * axes.col(axis - 3), frames_[0].p);
+    }
+  }
+}
+
 void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q,
                                          const JointLoads& loads) {
   // Sets the screws in the order of the parameters of one joint, or of the waist.
@@ -107,9 +147,12 @@ void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::
     SetRotation(screws_, row++, deflected.R.col(2), deflected.p);
     // An error of r also moves the physical centre, so its direction is the axis before deflection.
     SetTranslation(screws_, row++, twisted.R.col(2));
-    if (!waist && compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, loads);
+    if (waist) return;
+    if (compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, loads);
+    SetCorrections(joint, row + compliances_[joint], deflected, loads);
   };
   EvaluateMdhFrames(model_, geometry, q, loads, frames_, visit);
+  if (root_corrections_ > 0) SetRootCorrections(geometry, loads);
 }
 
 void GeneralizedJacobian::EvaluateMarker(int marker) {

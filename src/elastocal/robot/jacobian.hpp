@@ -88,12 +88,16 @@ class GeneralizedJacobian {
   void EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q, const JointLoads& loads);
   void SetCompliances(int joint, int row, const Geometry::JointConstants& constants,
                       const MdhFrame& twisted, const JointLoads& loads);
+  void SetCorrections(int joint, int row, const MdhFrame& deflected, const JointLoads& loads);
+  void SetRootCorrections(const Geometry& geometry, const JointLoads& loads);
   void EvaluateMarker(int marker);
   void EvaluateLeg(int leg);
 
   const ErrorModel& model_;
   std::vector<int> first_parameter_;                // by joint
   std::vector<int> compliances_;                    // by joint: how many it has
+  std::vector<int> corrections_;                    // likewise
+  int root_corrections_ = 0;                        // of the root link, after T0
   std::vector<MarkerLayout> layout_;                // by marker
   std::vector<BodyLayout> legs_;                    // by leg
   std::vector<MdhFrame> frames_;                    // by body

@@ -70,13 +70,16 @@ std::vector<MdhFrame> MdhFrames(const ErrorModel& model, const Geometry& geometr
 /// Placement of a joint with its errors, which are in `delta` from index `i` on. Moves `i` behind
 /// them.
 Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
-                                         const Eigen::VectorXd& delta, int& i) {
+                                         const Eigen::VectorXd& delta, int& i,
+                                         Eigen::VectorXd& corrections) {
   JointPlacement placement = model.placements[joint];
   Vector3d compliance = Vector3d::Zero();
   for (; i < model.parameter_count() && model.parameters[i].joint == joint; ++i) {
     const Parameter& parameter = model.parameters[i];
     if (IsCompliance(parameter.kind)) {
       compliance[parameter.axis] = delta[i];
+    } else if (parameter.kind == Kind::kCorrection) {
+      corrections[parameter.correction] = delta[i];
     } else {
       Constant(placement, parameter.kind) += delta[i];
     }
@@ -110,8 +113,15 @@ Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
   PlaceWaist(model.T_ref_waist, delta.head<kWaistParameterCount>(), geometry);
   geometry.T_joint_waist = RotX(-0.5 * M_PI);
   geometry.joints.resize(model.tree.joints.size());
+  geometry.corrections.setZero(static_cast<Eigen::Index>(model.elasticity.corrections.size()));
   int i = kWaistParameterCount;
-  for (int k : model.active_joints) geometry.joints[k] = JointWithErrors(model, k, delta, i);
+  for (; i < model.parameter_count() && model.parameters[i].kind == Kind::kCorrection; ++i) {
+    if (model.parameters[i].joint >= 0) break;
+    geometry.corrections[model.parameters[i].correction] = delta[i];
+  }
+  for (int k : model.active_joints) {
+    geometry.joints[k] = JointWithErrors(model, k, delta, i, geometry.corrections);
+  }
   ApplyLegErrors(model, delta, i, geometry);
   geometry.p_joint_marker.reserve(model.markers.size());
   geometry.R_joint_link.reserve(model.markers.size());

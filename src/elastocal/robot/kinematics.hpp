@@ -15,7 +15,13 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 /// N.m. For a prismatic joint only z counts: the force along its axis, N. Empty means no load. The
 /// load deflects the joint, so m_z is the opposite of the torque that the motor supplies. See
 /// statics.hpp.
-using JointLoads = Eigen::Matrix3Xd;
+struct JointLoads : Eigen::Matrix3Xd {
+  using Eigen::Matrix3Xd::Matrix;
+  using Eigen::Matrix3Xd::operator=;
+
+  /// What the model's corrections multiply in this posture (EvaluateShapes); empty: nothing.
+  Eigen::VectorXd shapes;
+};
 
 /// The error model with a vector of errors applied: everything in eq. 1-3 that does not depend on
 /// the posture. It is cheap to make (a few trigonometric functions for each joint), and can be used
@@ -43,6 +49,8 @@ struct Geometry {
   std::vector<Vector6d> leg_compliance;
   /// For each joint, measured minus true torque, N.m (N). Empty if the model has no legs.
   Eigen::VectorXd torque_bias;
+  /// By correction of the model's elasticity. Empty if it has none.
+  Eigen::VectorXd corrections;
   std::vector<Eigen::Vector3d> p_joint_marker;  ///< by marker, in its body's MDH frame
   std::vector<Eigen::Matrix3d> R_joint_link;    ///< by marker: axes of its x, y, z
 };

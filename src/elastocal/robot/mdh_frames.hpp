@@ -30,6 +30,30 @@ inline MdhFrame Deflected(const Geometry::JointConstants& constants, bool revolu
   return deflected;
 }
 
+/// What corrections add to the position of a joint, rad or m.
+inline double PositionCorrection(const ErrorModel& model, const Geometry& geometry,
+                                 const JointLoads& loads, int joint) {
+  double sum = 0.0;
+  const std::vector<Correction>& all = model.elasticity.corrections;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (all[i].joint == joint) sum += geometry.corrections[at] * loads.shapes[at];
+  }
+  return sum;
+}
+
+/// Displacement of the root link by corrections, in its axes: translation, then rotation vector.
+inline Vector6d RootCorrection(const ErrorModel& model, const Geometry& geometry,
+                               const JointLoads& loads) {
+  Vector6d sum = Vector6d::Zero();
+  const std::vector<Correction>& all = model.elasticity.corrections;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (all[i].joint < 0) sum[all[i].axis] += geometry.corrections[at] * loads.shapes[at];
+  }
+  return sum;
+}
+
 /// Walks along the tree from the reference frame outwards (eq. 3) and fills `frames` (one for each
 /// body): the root link's frame and the MDH frames that active joints move. At the waist and at
 /// each joint it calls
@@ -45,6 +69,7 @@ inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
                               const Eigen::VectorXd& q, const JointLoads& loads,
                               std::vector<MdhFrame>& frames, const Visit& visit) {
   const bool loaded = loads.cols() > 0;
+  const bool corrected = geometry.corrections.size() > 0 && loads.shapes.size() > 0;
   const auto place = [&](int joint, const Geometry::JointConstants& constants,
                          const MdhFrame& parent, bool revolute, double position, MdhFrame& frame) {
     const MdhFrame twisted{parent.R * constants.R_parent_twisted,
@@ -68,10 +93,17 @@ inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
   const MdhFrame reference{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
   place(kWaist, geometry.waist, reference, true, 0.0, frames[0]);
   frames[0].R = frames[0].R * geometry.T_joint_waist.linear();
+  if (corrected) {
+    const Vector6d step = RootCorrection(model, geometry, loads);
+    frames[0].p += frames[0].R * step.head<3>();
+    frames[0].R = frames[0].R * RotationFromVector(step.tail<3>());
+  }
   for (int k : model.active_joints) {
     const Joint& joint = model.tree.joints[k];
-    place(k, geometry.joints[k], frames[joint.parent_body], joint.type == JointType::kRevolute,
-          JointPosition(joint, q), frames[k + 1]);
+    place(
+        k, geometry.joints[k], frames[joint.parent_body], joint.type == JointType::kRevolute,
+        JointPosition(joint, q) + (corrected ? PositionCorrection(model, geometry, loads, k) : 0.0),
+        frames[k + 1]);
   }
 }
 

@@ -40,14 +40,14 @@ bool Matches(std::string_view pattern, std::string_view name) {
 
 const char* KindName(ParameterKind kind) {
   static constexpr std::array<const char*, kParameterKindCount> kNames = {
-      "theta", "r",      "d",       "b",       "alpha",      "beta",        "gamma",
-      "T0",    "marker", "torsion", "bending", "base_force", "base_moment", "torque_bias"};
+      "theta",  "r",       "d",       "b",          "alpha",       "beta",        "gamma",     "T0",
+      "marker", "torsion", "bending", "base_force", "base_moment", "torque_bias", "correction"};
   return kNames[static_cast<int>(kind)];
 }
 
 const char* UnitName(ParameterUnit unit) {
-  static constexpr std::array<const char*, kParameterUnitCount> kNames = {"rad", "m",   "rad/(N.m)",
-                                                                          "m/N", "N.m", "N"};
+  static constexpr std::array<const char*, kParameterUnitCount> kNames = {
+      "rad", "m", "rad/(N.m)", "m/N", "N.m", "N", "1", "1/N", "m/h"};
   return kNames[static_cast<int>(unit)];
 }
 
@@ -66,7 +66,8 @@ bool IsCompliance(ParameterKind kind) {
 }
 
 bool IsElastic(ParameterKind kind) {
-  return IsCompliance(kind) || kind == ParameterKind::kTorqueBias;
+  return IsCompliance(kind) || kind == ParameterKind::kTorqueBias ||
+         kind == ParameterKind::kCorrection;
 }
 
 int FindParameter(const std::vector<Parameter>& parameters, const std::string& name) {

@@ -10,7 +10,7 @@ namespace elastocal {
 /// placement.hpp). Elastic kinds (eq. 5 to 7) are compliances (inverse stiffnesses) of joints about
 /// their axes (`kTorsion`) and across them (`kBending`), compliances of a leg between its foot and
 /// the waist by a force (`kLegForce`) and by a moment (`kLegMoment`), and the bias of a joint's
-/// torque sensor.
+/// torque sensor. `kCorrection`: what neither describes (corrections.hpp).
 enum class ParameterKind {
   kTheta,
   kR,
@@ -25,9 +25,10 @@ enum class ParameterKind {
   kBending,
   kLegForce,
   kLegMoment,
-  kTorqueBias
+  kTorqueBias,
+  kCorrection
 };
-inline constexpr int kParameterKindCount = 14;
+inline constexpr int kParameterKindCount = 15;
 
 enum class ParameterUnit {
   kRadian,
@@ -35,9 +36,12 @@ enum class ParameterUnit {
   kRadianPerNewtonMetre,
   kMetrePerNewton,
   kNewtonMetre,
-  kNewton
+  kNewton,
+  kRatio,
+  kPerNewton,
+  kMetrePerHour
 };
-inline constexpr int kParameterUnitCount = 6;
+inline constexpr int kParameterUnitCount = 9;
 
 /// One entry of the vector of errors: a deviation from the nominal model, zero at nominal.
 struct Parameter {
@@ -48,17 +52,19 @@ struct Parameter {
   std::string name;
   ParameterKind kind;
   ParameterUnit unit;
-  int joint = -1;   ///< of the robot tree, for joint parameters
-  int marker = -1;  ///< of the error model, for marker positions
-  int leg = -1;     ///< of the error model, for compliances of a leg and torque biases
-  int axis = -1;    ///< of a compliance: 0, 1, 2 for x, y, z (rx, ry, rz)
+  int joint = -1;        ///< of the robot tree, for joint parameters
+  int marker = -1;       ///< of the error model, for marker positions
+  int leg = -1;          ///< of the error model, for compliances of a leg and torque biases
+  int axis = -1;         ///< of a compliance: 0, 1, 2 for x, y, z (rx, ry, rz)
+  int correction = -1;   ///< of the error model's elasticity, for corrections
+  double typical = 0.0;  ///< of a correction: standard deviation of its prior
 };
 
 /// Name of a kind in parameter names and settings: theta, r, d, b, alpha, beta, gamma, T0, marker,
-/// torsion, bending, base_force, base_moment, torque_bias.
+/// torsion, bending, base_force, base_moment, torque_bias, correction.
 const char* KindName(ParameterKind kind);
 
-/// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N.
+/// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N, 1, 1/N, m/h.
 const char* UnitName(ParameterUnit unit);
 
 /// Whether a kind of joint parameter is an angle: theta, alpha, beta, gamma.
@@ -71,8 +77,9 @@ bool IsExternal(ParameterKind kind);
 /// Whether the kind is a compliance, which is zero for a rigid robot and never negative.
 bool IsCompliance(ParameterKind kind);
 
-/// Whether the parameter acts through loads (a compliance or a torque bias). Geometry alone says
-/// nothing about it: the data, not QR, decide whether it is identifiable.
+/// Whether the parameter acts through loads (a compliance or a torque bias) or is a correction.
+/// Geometry alone says nothing about it, and a URDF has no place for it: the data, not QR, decide
+/// whether it is identifiable.
 bool IsElastic(ParameterKind kind);
 
 /// Index of the parameter called `name`. Throws InputError with the nearest known name.

@@ -1,0 +1,373 @@
+#include "elastocal/calibration/cause_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Cholesky>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/math/statistics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kNineInTen = 1.2816;       // quantile of the normal distribution
+constexpr double kLeastInformation = 1e-6;  // of a correction of typical size
+
+/// Columns of causes and of the base.
+std::vector<int> ColumnsOf(const LinearStudy& study, const std::vector<int>& causes) {
+  std::vector<int> columns;
+  for (int cause : causes) {
+    for (int c : study.of_cause[static_cast<std::size_t>(cause)]) columns.push_back(study.base + c);
+  }
+  return columns;
+}
+
+std::vector<int> BaseWith(const LinearStudy& study, const std::vector<int>& causes) {
+  std::vector<int> columns(static_cast<std::size_t>(study.base));
+  std::iota(columns.begin(), columns.end(), 0);
+  const std::vector<int> more = ColumnsOf(study, causes);
+  columns.insert(columns.end(), more.begin(), more.end());
+  return columns;
+}
+
+/// Normal equations in all columns of the study, over some of its postures.
+struct Sums {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+
+  explicit Sums(const LinearStudy& study)
+      : information(study.other), gradient(study.other_gradient) {}
+  void Add(const LinearStudy::Posture& posture, double sign) {
+    if (posture.residual.size() == 0) return;
+    information.noalias() += sign * posture.jacobian.transpose() * posture.jacobian;
+    gradient.noalias() += sign * posture.jacobian.transpose() * posture.residual;
+  }
+};
+
+/// The fit of the base (with the causes taken so far) to what is in the sums, and the columns of
+/// all others beside it.
+struct BaseFit {
+  std::vector<int> columns, others;
+  Eigen::MatrixXd information;  ///< of all, as in the sums
+  Eigen::VectorXd step;         ///< of the base
+  Eigen::MatrixXd explained;    ///< base x others: what the base makes of each
+  Eigen::MatrixXd left;         ///< information of the others beside the base
+  Eigen::VectorXd gradient;     ///< of the others beside the base
+
+  BaseFit(const LinearStudy& study, const Sums& sums, const std::vector<int>& taken)
+      : columns(BaseWith(study, taken)) {
+    for (int c = study.base; c < study.columns(); ++c) {
+      if (std::find(columns.begin(), columns.end(), c) == columns.end()) others.push_back(c);
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(sums.information(columns, columns));
+    step = -factor.solve(sums.gradient(columns));
+    const Eigen::MatrixXd cross = sums.information(columns, others);
+    explained = factor.solve(cross);
+    left = sums.information(others, others) - cross.transpose() * explained;
+    gradient = sums.gradient(others) + cross.transpose() * step;
+  }
+  /// Where the columns of a cause stand among the others.
+  std::vector<int> Positions(const LinearStudy& study, int cause) const {
+    std::vector<int> positions;
+    for (int c : ColumnsOf(study, {cause})) {
+      positions.push_back(
+          static_cast<int>(std::find(others.begin(), others.end(), c) - others.begin()));
+    }
+    return positions;
+  }
+  Eigen::VectorXd Residual(const LinearStudy::Posture& posture) const {
+    return posture.residual + posture.jacobian(Eigen::all, columns) * step;
+  }
+  Eigen::MatrixXd Beside(const LinearStudy::Posture& posture) const {
+    return posture.jacobian(Eigen::all, others) - posture.jacobian(Eigen::all, columns) * explained;
+  }
+};
+
+double ErrorOf(const LinearStudy::Posture& posture, const Eigen::VectorXd& residual) {
+  return std::sqrt(residual.cwiseProduct(posture.to_metres).squaredNorm() /
+                   std::max(1, posture.markers));
+}
+
+/// Postures, dealt to folds at random.
+std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random& random) {
+  for (std::size_t i = postures.size() - 1; i > 0; --i) {
+    std::swap(postures[i],
+              postures[static_cast<std::size_t>(random.Index(static_cast<int>(i) + 1))]);
+  }
+  std::vector<std::vector<int>> dealt(static_cast<std::size_t>(folds));
+  for (std::size_t i = 0; i < postures.size(); ++i) {
+    dealt[i % dealt.size()].push_back(postures[i]);
+  }
+  return dealt;
+}
+
+/// The search over some of the postures.
+class Search {
+ public:
+  Search(const LinearStudy& study, const CauseSearchOptions& options, std::vector<int> postures,
+         const Sums& sums, std::uint64_t seed)
+      : study_(study),
+        options_(options),
+        postures_(std::move(postures)),
+        sums_(sums),
+        seed_(seed) {}
+
+  /// All causes beside those that are taken.
+  std::vector<CauseFinding> Findings(const std::vector<int>& taken) {
+    const BaseFit fit(study_, sums_, taken);
+    std::vector<CauseFinding> findings;
+    causes_.clear();
+    for (int cause = 0; cause < static_cast<int>(study_.causes.size()); ++cause) {
+      if (std::find(taken.begin(), taken.end(), cause) != taken.end()) continue;
+      findings.push_back(Test(fit, cause));
+      causes_.push_back(cause);
+    }
+    Holm(findings);
+    HeldOut(taken, findings);
+    return findings;
+  }
+
+  std::vector<int> Forward(std::vector<CauseFinding>* chosen, std::vector<CauseFinding>* all) {
+    std::vector<int> taken;
+    while (static_cast<int>(taken.size()) < options_.most) {
+      const std::vector<CauseFinding> findings = Findings(taken);
+      if (taken.empty() && all != nullptr) *all = findings;
+      int best = -1;
+      for (std::size_t i = 0; i < findings.size(); ++i) {
+        if (!Helps(findings[i])) continue;
+        if (best < 0 || findings[i].gain > findings[static_cast<std::size_t>(best)].gain) {
+          best = static_cast<int>(i);
+        }
+      }
+      if (best < 0) break;
+      taken.push_back(causes_[static_cast<std::size_t>(best)]);
+      if (chosen != nullptr) chosen->push_back(findings[static_cast<std::size_t>(best)]);
+    }
+    return taken;
+  }
+
+  double error() const { return error_; }  ///< of the base last tried, root mean square
+
+ private:
+  bool Helps(const CauseFinding& finding) const {
+    return finding.p_adjusted < options_.level &&
+           finding.mean_gain > std::max(finding.gain_sd, options_.least_gain * mean_error_);
+  }
+
+  CauseFinding Test(const BaseFit& fit, int cause) const {
+    CauseFinding finding;
+    finding.cause = study_.causes[static_cast<std::size_t>(cause)];
+    const std::vector<int> at = fit.Positions(study_, cause);
+    const auto count = static_cast<Eigen::Index>(at.size());
+    const std::vector<int> columns = ColumnsOf(study_, {cause});
+    const Eigen::MatrixXd prior = study_.other(columns, columns);
+    const Eigen::MatrixXd with_prior = fit.left(at, at);
+    // Directions of which the data say nothing count for nothing.
+    Eigen::MatrixXd information = with_prior - prior;
+    information.diagonal().array() += kLeastInformation;
+    const Eigen::LLT<Eigen::MatrixXd> factor(information);
+    const Eigen::VectorXd gradient = fit.gradient(at);
+    const double inflation = Inflation(fit, at, factor);
+    finding.score = gradient.dot(factor.solve(gradient)) / static_cast<double>(count) / inflation;
+    finding.p = FisherUpperTail(std::max(0.0, finding.score), static_cast<double>(count),
+                                study_.degrees_of_freedom);
+    const Eigen::LLT<Eigen::MatrixXd> posterior(with_prior);
+    const Eigen::VectorXd step = -posterior.solve(gradient);
+    const Eigen::MatrixXd covariance =
+        inflation * posterior.solve(Eigen::MatrixXd::Identity(count, count));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto correction =
+          static_cast<std::size_t>(columns[static_cast<std::size_t>(i)] - study_.base);
+      finding.parameters.push_back(study_.corrections[correction]);
+      finding.estimate.push_back(study_.scale[correction] * step[i]);
+      finding.sd.push_back(study_.scale[correction] * std::sqrt(covariance(i, i)));
+    }
+    SetVisible(fit, at, std::sqrt(inflation / information(0, 0)), finding);
+    return finding;
+  }
+
+  /// The scatter of the postures' scores over what the noise model expects, at least 1.
+  double Inflation(const BaseFit& fit, const std::vector<int>& at,
+                   const Eigen::LLT<Eigen::MatrixXd>& factor) const {
+    double found = 0.0;
+    for (int i : postures_) {
+      const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
+      if (posture.residual.size() == 0) continue;
+      const Eigen::VectorXd score =
+          fit.Beside(posture)(Eigen::all, at).transpose() * fit.Residual(posture);
+      found += score.dot(factor.solve(score));
+    }
+    return std::max(1.0, found / static_cast<double>(at.size()));
+  }
+
+  void SetVisible(const BaseFit& fit, const std::vector<int>& at, double sd,
+                  CauseFinding& finding) const {
+    const auto causes = static_cast<double>(std::max<std::size_t>(1, study_.causes.size()));
+    const double t = StudentQuantile(1.0 - 0.5 * options_.level / causes,
+                                     std::max(1.0, study_.degrees_of_freedom));
+    const double effect = (t + kNineInTen) * sd;
+    double squares = 0.0;
+    double markers = 0.0;
+    for (int i : postures_) {
+      const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
+      if (posture.residual.size() == 0) continue;
+      const Eigen::VectorXd moved = fit.Beside(posture).col(at.front());
+      squares += moved.cwiseProduct(posture.to_metres).squaredNorm();
+      markers += posture.markers;
+    }
+    finding.visible = effect * std::sqrt(squares / std::max(1.0, markers));
+    const auto first =
+        static_cast<std::size_t>(fit.others[static_cast<std::size_t>(at.front())] - study_.base);
+    finding.visible_effect = effect * study_.scale[first];
+  }
+
+  static void Holm(std::vector<CauseFinding>& findings) {
+    std::vector<std::size_t> order(findings.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(findings[a].p, a) < std::pair(findings[b].p, b);
+    });
+    double largest = 0.0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const auto left = static_cast<double>(order.size() - i);
+      largest = std::max(largest, std::min(1.0, left * findings[order[i]].p));
+      findings[order[i]].p_adjusted = largest;
+    }
+  }
+
+  /// Held-out errors with each cause, and without.
+  void HeldOut(const std::vector<int>& taken, std::vector<CauseFinding>& findings) {
+    const auto rows = static_cast<Eigen::Index>(study_.postures.size());
+    const auto count = static_cast<Eigen::Index>(findings.size());
+    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(rows, count + 1);
+    Random random(seed_);
+    for (int deal = 0; deal < options_.deals; ++deal) {
+      const int folds = std::min(options_.folds, static_cast<int>(postures_.size()));
+      for (const std::vector<int>& fold : Deal(postures_, folds, random)) {
+        AddFold(taken, fold, squares);
+      }
+    }
+    squares /= options_.deals;
+    Summarise(squares, findings);
+  }
+
+  void AddFold(const std::vector<int>& taken, const std::vector<int>& fold,
+               Eigen::MatrixXd& squares) const {
+    Sums training = sums_;
+    for (int i : fold) training.Add(study_.postures[static_cast<std::size_t>(i)], -1.0);
+    const BaseFit fit(study_, training, taken);
+    for (int i : fold) {
+      const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
+      if (posture.residual.size() == 0) continue;
+      const Eigen::VectorXd residual = fit.Residual(posture);
+      const Eigen::MatrixXd beside = fit.Beside(posture);
+      squares(i, 0) += std::pow(ErrorOf(posture, residual), 2);
+      for (std::size_t k = 0; k < causes_.size(); ++k) {
+        const std::vector<int> at = fit.Positions(study_, causes_[k]);
+        const Eigen::VectorXd step =
+            -Eigen::LLT<Eigen::MatrixXd>(fit.left(at, at)).solve(fit.gradient(at));
+        squares(i, static_cast<Eigen::Index>(k) + 1) +=
+            std::pow(ErrorOf(posture, residual + beside(Eigen::all, at) * step), 2);
+      }
+    }
+  }
+
+  void Summarise(const Eigen::MatrixXd& squares, std::vector<CauseFinding>& findings) {
+    const auto rms = [&](Eigen::Index column) {
+      double sum = 0.0, markers = 0.0;
+      for (int i : postures_) {
+        const double weight = study_.postures[static_cast<std::size_t>(i)].markers;
+        sum += weight * squares(i, column);
+        markers += weight;
+      }
+      return std::sqrt(sum / std::max(1.0, markers));
+    };
+    error_ = rms(0);
+    const Eigen::MatrixXd errors = squares(postures_, Eigen::all).cwiseSqrt();
+    mean_error_ = errors.col(0).mean();
+    const auto count = static_cast<double>(postures_.size());
+    for (std::size_t k = 0; k < findings.size(); ++k) {
+      const Eigen::ArrayXd gains = errors.col(0) - errors.col(static_cast<Eigen::Index>(k) + 1);
+      findings[k].gain = error_ - rms(static_cast<Eigen::Index>(k) + 1);
+      findings[k].mean_gain = gains.mean();
+      findings[k].gain_sd =
+          std::sqrt((gains - gains.mean()).square().sum() / std::max(1.0, count - 1.0) / count);
+    }
+  }
+
+  const LinearStudy& study_;
+  const CauseSearchOptions& options_;
+  std::vector<int> postures_;
+  const Sums& sums_;
+  std::uint64_t seed_;
+  std::vector<int> causes_;  // of the findings in hand
+  double error_ = 0.0, mean_error_ = 0.0;
+};
+
+/// The search repeated without each fold, judged on it.
+void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
+                 const std::vector<int>& postures, const Sums& all, CauseSearch& result) {
+  Random random(options.seed);
+  const int folds = std::min(options.folds, static_cast<int>(postures.size()));
+  CauseSearchOptions inner = options;
+  inner.deals = 1;
+  std::vector<double> gains;
+  double squares = 0.0, markers = 0.0;
+  for (const std::vector<int>& fold : Deal(postures, folds, random)) {
+    Sums training = all;
+    for (int i : fold) training.Add(study.postures[static_cast<std::size_t>(i)], -1.0);
+    std::vector<int> rest;
+    std::vector<int> sorted = fold;
+    std::sort(sorted.begin(), sorted.end());
+    std::set_difference(postures.begin(), postures.end(), sorted.begin(), sorted.end(),
+                        std::back_inserter(rest));
+    Search search(study, inner, rest, training, options.seed + 1);
+    const std::vector<int> taken = search.Forward(nullptr, nullptr);
+    const BaseFit without(study, training, {});
+    const BaseFit with(study, training, taken);
+    for (int i : fold) {
+      const LinearStudy::Posture& posture = study.postures[static_cast<std::size_t>(i)];
+      if (posture.residual.size() == 0) continue;
+      const double error = ErrorOf(posture, with.Residual(posture));
+      gains.push_back(ErrorOf(posture, without.Residual(posture)) - error);
+      squares += posture.markers * error * error;
+      markers += posture.markers;
+    }
+  }
+  const Eigen::Map<const Eigen::ArrayXd> all_gains(gains.data(),
+                                                   static_cast<Eigen::Index>(gains.size()));
+  const auto count = static_cast<double>(gains.size());
+  result.nested_error = std::sqrt(squares / std::max(1.0, markers));
+  result.nested_gain = all_gains.mean();
+  result.nested_gain_sd =
+      std::sqrt((all_gains - all_gains.mean()).square().sum() / std::max(1.0, count - 1.0) / count);
+}
+
+}  // namespace
+
+CauseSearch SearchCauses(const LinearStudy& study, const CauseSearchOptions& options) {
+  CauseSearch result;
+  std::vector<int> postures;
+  Sums sums(study);
+  for (std::size_t i = 0; i < study.postures.size(); ++i) {
+    if (study.postures[i].residual.size() == 0) continue;
+    postures.push_back(static_cast<int>(i));
+    sums.Add(study.postures[i], 1.0);
+  }
+  if (postures.size() < 3 || study.causes.empty()) return result;
+  Search search(study, options, postures, sums, options.seed);
+  search.Forward(&result.chosen, &result.findings);
+  search.Findings({});
+  result.error = search.error();
+  if (!result.chosen.empty()) {
+    JudgeNested(study, options, postures, sums, result);
+    result.accepted = result.nested_gain > result.nested_gain_sd;
+  }
+  std::stable_sort(result.findings.begin(), result.findings.end(),
+                   [](const CauseFinding& a, const CauseFinding& b) { return a.p < b.p; });
+  return result;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,93 @@
+#include "elastocal/pipeline/choose_causes.hpp"
+
+#include <algorithm>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kFewestPostures = 15, kLargestTable = 300;  // for a choice without being asked
+
+/// The mean time of the postures, where they have times that differ.
+std::optional<double> MeanHours(const Recording& recording) {
+  if (recording.time_s.size() == 0 || recording.time_s.minCoeff() == recording.time_s.maxCoeff()) {
+    return std::nullopt;
+  }
+  return recording.time_s.mean() / 3600.0;
+}
+
+std::vector<std::string> CausesMatching(const RobotTree& tree, const std::optional<double>& hours,
+                                        const std::vector<std::string>& patterns) {
+  const std::vector<std::string> causes = CausesOf(PossibleCorrections(tree, hours));
+  std::vector<Parameter> names;
+  for (const std::string& cause : causes) {
+    names.push_back({cause, ParameterKind::kCorrection, ParameterUnit::kRadian});
+  }
+  CheckPatterns(names, patterns);
+  std::vector<std::string> matching;
+  for (int i : MatchParameters(names, patterns)) {
+    matching.push_back(causes[static_cast<std::size_t>(i)]);
+  }
+  return matching;
+}
+
+}  // namespace
+
+CauseReport StudyCauses(const Project& given, const Measurements& measured,
+                        std::optional<std::uint64_t> seed) {
+  Project project = given;
+  project.elasticity.extra.clear();
+  Measurements own = measured;
+  const RecordedModel robot = MakeRecordedModel(project, seed, own, KnockSearch::kNone);
+  const Recording& recording = own.calibration;
+  const CalibrationResult result = Calibrate(robot.model, recording, robot.base,
+                                             ModelKinds(robot.model).back(), project.calibration);
+  project.elasticity.hours = MeanHours(recording);
+  project.elasticity.extra = CausesOf(PossibleCorrections(project.tree, project.elasticity.hours));
+  const ErrorModel wide =
+      SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
+  const LinearStudy study = MakeLinearStudy(wide, recording, result, project.calibration);
+  return {SearchCauses(study, {.seed = seed.value_or(1)}), wide.parameters,
+          wide.elasticity.corrections, recording.posture_count()};
+}
+
+std::optional<CauseReport> ChooseCauses(const Measurements& measured,
+                                        std::optional<std::uint64_t> seed, Project& project) {
+  const ExtraCauses& asked = project.calibration.extra;
+  const Recording& recording = measured.calibration;
+  project.elasticity.hours = MeanHours(recording);
+  project.elasticity.extra.clear();
+  if (!asked.automatic) {
+    project.elasticity.extra = CausesMatching(project.tree, project.elasticity.hours, asked.names);
+    return std::nullopt;
+  }
+  const int postures = recording.posture_count();
+  if (!recording.trials.empty() || postures < kFewestPostures || postures > kLargestTable) {
+    return std::nullopt;
+  }
+  CauseReport report;
+  try {
+    report = StudyCauses(project, measured, seed);
+  } catch (const InputError&) {  // too few equations: the estimate will say so
+    return std::nullopt;
+  }
+  if (report.search.accepted) {
+    for (const CauseFinding& finding : report.search.chosen) {
+      project.elasticity.extra.push_back(finding.cause);
+    }
+  }
+  return report;
+}
+
+std::vector<std::string> StoredCauses(const RobotTree& tree,
+                                      const std::map<std::string, double>& joint_errors) {
+  std::vector<Correction> stored;
+  for (const Correction& correction : PossibleCorrections(tree, std::nullopt)) {
+    if (joint_errors.contains(correction.name)) stored.push_back(correction);
+  }
+  return CausesOf(stored);
+}
+
+}  // namespace elastocal

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/cause_search.hpp"
+#include "elastocal/pipeline/measurements.hpp"
+
+namespace elastocal {
+
+/// What a recording says about causes of error beyond geometry and springs.
+struct CauseReport {
+  CauseSearch search;
+  std::vector<Parameter> parameters;    ///< that CauseFinding::parameters refer to
+  std::vector<Correction> corrections;  ///< that these refer to
+  int postures = 0;
+};
+
+/// Calibrates without extra causes (those of `project` are ignored), then tests each and searches
+/// the best set. Throws what Calibrate throws.
+CauseReport StudyCauses(const Project& project, const Measurements& measured,
+                        std::optional<std::uint64_t> seed);
+
+/// Sets the extra causes of the project's models as `calibration.extra` says: those named, none,
+/// or those that the held-out error of a table of 15 to 300 postures asks for; then what was found
+/// on the way.
+std::optional<CauseReport> ChooseCauses(const Measurements& measured,
+                                        std::optional<std::uint64_t> seed, Project& project);
+
+/// Extra causes that a stored calibration has, by the names of its parameters; not those of its
+/// recording alone (drift).
+std::vector<std::string> StoredCauses(const RobotTree& tree,
+                                      const std::map<std::string, double>& joint_errors);
+
+}  // namespace elastocal

@@ -1,0 +1,253 @@
+#include "elastocal/pipeline/diagnose.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
+#include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/report/json_reader.hpp"
+#include "elastocal/tables/read_file.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double kLevel = 0.05;
+
+/// The recordings that the record of a calibration names, behind project and URDF: tables, or
+/// folders by their experiment.yaml.
+std::vector<fs::path> RecordedRecordings(const fs::path& folder) {
+  const fs::path file = folder / "runs.json";
+  const Json runs = ParseJsonObject(file.string(), ReadFile(file));
+  std::vector<fs::path> recordings;
+  const Json inputs = runs.value("calibrate", Json::object()).value("inputs", Json::array());
+  for (std::size_t i = 2; i < inputs.size(); ++i) {
+    const fs::path input = inputs[i].value("file", std::string());
+    if (input.filename() == "experiment.yaml") recordings.push_back(input.parent_path());
+  }
+  if (recordings.empty() && inputs.size() > 2) {
+    recordings.emplace_back(inputs[2].value("file", std::string()));
+  }
+  if (recordings.empty() || recordings.front().empty()) {
+    throw InputError(file.string() +
+                     ": names no recording of calibrate; expected a folder that "
+                     "calibrate -o wrote to");
+  }
+  std::error_code error;
+  for (const fs::path& recording : recordings) {
+    if (fs::exists(recording, error)) continue;
+    throw InputError(file.string() + ": the recording " + recording.string() + " is not there");
+  }
+  return recordings;
+}
+
+/// What a cause is by, for the sentence.
+const char* ByWhat(CorrectionShape shape) {
+  switch (shape) {
+    case CorrectionShape::kSin:
+    case CorrectionShape::kCos:
+      return "once a turn of the joint";
+    case CorrectionShape::kSinTwice:
+    case CorrectionShape::kCosTwice:
+      return "twice a turn of the joint";
+    case CorrectionShape::kGear:
+      return "by its position";
+    case CorrectionShape::kCoupling:
+      return "by the position of the other joint";
+    case CorrectionShape::kBacklash:
+      return "by the sign of its load";
+    case CorrectionShape::kHysteresis:
+      return "by the direction of its last motion";
+    case CorrectionShape::kStiffening:
+      return "by the square of its load, at its largest torque";
+    case CorrectionShape::kHours:
+      return "by time";
+    default:
+      return "by the moment of the weight on the base";
+  }
+}
+
+struct Shown {
+  double factor;
+  const char* unit;
+};
+
+Shown ShownAs(ParameterUnit unit) {
+  switch (unit) {
+    case ParameterUnit::kRadian:
+      return {1e3, "mrad"};
+    case ParameterUnit::kMetre:
+      return {1e3, "mm"};
+    case ParameterUnit::kRadianPerNewtonMetre:
+      return {1e6, "urad/(N.m)"};
+    case ParameterUnit::kRatio:
+      return {1e2, "%"};
+    case ParameterUnit::kPerNewton:
+      return {1e6, "um/(N.m)"};
+    case ParameterUnit::kMetrePerHour:
+      return {1e3, "mm/h"};
+    default:
+      return {1.0, UnitName(unit)};
+  }
+}
+
+const Parameter& ParameterOf(const CauseReport& report, int index) {
+  return report.parameters[static_cast<std::size_t>(index)];
+}
+
+/// The estimate that stands for a cause: the amplitude of an eccentricity, else the surest one.
+std::string SizeOf(const CauseReport& report, const CauseFinding& finding) {
+  std::size_t surest = 0;
+  for (std::size_t i = 0; i < finding.estimate.size(); ++i) {
+    if (std::abs(finding.estimate[i]) / finding.sd[i] >
+        std::abs(finding.estimate[surest]) / finding.sd[surest]) {
+      surest = i;
+    }
+  }
+  const Parameter& parameter = ParameterOf(report, finding.parameters[surest]);
+  const auto [factor, unit] = ShownAs(parameter.unit);
+  double value = finding.estimate[surest];
+  const bool harmonic = parameter.name.ends_with("_sin") || parameter.name.ends_with("_cos");
+  if (harmonic && finding.estimate.size() == 2) {
+    value = std::hypot(finding.estimate[0], finding.estimate[1]);
+  }
+  return fmt::format("{:.2g} +- {:.1g} {}", factor * value, factor * finding.sd[surest], unit);
+}
+
+Json CandidateJson(const CauseReport& report, const CauseFinding& finding) {
+  Json json;
+  json["name"] = finding.cause;
+  json["score"] = finding.score;
+  json["p"] = finding.p;
+  json["p_adjusted"] = finding.p_adjusted;
+  json["gain_mm"] = 1e3 * finding.gain;
+  json["mean_gain_mm"] = 1e3 * finding.mean_gain;
+  json["mean_gain_sd_mm"] = 1e3 * finding.gain_sd;
+  json["visible_mm"] = 1e3 * finding.visible;
+  for (std::size_t i = 0; i < finding.parameters.size(); ++i) {
+    const Parameter& parameter = ParameterOf(report, finding.parameters[i]);
+    Json one;
+    one["parameter"] = parameter.name;
+    one["unit"] = UnitName(parameter.unit);
+    one["value"] = finding.estimate[i];
+    one["sd"] = finding.sd[i];
+    json["estimate"].push_back(std::move(one));
+  }
+  json["words"] = DescribeCause(report, finding);
+  return json;
+}
+
+}  // namespace
+
+Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
+                   std::optional<std::uint64_t> seed) {
+  const auto start = std::chrono::steady_clock::now();
+  CalibratedRobot robot = OpenCalibratedRobot(folder, project_file);
+  CheckHasMarkers(robot.project);
+  const fs::path file = robot.inputs.back();
+  const std::vector<fs::path> recordings =
+      RecordedRecordings(file.has_parent_path() ? file.parent_path() : fs::path("."));
+  Project& project = robot.project;
+  const Measurements measured = ReadMeasurements(project, recordings);
+  ElasticityChoice& elasticity = project.elasticity;
+  elasticity.torsion.emplace();
+  elasticity.bending.emplace();
+  for (const Joint& joint : project.tree.joints) {
+    const auto has = [&](const char* axis) {
+      return robot.calibration.joint_errors.contains(joint.name + ".compliance_" + axis);
+    };
+    if (has("z")) elasticity.torsion->push_back(joint.name);
+    if (has("x")) elasticity.bending->push_back(joint.name);
+  }
+  Diagnosis diagnosis;
+  diagnosis.report = StudyCauses(project, measured, seed);
+  diagnosis.recording = measured.calibration.source;
+  diagnosis.inputs = robot.inputs;
+  diagnosis.inputs.insert(diagnosis.inputs.end(), recordings.begin(), recordings.end());
+  diagnosis.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return diagnosis;
+}
+
+std::string DescribeCause(const CauseReport& report, const CauseFinding& finding) {
+  const Parameter& parameter = ParameterOf(report, finding.parameters.front());
+  const Correction& correction = report.corrections[static_cast<std::size_t>(parameter.correction)];
+  const std::size_t dot = finding.cause.rfind('.');
+  std::string what = finding.cause.substr(dot + 1);
+  std::replace(what.begin(), what.end(), '_', ' ');
+  return fmt::format("{}: {} of {}, {}; the held-out error {} by {:.2f} mm",
+                     finding.cause.substr(0, dot), what, SizeOf(report, finding),
+                     ByWhat(correction.shape), finding.gain >= 0.0 ? "falls" : "rises",
+                     1e3 * std::abs(finding.gain));
+}
+
+std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
+  const CauseSearch& search = report.search;
+  std::vector<std::string> sentences;
+  if (search.findings.empty()) {
+    return {"Too few postures to look for causes."};
+  }
+  const auto significant =
+      std::count_if(search.findings.begin(), search.findings.end(),
+                    [](const CauseFinding& finding) { return finding.p_adjusted < kLevel; });
+  if (search.accepted) {
+    sentences.push_back(fmt::format(
+        "{} of {} causes together take the held-out error from {:.2f} to {:.2f} mm (nested folds):",
+        search.chosen.size(), search.findings.size(), 1e3 * search.error,
+        1e3 * search.nested_error));
+    for (const CauseFinding& finding : search.chosen) {
+      sentences.push_back("  " + DescribeCause(report, finding));
+    }
+  } else if (significant > 0) {
+    sentences.push_back(fmt::format(
+        "{} of {} causes are significant, but none lowers the held-out error of {:.2f} mm by more "
+        "than its uncertainty:",
+        significant, search.findings.size(), 1e3 * search.error));
+    for (const CauseFinding& finding : search.findings) {
+      if (finding.p_adjusted >= kLevel) break;
+      sentences.push_back("  " + DescribeCause(report, finding));
+    }
+  } else {
+    std::vector<double> visible;
+    for (const CauseFinding& finding : search.findings) visible.push_back(finding.visible);
+    std::sort(visible.begin(), visible.end());
+    sentences.push_back(fmt::format(
+        "None of {} causes was found. One that moves the markers by {:.2f} mm (root mean square, "
+        "beside what is calibrated) would have been found nine times in ten.",
+        search.findings.size(), 1e3 * visible[visible.size() / 2]));
+  }
+  return sentences;
+}
+
+std::string MakeDiagnosisJson(const Diagnosis& diagnosis) {
+  const CauseSearch& search = diagnosis.report.search;
+  Json json;
+  json["recording"] = diagnosis.recording;
+  json["postures"] = diagnosis.report.postures;
+  json["held_out_mm"] = 1e3 * search.error;
+  json["accepted"] = search.accepted;
+  if (!search.chosen.empty()) {
+    json["nested_mm"] = 1e3 * search.nested_error;
+    json["nested_gain_mm"] = 1e3 * search.nested_gain;
+    json["nested_gain_sd_mm"] = 1e3 * search.nested_gain_sd;
+  }
+  json["chosen"] = Json::array();
+  for (const CauseFinding& finding : search.chosen) {
+    json["chosen"].push_back(CandidateJson(diagnosis.report, finding));
+  }
+  json["words"] = DescribeDiagnosis(diagnosis.report);
+  json["candidates"] = Json::array();
+  for (const CauseFinding& finding : search.findings) {
+    json["candidates"].push_back(CandidateJson(diagnosis.report, finding));
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal

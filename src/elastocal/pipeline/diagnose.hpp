@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastocal/pipeline/choose_causes.hpp"
+
+namespace elastocal {
+
+/// What is left of the errors of a calibration, and why.
+struct Diagnosis {
+  CauseReport report;
+  std::string recording;
+  std::vector<std::filesystem::path> inputs;
+  double seconds = 0.0;
+};
+
+/// Studies the recording that the calibration in a folder was made from (runs.json beside it).
+/// Throws InputError where that, the project or the recording is not there or has changed.
+Diagnosis Diagnose(const std::filesystem::path& folder, const std::filesystem::path& project,
+                   std::optional<std::uint64_t> seed);
+
+/// A cause in words: "arm_6_joint: hysteresis of 7.6 +- 0.8 mrad, by the direction of its last
+/// motion; alone it takes the held-out error from 2.66 to 2.30 mm".
+std::string DescribeCause(const CauseReport& report, const CauseFinding& finding);
+
+/// The diagnosis in words, a sentence each.
+std::vector<std::string> DescribeDiagnosis(const CauseReport& report);
+
+/// candidates[], chosen[] and the held-out errors, as JSON (docs/formats.md).
+std::string MakeDiagnosisJson(const Diagnosis& diagnosis);
+
+}  // namespace elastocal
