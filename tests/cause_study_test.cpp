@@ -55,7 +55,7 @@ Measurements Record(const Project& project, const Injected* injected, std::uint6
   real.elasticity.hours = 1.0;
   if (injected != nullptr) real.elasticity.extra = {injected->cause};
   ErrorModel model = MakeProjectModel(real, {});
-  model.T_ref_waist.translation() = {1.0, 0.5, 0.8};
+  model.T_ref_waist.translation() = Eigen::Vector3d(1.0, 0.5, 0.8);
   Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
   for (int i = 0; i < model.parameter_count(); ++i) {
     const Kind kind = model.parameters[static_cast<std::size_t>(i)].kind;

@@ -12,7 +12,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kNineInTen = 1.2816;       // quantile of the normal distribution
+constexpr double kNineInTen = 1.2816;  // quantile of the normal distribution
+constexpr int kWideningRounds = 4;
+constexpr double kMostWidening = 100.0;     // of a variance, see MostWidening
 constexpr double kLeastInformation = 1e-6;  // of a correction of typical size
 
 /// Columns of causes and of the base.
@@ -90,6 +92,37 @@ double ErrorOf(const LinearStudy::Posture& posture, const Eigen::VectorXd& resid
                    std::max(1, posture.markers));
 }
 
+/// A cause fitted beside the base: its prior is widened as far as its size asks for, like that of
+/// the calibration (EstimatePriorScale).
+struct CauseFit {
+  Eigen::MatrixXd information;  ///< of the data alone
+  Eigen::VectorXd step;
+  Eigen::MatrixXd covariance;
+};
+
+CauseFit FitCause(const LinearStudy& study, const BaseFit& fit, int cause) {
+  const std::vector<int> at = fit.Positions(study, cause);
+  const std::vector<int> columns = ColumnsOf(study, {cause});
+  const auto count = static_cast<Eigen::Index>(at.size());
+  const Eigen::MatrixXd prior = study.other(columns, columns);
+  CauseFit result;
+  result.information = fit.left(at, at) - prior;
+  // Directions of which the data say nothing count for nothing.
+  result.information.diagonal().array() += kLeastInformation;
+  const Eigen::VectorXd gradient = fit.gradient(at);
+  double widening = 1.0;  // of the variance
+  for (int round = 0; round < kWideningRounds; ++round) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(result.information + prior / widening);
+    result.step = -factor.solve(gradient);
+    result.covariance = factor.solve(Eigen::MatrixXd::Identity(count, count));
+    const double determined =
+        static_cast<double>(count) - (prior / widening * result.covariance).trace();
+    const double size = result.step.dot(prior * result.step);
+    widening = std::clamp(size / std::max(1e-3, determined), 1.0, kMostWidening);
+  }
+  return result;
+}
+
 /// Postures, dealt to folds at random.
 std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random& random) {
   for (std::size_t i = postures.size() - 1; i > 0; --i) {
@@ -162,21 +195,16 @@ class Search {
     const std::vector<int> at = fit.Positions(study_, cause);
     const auto count = static_cast<Eigen::Index>(at.size());
     const std::vector<int> columns = ColumnsOf(study_, {cause});
-    const Eigen::MatrixXd prior = study_.other(columns, columns);
-    const Eigen::MatrixXd with_prior = fit.left(at, at);
-    // Directions of which the data say nothing count for nothing.
-    Eigen::MatrixXd information = with_prior - prior;
-    information.diagonal().array() += kLeastInformation;
+    const CauseFit fitted = FitCause(study_, fit, cause);
+    const Eigen::MatrixXd& information = fitted.information;
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
     const Eigen::VectorXd gradient = fit.gradient(at);
     const double inflation = Inflation(fit, at, factor);
     finding.score = gradient.dot(factor.solve(gradient)) / static_cast<double>(count) / inflation;
     finding.p = FisherUpperTail(std::max(0.0, finding.score), static_cast<double>(count),
                                 study_.degrees_of_freedom);
-    const Eigen::LLT<Eigen::MatrixXd> posterior(with_prior);
-    const Eigen::VectorXd step = -posterior.solve(gradient);
-    const Eigen::MatrixXd covariance =
-        inflation * posterior.solve(Eigen::MatrixXd::Identity(count, count));
+    const Eigen::VectorXd& step = fitted.step;
+    const Eigen::MatrixXd covariance = inflation * fitted.covariance;
     for (Eigen::Index i = 0; i < count; ++i) {
       const auto correction =
           static_cast<std::size_t>(columns[static_cast<std::size_t>(i)] - study_.base);
@@ -258,6 +286,8 @@ class Search {
     Sums training = sums_;
     for (int i : fold) training.Add(study_.postures[static_cast<std::size_t>(i)], -1.0);
     const BaseFit fit(study_, training, taken);
+    std::vector<Eigen::VectorXd> steps;
+    for (int cause : causes_) steps.push_back(FitCause(study_, fit, cause).step);
     for (int i : fold) {
       const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
       if (posture.residual.size() == 0) continue;
@@ -266,10 +296,8 @@ class Search {
       squares(i, 0) += std::pow(ErrorOf(posture, residual), 2);
       for (std::size_t k = 0; k < causes_.size(); ++k) {
         const std::vector<int> at = fit.Positions(study_, causes_[k]);
-        const Eigen::VectorXd step =
-            -Eigen::LLT<Eigen::MatrixXd>(fit.left(at, at)).solve(fit.gradient(at));
         squares(i, static_cast<Eigen::Index>(k) + 1) +=
-            std::pow(ErrorOf(posture, residual + beside(Eigen::all, at) * step), 2);
+            std::pow(ErrorOf(posture, residual + beside(Eigen::all, at) * steps[k]), 2);
       }
     }
   }

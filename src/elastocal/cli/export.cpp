@@ -29,6 +29,7 @@ int Export(const ExportCommand& command) {
   options.version = ProgramVersion();
   outputs.Set(command.output, ExportCalibration(robot, options));
   outputs.Publish();
+  WarnOfExtra(robot);
   Print(command.quiet, fmt::format("Written: {}\n", command.output));
   return kFine;
 }

@@ -7,6 +7,7 @@
 
 #include "elastocal/cli/warning_groups.hpp"
 #include "elastocal/math/utf8.hpp"
+#include "elastocal/pipeline/choose_causes.hpp"
 
 namespace elastocal::cli {
 
@@ -20,6 +21,12 @@ void PrintWarnings(const std::vector<std::string>& warnings, bool verbose) {
   for (const std::string& warning : verbose ? warnings : GroupWarnings(warnings)) {
     spdlog::warn("{}", warning);
   }
+}
+
+void WarnOfExtra(const CalibratedRobot& robot) {
+  const std::string text =
+      NotApplied(StoredCauses(robot.project.tree, robot.calibration.joint_errors));
+  if (!text.empty()) PrintWarnings({text});
 }
 
 double InUserUnits(const Parameter& parameter, double value) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastocal/cli/progress.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/robot/parameters.hpp"
 
 namespace elastocal::cli {
@@ -14,6 +15,9 @@ void Print(bool quiet, const std::string& text);
 
 /// Prints warnings to stderr; those that say the same of several things together, unless `verbose`.
 void PrintWarnings(const std::vector<std::string>& warnings, bool verbose = false);
+
+/// Says what a calibration knows that its exports do not apply.
+void WarnOfExtra(const CalibratedRobot& robot);
 
 /// A parameter in the units that people use: mm and deg.
 double InUserUnits(const Parameter& parameter, double value);

@@ -178,6 +178,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   JudgeCoverage(run.coverage, run.verdict);
   run.warnings = std::move(measured.warnings);
   Append(run.verdict.remarks, run.warnings);
+  if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra));
   run.zero_offsets = options.zero_offsets;
   if (run.deployable()) {
     run.urdf = MakeCalibratedUrdf(

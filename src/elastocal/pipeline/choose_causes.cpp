@@ -81,6 +81,16 @@ std::optional<CauseReport> ChooseCauses(const Measurements& measured,
   return report;
 }
 
+std::string NotApplied(const std::vector<std::string>& causes) {
+  if (causes.empty()) return "";
+  std::string names;
+  for (const std::string& cause : causes) names += (names.empty() ? "" : ", ") + cause;
+  return names +
+         ": estimated beside geometry and springs; the calibrated URDF, exported models and "
+         "compensate "
+         "do not apply this";
+}
+
 std::vector<std::string> StoredCauses(const RobotTree& tree,
                                       const std::map<std::string, double>& joint_errors) {
   std::vector<Correction> stored;

@@ -35,4 +35,7 @@ std::optional<CauseReport> ChooseCauses(const Measurements& measured,
 std::vector<std::string> StoredCauses(const RobotTree& tree,
                                       const std::map<std::string, double>& joint_errors);
 
+/// What to say where a calibration with these causes is put to use; empty where there are none.
+std::string NotApplied(const std::vector<std::string>& causes);
+
 }  // namespace elastocal

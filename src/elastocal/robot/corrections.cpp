@@ -11,6 +11,7 @@ using Shape = CorrectionShape;
 constexpr double kSmoothing = 0.02;  // of the effort: below it the sign of a load is not sharp
 constexpr double kLeastLoad = 0.05;  // N.m or N, where the effort is unknown
 constexpr double kTypicalAngle = 2e-3, kTypicalPlay = 3e-3, kTypicalSlide = 2e-4;  // rad, rad, m
+constexpr double kTypicalStiffening = 0.075;  // rad at the effort: 3e-3 at a fifth of it
 constexpr double kTypicalRatio = 3e-3;
 constexpr double kTypicalTilt = 2e-5, kTypicalShift = 1e-5;  // rad/(N.m) and 1/N
 constexpr double kTypicalDrift = 1e-3;                       // m/h
@@ -134,7 +135,7 @@ class Catalogue {
     add("backlash", "backlash", Shape::kBacklash, own, play);
     add("hysteresis", "hysteresis", Shape::kHysteresis, own, play);
     if (turns && KnowsEffort(joint)) {
-      add("stiffening", "stiffening", Shape::kStiffening, own, kTypicalPlay);
+      add("stiffening", "stiffening", Shape::kStiffening, own, kTypicalStiffening);
     }
   }
 

@@ -20,7 +20,7 @@ Eigen::VectorXd Shapes(const RobotTree& tree, const std::vector<Correction>& cor
 TEST(Corrections, ShapesHaveTheirHandValues) {
   RobotTree tree = PlanarArm();
   for (Joint& joint : tree.joints) {
-    joint.limits = {.lower = -1.0, .upper = 2.0, .effort = 10.0};
+    joint.limits = {-1.0, 2.0, 1.0, 10.0};
   }
   const std::vector<Correction> all = PossibleCorrections(tree, 100.0);
   const Eigen::VectorXd q = Eigen::Vector2d(0.3, 0.7);
@@ -60,11 +60,11 @@ TEST(Corrections, DriftNeedsTimesAndMimicJointsHaveNone) {
 // A gear that turns by a hundredth less than its encoder says.
 TEST(Corrections, AGearTurnsTheJointByItsShare) {
   RobotTree tree = PlanarArm();
-  for (Joint& joint : tree.joints) joint.limits = {.lower = -1.0, .upper = 1.0};
+  for (Joint& joint : tree.joints) joint.limits = {-1.0, 1.0, 1.0, 10.0};
   Elasticity elasticity;
   elasticity.corrections = CorrectionsOf(PossibleCorrections(tree, std::nullopt), {"elbow.gear"});
-  const ErrorModel model = MakeErrorModel(
-      tree, {{"M", FindLink(tree, "tip"), Eigen::Vector3d::Zero()}}, {}, elasticity);
+  const ErrorModel model =
+      MakeErrorModel(tree, {{"M", FindLink(tree, "tip"), Eigen::Vector3d::Zero()}}, {}, elasticity);
   Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
   delta[FindParameter(model.parameters, "elbow.gear")] = -0.01;
   JointLoads loads = JointLoads::Zero(3, 2);
@@ -72,9 +72,9 @@ TEST(Corrections, AGearTurnsTheJointByItsShare) {
   loads.shapes = Shapes(tree, elasticity.corrections, q, 0.0, {});
   const Eigen::Vector3d found = MarkerPositions(model, ApplyErrors(model, delta), q, loads);
   const double turned = 0.99 * 0.8;
-  EXPECT_LT((found - Eigen::Vector3d(0.5 + 0.3 * std::cos(turned), 0.3 * std::sin(turned), 0.0))
-                .norm(),
-            1e-15);
+  EXPECT_LT(
+      (found - Eigen::Vector3d(0.5 + 0.3 * std::cos(turned), 0.3 * std::sin(turned), 0.0)).norm(),
+      1e-15);
 }
 
 class CorrectionsOfRandomRobots : public testing::TestWithParam<int> {};

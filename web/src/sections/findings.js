@@ -68,8 +68,9 @@ export function findingsSection(report) {
   if (!summary) return null;
   const names = knownNames(report);
   const {objections, remarks, warnings} = spoken(summary);
-  const quiet = !objections.length && !remarks.length && !warnings.length && !summary.outliers?.length;
+  const quiet = !objections.length && !remarks.length && !warnings.length && !summary.outliers?.length && !summary.diagnosis?.length;
   return section('findings', 'Findings', 'Warnings and outliers', quiet ? 'The program found nothing that needs a look.' : 'This is what the program found on the way, the gravest first.',
     words('Why the result should not be deployed', 'bad', objections, names), words('Look at these before deploying', 'check', remarks, names),
+    words('What geometry and springs leave, and why', '', (summary.diagnosis ?? []).map((text) => text.trim()), names),
     words('Warnings', '', warnings, names), outlierFigure(report), trialsFigure(report));
 }
