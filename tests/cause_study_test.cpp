@@ -18,6 +18,8 @@ namespace {
 
 using Kind = ParameterKind;
 
+constexpr double kMarkerNoise = 0.1e-3;  // m: of a posture, which is the mean of many frames
+
 constexpr const char* kProject = R"(
 robot: {urdf: models/talos/talos.urdf}
 chains: [{name: arm, tip: gripper_left_base_link}]
@@ -34,11 +36,12 @@ struct Injected {
   double size;
 };
 
+// On a joint that turns far, with a long lever, under loads of both signs.
 constexpr Injected kInjected[] = {
-    {"arm_left_4_joint.eccentricity", "arm_left_4_joint.eccentricity_sin", 1e-3},
-    {"arm_left_2_joint.backlash", "arm_left_2_joint.backlash", 1e-3},
+    {"arm_left_3_joint.eccentricity", "arm_left_3_joint.eccentricity_sin", 1e-3},
+    {"arm_left_3_joint.backlash", "arm_left_3_joint.backlash", 1e-3},
     {"arm_left_3_joint.hysteresis", "arm_left_3_joint.hysteresis", 1e-3},
-    {"arm_left_4_joint.gear", "arm_left_4_joint.gear", 1e-3},
+    {"arm_left_3_joint.gear", "arm_left_3_joint.gear", 1e-3},
     {"waist.suspension", "waist.suspension_rx", 1e-5},
     {"waist.drift", "waist.drift_x", 0.5e-3},
 };
@@ -68,11 +71,11 @@ Measurements Record(const Project& project, const Injected* injected, std::uint6
     delta[FindParameter(model.parameters, injected->parameter)] = injected->size;
   }
   Recording recording =
-      MakeSyntheticRecording(model, delta, {.postures = 60, .marker_sd = 0.2e-3, .seed = seed});
+      MakeSyntheticRecording(model, delta, {.postures = 60, .marker_sd = 0.0, .seed = seed});
   recording.time_s = Eigen::VectorXd::LinSpaced(60, 0.0, 7200.0);
   NoteApproach(recording);
   recording.markers = PredictedPositions(model, recording, delta, {});
-  for (double& x : recording.markers.reshaped()) x += random.Normal(0.2e-3);
+  for (double& x : recording.markers.reshaped()) x += random.Normal(kMarkerNoise);
   Measurements measured;
   measured.calibration = std::move(recording);
   return measured;

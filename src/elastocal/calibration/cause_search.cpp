@@ -170,7 +170,7 @@ class Search {
       int best = -1;
       for (std::size_t i = 0; i < findings.size(); ++i) {
         if (!Helps(findings[i])) continue;
-        if (best < 0 || findings[i].gain > findings[static_cast<std::size_t>(best)].gain) {
+        if (best < 0 || findings[i].p < findings[static_cast<std::size_t>(best)].p) {
           best = static_cast<int>(i);
         }
       }
@@ -199,7 +199,7 @@ class Search {
     const Eigen::MatrixXd& information = fitted.information;
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
     const Eigen::VectorXd gradient = fit.gradient(at);
-    const double inflation = Inflation(fit, at, factor);
+    const double inflation = Inflation(fit, at, fitted.step, factor);
     finding.score = gradient.dot(factor.solve(gradient)) / static_cast<double>(count) / inflation;
     finding.p = FisherUpperTail(std::max(0.0, finding.score), static_cast<double>(count),
                                 study_.degrees_of_freedom);
@@ -216,18 +216,22 @@ class Search {
     return finding;
   }
 
-  /// The scatter of the postures' scores over what the noise model expects, at least 1.
-  double Inflation(const BaseFit& fit, const std::vector<int>& at,
+  /// The scatter of the postures' scores, the cause being fitted, over what the noise model
+  /// expects, at least 1.
+  double Inflation(const BaseFit& fit, const std::vector<int>& at, const Eigen::VectorXd& step,
                    const Eigen::LLT<Eigen::MatrixXd>& factor) const {
     double found = 0.0;
+    double count = 0.0;
     for (int i : postures_) {
       const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
       if (posture.residual.size() == 0) continue;
-      const Eigen::VectorXd score =
-          fit.Beside(posture)(Eigen::all, at).transpose() * fit.Residual(posture);
+      const Eigen::MatrixXd columns = fit.Beside(posture)(Eigen::all, at);
+      const Eigen::VectorXd score = columns.transpose() * (fit.Residual(posture) + columns * step);
       found += score.dot(factor.solve(score));
+      count += 1.0;
     }
-    return std::max(1.0, found / static_cast<double>(at.size()));
+    const auto size = static_cast<double>(at.size());
+    return std::max(1.0, found / size * count / std::max(1.0, count - size));
   }
 
   void SetVisible(const BaseFit& fit, const std::vector<int>& at, double sd,
