@@ -90,6 +90,22 @@ void AddSensors(SensorOptions& sensors, Settings& list) {
        {l, "torque_noise_nm", &sensors.torque_noise_sd, 1, 0, 1000, "Noise of torque sensors"}});
 }
 
+void AddCauses(SensorOptions& sensors, Settings& list) {
+  constexpr double kMilli = 1e-3;
+  const std::string c = "Causes beyond geometry and springs (none by default)";
+  list.insert(list.end(), {{c, "cause_joint", &sensors.cause_joint, 1, 0, 0, "Joint that has them"},
+                           {c, "eccentricity_mrad", &sensors.eccentricity, kMilli, -100, 100,
+                            "Its encoder's disc is off centre: amplitude of sin q"},
+                           {c, "gear_error_share", &sensors.gear_error, 1, -0.1, 0.1,
+                            "Error of its gear's ratio"},
+                           {c, "backlash_mrad", &sensors.backlash, kMilli, -100, 100,
+                            "Half width of its play, by the sign of its load"},
+                           {c, "hysteresis_mrad", &sensors.hysteresis, kMilli, -100, 100,
+                            "Half width, by the direction of its last motion"},
+                           {c, "cameras_drift_mm_per_h", &sensors.cameras_drift, kMillimetre, -1000,
+                            1000, "Of all markers along x, in each trial"}});
+}
+
 void AddPlay(PhysicsOptions& physics, MotionOptions& motion, Settings& list) {
   const std::string p = "Physics";
   list.insert(list.end(), {{p, "time_step_s", &physics.time_step_s, 1, 1e-5, 0.01,
@@ -208,6 +224,7 @@ std::vector<SimulationSetting> SimulationSettings(VirtualExperimentOptions& opti
   Settings list;
   AddTruth(options.truth, list);
   AddSensors(options.sensors, list);
+  AddCauses(options.sensors, list);
   AddPlay(options.physics, options.motion, list);
   AddFaults(options.faults, list);
   return list;

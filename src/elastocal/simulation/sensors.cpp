@@ -77,6 +77,25 @@ Eigen::RowVectorXd Interpolate(const Eigen::MatrixXd& samples, double position) 
          (3.0 * s2 - 2.0 * s3) * row(i + 1) + (s3 - s2) * slope_1;
 }
 
+/// Puts the causes of error of one joint into its logged positions: what they add to the joint's
+/// position, its encoder does not show.
+void AddCauses(const TrueRobot& robot, const SensorOptions& options, JointLog& log) {
+  constexpr double kLeastSpeed = 1e-3;  // rad/s: slower is no motion
+  if (options.cause_joint.empty()) return;
+  const int joint = FindJoint(robot.tree, options.cause_joint);
+  const int c = robot.tree.joints[static_cast<std::size_t>(joint)].coordinate;
+  const Eigen::VectorXd q = log.positions.col(c);
+  double direction = 0.0;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const double speed = i > 0 ? (q[i] - q[i - 1]) * options.log_rate_hz : 0.0;
+    if (std::abs(speed) > kLeastSpeed) direction = std::copysign(1.0, speed);
+    const double load = -log.torques(i, c);
+    const double side = load == 0.0 ? 0.0 : std::copysign(1.0, load);
+    log.positions(i, c) -= options.eccentricity * std::sin(q[i]) + options.gear_error * q[i] +
+                           options.backlash * side + options.hysteresis * direction;
+  }
+}
+
 /// The robot logs from time zero of its clock until the cameras stop, but at least one sample.
 JointLog MakeLog(const TrueRobot& robot, const TrueMotion& motion, const SensorOptions& options,
                  const SensorTruth& truth, Random& random) {
@@ -98,6 +117,7 @@ JointLog MakeLog(const TrueRobot& robot, const TrueMotion& motion, const SensorO
     log.positions.row(i) = Interpolate(motion.encoders, frame);
     log.torques.row(i) = Interpolate(motion.torques, frame);
   }
+  AddCauses(robot, options, log);
   for (Eigen::Index c = 0; c < log.positions.cols(); ++c) {
     const int k = robot.tree.coordinate_joint[static_cast<std::size_t>(c)];
     const bool slides =
@@ -144,6 +164,14 @@ RawTrial Measure(const TrueRobot& robot, const std::vector<NamedCluster>& cluste
 
   Eigen::MatrixXd positions = motion.markers;
   PushMarkers(faults, clusters, trials, index, motion, positions, raw.truth.faults);
+  if (options.cameras_drift != 0.0) {
+    for (Eigen::Index i = 0; i < positions.rows(); ++i) {
+      const double hours = static_cast<double>(i) / motion.rate_hz / 3600.0;
+      for (Eigen::Index m = 0; m < positions.cols(); m += 3) {
+        positions(i, m) += options.cameras_drift * hours;
+      }
+    }
+  }
   Random noise(StreamSeed(options.seed, "marker noise " + name));
   AddNoise(options, noise, positions);
   Random swaps(StreamSeed(options.seed, "swaps " + name));

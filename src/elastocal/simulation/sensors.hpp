@@ -34,6 +34,15 @@ struct SensorOptions {
   double drift_size_ppm = 30.0;
   int encoder_bits = 19;         ///< bits for one turn; 0: not quantised
   double torque_noise_sd = 0.2;  ///< N.m or N
+
+  // What neither geometry nor springs describe (docs/diagnose.md), of one joint: the log differs
+  // from the joint's position by it. None where the joint is not named.
+  std::string cause_joint;
+  double eccentricity = 0.0;   ///< amplitude of sin q, rad
+  double gear_error = 0.0;     ///< share of the position
+  double backlash = 0.0;       ///< half width, by the sign of the load, rad
+  double hysteresis = 0.0;     ///< half width, by the direction of the last motion, rad
+  double cameras_drift = 0.0;  ///< of all markers along x, m/h, whatever the joint
 };
 
 /// Faults that are put in on purpose; by default none.
