@@ -100,6 +100,17 @@ int Seeds() {
   return seeds == nullptr ? 2 : std::atoi(seeds);
 }
 
+/// The estimate is the injected size, within four standard deviations and what springs, which are
+/// fitted beside it, may take of it.
+void ExpectSize(const CauseReport& report, const CauseFinding& finding, const Injected& injected) {
+  for (std::size_t i = 0; i < finding.parameters.size(); ++i) {
+    const std::string& name =
+        report.parameters[static_cast<std::size_t>(finding.parameters[i])].name;
+    const double size = name == injected.parameter ? injected.size : 0.0;
+    EXPECT_NEAR(finding.estimate[i], size, 4.0 * finding.sd[i] + 0.1 * injected.size) << name;
+  }
+}
+
 TEST(Causes, TheInjectedOneIsNamedFirst) {
   const Project project = Elastic(ArmProject());
   for (const Injected& injected : kInjected) {
@@ -112,6 +123,7 @@ TEST(Causes, TheInjectedOneIsNamedFirst) {
       const std::string named = search.chosen.empty() ? "nothing" : search.chosen.front().cause;
       if (search.accepted && named == injected.cause) {
         ++first;
+        ExpectSize(report, search.chosen.front(), injected);
       } else {
         std::printf("  seed %d: %s%s (best %s, p %.2g)\n", seed, named.c_str(),
                     search.accepted ? "" : " not accepted", search.findings.front().cause.c_str(),

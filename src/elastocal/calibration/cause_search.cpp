@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "elastocal/calibration/cause_fit.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/statistics.hpp"
 
@@ -13,114 +14,10 @@ namespace elastocal {
 namespace {
 
 constexpr double kNineInTen = 1.2816;  // quantile of the normal distribution
-constexpr int kWideningRounds = 4;
-constexpr double kMostWidening = 100.0;     // of a variance, see MostWidening
-constexpr double kLeastInformation = 1e-6;  // of a correction of typical size
-
-/// Columns of causes and of the base.
-std::vector<int> ColumnsOf(const LinearStudy& study, const std::vector<int>& causes) {
-  std::vector<int> columns;
-  for (int cause : causes) {
-    for (int c : study.of_cause[static_cast<std::size_t>(cause)]) columns.push_back(study.base + c);
-  }
-  return columns;
-}
-
-std::vector<int> BaseWith(const LinearStudy& study, const std::vector<int>& causes) {
-  std::vector<int> columns(static_cast<std::size_t>(study.base));
-  std::iota(columns.begin(), columns.end(), 0);
-  const std::vector<int> more = ColumnsOf(study, causes);
-  columns.insert(columns.end(), more.begin(), more.end());
-  return columns;
-}
-
-/// Normal equations in all columns of the study, over some of its postures.
-struct Sums {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
-
-  explicit Sums(const LinearStudy& study)
-      : information(study.other), gradient(study.other_gradient) {}
-  void Add(const LinearStudy::Posture& posture, double sign) {
-    if (posture.residual.size() == 0) return;
-    information.noalias() += sign * posture.jacobian.transpose() * posture.jacobian;
-    gradient.noalias() += sign * posture.jacobian.transpose() * posture.residual;
-  }
-};
-
-/// The fit of the base (with the causes taken so far) to what is in the sums, and the columns of
-/// all others beside it.
-struct BaseFit {
-  std::vector<int> columns, others;
-  Eigen::MatrixXd information;  ///< of all, as in the sums
-  Eigen::VectorXd step;         ///< of the base
-  Eigen::MatrixXd explained;    ///< base x others: what the base makes of each
-  Eigen::MatrixXd left;         ///< information of the others beside the base
-  Eigen::VectorXd gradient;     ///< of the others beside the base
-
-  BaseFit(const LinearStudy& study, const Sums& sums, const std::vector<int>& taken)
-      : columns(BaseWith(study, taken)) {
-    for (int c = study.base; c < study.columns(); ++c) {
-      if (std::find(columns.begin(), columns.end(), c) == columns.end()) others.push_back(c);
-    }
-    const Eigen::LLT<Eigen::MatrixXd> factor(sums.information(columns, columns));
-    step = -factor.solve(sums.gradient(columns));
-    const Eigen::MatrixXd cross = sums.information(columns, others);
-    explained = factor.solve(cross);
-    left = sums.information(others, others) - cross.transpose() * explained;
-    gradient = sums.gradient(others) + cross.transpose() * step;
-  }
-  /// Where the columns of a cause stand among the others.
-  std::vector<int> Positions(const LinearStudy& study, int cause) const {
-    std::vector<int> positions;
-    for (int c : ColumnsOf(study, {cause})) {
-      positions.push_back(
-          static_cast<int>(std::find(others.begin(), others.end(), c) - others.begin()));
-    }
-    return positions;
-  }
-  Eigen::VectorXd Residual(const LinearStudy::Posture& posture) const {
-    return posture.residual + posture.jacobian(Eigen::all, columns) * step;
-  }
-  Eigen::MatrixXd Beside(const LinearStudy::Posture& posture) const {
-    return posture.jacobian(Eigen::all, others) - posture.jacobian(Eigen::all, columns) * explained;
-  }
-};
 
 double ErrorOf(const LinearStudy::Posture& posture, const Eigen::VectorXd& residual) {
   return std::sqrt(residual.cwiseProduct(posture.to_metres).squaredNorm() /
                    std::max(1, posture.markers));
-}
-
-/// A cause fitted beside the base: its prior is widened as far as its size asks for, like that of
-/// the calibration (EstimatePriorScale).
-struct CauseFit {
-  Eigen::MatrixXd information;  ///< of the data alone
-  Eigen::VectorXd step;
-  Eigen::MatrixXd covariance;
-};
-
-CauseFit FitCause(const LinearStudy& study, const BaseFit& fit, int cause) {
-  const std::vector<int> at = fit.Positions(study, cause);
-  const std::vector<int> columns = ColumnsOf(study, {cause});
-  const auto count = static_cast<Eigen::Index>(at.size());
-  const Eigen::MatrixXd prior = study.other(columns, columns);
-  CauseFit result;
-  result.information = fit.left(at, at) - prior;
-  // Directions of which the data say nothing count for nothing.
-  result.information.diagonal().array() += kLeastInformation;
-  const Eigen::VectorXd gradient = fit.gradient(at);
-  double widening = 1.0;  // of the variance
-  for (int round = 0; round < kWideningRounds; ++round) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(result.information + prior / widening);
-    result.step = -factor.solve(gradient);
-    result.covariance = factor.solve(Eigen::MatrixXd::Identity(count, count));
-    const double determined =
-        static_cast<double>(count) - (prior / widening * result.covariance).trace();
-    const double size = result.step.dot(prior * result.step);
-    widening = std::clamp(size / std::max(1e-3, determined), 1.0, kMostWidening);
-  }
-  return result;
 }
 
 /// Postures, dealt to folds at random.
@@ -140,7 +37,7 @@ std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random&
 class Search {
  public:
   Search(const LinearStudy& study, const CauseSearchOptions& options, std::vector<int> postures,
-         const Sums& sums, std::uint64_t seed)
+         const StudySums& sums, std::uint64_t seed)
       : study_(study),
         options_(options),
         postures_(std::move(postures)),
@@ -150,6 +47,7 @@ class Search {
   /// All causes beside those that are taken.
   std::vector<CauseFinding> Findings(const std::vector<int>& taken) {
     const BaseFit fit(study_, sums_, taken);
+    PlaceBeside(fit);
     std::vector<CauseFinding> findings;
     causes_.clear();
     for (int cause = 0; cause < static_cast<int>(study_.causes.size()); ++cause) {
@@ -194,7 +92,7 @@ class Search {
     finding.cause = study_.causes[static_cast<std::size_t>(cause)];
     const std::vector<int> at = fit.Positions(study_, cause);
     const auto count = static_cast<Eigen::Index>(at.size());
-    const std::vector<int> columns = ColumnsOf(study_, {cause});
+    const std::vector<int> columns = CauseColumns(study_, {cause});
     const CauseFit fitted = FitCause(study_, fit, cause);
     const Eigen::MatrixXd& information = fitted.information;
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
@@ -216,6 +114,15 @@ class Search {
     return finding;
   }
 
+  /// The columns of all causes in each posture, beside the base.
+  void PlaceBeside(const BaseFit& fit) {
+    beside_.resize(study_.postures.size());
+    for (int i : postures_) {
+      const auto posture = static_cast<std::size_t>(i);
+      beside_[posture] = fit.Beside(study_.postures[posture]);
+    }
+  }
+
   /// The scatter of the postures' scores, the cause being fitted, over what the noise model
   /// expects, at least 1.
   double Inflation(const BaseFit& fit, const std::vector<int>& at, const Eigen::VectorXd& step,
@@ -225,7 +132,7 @@ class Search {
     for (int i : postures_) {
       const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
       if (posture.residual.size() == 0) continue;
-      const Eigen::MatrixXd columns = fit.Beside(posture)(Eigen::all, at);
+      const Eigen::MatrixXd columns = beside_[static_cast<std::size_t>(i)](Eigen::all, at);
       const Eigen::VectorXd score = columns.transpose() * (fit.Residual(posture) + columns * step);
       found += score.dot(factor.solve(score));
       count += 1.0;
@@ -245,7 +152,7 @@ class Search {
     for (int i : postures_) {
       const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
       if (posture.residual.size() == 0) continue;
-      const Eigen::VectorXd moved = fit.Beside(posture).col(at.front());
+      const Eigen::VectorXd moved = beside_[static_cast<std::size_t>(i)].col(at.front());
       squares += moved.cwiseProduct(posture.to_metres).squaredNorm();
       markers += posture.markers;
     }
@@ -287,7 +194,7 @@ class Search {
 
   void AddFold(const std::vector<int>& taken, const std::vector<int>& fold,
                Eigen::MatrixXd& squares) const {
-    Sums training = sums_;
+    StudySums training = sums_;
     for (int i : fold) training.Add(study_.postures[static_cast<std::size_t>(i)], -1.0);
     const BaseFit fit(study_, training, taken);
     std::vector<Eigen::VectorXd> steps;
@@ -332,15 +239,16 @@ class Search {
   const LinearStudy& study_;
   const CauseSearchOptions& options_;
   std::vector<int> postures_;
-  const Sums& sums_;
+  const StudySums& sums_;
   std::uint64_t seed_;
-  std::vector<int> causes_;  // of the findings in hand
+  std::vector<int> causes_;              // of the findings in hand
+  std::vector<Eigen::MatrixXd> beside_;  // by posture
   double error_ = 0.0, mean_error_ = 0.0;
 };
 
 /// The search repeated without each fold, judged on it.
 void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
-                 const std::vector<int>& postures, const Sums& all, CauseSearch& result) {
+                 const std::vector<int>& postures, const StudySums& all, CauseSearch& result) {
   Random random(options.seed);
   const int folds = std::min(options.folds, static_cast<int>(postures.size()));
   CauseSearchOptions inner = options;
@@ -348,7 +256,7 @@ void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
   std::vector<double> gains;
   double squares = 0.0, markers = 0.0;
   for (const std::vector<int>& fold : Deal(postures, folds, random)) {
-    Sums training = all;
+    StudySums training = all;
     for (int i : fold) training.Add(study.postures[static_cast<std::size_t>(i)], -1.0);
     std::vector<int> rest;
     std::vector<int> sorted = fold;
@@ -382,7 +290,7 @@ void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
 CauseSearch SearchCauses(const LinearStudy& study, const CauseSearchOptions& options) {
   CauseSearch result;
   std::vector<int> postures;
-  Sums sums(study);
+  StudySums sums(study);
   for (std::size_t i = 0; i < study.postures.size(); ++i) {
     if (study.postures[i].residual.size() == 0) continue;
     postures.push_back(static_cast<int>(i));
