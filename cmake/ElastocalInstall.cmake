@@ -39,7 +39,9 @@ foreach(component IN LISTS ELASTOCAL_COMPONENTS)
   install(EXPORT elastocal_${component} FILE elastocal_${component}.cmake NAMESPACE elastocal::
     DESTINATION ${package_dir})
 endforeach()
-install(TARGETS elastocal RUNTIME)
+if(ELASTOCAL_PROGRAM)
+  install(TARGETS elastocal RUNTIME)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/elastocal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "cli" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/elastocal)
