@@ -12,6 +12,10 @@ set(ELASTOCAL_calibration_DEPENDENCIES
   "yaml-cpp"
   "nlohmann_json"
   "fmt"
+  "LibZip"
+  "Lz4Zstd"
+  "SQLite3"
+  "ZLIB"
   "Threads")
 set(ELASTOCAL_planning_DEPENDENCIES
   "Ipopt"
