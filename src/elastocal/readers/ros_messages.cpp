@@ -102,7 +102,7 @@ void RosMessages::Add(std::uint64_t id, std::span<const char> message, std::int6
 void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
                                 std::int64_t received_ns, const std::string& place) {
   MessageFields fields(message, topic.encoding == RosEncoding::kCdr, place);
-  std::int64_t stamp = ReadStamp(fields, topic.encoding);
+  const std::int64_t stamp = ReadStamp(fields, topic.encoding);
   const std::vector<std::string> names = fields.Texts();
   const std::vector<double> positions = fields.Numbers();
   fields.Numbers();  // velocities
@@ -113,10 +113,7 @@ void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
                      std::to_string(positions.size()) + " positions and " +
                      std::to_string(efforts.size()) + " efforts");
   }
-  if (stamp == 0) {
-    stamp = received_ns;
-    ++topic.unstamped;
-  }
+  topic.unstamped += stamp == 0 ? 1 : 0;
   auto group = std::find_if(topic.groups.begin(), topic.groups.end(),
                             [&](const JointGroup& one) { return one.names == names; });
   if (group == topic.groups.end()) {
@@ -128,11 +125,12 @@ void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
     if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
       throw InputError(place + "a joint comes twice");
     }
-    topic.groups.push_back({names, {}, {}, {}});
+    topic.groups.push_back({names, {}, {}, {}, {}});
     group = topic.groups.end() - 1;
   }
   efforts.resize(names.size(), kNaN);
   group->stamps_ns.push_back(stamp);
+  group->received_ns.push_back(received_ns);
   group->positions.insert(group->positions.end(), positions.begin(), positions.end());
   group->efforts.insert(group->efforts.end(), efforts.begin(), efforts.end());
 }
@@ -140,12 +138,10 @@ void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
 void RosMessages::AddPose(Topic& topic, std::span<const char> message, std::int64_t received_ns,
                           const std::string& place) {
   MessageFields fields(message, topic.encoding == RosEncoding::kCdr, place);
-  std::int64_t stamp = ReadStamp(fields, topic.encoding);
-  if (stamp == 0) {
-    stamp = received_ns;
-    ++topic.unstamped;
-  }
+  const std::int64_t stamp = ReadStamp(fields, topic.encoding);
+  topic.unstamped += stamp == 0 ? 1 : 0;
   topic.stamps_ns.push_back(stamp);
+  topic.received_ns.push_back(received_ns);
   for (int i = 0; i < 7; ++i) topic.poses.push_back(fields.F64());
 }
 
@@ -237,25 +233,29 @@ JointLog MergeSeries(const std::string& source, const std::vector<JointSeries>& 
 
 }  // namespace
 
+void RosMessages::TakeTimes(Topic& topic, std::vector<std::string>& notes) const {
+  std::string note = "topic " + topic.name + " (" + topic.type +
+                     "): " + std::to_string(topic.messages) + " messages";
+  // A clock of a simulation may begin at 0.
+  if (topic.unstamped > 1 && topic.unstamped < topic.messages) {
+    throw InputError(source_ + ": topic " + Quote(topic.name) + ": " +
+                     std::to_string(topic.unstamped) + " of " + std::to_string(topic.messages) +
+                     " messages have no stamp");
+  }
+  if (topic.unstamped > 1) {
+    note += ", without stamps: their time is when they were received";
+    topic.stamps_ns = topic.received_ns;
+    for (JointGroup& group : topic.groups) group.stamps_ns = group.received_ns;
+  }
+  notes.push_back(std::move(note));
+}
+
 RecordingFile RosMessages::Take() {
   RecordingFile file;
-  for (const auto& [id, topic] : topics_) {
-    std::string note = "topic " + topic.name + " (" + topic.type +
-                       "): " + std::to_string(topic.messages) + " messages";
-    if (topic.unstamped > 0) {
-      if (topic.unstamped != topic.messages) {
-        throw InputError(source_ + ": topic " + Quote(topic.name) + ": " +
-                         std::to_string(topic.unstamped) + " of " + std::to_string(topic.messages) +
-                         " messages have no stamp");
-      }
-      note += ", without stamps: the time is when they were received";
-    }
-    file.notes.push_back(note);
-  }
+  for (auto& [id, topic] : topics_) TakeTimes(topic, file.notes);
   TakeJoints(file);
   TakePoses(file);
-  if (file.joints && file.markers && file.markers_start_s) return file;
-  file.markers_start_s.reset();
+  if (!file.joints || !file.markers) file.markers_start_s.reset();
   return file;
 }
 

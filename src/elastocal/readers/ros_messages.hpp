@@ -39,7 +39,7 @@ class RosMessages {
   /// Messages of one topic with the same names of joints.
   struct JointGroup {
     std::vector<std::string> names;
-    std::vector<std::int64_t> stamps_ns;
+    std::vector<std::int64_t> stamps_ns, received_ns;
     std::vector<double> positions, efforts;  ///< message after message
   };
   struct Topic {
@@ -48,15 +48,17 @@ class RosMessages {
     Kind kind = Kind::kOther;
     RosEncoding encoding = RosEncoding::kCdr;
     std::size_t messages = 0, unstamped = 0;
-    std::vector<JointGroup> groups;       ///< of joint states
-    std::vector<std::int64_t> stamps_ns;  ///< of poses
-    std::vector<double> poses;            ///< x y z, quaternion x y z w
+    std::vector<JointGroup> groups;                    ///< of joint states
+    std::vector<std::int64_t> stamps_ns, received_ns;  ///< of poses
+    std::vector<double> poses;                         ///< x y z, quaternion x y z w
   };
 
   void AddJointState(Topic& topic, std::span<const char> message, std::int64_t received_ns,
                      const std::string& place);
   void AddPose(Topic& topic, std::span<const char> message, std::int64_t received_ns,
                const std::string& place);
+  /// Of a topic that nobody stamped, the times when it was received.
+  void TakeTimes(Topic& topic, std::vector<std::string>& notes) const;
   void TakeJoints(RecordingFile& file);
   void TakePoses(RecordingFile& file);
 
