@@ -422,6 +422,10 @@ MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source)
 
 void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& trajectories,
                  int decimals) {
+  WriteFile(file, FormatQtmTsv(trajectories, decimals));
+}
+
+std::string FormatQtmTsv(const MarkerTrajectories& trajectories, int decimals) {
   CheckNames(trajectories.names);
   constexpr int kTimeDecimals = 5;
   const auto& positions = trajectories.positions;
@@ -438,7 +442,7 @@ void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& tr
     }
     text += "\r\n";
   }
-  WriteFile(file, text);
+  return text;
 }
 
 }  // namespace elastocal

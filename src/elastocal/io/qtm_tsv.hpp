@@ -27,4 +27,7 @@ MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source)
 void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& trajectories,
                  int decimals = 3);
 
+/// The text of such a file.
+std::string FormatQtmTsv(const MarkerTrajectories& trajectories, int decimals = 3);
+
 }  // namespace elastocal

@@ -11,6 +11,8 @@
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/readers/joint_columns.hpp"
+#include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -136,6 +138,70 @@ JointLog ReadJointFile(const fs::path& file, const ReaderOptions& options, const
                      "): there are no joint positions in it: " + read.why_no_joints);
   }
   return TakeJoints(*read.joints, project);
+}
+
+namespace {
+
+/// Whether the first line is of a Qualisys TSV: `KEY<tab>`, or names of columns.
+bool BeginsLikeQtm(const ByteSource& source) {
+  std::array<char, 4096> head{};
+  std::string_view text(head.data(), source.Read(0, head));
+  text = text.substr(0, text.find_first_of("\r\n"));
+  const std::size_t tab = text.find('\t');
+  if (tab == std::string_view::npos) return false;
+  const std::string_view first = text.substr(0, tab);
+  return first == "Frame" || first == "Time" || first.ends_with(" X") ||
+         first.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == std::string_view::npos;
+}
+
+/// A CSV with a column of the time, all of whose other columns are numbers of joints.
+JointLog ReadPlainLog(const ByteSource& source) {
+  SourceStream stream(source);
+  Table table(stream, source.name());
+  const std::vector<std::string>& header = table.header();
+  auto at = std::find(header.begin(), header.end(), "t");
+  if (at == header.end()) at = std::find(header.begin(), header.end(), "time");
+  if (at == header.end()) {
+    table.Fail(
+        "this is no recording of a known format, nor a joint log: there is no column 't' or "
+        "'time'");
+  }
+  std::vector<double> time;
+  std::map<std::string, std::vector<double>> columns;
+  while (table.Next()) {
+    AppendTime(table, static_cast<int>(at - header.begin()), time);
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (header.begin() + static_cast<std::ptrdiff_t>(i) == at) continue;
+      const int column = static_cast<int>(i);
+      const bool torque = header[i].ends_with("_torque") || header[i].ends_with("_effort");
+      columns[header[i]].push_back(torque && IsGap(table.Cell(column)) ? kNaN
+                                                                       : table.Number(column));
+    }
+  }
+  if (time.empty()) throw InputError(source.name() + ": no row below the header");
+  for (const auto& [name, column] : columns) {
+    if (column.size() != time.size()) table.Fail("two columns " + Quote(name));
+  }
+  return JoinColumns(source.name(), time, columns);
+}
+
+}  // namespace
+
+RecordingFile ReadAnyRecording(const fs::path& path, const ReaderOptions& options) {
+  const ByteSource source = ByteSource::Open(path);
+  if (RecogniseRecording(source)) return ReadRecordingFile(source, options);
+  RecordingFile file;
+  if (BeginsLikeQtm(source)) {
+    file.format = "Qualisys TSV";
+    file.markers = ReadQtmTsv(path);
+    file.up = "z";
+    file.why_no_joints = "a Qualisys TSV has no joint positions";
+  } else {
+    file.format = "joint log (CSV)";
+    file.joints = ReadPlainLog(source);
+    file.why_no_markers = "a joint log has joint positions only";
+  }
+  return file;
 }
 
 JointLog TakeJoints(const JointLog& from, const Project& project) {

@@ -30,6 +30,11 @@ MarkerFile ReadMarkerFile(const std::filesystem::path& file, const ReaderOptions
 JointLog ReadJointFile(const std::filesystem::path& file, const ReaderOptions& options,
                        const Project& project);
 
+/// Reads a file of any of these formats, or the program's own (Qualisys TSV, joint log as CSV), by
+/// itself: without a project, under the names of the file. Of a CSV, every column but `t` or `time`
+/// is a joint's. RecordingFile::up is "z" for a Qualisys TSV, by custom.
+RecordingFile ReadAnyRecording(const std::filesystem::path& file, const ReaderOptions& options);
+
 /// A log under the names of a file as one under those of the project: columns renamed, mimic joints
 /// and what the project ignores left out, columns of force-torque sensors taken as such. Throws
 /// InputError: unknown names (with the nearest known one), positions that look like degrees, a
