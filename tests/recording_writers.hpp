@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "elastocal/measurement/trial.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -283,8 +285,35 @@ inline std::string JointStateCdr(const JointLog& log, int sample) {
   return bytes.text;
 }
 
-/// A bag of joint states, without chunks.
-inline std::string McapBytes(const JointLog& log) {
+/// Poses of bodies whose points are the markers, four each (RecordingFile::markers), stamped by the
+/// clock of a log that begins at `start_s`; `add` gets (channel, message).
+template <typename AddMessage>
+void AddPoses(const MarkerTrajectories& markers, double start_s, const AddMessage& add) {
+  for (int frame = 0; frame < markers.frame_count(); ++frame) {
+    const auto ns = static_cast<std::int64_t>(std::llround(1e9 * (frame / markers.rate_hz)) +
+                                              std::llround(1e9 * start_s));
+    for (int body = 0; body < markers.marker_count() / 4; ++body) {
+      const auto point = [&](int i) -> Eigen::Vector3d {
+        return markers.positions.row(frame).segment<3>(3 * (4 * body + i)).transpose();
+      };
+      if (std::isnan(point(0).x())) continue;
+      Eigen::Matrix3d axes;
+      for (int i = 0; i < 3; ++i) axes.col(i) = (point(i + 1) - point(0)).normalized();
+      const Eigen::Quaterniond q(axes);
+      Bytes bytes;
+      bytes.text = std::string("\0\1\0\0", 4);
+      bytes.U(static_cast<std::uint64_t>(ns / 1000000000), 4);
+      bytes.U(static_cast<std::uint64_t>(ns % 1000000000), 4).CdrText("world").Align(8);
+      for (const double number : {point(0).x(), point(0).y(), point(0).z()}) bytes.F64(number);
+      for (const double number : {q.x(), q.y(), q.z(), q.w()}) bytes.F64(number);
+      add(1 + body, bytes.text);
+    }
+  }
+}
+
+/// A bag of joint states, and of poses of bodies where they are given, without chunks.
+inline std::string McapBytes(const JointLog& log, const MarkerTrajectories* bodies = nullptr,
+                             double bodies_start_s = 0.0) {
   const std::string magic("\x89MCAP0\r\n", 8);
   std::string file = magic;
   const auto add = [&](int kind, const Bytes& record) {
@@ -299,6 +328,25 @@ inline std::string McapBytes(const JointLog& log) {
     message.U(0, 2).U(static_cast<std::uint64_t>(i), 4).U(7, 8).U(7, 8);
     message.text += JointStateCdr(log, i);
     add(5, message);
+  }
+  if (bodies) {
+    add(3, Bytes().U(2, 2).Text("geometry_msgs/msg/PoseStamped").Text("ros2msg").Text(""));
+    for (int body = 0; body < bodies->marker_count() / 4; ++body) {
+      std::string name = bodies->names[static_cast<std::size_t>(4 * body)];
+      name.resize(name.size() - 2);  // without "_1"
+      add(4, Bytes()
+                 .U(static_cast<std::uint64_t>(1 + body), 2)
+                 .U(2, 2)
+                 .Text("/mocap/" + name + "/pose")
+                 .Text("cdr")
+                 .U(0, 4));
+    }
+    AddPoses(*bodies, bodies_start_s, [&](int channel, const std::string& text) {
+      Bytes message;
+      message.U(static_cast<std::uint64_t>(channel), 2).U(0, 4).U(7, 8).U(7, 8);
+      message.text += text;
+      add(5, message);
+    });
   }
   add(15, Bytes().U(0, 4));
   add(2, Bytes().U(0, 8).U(0, 8).U(0, 4));

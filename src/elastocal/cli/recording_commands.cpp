@@ -85,8 +85,11 @@ int Convert(const RecordingCommand& command) {
   const RecordingPart part = command.part == "markers"  ? RecordingPart::kMarkers
                              : command.part == "joints" ? RecordingPart::kJoints
                                                         : RecordingPart::kOnlyOne;
-  outputs.Set(command.output, ConvertRecording(command.file, command.reading, part, command.up));
+  const ConvertedRecording converted =
+      ConvertRecording(command.file, command.reading, part, command.up);
+  outputs.Set(command.output, converted.text);
   outputs.Publish();
+  PrintWarnings(converted.warnings);
   Print(command.common.quiet, fmt::format("Written: {}\n", command.output));
   return kFine;
 }

@@ -114,6 +114,31 @@ TEST_F(ForeignRecordingsTest, WhatTheFileDoesNotSayIsAskedFor) {
   ExpectInputError([&] { Read("b.npz", "a.csv"); }, {"b.npz", "no markers"});
 }
 
+// Poses of rigid bodies and joint states in one bag, on the clock that counts from 1970.
+TEST_F(ForeignRecordingsTest, OneBagHoldsBoth) {
+  std::string text = ReadFile(SourceFile("tests/robots/mini_humanoid_project.yaml"));
+  const std::string points = "positions_mm: [[0, 0, 0], [100, 0, 0], [0, 100, 0], [0, 0, 100]]}";
+  for (std::size_t at = 0; (at = text.find("positions_mm", at)) != std::string::npos; ++at) {
+    text.replace(at, text.find('}', at) + 1 - at, points);
+  }
+  project_ = ParseProject(text, project_.file);
+  constexpr double kStart = 1.7e9;
+  ScriptedTrial played =
+      Play(MakeMarkedRobot(project_), {.postures = 8,
+                                       .lag_s = 0.75,
+                                       .marker_sd = 0.0,
+                                       .standing = FindLink(project_.tree, "right_sole")});
+  played.markers.positions.block(700, 0, 30, 12).setConstant(std::nan(""));
+  WriteQtmTsv(folder_.path() / "a.tsv", played.markers, 9);
+  WriteJointLog(folder_.path() / "a.csv", played.log);
+  JointLog stamped = played.log;
+  stamped.time_s.array() += kStart;
+  // The first frame is at -0.75 s of the log's clock.
+  folder_.Write("a.mcap", McapBytes(stamped, &played.markers, kStart - 0.75));
+  ExpectSame(Read("a.mcap", "a.mcap"), 1e-6);
+  ExpectInputError([&] { Read("a.mcap", "a.mcap", ""); }, {"a.mcap", "points up"});
+}
+
 TEST_F(ForeignRecordingsTest, LabelsOfOthersAreNamedInTheProject) {
   MarkerTrajectories others = played_.markers;
   std::string labels = "recording: {labels: {";

@@ -10,6 +10,7 @@
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/gaps.hpp"
 
 namespace elastocal {
@@ -93,6 +94,20 @@ std::string ConvertMarkers(RecordingFile& file, const std::string& up) {
   return FormatQtmTsv(markers, kDecimals);
 }
 
+ConvertedRecording ConvertJoints(JointLog& log) {
+  ConvertedRecording converted;
+  for (Eigen::Index k = 0; k < log.torques.cols(); ++k) {
+    const Eigen::Index missing = log.torques.col(k).array().isNaN().count();
+    if (missing == 0 || missing == log.torques.rows()) continue;
+    log.torques.col(k).setConstant(kNaN);
+    converted.warnings.push_back("joint " + log.names[static_cast<std::size_t>(k)] + ": " +
+                                 std::to_string(missing) +
+                                 " samples have no torque; its torques are left out");
+  }
+  converted.text = FormatJointLog(log);
+  return converted;
+}
+
 }  // namespace
 
 RecordingInfo DescribeRecording(const std::string& file, const ReaderOptions& options, int parts) {
@@ -138,8 +153,8 @@ std::string MakeInfoJson(const RecordingInfo& info) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-std::string ConvertRecording(const std::string& path, const ReaderOptions& options,
-                             RecordingPart part, const std::string& up) {
+ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions& options,
+                                    RecordingPart part, const std::string& up) {
   RecordingFile file = ReadAnyRecording(path, options);
   if (part == RecordingPart::kOnlyOne) {
     if (file.markers && file.joints) {
@@ -150,11 +165,11 @@ std::string ConvertRecording(const std::string& path, const ReaderOptions& optio
     part = file.joints ? RecordingPart::kJoints : RecordingPart::kMarkers;
   }
   if (part == RecordingPart::kMarkers) {
-    if (file.markers) return ConvertMarkers(file, up);
+    if (file.markers) return {ConvertMarkers(file, up), {}};
     throw InputError(path + " (" + file.format +
                      "): there are no markers in it: " + file.why_no_markers);
   }
-  if (file.joints) return FormatJointLog(*file.joints);
+  if (file.joints) return ConvertJoints(*file.joints);
   throw InputError(path + " (" + file.format +
                    "): there are no joint positions in it: " + file.why_no_joints);
 }

@@ -34,11 +34,16 @@ std::string MakeInfoJson(const RecordingInfo& info);
 /// What of a file is written in the program's own format.
 enum class RecordingPart { kOnlyOne, kMarkers, kJoints };
 
+struct ConvertedRecording {
+  std::string text;
+  std::vector<std::string> warnings;  ///< torques of some samples only, which a log cannot hold
+};
+
 /// The file in the program's own format: markers as Qualisys TSV in mm with six decimals, turned
 /// so that z points up, or joints as CSV. `up`: the axis that points up, where the file does not
 /// say. Throws InputError: what ReadAnyRecording refuses; a file without this part; both parts with
 /// kOnlyOne; an axis that nobody says or that contradicts the file.
-std::string ConvertRecording(const std::string& file, const ReaderOptions& options,
-                             RecordingPart part, const std::string& up);
+ConvertedRecording ConvertRecording(const std::string& file, const ReaderOptions& options,
+                                    RecordingPart part, const std::string& up);
 
 }  // namespace elastocal
