@@ -12,6 +12,7 @@ set(ELASTOCAL_calibration_DEPENDENCIES
   "yaml-cpp"
   "nlohmann_json"
   "fmt"
+  "BZip2"
   "LibZip"
   "Lz4Zstd"
   "SQLite3"

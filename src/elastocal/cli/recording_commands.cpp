@@ -99,7 +99,7 @@ void AddRecording(CLI::App& command, RecordingCommand& options) {
   command
       .add_option("recording", options.file,
                   "Recording of cameras or robot: C3D, Vicon CSV, Motive CSV, TRC, Qualisys TSV, "
-                  ".npz, MCAP, db3, joint log; its contents tell which")
+                  ".npz, ROS bag (MCAP, db3, bag), joint log; its contents tell which")
       ->required()
       ->type_name("FILE");
   command

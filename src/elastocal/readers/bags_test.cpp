@@ -55,6 +55,16 @@ TEST(BagsTest, McapOfItsOwnLibrary) {
   }
 }
 
+TEST(BagsTest, BagsOfRos1) {
+  for (const char* name : {"bag1_none.bag", "bag1_lz4.bag", "bag1_bz2.bag"}) {
+    SCOPED_TRACE(name);
+    const RecordingFile file =
+        ReadRecordingFile(SourceFile(std::string("tests/recordings/") + name), {});
+    EXPECT_EQ(file.format, "ROS 1 bag");
+    ExpectMadeBag(file);
+  }
+}
+
 TEST(BagsTest, DatabaseOfSqlite) {
   const std::filesystem::path file = SourceFile("tests/recordings/bag.db3");
   ExpectMadeBag(ReadRecordingFile(file, {}));
@@ -133,6 +143,13 @@ TEST(BagsTest, DamageIsNamedWithItsPlace) {
   };
   for (const char* name : {"bag_none.mcap", "bag_lz4.mcap", "bag_zstd.mcap"}) {
     ExpectInputError([&] { ReadBag(damaged(name, 700)); }, {"bag: byte", "damaged"});
+  }
+  for (const char* name : {"bag1_lz4.bag", "bag1_bz2.bag"}) {
+    const std::string bag = ReadFile(SourceFile(std::string("tests/recordings/") + name));
+    const std::size_t chunk = bag.find("compression=");
+    ExpectInputError([&] { ReadBag(damaged(name, chunk + 60)); }, {"bag: byte", "damaged"});
+    ExpectInputError([&] { ReadBag(bag.substr(0, chunk + 300)); }, {"bag: byte", "cut off"});
+    ExpectInputError([&] { ReadBag(bag.substr(0, bag.size() - 3)); }, {"bag: byte"});
   }
   const std::string database = ReadFile(SourceFile("tests/recordings/bag.db3"));
   ExpectInputError([&] { ReadBag(database.substr(0, 5000)); }, {"bag:", "database"});

@@ -31,6 +31,9 @@ RecordingFile ReadNpz(const ByteSource& source, const ReaderOptions& options);
 bool IsMcap(std::string_view head);
 RecordingFile ReadMcap(const ByteSource& source, const ReaderOptions& options);
 
+bool IsRosbag1(std::string_view head);
+RecordingFile ReadRosbag1(const ByteSource& source, const ReaderOptions& options);
+
 bool IsRosbag2Db3(std::string_view head);
 RecordingFile ReadRosbag2Db3(const ByteSource& source, const ReaderOptions& options);
 

@@ -1,54 +1,20 @@
 #include <array>
 #include <map>
-#include <memory>
 
-#include <lz4frame.h>
 #include <zlib.h>
-#include <zstd.h>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/readers/formats.hpp"
+#include "elastocal/readers/record_fields.hpp"
 #include "elastocal/readers/ros_messages.hpp"
+#include "elastocal/readers/unpack.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
-constexpr std::size_t kLargestChunk = 512u << 20;
 constexpr std::size_t kRecordHead = 9;
-
-/// Fields of a record, one after the other; all little-endian.
-class RecordFields {
- public:
-  RecordFields(const ByteSource& source, std::uint64_t offset, std::span<const char> bytes)
-      : source_(source), offset_(offset), bytes_(bytes) {}
-
-  std::uint64_t Number(std::size_t width) {
-    const std::span<const char> from = Take(width);
-    std::uint64_t number = 0;
-    for (std::size_t i = width; i-- > 0;) {
-      number = number << 8 | static_cast<unsigned char>(from[i]);
-    }
-    return number;
-  }
-  std::string Text() {
-    const auto text = Take(static_cast<std::size_t>(Number(4)));
-    return {text.begin(), text.end()};
-  }
-  std::span<const char> Take(std::uint64_t count) {
-    if (count > bytes_.size()) source_.Fail(offset_, "the record ends within its fields");
-    const auto taken = bytes_.first(static_cast<std::size_t>(count));
-    bytes_ = bytes_.subspan(taken.size());
-    return taken;
-  }
-  std::span<const char> Rest() const { return bytes_; }
-
- private:
-  const ByteSource& source_;
-  std::uint64_t offset_;
-  std::span<const char> bytes_;
-};
 
 /// Records of MCAP, from the first to the end of the data, chunk by chunk.
 class McapReader {
@@ -167,52 +133,11 @@ class McapReader {
     }
   }
 
-  /// Unpacks piece by piece: what is kept is what came out, and not what the chunk claims.
   void Unpack(const std::string& compression, std::span<const char> packed, std::size_t size,
               std::uint64_t offset) {
-    chunk_.clear();
-    const bool fine = compression == "lz4" ? UnpackLz4(packed, size) : UnpackZstd(packed, size);
-    if (!fine) source_.Fail(offset, "the chunk is damaged: its " + compression + " data end early");
-  }
-
-  static constexpr std::size_t kPiece = 1u << 18;
-
-  bool UnpackLz4(std::span<const char> packed, std::size_t size) {
-    LZ4F_dctx* context = nullptr;
-    if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION))) return false;
-    const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(
-        context, LZ4F_freeDecompressionContext);
-    while (!packed.empty() && chunk_.size() <= size) {
-      const std::size_t held = chunk_.size();
-      chunk_.resize(held + kPiece);
-      std::size_t made = kPiece, used = packed.size();
-      const std::size_t hint =
-          LZ4F_decompress(context, &chunk_[held], &made, packed.data(), &used, nullptr);
-      chunk_.resize(held + made);
-      if (LZ4F_isError(hint) || (made == 0 && used == 0)) return false;
-      packed = packed.subspan(used);
-      if (hint == 0 && !packed.empty()) return false;
-    }
-    return true;
-  }
-
-  bool UnpackZstd(std::span<const char> packed, std::size_t size) {
-    const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
-                                                                            ZSTD_freeDStream);
-    if (!stream) return false;
-    ZSTD_DCtx_setParameter(stream.get(), ZSTD_d_windowLogMax, 27);
-    ZSTD_inBuffer in{packed.data(), packed.size(), 0};
-    bool more = true;
-    while (more && chunk_.size() <= size) {
-      const std::size_t held = chunk_.size();
-      chunk_.resize(held + kPiece);
-      ZSTD_outBuffer out{&chunk_[held], kPiece, 0};
-      const std::size_t left = ZSTD_decompressStream(stream.get(), &out, &in);
-      chunk_.resize(held + out.pos);
-      if (ZSTD_isError(left)) return false;
-      more = in.pos < in.size || out.pos == kPiece;
-    }
-    return true;
+    const auto unpack = compression == "lz4" ? UnpackLz4 : UnpackZstd;
+    if (unpack(packed, size, chunk_)) return;
+    source_.Fail(offset, "the chunk is damaged: its " + compression + " data end early");
   }
 
   const ByteSource& source_;

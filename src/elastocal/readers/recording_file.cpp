@@ -19,6 +19,7 @@ struct Format {
 constexpr std::array kFormats = {
     Format{"C3D", IsC3d, ReadC3d},
     Format{"MCAP", IsMcap, ReadMcap},
+    Format{"ROS 1 bag", IsRosbag1, ReadRosbag1},
     Format{"ROS 2 bag (db3)", IsRosbag2Db3, ReadRosbag2Db3},
     Format{"NumPy .npz", IsNpz, ReadNpz},
     Format{"Vicon Nexus CSV", IsViconCsv, ReadViconCsv},

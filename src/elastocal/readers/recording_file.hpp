@@ -32,7 +32,8 @@ struct RecordingFile {
 };
 
 /// Recognises the format by the bytes, never by the name: C3D, Vicon Nexus CSV, OptiTrack Motive
-/// CSV, TRC, QTM TSV of kind 6D, NumPy .npz, MCAP, ROS 2 db3. Nothing for anything else. The name
+/// CSV, TRC, QTM TSV of kind 6D, NumPy .npz, MCAP, ROS 2 db3, ROS 1
+/// bag. Nothing for anything else. The name
 /// is that of RecordingFile::format.
 std::optional<std::string> RecogniseRecording(const ByteSource& source);
 
