@@ -54,4 +54,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/elastocalConfigVersion.cm
 install(FILES ${PROJECT_BINARY_DIR}/elastocalConfig.cmake
   ${PROJECT_BINARY_DIR}/elastocalConfigVersion.cmake
   ${PROJECT_SOURCE_DIR}/cmake/ElastocalDependencies.cmake
-  ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake DESTINATION ${package_dir})
+  ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLibZip.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FindLz4Zstd.cmake DESTINATION ${package_dir})
