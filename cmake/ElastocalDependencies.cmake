@@ -12,6 +12,11 @@ set(ELASTOCAL_calibration_DEPENDENCIES
   "yaml-cpp"
   "nlohmann_json"
   "fmt"
+  "BZip2"
+  "LibZip"
+  "Lz4Zstd"
+  "SQLite3"
+  "ZLIB"
   "Threads")
 set(ELASTOCAL_planning_DEPENDENCIES
   "Ipopt"

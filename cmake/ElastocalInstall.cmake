@@ -39,7 +39,9 @@ foreach(component IN LISTS ELASTOCAL_COMPONENTS)
   install(EXPORT elastocal_${component} FILE elastocal_${component}.cmake NAMESPACE elastocal::
     DESTINATION ${package_dir})
 endforeach()
-install(TARGETS elastocal RUNTIME)
+if(ELASTOCAL_PROGRAM)
+  install(TARGETS elastocal RUNTIME)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/elastocal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "cli" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/elastocal)
@@ -52,4 +54,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/elastocalConfigVersion.cm
 install(FILES ${PROJECT_BINARY_DIR}/elastocalConfig.cmake
   ${PROJECT_BINARY_DIR}/elastocalConfigVersion.cmake
   ${PROJECT_SOURCE_DIR}/cmake/ElastocalDependencies.cmake
-  ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake DESTINATION ${package_dir})
+  ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLibZip.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FindLz4Zstd.cmake DESTINATION ${package_dir})

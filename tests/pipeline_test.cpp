@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/elastocal.hpp"
+#include "elastocal/pipeline/find_faults.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
@@ -100,6 +101,36 @@ TEST_F(Pipeline, ACalibrationIsValidatedOnAnotherRecording) {
   EXPECT_EQ(ValidationStatus(validation), "better");
   EXPECT_LT(validation.transfer.calibrated.metrics.rmse_3d,
             0.5 * validation.transfer.uncalibrated.metrics.rmse_3d);
+}
+
+// The only trial of the estimate cannot show that one of its joints is off: the fit takes that for
+// an error of the robot. The held-out trial shows it.
+TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const BaseParameters base = FindBaseParameters(model, project_.identifiability);
+  const Eigen::VectorXd truth = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+  const auto as_trial = [&](const std::string& name, TrialKind kind, std::uint64_t seed) {
+    Recording recording = MakeSyntheticRecording(model, truth, {.postures = 40, .seed = seed});
+    recording.trials = {{name, kind, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  };
+  const auto contradictions = [&](const Recording& recording, const Recording& held_out) {
+    const RecordedModel robot{model, base, {}};
+    const ModelComparison comparison = CompareModels(
+        Calibrate(model, recording, base, ModelKind::kGeometric, {}), model, recording, base, {});
+    const HeldOut judged = JudgeOnTrials(comparison, held_out, {});
+    return FindContradictions(project_, robot, recording, held_out, comparison, judged.table);
+  };
+  Recording recording = as_trial("swing", TrialKind::kCalibration, 1);
+  const Recording held_out = as_trial("check", TrialKind::kRandom, 2);
+  EXPECT_TRUE(contradictions(recording, held_out).empty());
+  recording.q.col(2).array() += 2.0 * M_PI / 180.0;
+  const std::vector<std::string> found = contradictions(recording, held_out);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find(project_.tree.joints[2].name + ": its positions are off by"),
+            std::string::npos)
+      << found[0];
 }
 
 TEST_F(Pipeline, InspectsEveryChainAndTheWhole) {

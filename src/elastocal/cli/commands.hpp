@@ -60,5 +60,7 @@ void AddReport(CLI::App& app, Action& action);
 void AddPlan(CLI::App& app, Action& action);
 void AddCompensate(CLI::App& app, Action& action);
 void AddExport(CLI::App& app, Action& action);
+void AddInfo(CLI::App& app, Action& action);
+void AddConvert(CLI::App& app, Action& action);
 
 }  // namespace elastocal::cli

@@ -118,6 +118,8 @@ int Run(int argc, char** argv) {
   AddPlan(app, action);
   AddExport(app, action);
   AddCompensate(app, action);
+  AddInfo(app, action);
+  AddConvert(app, action);
   if (argc == 3 && std::string(argv[1]) == "--generate") return Generate(app, argv[2]);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {
     spdlog::error("{} (elastocal --help lists the commands)", unknown);

@@ -7,8 +7,10 @@
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/project_sections.hpp"
+#include "elastocal/io/recorded_files.hpp"
 #include "elastocal/io/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/readers/lengths.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -89,7 +91,7 @@ fs::path ReadFileName(const YamlValue& value, const fs::path& folder, std::vecto
 TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Project& project,
                      std::vector<fs::path>& used) {
   value.ExpectKeys({"name", "kind", "chain", "chains", "support", "markers", "joints",
-                    "expected_lag_s", "truth"});
+                    "markers_unit", "joints_topic", "expected_lag_s", "truth"});
   TrialFiles trial;
   CheckFileName(value.Get("name"));
   trial.name = value.Get("name").Text();
@@ -97,17 +99,34 @@ TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Proje
   trial.chains = ReadChains(value, project);
   if (const auto support = value.Find("support")) ReadSupport(*support, project, trial);
   trial.markers = ReadFileName(value.Get("markers"), folder, used);
-  trial.joints = ReadFileName(value.Get("joints"), folder, used);
+  const YamlValue joints = value.Get("joints");
+  // A bag may hold both.
+  const bool one_file = (folder / joints.Text()).lexically_normal() == trial.markers;
+  trial.joints = one_file ? trial.markers : ReadFileName(joints, folder, used);
+  if (const auto unit = value.Find("markers_unit")) {
+    trial.reading.unit = unit->Text();
+    unit->Expect(MetresIn(trial.reading.unit) > 0.0, "mm, cm, m or in");
+  }
+  if (const auto topic = value.Find("joints_topic")) trial.reading.joints_topic = topic->Text();
   if (const auto lag = value.Find("expected_lag_s")) trial.expected_lag_s = lag->Bounded();
   if (const auto truth = value.Find("truth")) trial.truth = ReadFileName(*truth, folder, used);
   return trial;
 }
 
-/// The axis of the cameras' frame that points up: `z` or `y`.
+/// The axis of the cameras' frame that points up.
 Eigen::Vector3d ReadGravity(const YamlValue& up) {
-  const std::string axis = up.Text();
-  up.Expect(axis == "z" || axis == "y", "z or y");
-  return axis == "z" ? Eigen::Vector3d(0.0, 0.0, -9.81) : Eigen::Vector3d(0.0, -9.81, 0.0);
+  up.Expect(IsAxis(up.Text()), "x, y, z, -x, -y or -z");
+  return GravityBelow(up.Text());
+}
+
+/// The axis again; empty for the default.
+std::string UpOf(const Experiment& experiment) {
+  for (const char* axis : {"x", "y", "z", "-x", "-y", "-z"}) {
+    if (experiment.gravity == GravityBelow(axis)) {
+      return std::string(axis) == "z" && !experiment.up_given ? "" : axis;
+    }
+  }
+  return "";
 }
 
 void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& project,
@@ -133,6 +152,8 @@ void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& p
   };
   emit_file("markers", trial.markers);
   emit_file("joints", trial.joints);
+  if (!trial.reading.unit.empty()) emit("markers_unit", trial.reading.unit);
+  if (!trial.reading.joints_topic.empty()) emit("joints_topic", trial.reading.joints_topic);
   if (trial.expected_lag_s) {
     yaml << YAML::Key << "expected_lag_s" << YAML::Value << FormatNumber(*trial.expected_lag_s);
   }
@@ -173,7 +194,10 @@ Experiment ParseExperiment(const std::string& text, const fs::path& folder,
   root.ExpectKeys({"up", "trials"});
   const YamlValue list = root.Get("trials");
   Experiment experiment;
-  if (const auto up = root.Find("up")) experiment.gravity = ReadGravity(*up);
+  if (const auto up = root.Find("up")) {
+    experiment.gravity = ReadGravity(*up);
+    experiment.up_given = true;
+  }
   std::vector<fs::path> used;
   for (const YamlValue& value : list.Items()) {
     TrialFiles trial = ReadTrial(value, folder, project, used);
@@ -190,7 +214,9 @@ std::string FormatExperiment(const fs::path& folder, const Experiment& experimen
                              const Project& project) {
   YAML::Emitter yaml;
   yaml << YAML::BeginMap;
-  if (experiment.gravity.y() != 0.0) yaml << YAML::Key << "up" << YAML::Value << "y";
+  if (const std::string up = UpOf(experiment); !up.empty()) {
+    yaml << YAML::Key << "up" << YAML::Value << up;
+  }
   yaml << YAML::Key << "trials" << YAML::Value << YAML::BeginSeq;
   for (const TrialFiles& trial : experiment.trials) EmitTrial(trial, folder, project, yaml);
   yaml << YAML::EndSeq << YAML::EndMap;

@@ -7,6 +7,7 @@
 
 #include "elastocal/io/project.hpp"
 #include "elastocal/measurement/recording.hpp"
+#include "elastocal/readers/recording_file.hpp"
 
 namespace elastocal {
 
@@ -22,8 +23,10 @@ struct TrialFiles {
   std::vector<int> chains;  ///< that it exercises, of Project::chains; one or more
   std::vector<int>
       support;  ///< links that stand on the floor, of the tree; empty: the root is held ...
-  bool free_root = false;                 ///< ... unless it is free
-  std::filesystem::path markers, joints;  ///< Qualisys TSV and joint log
+  bool free_root = false;  ///< ... unless it is free
+  /// Of cameras and robot, in any format that is read; the same file where a bag has both.
+  std::filesystem::path markers, joints;
+  ReaderOptions reading = {};  ///< what these files do not say by themselves
   /// Camera time less robot time at the beginning, s, where it is known.
   std::optional<double> expected_lag_s = {};
   std::filesystem::path truth = {};  ///< of a simulated trial, see ReadWaistTruth; empty: unknown
@@ -33,6 +36,7 @@ struct TrialFiles {
 struct Experiment {
   std::vector<TrialFiles> trials;            ///< one or more, names and files all different
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the cameras' frame, m/s^2
+  bool up_given = false;  ///< whether the user says which axis points up; else files may
 };
 
 /// Reads `folder`/experiment.yaml (docs/formats.md). Files in it are seen from the folder and must

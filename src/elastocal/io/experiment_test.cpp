@@ -76,7 +76,7 @@ TEST_F(ExperimentTest, ReadsTheAxisThatIsUpAndTheExpectedLag) {
   EXPECT_EQ(Parse("up: z\n" + trials).gravity, Eigen::Vector3d(0.0, 0.0, -9.81));
   const Experiment experiment = Parse("up: y\n" + trials);
   EXPECT_EQ(experiment.gravity, Eigen::Vector3d(0.0, -9.81, 0.0));
-  ExpectError("up: x\n" + trials, {"experiment.yaml:1: up", "z or y"});
+  ExpectError("up: w\n" + trials, {"experiment.yaml:1: up", "x, y, z"});
   WriteExperiment(folder_, experiment, project_);
   const Experiment read = ReadExperiment(folder_, project_);
   EXPECT_EQ(read.gravity, experiment.gravity);

@@ -174,6 +174,10 @@ JointLog ReadJointLog(std::istream& stream, const std::string& source, const Pro
 }
 
 void WriteJointLog(const std::filesystem::path& file, const JointLog& log) {
+  WriteFile(file, FormatJointLog(log));
+}
+
+std::string FormatJointLog(const JointLog& log) {
   std::vector<Eigen::Index> with_torque;
   TableWriter table;
   table.Add("t");
@@ -194,7 +198,7 @@ void WriteJointLog(const std::filesystem::path& file, const JointLog& log) {
     for (Eigen::Index i = 0; i < log.wrenches.cols(); ++i) table.Add(log.wrenches(row, i));
     table.EndRow();
   }
-  WriteFile(file, table.text());
+  return table.text();
 }
 
 }  // namespace elastocal

@@ -28,4 +28,7 @@ JointLog ReadJointLog(std::istream& stream, const std::string& source, const Pro
 /// JOINT_torque, ..., and then those of force-torque sensors. All digits are kept.
 void WriteJointLog(const std::filesystem::path& file, const JointLog& log);
 
+/// The text of such a table.
+std::string FormatJointLog(const JointLog& log);
+
 }  // namespace elastocal

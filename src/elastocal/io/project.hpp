@@ -40,6 +40,8 @@ struct RecordingColumns {
   std::vector<std::string> ignore;                            ///< columns that are not read
   /// Joint -> position [rad or m] where the file has none.
   std::map<std::string, double> not_recorded;
+  /// Marker -> its label in files of cameras; default: the marker's name.
+  std::map<std::string, std::string> labels = {};
 };
 
 /// Which parts of the robot are estimated as elastic (eq. 5 to 7). Where patterns are not given, a

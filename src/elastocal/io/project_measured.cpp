@@ -72,6 +72,20 @@ void ReadMarkerColumns(const YamlValue& section, Project& project) {
   }
 }
 
+void ReadLabels(const YamlValue& section, Project& project) {
+  std::vector<std::string> names;
+  for (const Marker& marker : project.markers) names.push_back(marker.name);
+  std::map<std::string, std::string> marker_of;
+  for (const auto& [name, value] : section.Entries()) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      value.Fail("there is no marker " + Quote(name) + DidYouMean(name.substr(0, 60), names));
+    }
+    const auto [other, is_new] = marker_of.emplace(value.Text(), name);
+    if (!is_new) value.Fail("the label is that of marker " + Quote(other->second) + " already");
+    project.recording.labels[name] = value.Text();
+  }
+}
+
 void ReadColumns(const YamlValue& section, Project& project) {
   section.ExpectKeys({"time", "markers", "joints"});
   if (const auto time = section.Find("time")) project.recording.time = time->Text();
@@ -153,7 +167,8 @@ void ReadForceTorqueSensors(const YamlValue& section, Project& project) {
 }
 
 void ReadRecordingColumns(const YamlValue& section, Project& project) {
-  section.ExpectKeys({"columns", "ignore", "not_recorded_deg", "not_recorded_mm"});
+  section.ExpectKeys({"columns", "labels", "ignore", "not_recorded_deg", "not_recorded_mm"});
+  if (const auto labels = section.Find("labels")) ReadLabels(*labels, project);
   if (const auto columns = section.Find("columns")) ReadColumns(*columns, project);
   if (const auto ignore = section.Find("ignore")) {
     for (const YamlValue& column : ignore->Items()) {

@@ -10,6 +10,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/utf8.hpp"
+#include "elastocal/readers/byte_source.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -392,12 +393,9 @@ std::string HeaderText(const MarkerTrajectories& trajectories) {
 
 }  // namespace
 
-MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file) {
-  return ParseQtmTsv(ReadFile(file), file.string());
-}
+namespace {
 
-MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source) {
-  TextStream stream(text);
+MarkerTrajectories ParseQtmStream(std::istream& stream, const std::string& source) {
   QtmLines lines{LineReader(stream, source)};
   const QtmHeader header = HeaderReader(lines).Read();
   QtmFrames frames = FrameReader(lines, header).Read();
@@ -409,8 +407,25 @@ MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source)
   return result;
 }
 
+}  // namespace
+
+MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file) {
+  const ByteSource source = ByteSource::Open(file);
+  SourceStream stream(source);
+  return ParseQtmStream(stream, source.name());
+}
+
+MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source) {
+  TextStream stream(text);
+  return ParseQtmStream(stream, source);
+}
+
 void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& trajectories,
                  int decimals) {
+  WriteFile(file, FormatQtmTsv(trajectories, decimals));
+}
+
+std::string FormatQtmTsv(const MarkerTrajectories& trajectories, int decimals) {
   CheckNames(trajectories.names);
   constexpr int kTimeDecimals = 5;
   const auto& positions = trajectories.positions;
@@ -427,7 +442,7 @@ void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& tr
     }
     text += "\r\n";
   }
-  WriteFile(file, text);
+  return text;
 }
 
 }  // namespace elastocal

@@ -14,7 +14,7 @@ namespace elastocal {
 /// FREQUENCY or follows from the column Time. Cost: linear in the size of the file.
 /// Throws InputError naming file, line and column: a number that is none, rows of unequal length,
 /// frames that do not follow each other, another number of markers or frames than the header says,
-/// no rate, more than 256 MiB.
+/// no rate. Files may be large: they are read line by line.
 MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file);
 
 /// The same from the text of a file; `source` names it in messages.
@@ -26,5 +26,8 @@ MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source)
 /// Throws InputError for names that the format cannot hold and when the file cannot be written.
 void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& trajectories,
                  int decimals = 3);
+
+/// The text of such a file.
+std::string FormatQtmTsv(const MarkerTrajectories& trajectories, int decimals = 3);
 
 }  // namespace elastocal

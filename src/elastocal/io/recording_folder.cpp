@@ -4,8 +4,7 @@
 #include <future>
 #include <set>
 
-#include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
 #include "elastocal/tables/text.hpp"
@@ -51,28 +50,65 @@ Trial TrialOf(const TrialFiles& files, const Project& project) {
 }
 
 TrialSamples Sample(const TrialFiles& files, const MarkedRobot& robot, const Project& project,
-                    MarkerTrajectories trajectories, const JointLog& log) {
+                    MarkerFile file, const JointLog& log) {
   const std::vector<int> markers = TrialMarkers(project, files);
   CheckJoints(log, markers, files, project);
   MeasurementOptions options = project.measurement;
+  // Of a bag with both, the clocks are one already, up to what the computers differed.
+  if (file.start_s && files.markers == files.joints) options.expected_lag_s = -*file.start_s;
   if (files.expected_lag_s) options.expected_lag_s = files.expected_lag_s;
-  return SampleTrial(robot, TrialOf(files, project), markers, std::move(trajectories), log,
+  return SampleTrial(robot, TrialOf(files, project), markers, std::move(file.trajectories), log,
                      options);
 }
 
+/// Which axis points up: as the user says, or as all files say.
+class UpAxis {
+ public:
+  explicit UpAxis(const Experiment& experiment)
+      : gravity_(experiment.gravity), given_(experiment.up_given) {}
+
+  void Take(const MarkerFile& file) {
+    const std::string& source = file.trajectories.source;
+    const std::string up = file.up.empty() && file.up_is_z && !given_ ? "z" : file.up;
+    if (up.empty() && given_) return;
+    if (up.empty()) {
+      throw InputError(source +
+                       ": the file does not say which axis of the cameras' frame points up; give "
+                       "it in experiment.yaml, 'up: z' (or x, y, -x, -y, -z)");
+    }
+    const Eigen::Vector3d gravity = GravityBelow(up);
+    if ((given_ || !first_.empty()) && gravity != gravity_) {
+      throw InputError(source + ": by this file the axis " + up + " points up; " +
+                       (given_ ? "experiment.yaml" : first_) + " has another one");
+    }
+    gravity_ = gravity;
+    if (first_.empty()) first_ = source;
+  }
+
+  const Eigen::Vector3d& gravity() const { return gravity_; }
+
+ private:
+  Eigen::Vector3d gravity_;
+  bool given_;
+  std::string first_;  ///< the file that said it first
+};
+
 /// Samples all trials; while one is sampled, the markers of the next are read on another thread.
 std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const MarkedRobot& robot,
-                                    const Project& project) {
+                                    const Project& project, UpAxis& up) {
   std::vector<TrialSamples> samples;
   const auto start_reading = [&](std::size_t i) {
-    return std::async(std::launch::async, [file = trials[i].markers] { return ReadQtmTsv(file); });
+    return std::async(std::launch::async, [&trial = trials[i], &project] {
+      return ReadMarkerFile(trial.markers, trial.reading, project);
+    });
   };
-  std::future<MarkerTrajectories> markers = start_reading(0);
+  std::future<MarkerFile> markers = start_reading(0);
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    const JointLog log = ReadJointLog(trials[i].joints, project);
-    MarkerTrajectories trajectories = markers.get();
+    const JointLog log = ReadJointFile(trials[i].joints, trials[i].reading, project);
+    MarkerFile file = markers.get();
+    up.Take(file);
     if (i + 1 < trials.size()) markers = start_reading(i + 1);
-    samples.push_back(Sample(trials[i], robot, project, std::move(trajectories), log));
+    samples.push_back(Sample(trials[i], robot, project, std::move(file), log));
   }
   return samples;
 }
@@ -92,6 +128,7 @@ Experiment ReadExperiments(const std::vector<fs::path>& folders, const Project& 
                        folders[0].string());
     }
     all.gravity = one.gravity;
+    all.up_given = all.up_given || one.up_given;
     for (TrialFiles& trial : one.trials) {
       if (folders.size() > 1) trial.name = NameOf(folders[i]) + "/" + trial.name;
       all.trials.push_back(std::move(trial));
@@ -119,7 +156,8 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   const MarkedRobot robot = MakeMarkedRobot(project);
   std::vector<TrialSamples> calibration, validation;
   RecordingFolder result;
-  for (TrialSamples& samples : SampleAll(experiment.trials, robot, project)) {
+  UpAxis up(experiment);
+  for (TrialSamples& samples : SampleAll(experiment.trials, robot, project, up)) {
     result.trials.push_back(samples.summary);
     for (std::string& finding : Findings(samples.summary)) {
       result.findings.push_back(std::move(finding));
@@ -131,7 +169,7 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   for (const fs::path& folder : folders) source += (source.empty() ? "" : ", ") + folder.string();
   result.calibration = MergeTrials(robot, calibration, source);
   result.validation = MergeTrials(robot, validation, source);
-  result.calibration.gravity = result.validation.gravity = experiment.gravity;
+  result.calibration.gravity = result.validation.gravity = up.gravity();
   if (result.calibration.posture_count() + result.validation.posture_count() == 0) {
     throw InputError(source + ": no trial can be used; " + result.findings.front());
   }

@@ -26,9 +26,9 @@ bool IsRecordingFolder(const std::filesystem::path& path);
 /// each trial with Project::measurement (SampleTrial). With several folders, names of trials begin
 /// with the folder's. Two threads; the result is the same with one.
 ///
-/// Throws InputError: what ReadExperiment, ReadQtmTsv and ReadJointLog refuse; a joint that moves a
-/// marker of a trial, but is neither logged nor given as not recorded; folders whose cameras have
-/// different axes up; no trial with any posture.
+/// Throws InputError: what ReadExperiment, ReadMarkerFile and ReadJointFile refuse; a joint that
+/// moves a marker of a trial, but is neither logged nor given as not recorded; folders whose
+/// cameras have different axes up; no trial with any posture.
 RecordingFolder ReadRecordingFolders(const std::vector<std::filesystem::path>& folders,
                                      const Project& project);
 

@@ -1,11 +1,13 @@
 #include "elastocal/measurement/recording.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace elastocal {
 namespace {
 
-constexpr double kLeastMotion = 2e-3;  // rad or m: less is no motion
+constexpr double kLeastJointStep = 2e-3;  // rad or m: less is no motion
 
 }  // namespace
 
@@ -24,7 +26,7 @@ void NoteApproach(Recording& recording) {
     if (!recording.trial.empty() && recording.trial[at] != recording.trial[at - 1]) continue;
     for (Eigen::Index c = 0; c < recording.q.cols(); ++c) {
       const double step = recording.q(i, c) - recording.q(i - 1, c);
-      const bool moved = std::abs(step) > kLeastMotion;
+      const bool moved = std::abs(step) > kLeastJointStep;
       recording.approach(i, c) = moved ? std::copysign(1.0, step) : recording.approach(i - 1, c);
     }
   }
@@ -58,6 +60,50 @@ Recording SelectPostures(const Recording& recording, const std::vector<int>& pos
     for (int posture : postures) selected.line.push_back(recording.line[posture]);
   }
   return selected;
+}
+
+namespace {
+
+/// One below the other; what one of them does not have is NaN.
+Eigen::MatrixXd Stacked(const Eigen::MatrixXd& above, int rows_above, const Eigen::MatrixXd& below,
+                        int rows_below) {
+  if (above.rows() == 0 && below.rows() == 0) return {};
+  Eigen::MatrixXd stacked =
+      Eigen::MatrixXd::Constant(rows_above + rows_below, std::max(above.cols(), below.cols()),
+                                std::numeric_limits<double>::quiet_NaN());
+  stacked.topLeftCorner(above.rows(), above.cols()) = above;
+  stacked.block(rows_above, 0, below.rows(), below.cols()) = below;
+  return stacked;
+}
+
+}  // namespace
+
+Recording JoinTrials(const Recording& first, const Recording& second) {
+  const int count = first.posture_count(), more = second.posture_count();
+  Recording joined = first;
+  joined.q = Stacked(first.q, count, second.q, more);
+  joined.markers = Stacked(first.markers, count, second.markers, more);
+  joined.torques = Stacked(first.torques, count, second.torques, more);
+  if (first.wrench_links == second.wrench_links) {
+    joined.wrenches = Stacked(first.wrenches, count, second.wrenches, more);
+  } else {
+    joined.wrench_links.clear();
+    joined.wrenches.resize(0, 0);
+  }
+  joined.approach = Stacked(first.approach, count, second.approach, more).unaryExpr([](double d) {
+    return std::isnan(d) ? 0.0 : d;
+  });
+  joined.time_s.resize(0);  // each trial has a clock of its own
+  joined.line.clear();
+  joined.frames.resize(first.frames.empty() && second.frames.empty() ? 0 : count, 1);
+  for (int i = 0; i < more && !joined.frames.empty(); ++i) {
+    joined.frames.push_back(second.frames.empty() ? 1 : second.frames[i]);
+  }
+  joined.trials.insert(joined.trials.end(), second.trials.begin(), second.trials.end());
+  for (int trial : second.trial) {
+    joined.trial.push_back(trial + static_cast<int>(first.trials.size()));
+  }
+  return joined;
 }
 
 }  // namespace elastocal

@@ -71,4 +71,7 @@ void NoteApproach(Recording& recording);
 /// The given postures of a recording, in the given order.
 Recording SelectPostures(const Recording& recording, const std::vector<int>& postures);
 
+/// The trials of two recordings of one robot, with the same markers and the same gravity, as one.
+Recording JoinTrials(const Recording& first, const Recording& second);
+
 }  // namespace elastocal

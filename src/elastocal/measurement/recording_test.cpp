@@ -50,6 +50,27 @@ TEST(Recording, SelectsPosturesInTheGivenOrder) {
   EXPECT_EQ(selected.line, (std::vector<int>{5, 2}));
 }
 
+TEST(Recording, JoinsTrialsOfTwoRecordings) {
+  Recording first = MakeRecording();
+  first.trials.resize(2);
+  first.trial = {0, 1, 1};
+  Recording second = SelectPostures(MakeRecording(), {2});
+  second.trials.resize(1);
+  second.trials[0].name = "c";
+  second.trial = {0};
+  second.torques = Eigen::MatrixXd::Constant(1, 2, 7.0);
+  second.frames = {5};
+  const Recording joined = JoinTrials(first, second);
+  EXPECT_EQ(joined.posture_count(), 4);
+  EXPECT_EQ(joined.trial, (std::vector<int>{0, 1, 1, 2}));
+  ASSERT_EQ(joined.trials.size(), 3u);
+  EXPECT_EQ(joined.trials[2].name, "c");
+  EXPECT_EQ(MarkerPosition(joined, 3, 1), Eigen::Vector3d(34, 35, 36));
+  EXPECT_TRUE(joined.torques.topRows(3).array().isNaN().all());
+  EXPECT_EQ(joined.torques(3, 1), 7.0);
+  EXPECT_EQ(joined.frames, (std::vector<int>{1, 1, 1, 5}));
+}
+
 TEST(Recording, SelectsWithoutTimesAndLines) {
   Recording recording = MakeRecording();
   recording.time_s.resize(0);

@@ -6,10 +6,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "elastocal/calibration/up_check.hpp"
 #include "elastocal/io/output_files.hpp"
+#include "elastocal/pipeline/find_faults.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
-#include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
@@ -32,29 +31,6 @@ Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& b
     if (std::binary_search(fitted.begin(), fitted.end(), i)) geometric.push_back(i);
   }
   return AssessExcitation(factor, geometric, recording.posture_count(), result.marker_sd);
-}
-
-/// What is wrong with the recording as a whole. What looks like knocks of several clusters may be a
-/// fault that moves them all, so it is looked for without the knocks, too.
-std::vector<std::string> FindFaults(const Project& project, const ExperimentOptions& options,
-                                    Measurements as_recorded, const RecordedModel& robot,
-                                    const Recording& recording, const CalibrationResult& result) {
-  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
-  const Recording* of = &recording;
-  if (!robot.knocks.empty()) {
-    const RecordedModel plain =
-        MakeRecordedModel(project, options.seed, as_recorded, KnockSearch::kNone);
-    const CalibrationResult without = Calibrate(plain.model, as_recorded.calibration, plain.base,
-                                                result.kind, project.calibration);
-    std::vector<RecordingFault> found =
-        FindRecordingFaults(without, as_recorded.calibration, project.calibration);
-    if (!found.empty()) {
-      faults = std::move(found);
-      of = &as_recorded.calibration;
-    }
-  }
-  if (faults.empty()) return {};
-  return {DescribeFault(faults.front(), project.tree, *of)};
 }
 
 /// The error of the waist by model, on trials for validation where there are any, else on those of
@@ -131,16 +107,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.comparison = CompareModels(std::move(calibrated), robot.model, recording, robot.base,
                                  settings, OfStep(options.progress, "fit"));
 
-  if (const auto up = FindWrongUp(robot.model, recording)) run.faults.push_back(Describe(*up));
-  for (const RecordingMistake& mistake : FindRecordingMistakes(
-           project, options.seed, as_recorded, recording, run.comparison.largest())) {
-    run.faults.push_back(DescribeMistake(mistake));
-  }
-  // What a mistake leaves would look like other faults.
-  if (run.faults.empty()) {
-    run.faults =
-        FindFaults(project, options, as_recorded, robot, recording, run.comparison.largest());
-  }
+  run.faults = FindFaults(project, options.seed, as_recorded, robot, recording, run.comparison);
 
   // Eq. 12: how well the recorded postures tell the parameters apart.
   run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording);
@@ -158,6 +125,10 @@ CalibrationRun CalibrateExperiment(const Project& given,
   }
   if (measured.validation.posture_count() > 0) {
     run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);
+    if (run.faults.empty()) {
+      run.faults = FindContradictions(project, robot, recording, measured.validation,
+                                      run.comparison, run.held_out->table);
+    }
   }
   run.waist_error = WaistErrors(run.comparison, measured, settings);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
 #include <openssl/evp.h>
@@ -19,20 +20,53 @@ void AppendFloat(double value, std::string& bytes) {
     bytes += static_cast<char>(bits >> shift & 0xffU);
 }
 
+/// A checksum that is computed piece by piece.
+class Digest {
+ public:
+  Digest() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    Require(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+  }
+  void Add(std::string_view bytes) {
+    Require(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1);
+  }
+  /// As hexadecimal digits.
+  std::string Take() {
+    std::array<unsigned char, SHA256_DIGEST_LENGTH> digest;
+    Require(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr) == 1);
+    static constexpr char kDigits[] = "0123456789abcdef";
+    std::string text;
+    for (const unsigned char byte : digest) {
+      text += kDigits[byte >> 4U];
+      text += kDigits[byte & 0xfU];
+    }
+    return text;
+  }
+
+ private:
+  static void Require(bool fine) {
+    if (!fine) throw std::runtime_error("OpenSSL cannot compute SHA-256");
+  }
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
 }  // namespace
 
 std::string Sha256(std::string_view bytes) {
-  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), nullptr, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("OpenSSL cannot compute SHA-256");
+  Digest digest;
+  digest.Add(bytes);
+  return digest.Take();
+}
+
+std::string Sha256(std::istream& stream, std::size_t& count) {
+  Digest digest;
+  std::string piece(1u << 18, '\0');
+  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) ||
+         stream.gcount() > 0) {
+    const auto read = static_cast<std::size_t>(stream.gcount());
+    digest.Add(std::string_view(piece).substr(0, read));
+    count += read;
   }
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : digest) {
-    text += kDigits[byte >> 4U];
-    text += kDigits[byte & 0xfU];
-  }
-  return text;
+  return digest.Take();
 }
 
 std::string Base64(std::string_view bytes) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,9 @@ namespace elastocal {
 
 /// SHA-256 of bytes as 64 hexadecimal digits: tells whether an input is the same file.
 std::string Sha256(std::string_view bytes);
+
+/// The same of what a stream still holds, whose length is added to `count`; read piece by piece.
+std::string Sha256(std::istream& stream, std::size_t& count);
 
 /// Base64 (RFC 4648, with padding) of bytes.
 std::string Base64(std::string_view bytes);

@@ -1,5 +1,7 @@
 #include "elastocal/report/run_record.hpp"
 
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/input_error.hpp"
@@ -21,8 +23,12 @@ std::vector<InputRecord> RecordInputs(const std::vector<std::filesystem::path>& 
   std::vector<InputRecord> records;
   for (const std::filesystem::path& file : files) {
     try {
-      const std::string bytes = ReadFile(file);
-      records.push_back({file.string(), bytes.size(), Sha256(bytes)});
+      if (FileTypeOf(file) != std::filesystem::file_type::regular) continue;
+      std::ifstream stream(file, std::ios::binary);
+      if (!stream) continue;
+      std::size_t bytes = 0;
+      std::string sum = Sha256(stream, bytes);
+      records.push_back({file.string(), bytes, std::move(sum)});
     } catch (const InputError&) {
       continue;  // what cannot be read was not used either
     }

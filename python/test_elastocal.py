@@ -1,0 +1,112 @@
+"""The module against the command line, on the measured arm and on files of the repository."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+import elastocal
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+SHARED = pathlib.Path(os.environ.get("ELASTOCAL_SHARED_DATA", SOURCE.parent / "shared" / "data"))
+ARM = SOURCE / "examples/talos_left_arm/project.yaml"
+TABLE = SHARED / "talos_left_arm_mocap/talos_left_arm_02_10_contact.csv"
+
+
+@unittest.skipUnless(TABLE.exists(), f"there is no {TABLE}")
+class LeftArm(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.scratch.name)
+        cls.program([*"calibrate --kfold 0 --quiet".split(), ARM, "--recording", TABLE, "-o",
+                     cls.folder / "cli"])
+        cls.project = elastocal.Project(ARM)
+        cls.found = elastocal.calibrate(cls.project, [TABLE], folds=0)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    @classmethod
+    def program(cls, words):
+        subprocess.run([os.environ["ELASTOCAL_PROGRAM"], *map(str, words)], check=True)
+
+    def test_five_lines(self):
+        project = elastocal.Project(ARM)
+        found = elastocal.calibrate(project, [TABLE], folds=0)
+        self.assertTrue(found.deployable)
+        self.assertEqual(f"{found.urdf_rmse_mm:.2f} mm", "0.57 mm")
+
+    def test_bits_of_the_command_line(self):
+        written = self.folder / "cli"
+        for name, text in self.found.files.items():
+            if name in ("summary.json", "report_data.json"):
+                continue  # with the time that the solver took
+            self.assertEqual(text, (written / name).read_text(), name)
+        self.assertIn("calibration.yaml", self.found.files)
+        there = json.loads((written / "summary.json").read_text())
+        self.assertEqual(self.found.summary["parameters"], there["parameters"])
+        self.assertEqual(self.found.summary["rmse_3d_mm"], there["rmse_3d_mm"])
+
+    def test_arrays_and_names(self):
+        self.assertEqual(self.found.values.shape, (len(self.found.parameters),))
+        self.assertEqual(self.found.sd.shape, self.found.values.shape)
+        by_name = {p["name"]: p["value"] for p in self.found.summary["parameters"]}
+        i = self.found.parameters.index("arm_left_1_joint.theta")
+        self.assertAlmostEqual(self.found.values[i], by_name["arm_left_1_joint.theta"], 6)
+        self.assertIn("arm_left_1_joint", self.project.joints)
+
+    def test_saved_calibration_is_used(self):
+        self.found.save(self.folder / "saved")
+        verdict = elastocal.validate(self.project, self.folder / "saved", TABLE)
+        self.assertEqual(verdict["status"], "better")
+        unchanged = elastocal.compare(self.folder / "cli", self.folder / "saved")
+        self.assertFalse(unchanged["changed"])
+        self.assertEqual(unchanged["moved"], [])
+
+    def test_runtime(self):
+        nominal = elastocal.Runtime(self.folder / "cli", ARM, "nominal")
+        real = elastocal.Runtime(self.folder / "cli", ARM)
+        bent = {"arm_left_1_joint": 0.3, "arm_left_2_joint": 0.4, "arm_left_4_joint": -1.2,
+                "leg_left_4_joint": 0.6, "leg_right_4_joint": 0.6}  # within the limits
+        q = np.array([bent.get(name, 0.1 if "arm_right_2" not in name else -0.4)
+                      for name in real.joints])
+        tip = "gripper_left_base_link"
+        at = [r.forward(q)["links"][tip][:3, 3] for r in (nominal, real)]
+        self.assertGreater(np.linalg.norm(at[0] - at[1]), 1e-4)
+        # What is commanded brings the real hand where the nominal one is at q.
+        again = real.forward(real.command(q))["links"][tip][:3, 3]
+        self.assertLess(np.linalg.norm(again - at[0]), 1e-5)
+        with self.assertRaises(elastocal.InputError):
+            real.forward(np.zeros(3))
+
+
+class Files(unittest.TestCase):
+    def test_recordings_are_arrays(self):
+        bag = elastocal.read(SOURCE / "tests/recordings/bag_lz4.mcap")
+        self.assertEqual(bag["format"], "MCAP")
+        self.assertEqual(bag["markers"]["positions"].shape, (20, 4, 3))
+        self.assertTrue(np.isnan(bag["markers"]["positions"][7]).all())
+        self.assertAlmostEqual(bag["markers"]["positions"][3, 0, 0], 1.03, 12)
+        np.testing.assert_array_equal(bag["joints"]["positions"][:, 0], 0.25 * np.arange(10))
+        self.assertEqual(bag["joints"]["torques"].shape, (10, 2))
+        self.assertIsNone(bag["markers"]["up"])
+        log = SOURCE / "tests/recordings/joints_matrix.npz"
+        np.testing.assert_array_equal(elastocal.read(log)["joints"]["positions"], np.load(log)["q"])
+        self.assertEqual(elastocal.info(log)["joints"]["samples"], 6)
+
+    def test_errors(self):
+        with self.assertRaisesRegex(elastocal.InputError, "no such file"):
+            elastocal.Project("nowhere.yaml")
+        with self.assertRaisesRegex(ValueError, "no known format|no recording"):
+            elastocal.read(SOURCE / "README.md")
+        with self.assertRaises(TypeError):
+            elastocal.Project(3)
+
+
+if __name__ == "__main__":
+    unittest.main()

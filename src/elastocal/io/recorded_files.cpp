@@ -1,0 +1,256 @@
+#include "elastocal/io/recorded_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "elastocal/io/joint_log.hpp"
+#include "elastocal/io/posture_checks.hpp"
+#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/io/recording_columns.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/readers/joint_columns.hpp"
+#include "elastocal/tables/table_reader.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The one trajectory whose name is the label, or else ends with ":label"; -1 where there is none.
+int FindLabel(const MarkerTrajectories& trajectories, const std::string& label) {
+  int found = -1;
+  for (std::size_t i = 0; i < trajectories.names.size(); ++i) {
+    const std::string& name = trajectories.names[i];
+    if (name == label) return static_cast<int>(i);
+    if (!name.ends_with(":" + label)) continue;
+    if (found >= 0) {
+      throw InputError(trajectories.source + ": " +
+                       Quote(trajectories.names[static_cast<std::size_t>(found)]) + " and " +
+                       Quote(name) + " could both be the marker " + Quote(label) +
+                       "; name one of them in recording.labels of the project");
+    }
+    found = static_cast<int>(i);
+  }
+  return found;
+}
+
+void NameAsProject(const Project& project, MarkerTrajectories& trajectories) {
+  std::vector<std::string> names = trajectories.names;
+  for (const Marker& marker : project.markers) {
+    const auto label = project.recording.labels.find(marker.name);
+    const bool given = label != project.recording.labels.end();
+    const int found = FindLabel(trajectories, given ? label->second : marker.name);
+    if (found < 0) continue;
+    // What has this name by itself is another marker then.
+    const auto same = std::find(names.begin(), names.end(), marker.name);
+    if (same != names.end() && same - names.begin() != found) *same += " (as recorded)";
+    names[static_cast<std::size_t>(found)] = marker.name;
+  }
+  trajectories.names = std::move(names);
+}
+
+/// Six columns of a force-torque sensor; false where any is absent.
+bool FindWrench(const std::map<std::string, Eigen::Index>& columns, const std::string& sensor,
+                std::array<Eigen::Index, 6>& found) {
+  constexpr std::array<const char*, 6> kEndings = {"_fx", "_fy", "_fz", "_tx", "_ty", "_tz"};
+  for (std::size_t i = 0; i < kEndings.size(); ++i) {
+    const auto column = columns.find(sensor + kEndings[i]);
+    if (column == columns.end()) return false;
+    found[i] = column->second;
+  }
+  return true;
+}
+
+/// Moves the wrenches from the columns of `from` to the log; they are then not in `columns`.
+void TakeWrenches(const JointLog& from, const Project& project,
+                  std::map<std::string, Eigen::Index>& columns, JointLog& log) {
+  for (const ForceTorqueSensor& sensor : project.force_torque_sensors) {
+    std::array<Eigen::Index, 6> found{};
+    if (!FindWrench(columns, sensor.name, found)) continue;
+    const Eigen::Index begin = log.wrenches.cols();
+    log.wrench_sensors.push_back(sensor);
+    log.wrenches.conservativeResize(from.sample_count(), begin + 6);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      log.wrenches.col(begin + static_cast<Eigen::Index>(i)) = from.positions.col(found[i]);
+    }
+    std::erase_if(columns, [&](const auto& column) {
+      return std::find(found.begin(), found.end(), column.second) != found.end();
+    });
+  }
+}
+
+[[noreturn]] void FailUnknown(const JointLog& log, const std::string& name,
+                              const std::vector<std::string>& known, const Project& project) {
+  throw InputError(log.source + ": the joint " + Quote(name) + " is not known" +
+                   DidYouMean(name.substr(0, 60), known) +
+                   "; what is not to be read is listed in recording.ignore of " +
+                   project.file.string());
+}
+
+/// Torques are taken as a whole or not at all; those of joints without a sensor are not used.
+void TakeTorques(const Eigen::Ref<const Eigen::VectorXd>& torques, int joint,
+                 const Project& project, JointLog& log) {
+  const Eigen::Index missing = torques.array().isNaN().count();
+  const auto& sensors = project.torque_sensors;
+  if (missing == 0) {
+    log.torques.col(log.torques.cols() - 1) = torques;
+  } else if (missing < torques.size() &&
+             std::find(sensors.begin(), sensors.end(), joint) != sensors.end()) {
+    throw InputError(log.source + ": joint " + Quote(project.tree.joints[joint].name) + " has " +
+                     std::to_string(missing) +
+                     " samples without a torque; a torque in every sample was expected, or none");
+  }
+}
+
+}  // namespace
+
+MarkerFile ReadMarkerFile(const fs::path& file, const ReaderOptions& options,
+                          const Project& project) {
+  const ByteSource source = ByteSource::Open(file);
+  MarkerFile markers;
+  if (RecogniseRecording(source)) {
+    RecordingFile read = ReadRecordingFile(source, options);
+    if (!read.markers) {
+      throw InputError(source.name() + " (" + read.format +
+                       "): there are no markers in it: " + read.why_no_markers);
+    }
+    markers.trajectories = std::move(*read.markers);
+    markers.up = read.up;
+    markers.start_s = read.markers_start_s;
+  } else {
+    markers.trajectories = ReadQtmTsv(file);
+    markers.up_is_z = true;
+  }
+  NameAsProject(project, markers.trajectories);
+  return markers;
+}
+
+JointLog ReadJointFile(const fs::path& file, const ReaderOptions& options, const Project& project) {
+  const ByteSource source = ByteSource::Open(file);
+  if (!RecogniseRecording(source)) return ReadJointLog(file, project);
+  const RecordingFile read = ReadRecordingFile(source, options);
+  if (!read.joints) {
+    throw InputError(source.name() + " (" + read.format +
+                     "): there are no joint positions in it: " + read.why_no_joints);
+  }
+  return TakeJoints(*read.joints, project);
+}
+
+namespace {
+
+/// Whether the first line is of a Qualisys TSV: `KEY<tab>`, or names of columns.
+bool BeginsLikeQtm(const ByteSource& source) {
+  std::array<char, 4096> head{};
+  std::string_view text(head.data(), source.Read(0, head));
+  text = text.substr(0, text.find_first_of("\r\n"));
+  const std::size_t tab = text.find('\t');
+  if (tab == std::string_view::npos) return false;
+  const std::string_view first = text.substr(0, tab);
+  return first == "Frame" || first == "Time" || first.ends_with(" X") ||
+         first.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == std::string_view::npos;
+}
+
+/// A CSV with a column of the time, all of whose other columns are numbers of joints.
+JointLog ReadPlainLog(const ByteSource& source) {
+  SourceStream stream(source);
+  Table table(stream, source.name());
+  const std::vector<std::string>& header = table.header();
+  auto at = std::find(header.begin(), header.end(), "t");
+  if (at == header.end()) at = std::find(header.begin(), header.end(), "time");
+  if (at == header.end()) {
+    table.Fail(
+        "this is no recording of a known format, nor a joint log: there is no column 't' or "
+        "'time'");
+  }
+  std::vector<double> time;
+  std::map<std::string, std::vector<double>> columns;
+  while (table.Next()) {
+    AppendTime(table, static_cast<int>(at - header.begin()), time);
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (header.begin() + static_cast<std::ptrdiff_t>(i) == at) continue;
+      const int column = static_cast<int>(i);
+      const bool torque = header[i].ends_with("_torque") || header[i].ends_with("_effort");
+      columns[header[i]].push_back(torque && IsGap(table.Cell(column)) ? kNaN
+                                                                       : table.Number(column));
+    }
+  }
+  if (time.empty()) throw InputError(source.name() + ": no row below the header");
+  for (const auto& [name, column] : columns) {
+    if (column.size() != time.size()) table.Fail("two columns " + Quote(name));
+  }
+  return JoinColumns(source.name(), time, columns);
+}
+
+}  // namespace
+
+RecordingFile ReadAnyRecording(const fs::path& path, const ReaderOptions& options) {
+  const ByteSource source = ByteSource::Open(path);
+  if (RecogniseRecording(source)) return ReadRecordingFile(source, options);
+  RecordingFile file;
+  if (BeginsLikeQtm(source)) {
+    file.format = "Qualisys TSV";
+    file.markers = ReadQtmTsv(path);
+    file.up = "z";
+    file.why_no_joints = "a Qualisys TSV has no joint positions";
+  } else {
+    file.format = "joint log (CSV)";
+    file.joints = ReadPlainLog(source);
+    file.why_no_markers = "a joint log has joint positions only";
+  }
+  return file;
+}
+
+JointLog TakeJoints(const JointLog& from, const Project& project) {
+  const std::vector<Joint>& joints = project.tree.joints;
+  std::map<std::string, int> joint_of;
+  std::vector<std::string> known;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    known.push_back(JointColumn(project, joints[k].name));
+    joint_of.emplace(known.back(), static_cast<int>(k));
+  }
+  std::map<std::string, Eigen::Index> columns;
+  for (std::size_t i = 0; i < from.names.size(); ++i) {
+    columns.emplace(from.names[i], static_cast<Eigen::Index>(i));
+  }
+  for (const std::string& ignored : project.recording.ignore) columns.erase(ignored);
+  JointLog log;
+  log.source = from.source;
+  log.time_s = from.time_s;
+  TakeWrenches(from, project, columns, log);
+  for (const auto& [name, column] : columns) {
+    const auto joint = joint_of.find(name);
+    if (joint == joint_of.end()) FailUnknown(from, name, known, project);
+    if (joints[joint->second].mimic) continue;
+    CheckRadians(joints[joint->second], from.positions.col(column), [&](Eigen::Index sample) {
+      return from.source + ": sample " + std::to_string(sample + 1) + ": ";
+    });
+    const Eigen::Index to = log.positions.cols();
+    log.names.push_back(joints[joint->second].name);
+    log.positions.conservativeResize(from.sample_count(), to + 1);
+    log.torques.conservativeResize(from.sample_count(), to + 1);
+    log.positions.col(to) = from.positions.col(column);
+    log.torques.col(to).setConstant(kNaN);
+    TakeTorques(from.torques.col(column), joint->second, project, log);
+  }
+  if (log.names.empty()) throw InputError(log.source + ": it has no joint of the robot");
+  if (log.sample_count() == 0) throw InputError(log.source + ": it has no sample");
+  return log;
+}
+
+bool IsAxis(const std::string& text) {
+  const std::string letter = text.starts_with('-') ? text.substr(1) : text;
+  return letter == "x" || letter == "y" || letter == "z";
+}
+
+Eigen::Vector3d GravityBelow(const std::string& up) {
+  if (!IsAxis(up)) throw std::invalid_argument("no axis: '" + up + "'");
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
+  gravity[up.back() - 'x'] = up.starts_with("-") ? 9.81 : -9.81;
+  return gravity;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "elastocal/io/project.hpp"
+#include "elastocal/measurement/trial.hpp"
+#include "elastocal/readers/recording_file.hpp"
+
+namespace elastocal {
+
+/// The markers of a trial, from a file of any format.
+struct MarkerFile {
+  MarkerTrajectories trajectories;
+  std::string up;        ///< the axis that the file says points up, "z", "-y"; empty: it does not
+  bool up_is_z = false;  ///< the format's custom, unless the user says otherwise (Qualisys TSV)
+  std::optional<double> start_s;  ///< of the first frame, on the clock of the file's joint log
+};
+
+/// Reads markers: a Qualisys TSV or what ReadRecordingFile knows; contents decide. Labels become
+/// names of the project's markers: the label that `recording.labels` gives, or the marker's own
+/// name, by itself or behind the name of a subject ("talos:LHAND_1"). Other labels stay as they
+/// are. Throws InputError: what the reader refuses, a file without markers, a label that two
+/// trajectories have behind different subjects.
+MarkerFile ReadMarkerFile(const std::filesystem::path& file, const ReaderOptions& options,
+                          const Project& project);
+
+/// Reads a joint log: a CSV (ReadJointLog) or what ReadRecordingFile knows.
+JointLog ReadJointFile(const std::filesystem::path& file, const ReaderOptions& options,
+                       const Project& project);
+
+/// Reads a file of any of these formats, or the program's own (Qualisys TSV, joint log as CSV), by
+/// itself: without a project, under the names of the file. Of a CSV, every column but `t` or `time`
+/// is a joint's. RecordingFile::up is "z" for a Qualisys TSV, by custom.
+RecordingFile ReadAnyRecording(const std::filesystem::path& file, const ReaderOptions& options);
+
+/// A log under the names of a file as one under those of the project: columns renamed, mimic joints
+/// and what the project ignores left out, columns of force-torque sensors taken as such. Throws
+/// InputError: unknown names (with the nearest known one), positions that look like degrees, a
+/// sensor's torques that are absent in some samples.
+JointLog TakeJoints(const JointLog& log, const Project& project);
+
+/// The direction of gravity, 9.81 m/s^2, where this axis points up. Throws std::invalid_argument
+/// for a text that IsAxis refuses.
+Eigen::Vector3d GravityBelow(const std::string& up);
+
+/// Whether the text is one of x, y, z, -x, -y and -z.
+bool IsAxis(const std::string& text);
+
+}  // namespace elastocal

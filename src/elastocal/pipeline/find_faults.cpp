@@ -1,0 +1,115 @@
+#include "elastocal/pipeline/find_faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/calibration/up_check.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/validation/held_out.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
+constexpr double kContradicted = 10.0;
+
+/// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
+/// for without the knocks, too.
+std::vector<std::string> FindGeneralFault(const Project& project, std::optional<std::uint64_t> seed,
+                                          Measurements as_recorded, const RecordedModel& robot,
+                                          const Recording& recording,
+                                          const CalibrationResult& result) {
+  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
+  const Recording* of = &recording;
+  if (!robot.knocks.empty()) {
+    const RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
+    const CalibrationResult without = Calibrate(plain.model, as_recorded.calibration, plain.base,
+                                                result.kind, project.calibration);
+    std::vector<RecordingFault> found =
+        FindRecordingFaults(without, as_recorded.calibration, project.calibration);
+    if (!found.empty()) {
+      faults = std::move(found);
+      of = &as_recorded.calibration;
+    }
+  }
+  if (faults.empty()) return {};
+  return {DescribeFault(faults.front(), project.tree, *of)};
+}
+
+/// A group of chains whose held-out trials the largest model predicts worse than it fits those of
+/// the estimate.
+struct Contrast {
+  std::string group;
+  double fitted = 0.0, held_out = 0.0;  // m
+  double ratio() const { return held_out / fitted; }
+};
+
+Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
+  const auto rmse_of = [kind](const ErrorTableRow& row) {
+    const auto metrics = row.metrics.find(kind);
+    return metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d;
+  };
+  Contrast largest{"", 1.0, 0.0};
+  for (const ErrorTableRow& row : held_out.groups) {
+    for (const ErrorTableRow& own : fitted.groups) {
+      const Contrast contrast{row.group, rmse_of(own), rmse_of(row)};
+      if (own.group != row.group || !(contrast.fitted > 0.0)) continue;
+      if (contrast.ratio() > largest.ratio()) largest = contrast;
+    }
+  }
+  return largest;
+}
+
+/// At most `count` postures. Motions are sampled far more densely than postures are held.
+Recording EvenlyThinned(const Recording& recording, int count) {
+  const int step = (recording.posture_count() + count - 1) / count;
+  std::vector<int> kept;
+  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
+  return SelectPostures(recording, kept);
+}
+
+}  // namespace
+
+std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
+                                    const Measurements& as_recorded, const RecordedModel& robot,
+                                    const Recording& recording, const ModelComparison& comparison) {
+  std::vector<std::string> faults;
+  if (const auto up = FindWrongUp(robot.model, recording)) faults.push_back(Describe(*up));
+  for (const RecordingMistake& mistake :
+       FindRecordingMistakes(project, seed, as_recorded, recording, comparison.largest())) {
+    faults.push_back(DescribeMistake(mistake));
+  }
+  // What a mistake leaves would look like other faults.
+  if (!faults.empty()) return faults;
+  return FindGeneralFault(project, seed, as_recorded, robot, recording, comparison.largest());
+}
+
+std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
+                                            const Recording& recording, const Recording& held_out,
+                                            const ModelComparison& comparison,
+                                            const ErrorTable& held_out_table) {
+  const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
+  const Contrast contrast = LargestContrast(fitted, held_out_table, comparison.largest().kind);
+  if (!(contrast.ratio() > kSuspicious)) return {};
+  const Recording all = JoinTrials(recording, EvenlyThinned(held_out, recording.posture_count()));
+  const CalibrationResult together =
+      Calibrate(robot.model, all, robot.base, comparison.largest().kind, project.calibration);
+  const std::vector<RecordingFault> faults =
+      FindRecordingFaults(together, all, project.calibration);
+  if (!faults.empty()) {
+    return {"trials for calibration and for validation contradict each other: " +
+            DescribeFault(faults.front(), project.tree, all)};
+  }
+  if (!(contrast.ratio() > kContradicted)) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
+                "something differs between the recordings",
+                1e3 * contrast.held_out, 1e3 * contrast.fitted);
+  return {"held-out trials of " + contrast.group + " contradict those of the estimate: " + text};
+}
+
+}  // namespace elastocal

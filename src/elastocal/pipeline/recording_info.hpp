@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/readers/recording_file.hpp"
+
+namespace elastocal {
+
+/// When one marker was seen.
+struct MarkerSight {
+  std::string name;
+  double seen_share = 0.0;  ///< of all frames
+  int gaps = 0;             ///< between frames that show it
+  double longest_gap_s = 0.0;
+  std::vector<double> share_by_part;  ///< of the frames of each part of the time
+};
+
+/// What a recording holds, for people.
+struct RecordingInfo {
+  RecordingFile file;
+  std::vector<MarkerSight> sights;  ///< of its markers
+  double log_rate_hz = 0.0;         ///< by the median interval of the joint log
+  double longest_hole_s = 0.0;      ///< between samples of the joint log
+  int torques = 0;                  ///< joints with torques
+};
+
+/// Looks through a file of any format (ReadAnyRecording), whose time is divided into `parts`.
+RecordingInfo DescribeRecording(const std::string& file, const ReaderOptions& options, int parts);
+
+/// As JSON (docs/formats.md).
+std::string MakeInfoJson(const RecordingInfo& info);
+
+/// What of a file is written in the program's own format.
+enum class RecordingPart { kOnlyOne, kMarkers, kJoints };
+
+struct ConvertedRecording {
+  std::string text;
+  std::vector<std::string> warnings;  ///< torques of some samples only, which a log cannot hold
+};
+
+/// The file in the program's own format: markers as Qualisys TSV in mm with six decimals, turned
+/// so that z points up, or joints as CSV. `up`: the axis that points up, where the file does not
+/// say. Throws InputError: what ReadAnyRecording refuses; a file without this part; both parts with
+/// kOnlyOne; an axis that nobody says or that contradicts the file.
+ConvertedRecording ConvertRecording(const std::string& file, const ReaderOptions& options,
+                                    RecordingPart part, const std::string& up);
+
+}  // namespace elastocal

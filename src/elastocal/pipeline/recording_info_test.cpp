@@ -1,0 +1,79 @@
+#include "elastocal/pipeline/recording_info.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/recording_writers.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+MarkerTrajectories TwoMarkers() {
+  MarkerTrajectories markers{"made", {"A", "B"}, 10.0, Eigen::MatrixXd(40, 6)};
+  for (Eigen::Index i = 0; i < 40; ++i)
+    markers.positions.row(i) << 0.1, 0.2, 0.3, 1, 2, 0.01 * (i + 1.);
+  markers.positions.block(10, 0, 15, 3).setConstant(std::nan(""));
+  return markers;
+}
+
+TEST(RecordingInfoTest, SaysWhenWhichMarkerWasSeen) {
+  const ScratchFolder folder;
+  const std::string file = folder.Write("x", TrcText(TwoMarkers()));
+  const RecordingInfo info = DescribeRecording(file, {}, 8);
+  ASSERT_EQ(info.sights.size(), 2u);
+  EXPECT_EQ(info.sights[0].seen_share, 25.0 / 40.0);
+  EXPECT_EQ(info.sights[0].gaps, 1);
+  EXPECT_NEAR(info.sights[0].longest_gap_s, 1.5, 1e-12);
+  EXPECT_EQ(info.sights[0].share_by_part, (std::vector<double>{1, 1, 0, 0, 0, 1, 1, 1}));
+  EXPECT_EQ(info.sights[1].gaps, 0);
+  const auto json = nlohmann::json::parse(MakeInfoJson(info));
+  EXPECT_EQ(json["format"], "TRC");
+  EXPECT_TRUE(json["markers"]["up"].is_null());
+  EXPECT_EQ(json["markers"]["list"][0]["share_by_part"][2], 0.0);
+  EXPECT_TRUE(json["joints"].is_null());
+}
+
+// Whatever points up, the converted file has it along z, and is turned and not mirrored.
+TEST(RecordingInfoTest, ConvertsWithZUp) {
+  const ScratchFolder folder;
+  MarkerTrajectories axes{"made", {"X", "Y", "Z"}, 10.0, Eigen::MatrixXd(1, 9)};
+  axes.positions << 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  const std::string file = folder.Write("x", TrcText(axes));
+  ExpectInputError([&] { ConvertRecording(file, {}, RecordingPart::kOnlyOne, ""); }, {"--up"});
+  for (const std::string up : {"x", "y", "z", "-x", "-y", "-z"}) {
+    SCOPED_TRACE(up);
+    const MarkerTrajectories turned =
+        ParseQtmTsv(ConvertRecording(file, {}, RecordingPart::kOnlyOne, up).text, "converted");
+    const Eigen::Map<const Eigen::Matrix3d> rotation(turned.positions.data());
+    EXPECT_TRUE((rotation.transpose() * rotation).isIdentity(1e-12));
+    EXPECT_NEAR(rotation.determinant(), 1.0, 1e-12);
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+    axis[up.back() - 'x'] = up[0] == '-' ? -1.0 : 1.0;
+    EXPECT_LT((rotation * axis - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+  }
+  ExpectInputError([&] { ConvertRecording(file, {}, RecordingPart::kJoints, "z"); },
+                   {"no joint positions"});
+}
+
+TEST(RecordingInfoTest, ConvertsOnePartOfABag) {
+  const std::string bag = SourceFile("tests/recordings/bag_zstd.mcap");
+  ExpectInputError([&] { ConvertRecording(bag, {}, RecordingPart::kOnlyOne, "z"); }, {"--part"});
+  const ConvertedRecording joints = ConvertRecording(bag, {}, RecordingPart::kJoints, "");
+  EXPECT_EQ(joints.text.substr(0, joints.text.find('\n')), "t,elbow,wrist");
+  EXPECT_EQ(joints.warnings.size(), 1u);  // one message has no efforts
+  const MarkerTrajectories body =
+      ParseQtmTsv(ConvertRecording(bag, {}, RecordingPart::kMarkers, "z").text, "converted");
+  EXPECT_EQ(body.frame_count(), 20);
+  EXPECT_TRUE(std::isnan(body.positions(7, 0)));
+  EXPECT_NEAR(body.positions(3, 0), 1.03, 1e-9);
+}
+
+}  // namespace
+}  // namespace elastocal

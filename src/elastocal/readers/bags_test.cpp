@@ -1,0 +1,160 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/readers/recording_file.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/recording_writers.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+RecordingFile ReadBag(const std::string& bytes, const ReaderOptions& options = {}) {
+  return ReadRecordingFile(ByteSource::OfMemory(bytes, "bag"), options);
+}
+
+/// What tests/recordings/make_bags.mjs wrote with other people's libraries.
+void ExpectMadeBag(const RecordingFile& file) {
+  ASSERT_TRUE(file.joints.has_value()) << file.why_no_joints;
+  const JointLog& log = *file.joints;
+  EXPECT_EQ(log.names, (std::vector<std::string>{"elbow", "wrist"}));
+  ASSERT_EQ(log.sample_count(), 10);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_NEAR(log.time_s[i], 1.7e9 + 0.02 * i, 3e-7);  // what a double holds of such times
+    EXPECT_EQ(log.positions(i, 0), 0.25 * i);
+    EXPECT_EQ(log.positions(i, 1), -1.0 * i);
+    EXPECT_TRUE(std::isnan(log.torques(i, 1)));
+    EXPECT_TRUE(i == 2 ? std::isnan(log.torques(i, 0)) : log.torques(i, 0) == 2.0 * i);
+  }
+  ASSERT_TRUE(file.markers.has_value()) << file.why_no_markers;
+  const MarkerTrajectories& body = *file.markers;
+  EXPECT_EQ(body.names, (std::vector<std::string>{"LHAND_1", "LHAND_2", "LHAND_3", "LHAND_4"}));
+  EXPECT_NEAR(body.rate_hz, 100.0, 1e-9);
+  EXPECT_NEAR(file.markers_start_s.value(), 1.7e9, 1e-6);
+  ASSERT_EQ(body.frame_count(), 20);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(body.positions.row(i).array().isNaN().any(), i == 7);
+    if (i == 7) continue;
+    const double x = 1.0 + 0.01 * i;
+    Eigen::RowVectorXd expected(12);  // turned about z by a quarter
+    expected << x, -2, 0.5, x, -1.9, 0.5, x - 0.1, -2, 0.5, x, -2, 0.6;
+    EXPECT_LT((body.positions.row(i) - expected).norm(), 1e-12) << i;
+  }
+  EXPECT_EQ(file.notes.size(), 3u);  // one a topic
+}
+
+TEST(BagsTest, McapOfItsOwnLibrary) {
+  for (const char* name : {"bag_none.mcap", "bag_lz4.mcap", "bag_zstd.mcap"}) {
+    SCOPED_TRACE(name);
+    const RecordingFile file =
+        ReadRecordingFile(SourceFile(std::string("tests/recordings/") + name), {});
+    EXPECT_EQ(file.format, "MCAP");
+    ExpectMadeBag(file);
+  }
+}
+
+TEST(BagsTest, BagsOfRos1) {
+  for (const char* name : {"bag1_none.bag", "bag1_lz4.bag", "bag1_bz2.bag"}) {
+    SCOPED_TRACE(name);
+    const RecordingFile file =
+        ReadRecordingFile(SourceFile(std::string("tests/recordings/") + name), {});
+    EXPECT_EQ(file.format, "ROS 1 bag");
+    ExpectMadeBag(file);
+  }
+}
+
+TEST(BagsTest, DatabaseOfSqlite) {
+  const std::filesystem::path file = SourceFile("tests/recordings/bag.db3");
+  ExpectMadeBag(ReadRecordingFile(file, {}));
+  ExpectMadeBag(ReadBag(ReadFile(file)));
+}
+
+JointLog SomeLog() {
+  JointLog log;
+  log.names = {"elbow", "wrist"};
+  log.time_s = Eigen::VectorXd::LinSpaced(8, 10.0, 10.875);
+  log.positions = Eigen::MatrixXd::Random(8, 2);
+  log.torques = Eigen::MatrixXd::Random(8, 2);
+  return log;
+}
+
+TEST(BagsTest, HandMadeBagKeepsEveryBit) {
+  const JointLog log = SomeLog();
+  const RecordingFile file = ReadBag(McapBytes(log));
+  EXPECT_EQ(file.joints->time_s, log.time_s);
+  EXPECT_EQ(file.joints->positions, log.positions);
+  EXPECT_EQ(file.joints->torques, log.torques);
+  EXPECT_FALSE(file.markers.has_value());
+}
+
+/// A bag of several topics, from the records of bags of one.
+std::string TwoTopics(const JointLog& a, const JointLog& b, bool one_name) {
+  std::string first = McapBytes(a), second = McapBytes(b);
+  const std::string topic = Bytes().Text("/joint_states").text;
+  std::size_t channel = second.find(topic) - 4;
+  second[channel] = 9;  // its number
+  if (!one_name) second.replace(second.find("/joint_states"), 13, "/hand_statess");
+  const std::string message("\5", 1);
+  // From the channel to the end of the data; messages have the channel's number behind their head.
+  std::size_t at = channel - 9;
+  const std::size_t end = second.size() - 8 - 29 - 13;
+  std::string records = second.substr(at, end - at);
+  for (at = 0; at < records.size();) {
+    std::uint64_t length = 0;
+    for (int i = 8; i > 0; --i) {
+      length = length << 8 | static_cast<unsigned char>(records[at + static_cast<std::size_t>(i)]);
+    }
+    if (records[at] == 5) records[at + 9] = 9;
+    at += 9 + length;
+  }
+  return first.insert(first.size() - 8 - 29 - 13, records);
+}
+
+TEST(BagsTest, OneOfSeveralTopicsIsAskedFor) {
+  const JointLog log = SomeLog();
+  JointLog hand = SomeLog();
+  hand.names = {"thumb", "finger"};
+  const std::string bag = TwoTopics(log, hand, false);
+  const RecordingFile both = ReadBag(bag);
+  EXPECT_FALSE(both.joints.has_value());
+  EXPECT_NE(both.why_no_joints.find("/joint_states, /hand_statess"), std::string::npos)
+      << both.why_no_joints;
+  EXPECT_EQ(ReadBag(bag, {.joints_topic = "/hand_statess"}).joints->names, hand.names);
+  EXPECT_FALSE(ReadBag(bag, {.joints_topic = "/no"}).joints.has_value());
+}
+
+TEST(BagsTest, DamageIsNamedWithItsPlace) {
+  const std::string good = McapBytes(SomeLog());
+  ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 45)); }, {"bag: byte", "cut off"});
+  ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 100)); }, {"bag: byte", "beyond"});
+  std::string bad = good;
+  bad[bad.find("elbow") - 4] = 100;  // the length of the name
+  ExpectInputError([&] { ReadBag(bad); },
+                   {"bag: byte", "message of '/joint_states'", "ends within"});
+  bad = good;
+  bad[bad.rfind("elbow") - 8] = 3;  // joints
+  ExpectInputError([&] { ReadBag(bad); }, {"bag: byte", "/joint_states"});
+  const auto damaged = [](const char* name, std::size_t at) {
+    std::string bytes = ReadFile(SourceFile(std::string("tests/recordings/") + name));
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x55);
+    return bytes;
+  };
+  for (const char* name : {"bag_none.mcap", "bag_lz4.mcap", "bag_zstd.mcap"}) {
+    ExpectInputError([&] { ReadBag(damaged(name, 700)); }, {"bag: byte", "damaged"});
+  }
+  for (const char* name : {"bag1_lz4.bag", "bag1_bz2.bag"}) {
+    const std::string bag = ReadFile(SourceFile(std::string("tests/recordings/") + name));
+    const std::size_t chunk = bag.find("compression=");
+    ExpectInputError([&] { ReadBag(damaged(name, chunk + 60)); }, {"bag: byte", "damaged"});
+    ExpectInputError([&] { ReadBag(bag.substr(0, chunk + 300)); }, {"bag: byte", "cut off"});
+    ExpectInputError([&] { ReadBag(bag.substr(0, bag.size() - 3)); }, {"bag: byte"});
+  }
+  const std::string database = ReadFile(SourceFile("tests/recordings/bag.db3"));
+  ExpectInputError([&] { ReadBag(database.substr(0, 5000)); }, {"bag:", "database"});
+  ExpectInputError([&] { ReadBag(damaged("bag.db3", 100)); }, {"bag:"});
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,99 @@
+#include "elastocal/readers/byte_source.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr std::size_t kStreamBlock = 1u << 18;
+
+[[noreturn]] void FailToOpen(const std::string& name, int reason) {
+  if (name.empty()) throw InputError("the name of a file is empty");
+  if (reason == ENOENT || reason == ENOTDIR) throw InputError(name + ": there is no such file");
+  throw InputError(name + ": cannot be read: " + std::generic_category().message(reason));
+}
+
+}  // namespace
+
+ByteSource ByteSource::Open(const std::filesystem::path& file) {
+  ByteSource source;
+  source.name_ = file.string();
+  source.path_ = file;
+  // Does not wait for somebody at the other end of a pipe.
+  const int descriptor = open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) FailToOpen(source.name_, errno);
+  source.descriptor_ = std::shared_ptr<const int>(new int(descriptor), [](const int* open_file) {
+    close(*open_file);
+    delete open_file;
+  });
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) FailToOpen(source.name_, errno);
+  if (S_ISDIR(status.st_mode)) {
+    throw InputError(source.name_ + ": is a folder; a file was expected");
+  }
+  if (!S_ISREG(status.st_mode)) {
+    throw InputError(source.name_ + ": is not a regular file (a device or a pipe)");
+  }
+  source.size_ = static_cast<std::uint64_t>(status.st_size);
+  return source;
+}
+
+ByteSource ByteSource::OfMemory(std::string_view bytes, std::string name) {
+  ByteSource source;
+  source.name_ = std::move(name);
+  source.memory_ = bytes;
+  source.size_ = bytes.size();
+  return source;
+}
+
+std::size_t ByteSource::Read(std::uint64_t offset, std::span<char> to) const {
+  if (offset >= size_) return 0;
+  const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(to.size(), size_ - offset));
+  if (!descriptor_) {
+    std::memcpy(to.data(), memory_.data() + offset, most);
+    return most;
+  }
+  std::size_t held = 0;
+  while (held < most) {
+    const ssize_t count =
+        pread(*descriptor_, to.data() + held, most - held, static_cast<off_t>(offset + held));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) FailToOpen(name_, errno);
+    if (count == 0) break;  // it was made shorter meanwhile
+    held += static_cast<std::size_t>(count);
+  }
+  return held;
+}
+
+void ByteSource::ReadAll(std::uint64_t offset, std::span<char> to, const std::string& what) const {
+  const std::size_t count = Read(offset, to);
+  if (count == to.size()) return;
+  Fail(size_, "the file ends within " + what + " (" + std::to_string(to.size()) +
+                  " bytes from byte " + std::to_string(offset) + " on were expected)");
+}
+
+void ByteSource::Fail(std::uint64_t offset, const std::string& message) const {
+  throw InputError(name_ + ": byte " + std::to_string(offset) + ": " + message);
+}
+
+SourceStream::SourceStream(const ByteSource& source)
+    : std::istream(static_cast<std::streambuf*>(this)), source_(source), block_(kStreamBlock) {}
+
+std::streambuf::int_type SourceStream::underflow() {
+  const std::size_t count = source_.Read(offset_, block_);
+  if (count == 0) return std::streambuf::traits_type::eof();
+  offset_ += count;
+  setg(block_.data(), block_.data(), block_.data() + count);
+  return std::streambuf::traits_type::to_int_type(block_[0]);
+}
+
+}  // namespace elastocal

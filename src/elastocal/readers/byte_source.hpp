@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <istream>
+#include <memory>
+#include <span>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace elastocal {
+
+/// The bytes of a file or of a text in memory, read where they are asked for, so that a large file
+/// takes no more memory than what is kept of it.
+class ByteSource {
+ public:
+  /// Throws InputError naming the file: there is none, it is no regular file, it cannot be read.
+  static ByteSource Open(const std::filesystem::path& file);
+  /// The bytes must outlive the source; `name` stands for the file in messages.
+  static ByteSource OfMemory(std::string_view bytes, std::string name);
+
+  std::uint64_t size() const { return size_; }
+  const std::string& name() const { return name_; }
+  /// The path of a file; empty for bytes in memory, which `memory` then has.
+  const std::filesystem::path& path() const { return path_; }
+  std::string_view memory() const { return memory_; }
+
+  /// Reads from `offset` on, at most to the end; gives the number of bytes read.
+  std::size_t Read(std::uint64_t offset, std::span<char> to) const;
+  /// Throws InputError naming the offset where the source ends before; `what` is being read.
+  void ReadAll(std::uint64_t offset, std::span<char> to, const std::string& what) const;
+
+  /// Throws InputError: "NAME: byte OFFSET: MESSAGE".
+  [[noreturn]] void Fail(std::uint64_t offset, const std::string& message) const;
+
+ private:
+  ByteSource() = default;
+
+  std::string name_;
+  std::filesystem::path path_;
+  std::shared_ptr<const int> descriptor_;
+  std::string_view memory_;
+  std::uint64_t size_ = 0;
+};
+
+/// Such bytes as a text that is read from its beginning to its end. The source must outlive it.
+class SourceStream : private std::streambuf, public std::istream {
+ public:
+  explicit SourceStream(const ByteSource& source);
+
+ private:
+  std::streambuf::int_type underflow() override;
+
+  const ByteSource& source_;
+  std::uint64_t offset_ = 0;
+  std::vector<char> block_;
+};
+
+}  // namespace elastocal

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace elastocal {
+
+/// An array of NumPy: numbers or texts, row by row.
+struct NpyArray {
+  std::vector<std::size_t> shape;
+  std::vector<double> numbers;
+  std::vector<std::string> texts;
+  bool is_text = false;
+
+  std::size_t count() const;
+};
+
+/// Bytes one after the other; gives how many there were.
+using ReadBytes = std::function<std::size_t(std::span<char> to)>;
+
+/// Reads an array in NumPy's format (.npy): floats of 4 and 8 bytes, integers, booleans, texts;
+/// either byte order, rows or columns first. Throws InputError, whose message begins with `place`:
+/// another kind of data (objects), a shape that the bytes do not hold, more than 2^27 numbers.
+/// Of an array of another shape than `wanted`, where that is given, only the shape is read.
+NpyArray ReadNpy(const ReadBytes& read, const std::string& place,
+                 const std::vector<std::size_t>* wanted = nullptr);
+
+}  // namespace elastocal

@@ -1,0 +1,191 @@
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include <zip.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/readers/formats.hpp"
+#include "elastocal/readers/joint_columns.hpp"
+#include "elastocal/readers/npy_array.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr std::size_t kMostLogSamples = 1000000;
+constexpr std::size_t kMostArrays = 10000;
+
+/// An archive that is open for reading.
+class ZipArchive {
+ public:
+  explicit ZipArchive(const ByteSource& source) : source_(source) {
+    zip_error_t error;
+    zip_error_init(&error);
+    zip_source_t* const bytes =
+        source.path().empty()
+            ? zip_source_buffer_create(source.memory().data(), source.memory().size(), 0, &error)
+            : zip_source_file_create(source.path().c_str(), 0, -1, &error);
+    if (bytes) {
+      archive_.reset(zip_open_from_source(bytes, ZIP_RDONLY, &error));
+      if (!archive_) zip_source_free(bytes);
+    }
+    const std::string reason = archive_ ? "" : zip_error_strerror(&error);
+    zip_error_fini(&error);
+    if (!archive_) {
+      source.Fail(source.size(),
+                  "the directory at the end of the archive cannot be read: " + reason);
+    }
+  }
+
+  std::size_t count() const {
+    return static_cast<std::size_t>(zip_get_num_entries(archive_.get(), 0));
+  }
+  std::string Name(std::size_t i) const {
+    const char* const name = zip_get_name(archive_.get(), i, ZIP_FL_ENC_RAW);
+    return name ? name : "";
+  }
+
+  /// Of an array of another shape than `wanted` only the shape.
+  NpyArray Read(std::size_t i, const std::vector<std::size_t>* wanted = nullptr) const {
+    const std::string place = source_.name() + ": array " + Quote(Name(i)) + ": ";
+    const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> entry(
+        zip_fopen_index(archive_.get(), i, 0), zip_fclose);
+    if (!entry) throw InputError(place + "cannot be read: " + zip_strerror(archive_.get()));
+    std::uint64_t offset = 0;
+    const ReadBytes read = [&](std::span<char> to) {
+      const zip_int64_t count = zip_fread(entry.get(), to.data(), to.size());
+      if (count < 0) {
+        throw InputError(place + "byte " + std::to_string(offset) +
+                         " of it: " + zip_file_strerror(entry.get()));
+      }
+      offset += static_cast<std::uint64_t>(count);
+      return static_cast<std::size_t>(count);
+    };
+    NpyArray array = ReadNpy(read, place, wanted);
+    if (wanted && *wanted != array.shape) return array;
+    // The checksum is compared at the end of the entry.
+    std::array<char, 1> more{};
+    if (read(more) != 0) throw InputError(place + "bytes behind the elements");
+    return array;
+  }
+
+ private:
+  struct Discard {
+    void operator()(zip_t* archive) const { zip_discard(archive); }
+  };
+  const ByteSource& source_;
+  std::unique_ptr<zip_t, Discard> archive_;
+};
+
+/// A log of joints: the time `t`, and either one array a joint, or `names` with matrices.
+class NpzReader {
+ public:
+  explicit NpzReader(const ByteSource& source) : source_(source), archive_(source) {}
+
+  RecordingFile Read() {
+    if (archive_.count() > kMostArrays) {
+      throw InputError(source_.name() + ": more than 10000 arrays");
+    }
+    for (std::size_t i = 0; i < archive_.count(); ++i) {
+      std::string name = archive_.Name(i);
+      if (!name.ends_with(".npy")) continue;
+      name.resize(name.size() - 4);
+      entries_[name] = i;
+    }
+    RecordingFile file;
+    file.why_no_markers = "an .npz file has joint positions only";
+    const auto time = Take({"t", "time"});
+    if (!time) {
+      file.why_no_joints = "it has no array of the time in s, 't' or 'time'";
+    } else {
+      if (time->is_text || time->shape.size() != 1) Fail("'t' is no list of numbers");
+      if (time->count() > kMostLogSamples) Fail("more than 1000000 samples");
+      if (time->count() == 0) Fail("no sample");
+      file.joints = ReadLog(time->numbers);
+    }
+    for (const auto& [name, i] : entries_)
+      notes_.push_back("the array " + name + " is passed over");
+    file.notes = std::move(notes_);
+    return file;
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& message) const {
+    throw InputError(source_.name() + ": " + message);
+  }
+
+  /// The first of these arrays that is there; it is then not listed any more.
+  std::optional<NpyArray> Take(std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+      const auto entry = entries_.find(name);
+      if (entry == entries_.end()) continue;
+      NpyArray array = archive_.Read(entry->second);
+      entries_.erase(entry);
+      return array;
+    }
+    return std::nullopt;
+  }
+
+  JointLog ReadLog(const std::vector<double>& time) {
+    const auto names = Take({"names", "joint_names", "name"});
+    std::map<std::string, std::vector<double>> columns;
+    if (names) {
+      if (!names->is_text || names->shape.size() != 1) Fail("'names' is no list of texts");
+      const auto positions = Take({"positions", "position", "q"});
+      if (!positions) Fail("there are names of joints, but no array 'positions' or 'q'");
+      AddColumns(names->texts, *positions, time.size(), "", columns);
+      const auto torques = Take({"torques", "torque", "efforts", "effort", "tau"});
+      if (torques) AddColumns(names->texts, *torques, time.size(), "_torque", columns);
+      Take({"velocities", "velocity", "dq"});
+    } else {
+      AddArrays(time.size(), columns);
+    }
+    if (columns.empty()) Fail("there is no array of any joint beside the time");
+    return JoinColumns(source_.name(), time, columns);
+  }
+
+  void AddColumns(const std::vector<std::string>& names, const NpyArray& array, std::size_t samples,
+                  const std::string& ending, std::map<std::string, std::vector<double>>& columns) {
+    const std::string what = ending.empty() ? "positions" : "torques";
+    if (array.is_text || array.shape != std::vector{samples, names.size()}) {
+      Fail("the array of " + what + " is not of " + std::to_string(samples) + " x " +
+           std::to_string(names.size()) + " numbers (samples x joints)");
+    }
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      std::vector<double> column(samples);
+      for (std::size_t i = 0; i < samples; ++i) column[i] = array.numbers[i * names.size() + k];
+      if (!columns.emplace(names[k] + ending, std::move(column)).second) {
+        Fail("two joints of the name " + Quote(names[k]));
+      }
+    }
+  }
+
+  /// Every list of numbers as long as the time is a column of its own.
+  void AddArrays(std::size_t samples, std::map<std::string, std::vector<double>>& columns) {
+    const std::map<std::string, std::size_t> entries = entries_;
+    for (const auto& [name, i] : entries) {
+      const std::vector<std::size_t> wanted = {samples};
+      NpyArray array = archive_.Read(i, &wanted);
+      if (array.is_text || array.shape != wanted) continue;
+      columns.emplace(name, std::move(array.numbers));
+      entries_.erase(name);
+    }
+  }
+
+  const ByteSource& source_;
+  ZipArchive archive_;
+  std::map<std::string, std::size_t> entries_;  ///< arrays that are not read yet, by name
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+bool IsNpz(std::string_view head) { return head.starts_with("PK\x03\x04"); }
+
+RecordingFile ReadNpz(const ByteSource& source, const ReaderOptions&) {
+  return NpzReader(source).Read();
+}
+
+}  // namespace elastocal

@@ -1,0 +1,84 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/readers/recording_file.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/recording_writers.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+RecordingFile ReadArchive(const std::string& bytes) {
+  return ReadRecordingFile(ByteSource::OfMemory(bytes, "log"), {});
+}
+
+std::string Numpy(const std::string& name) { return SourceFile("tests/recordings/" + name); }
+
+// What NumPy itself wrote (tests/recordings/make_npz.py): compressed, of several types and orders.
+TEST(NpzTest, ColumnsOfNumpy) {
+  const RecordingFile file = ReadRecordingFile(Numpy("joints_columns.npz"), {});
+  EXPECT_EQ(file.format, "NumPy .npz");
+  const JointLog& log = file.joints.value();
+  EXPECT_EQ(log.names, (std::vector<std::string>{"elbow", "shoulder"}));
+  ASSERT_EQ(log.sample_count(), 6);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(log.time_s[i], 100.0 + 0.125 * i);
+    EXPECT_EQ(log.positions(i, 0), 0.25 * i - 0.5);
+    EXPECT_EQ(log.positions(i, 1), i - 3);
+    EXPECT_TRUE(i == 2 ? std::isnan(log.torques(i, 0)) : log.torques(i, 0) == 0.5 * i - 1.0);
+    EXPECT_TRUE(std::isnan(log.torques(i, 1)));
+  }
+  EXPECT_EQ(file.notes, (std::vector<std::string>{"the array image is passed over"}));
+}
+
+TEST(NpzTest, MatricesOfNumpy) {
+  const JointLog log = ReadRecordingFile(Numpy("joints_matrix.npz"), {}).joints.value();
+  EXPECT_EQ(log.names, (std::vector<std::string>{"elbow", "sch\xC3\xB6ne_schulter"}));
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(log.positions(i, 0), 0.25 * i - 0.5);
+    EXPECT_EQ(log.positions(i, 1), i - 3);
+    EXPECT_EQ(log.torques(i, 1), 2 * (i - 3));
+  }
+}
+
+TEST(NpzTest, HandMadeArchive) {
+  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(4, 0.0, 0.3), q = Eigen::VectorXd::Random(4);
+  const JointLog log = ReadArchive(NpzBytes({{"t", t}, {"elbow", q}})).joints.value();
+  EXPECT_EQ(log.time_s, t);
+  EXPECT_EQ(log.positions.col(0), q);
+}
+
+TEST(NpzTest, MistakesAreNamed) {
+  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(4, 0.0, 0.3), q = Eigen::VectorXd::Random(4);
+  const std::string good = NpzBytes({{"t", t}, {"elbow", q}});
+  std::string bad = good;
+  bad[bad.find("elbow.npy") + 9 + 128 + 8] ^= 1;  // an element: the checksum tells
+  ExpectInputError([&] { ReadArchive(bad); }, {"log: array 'elbow.npy': byte", "CRC"});
+  ExpectInputError([&] { ReadArchive(good.substr(0, good.size() - 30)); },
+                   {"log: byte", "archive"});
+  ExpectInputError(
+      [&] {
+        ReadArchive(NpzBytes({{"t", q}, {"elbow", t}}));
+      },
+      {"log: sample", "time"});
+  ExpectInputError(
+      [&] {
+        ReadArchive(NpzBytes({{"t", t}, {"elbow_torque", q}}));
+      },
+      {"'elbow'", "positions are missing"});
+  ExpectInputError(
+      [&] {
+        ReadArchive(NpzBytes({{"t", t}, {"a", q}, {"a_position", q}}));
+      },
+      {"'a'", "two columns"});
+  ExpectInputError([&] { ReadArchive(NpzBytes({{"t", t}})); }, {"no array of any joint"});
+  EXPECT_FALSE(ReadArchive(NpzBytes({{"q", t}})).joints.has_value());
+  ExpectInputError([&] { ReadRecordingFile(Numpy("joints_pickled.npz"), {}); },
+                   {"'t.npy'", "'|O'", "floats"});
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,82 @@
+#include "elastocal/readers/recording_file.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/readers/formats.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+struct Format {
+  const char* name;
+  bool (*is)(std::string_view head);
+  RecordingFile (*read)(const ByteSource& source, const ReaderOptions& options);
+};
+
+constexpr std::array kFormats = {
+    Format{"C3D", IsC3d, ReadC3d},
+    Format{"MCAP", IsMcap, ReadMcap},
+    Format{"ROS 1 bag", IsRosbag1, ReadRosbag1},
+    Format{"ROS 2 bag (db3)", IsRosbag2Db3, ReadRosbag2Db3},
+    Format{"NumPy .npz", IsNpz, ReadNpz},
+    Format{"Vicon Nexus CSV", IsViconCsv, ReadViconCsv},
+    Format{"OptiTrack Motive CSV", IsMotiveCsv, ReadMotiveCsv},
+    Format{"TRC", IsTrc, ReadTrc},
+    Format{"Qualisys TSV (6D, analogue or force)", IsQtmOther, ReadQtmOther},
+};
+
+const Format* FindFormat(const ByteSource& source) {
+  std::array<char, 4096> head{};
+  std::string_view bytes(head.data(), source.Read(0, head));
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+  for (const Format& format : kFormats) {
+    if (format.is(bytes)) return &format;
+  }
+  return nullptr;
+}
+
+/// Positions that are in no laboratory are numbers of something else.
+void CheckRoom(const MarkerTrajectories& markers) {
+  constexpr double kLargest = 1000.0;  // m
+  for (Eigen::Index column = 0; column < markers.positions.cols(); ++column) {
+    for (Eigen::Index frame = 0; frame < markers.positions.rows(); ++frame) {
+      const double found = markers.positions(frame, column);
+      if (!(std::abs(found) > kLargest)) continue;
+      throw InputError(markers.source + ": frame " + std::to_string(frame + 1) + ", marker " +
+                       Quote(markers.names[static_cast<std::size_t>(column / 3)]) + ": found " +
+                       FormatNumber(found) +
+                       " m; at most 1000 m was expected (is the unit right?)");
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> RecogniseRecording(const ByteSource& source) {
+  if (const Format* format = FindFormat(source)) return format->name;
+  return std::nullopt;
+}
+
+RecordingFile ReadRecordingFile(const std::filesystem::path& file, const ReaderOptions& options) {
+  return ReadRecordingFile(ByteSource::Open(file), options);
+}
+
+RecordingFile ReadRecordingFile(const ByteSource& source, const ReaderOptions& options) {
+  const Format* const format = FindFormat(source);
+  if (!format) {
+    std::string known;
+    for (const Format& one : kFormats) known += (known.empty() ? "" : ", ") + std::string(one.name);
+    throw InputError(source.name() + ": is of no known format; known by their contents are " +
+                     known);
+  }
+  RecordingFile file = format->read(source, options);
+  if (file.markers) CheckRoom(*file.markers);
+  file.format = format->name;
+  return file;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/measurement/trial.hpp"
+#include "elastocal/readers/byte_source.hpp"
+
+namespace elastocal {
+
+/// What a file of somebody else's format does not say by itself.
+struct ReaderOptions {
+  std::string unit = {};          ///< of lengths: mm, cm, m, in; empty: the file has to say
+  std::string joints_topic = {};  ///< of a bag with several topics of joint states
+};
+
+/// What a recording in any format holds, as far as a calibration can use it.
+struct RecordingFile {
+  std::string format;  ///< "C3D", "ROS 2 bag (MCAP)", ...
+  /// Markers under the names of the file, m. A rigid body NAME is four of them: NAME_1 at its
+  /// origin, NAME_2 to NAME_4 at 100 mm on its x, y and z axes.
+  std::optional<MarkerTrajectories> markers;
+  std::optional<JointLog> joints;  ///< under the names of the file, rad or m; all columns of it
+  /// The axis that points up, as the file states it: "z", "-y"; empty where it does not.
+  std::string up;
+  /// Time of the first frame on the clock of `joints`, s, where the file has both on one clock.
+  std::optional<double> markers_start_s;
+  std::string why_no_markers, why_no_joints;  ///< for messages, where there are none
+  std::vector<std::string> notes;             ///< what was skipped or taken how, a sentence each
+};
+
+/// Recognises the format by the bytes, never by the name: C3D, Vicon Nexus CSV, OptiTrack Motive
+/// CSV, TRC, QTM TSV of kind 6D, NumPy .npz, MCAP, ROS 2 db3, ROS 1
+/// bag. Nothing for anything else. The name
+/// is that of RecordingFile::format.
+std::optional<std::string> RecogniseRecording(const ByteSource& source);
+
+/// Reads such a file. Memory grows with what is kept of it and not with its size. Throws InputError
+/// naming file and byte, or line and column: a format that is not recognised, damage, a unit that
+/// the file does not state or that contradicts the options.
+RecordingFile ReadRecordingFile(const std::filesystem::path& file, const ReaderOptions& options);
+RecordingFile ReadRecordingFile(const ByteSource& source, const ReaderOptions& options);
+
+}  // namespace elastocal

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace elastocal {
+
+// Unpack what was packed as a whole, piece by piece: what is kept is what came out, at most a piece
+// more than `most`, and not what a file claims. False for data that are damaged or end early.
+
+bool UnpackLz4(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked);
+bool UnpackZstd(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked);
+bool UnpackBz2(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked);
+
+}  // namespace elastocal

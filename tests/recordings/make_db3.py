@@ -1,0 +1,26 @@
+"""Writes bag.db3 with the messages of make_bags.mjs (messages.json), in the tables of rosbag2."""
+import json
+import pathlib
+import sqlite3
+import sys
+
+messages = json.loads(pathlib.Path(sys.argv[1]).read_text())
+pathlib.Path("bag.db3").unlink(missing_ok=True)
+bag = sqlite3.connect("bag.db3")
+bag.execute("PRAGMA page_size=1024")
+bag.execute(
+    "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,"
+    " serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)")
+bag.execute(
+    "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,"
+    " timestamp INTEGER NOT NULL, data BLOB NOT NULL)")
+topics = {}
+for message in messages:
+    if message["topic"] not in topics:
+        topics[message["topic"]] = len(topics) + 1
+        bag.execute("INSERT INTO topics VALUES(?,?,?,'cdr','')",
+                    (topics[message["topic"]], message["topic"], message["type"]))
+    bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES(?,?,?)",
+                (topics[message["topic"]], int(message["ns"]) + 3000000, bytes.fromhex(message["data"])))
+bag.commit()
+bag.close()

@@ -1,0 +1,24 @@
+"""Writes joints_*.npz with NumPy, for src/elastocal/readers/npz_test.cpp. Run in this folder."""
+import numpy as np
+
+n = 6
+t = 100.0 + 0.125 * np.arange(n)
+elbow = 0.25 * np.arange(n) - 0.5
+np.savez_compressed(
+    "joints_columns.npz",
+    t=t,
+    elbow=elbow.astype(">f4"),
+    elbow_torque=np.where(np.arange(n) == 2, np.nan, 2.0 * elbow),
+    shoulder_position=np.arange(n, dtype=np.int16) - 3,
+    shoulder_velocity=np.ones(n),
+    image=np.zeros((50, 60), dtype=np.uint8),
+)
+q = np.stack([elbow, np.arange(n) - 3.0], axis=1)
+np.savez(
+    "joints_matrix.npz",
+    time=t.astype("<f8"),
+    names=np.array(["elbow", "sch\u00f6ne_schulter"]),
+    q=np.asfortranarray(q),
+    tau=np.asfortranarray(2.0 * q),
+)
+np.savez("joints_pickled.npz", t=np.array([{"a": 1}], dtype=object))

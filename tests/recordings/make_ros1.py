@@ -1,0 +1,28 @@
+"""Writes bag1_*.bag with Debian's python3-rosbag, python3-sensor-msgs and python3-geometry-msgs: the
+messages of make_bags.mjs, for src/elastocal/readers/bags_test.cpp. Run in this folder."""
+import math
+
+import genpy
+import rosbag
+from geometry_msgs.msg import PoseStamped
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+
+for compression in ("none", "lz4", "bz2"):
+    with rosbag.Bag(f"bag1_{compression}.bag", "w", compression=compression, chunk_threshold=2000) as bag:
+        for i in range(20):
+            stamp = genpy.Time(1700000000, i * 10000000)
+            received = stamp + genpy.Duration(0, 3000000)
+            if i % 2 == 0:
+                state = JointState(name=["elbow", "wrist"], position=[0.125 * i, -0.5 * i],
+                                   effort=[] if i == 4 else [i, math.nan])
+                state.header.stamp = stamp
+                bag.write("/joint_states", state, received)
+            if i != 7:
+                pose = PoseStamped()
+                pose.header.stamp = stamp
+                pose.header.frame_id = "world"
+                pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = 1 + 0.01 * i, -2, 0.5
+                pose.pose.orientation.z = pose.pose.orientation.w = math.sqrt(0.5)
+                bag.write("/mocap/LHAND/pose", pose, received)
+            bag.write("/chatter", String("hello " * 20 + str(i)), received)
