@@ -1,7 +1,6 @@
 #include "elastocal/io/output_set.hpp"
 
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iostream>
@@ -10,12 +9,11 @@
 #include <stdexcept>
 #include <system_error>
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "elastocal/io/output_files.hpp"
+#include "elastocal/io/staging.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -23,11 +21,6 @@ namespace elastocal {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kStagingPrefix = ".elastocal-";
-// In a staging folder, beside the files of the run.
-constexpr const char* kCommit = ".commit";
-constexpr const char* kOwner = ".owner";  // locked while the run lives
 
 /// That nothing else is replaced than a file that begins so, or an empty one.
 void CheckBeginning(const fs::path& file, const std::string& beginning) {
@@ -41,12 +34,6 @@ void CheckBeginning(const fs::path& file, const std::string& beginning) {
   throw InputError(file.string() + ": is there and does not begin with " + Quote(beginning) +
                    ", as this output does, so it is not replaced; choose another name, or remove "
                    "it");
-}
-
-std::string SystemError() { return errno != 0 ? std::strerror(errno) : "input or output error"; }
-
-[[noreturn]] void FailToWrite(const fs::path& file, const std::string& reason) {
-  throw InputError("cannot write " + file.string() + ": " + reason);
 }
 
 bool IsStandardOutput(const fs::path& file) { return file == "-" || file == "/dev/stdout"; }
@@ -76,41 +63,6 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-void SyncFolder(const fs::path& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
-}
-
-/// Writes a new file and waits until it is on the disk. Throws in the name of `given`.
-void WriteNew(const fs::path& path, const std::string& contents, const fs::path& given) {
-  errno = 0;
-  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) FailToWrite(given, SystemError());
-  std::size_t done = 0;
-  bool fine = true;
-  while (fine && done < contents.size()) {
-    const ssize_t written = write(descriptor, contents.data() + done, contents.size() - done);
-    if (written >= 0) done += static_cast<std::size_t>(written);
-    fine = written >= 0 || errno == EINTR;
-  }
-  fine = fine && fsync(descriptor) == 0;
-  const std::string reason = SystemError();
-  close(descriptor);
-  if (!fine) FailToWrite(given, reason);
-}
-
-/// Waits until a file that somebody else wrote is on the disk.
-void SyncFile(const fs::path& path, const fs::path& given) {
-  errno = 0;
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool fine = descriptor >= 0 && fsync(descriptor) == 0;
-  const std::string reason = SystemError();
-  if (descriptor >= 0) close(descriptor);
-  if (!fine) FailToWrite(given, reason);
-}
-
 /// What is no regular file cannot be written beforehand.
 void WriteStream(const fs::path& file, const std::string& contents) {
   errno = 0;
@@ -124,127 +76,6 @@ void WriteStream(const fs::path& file, const std::string& contents) {
   stream.write(contents.data(), size);
   stream.close();
   if (!stream) FailToWrite(file, SystemError());
-}
-
-/// Folders made for files; those that are empty are removed again unless they are kept.
-class NewFolders {
- public:
-  ~NewFolders() {
-    std::error_code ignored;
-    for (; !created_.empty(); created_.pop_back()) fs::remove(created_.back(), ignored);
-  }
-
-  void Create(const fs::path& folder) {
-    std::error_code error;
-    if (folder.empty() || fs::is_directory(folder, error)) return;
-    Create(folder.parent_path());
-    if (fs::create_directory(folder, error)) created_.push_back(folder);
-    if (error) {
-      throw InputError("cannot create the folder " + folder.string() + ": " + error.message());
-    }
-  }
-
-  void Keep() { created_.clear(); }
-
- private:
-  std::vector<fs::path> created_;
-};
-
-/// Keeps others from making or judging staging folders in a folder meanwhile.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder)
-      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (descriptor_ >= 0) flock(descriptor_, LOCK_EX);
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-
- private:
-  int descriptor_;
-};
-
-/// A staging folder. Its run holds the lock of the owner's file in it: whoever gets that lock knows
-/// that the run is gone.
-class Staging {
- public:
-  /// A new one in `folder`, for `file`.
-  Staging(const fs::path& folder, const fs::path& file) {
-    const FolderLock lock(folder);
-    std::string name = (folder / (std::string(kStagingPrefix) + "XXXXXX")).string();
-    errno = 0;
-    if (mkdtemp(name.data()) == nullptr) FailToWrite(file, SystemError());
-    path_ = name;
-    descriptor_ = open((path_ / kOwner).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    owned_ = true;
-    if (descriptor_ >= 0) flock(descriptor_, LOCK_EX);
-  }
-  /// One that is there already, under the lock of its folder; it is owned if its run is gone.
-  explicit Staging(const fs::path& path) : path_(path) {
-    descriptor_ = open((path_ / kOwner).c_str(), O_RDWR | O_CLOEXEC);
-    owned_ = descriptor_ < 0 ? errno == ENOENT : flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
-  }
-  Staging(const Staging&) = delete;
-  Staging& operator=(const Staging&) = delete;
-  ~Staging() {
-    std::error_code ignored;
-    if (owned_ && !fs::exists(path_ / kCommit, ignored)) fs::remove_all(path_, ignored);
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-
-  const fs::path& path() const { return path_; }
-  bool owned() const { return owned_; }
-
- private:
-  fs::path path_;
-  int descriptor_ = -1;
-  bool owned_ = false;
-};
-
-/// Interrupts wait while files get their names.
-class SignalsHeld {
- public:
-  SignalsHeld() {
-    sigset_t held;
-    sigemptyset(&held);
-    for (int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&held, signal);
-    pthread_sigmask(SIG_BLOCK, &held, &before_);
-  }
-  SignalsHeld(const SignalsHeld&) = delete;
-  SignalsHeld& operator=(const SignalsHeld&) = delete;
-  ~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_{};
-};
-
-/// Does what the commit of a staging folder says, as far as it is not done yet: "+NAME" moves a
-/// file into the folder around it, "-NAME" removes one there; each entry ends with a NUL.
-void ApplyCommit(const Staging& staging) {
-  const SignalsHeld held;
-  const fs::path folder = staging.path().parent_path();
-  const std::string commit = ReadFile(staging.path() / kCommit);
-  for (std::size_t at = 0; at < commit.size();) {
-    const std::size_t end = commit.find('\0', at);
-    if (end == std::string::npos) break;
-    const char action = commit[at];
-    const std::string name = commit.substr(at + 1, end - at - 1);
-    at = end + 1;
-    if (name != fs::path(name).filename()) continue;  // not written by this program
-    std::error_code error, ignored;
-    if (action == '-') {
-      fs::remove(folder / name, error);
-    } else if (fs::exists(staging.path() / name, ignored)) {
-      fs::rename(staging.path() / name, folder / name, error);
-    }
-    if (error) FailToWrite(folder / name, error.message());
-  }
-  SyncFolder(folder);
-  std::error_code ignored;
-  fs::remove(staging.path() / kCommit, ignored);
 }
 
 }  // namespace

@@ -368,33 +368,6 @@ class Timing {
   const std::string& source_;
 };
 
-void CheckNames(const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    const bool control = std::any_of(name.begin(), name.end(),
-                                     [](unsigned char character) { return character < 0x20; });
-    if (name.empty() || control || Trim(name) != name) {
-      throw InputError("a TSV file cannot hold a marker of the name " + Quote(name));
-    }
-  }
-}
-
-std::string HeaderText(const MarkerTrajectories& trajectories) {
-  std::string text = "NO_OF_FRAMES\t" + std::to_string(trajectories.frame_count()) +
-                     "\r\nNO_OF_MARKERS\t" + std::to_string(trajectories.marker_count()) +
-                     "\r\nFREQUENCY\t" + FormatNumber(trajectories.rate_hz) +
-                     "\r\nDATA_INCLUDED\t3D\r\nMARKER_NAMES";
-  for (const std::string& name : trajectories.names) text += "\t" + name;
-  text += "\r\nFrame\tTime";
-  for (const std::string& name : trajectories.names) {
-    for (char axis : {'X', 'Y', 'Z'}) text += "\t" + name + " " + axis;
-  }
-  return text + "\r\n";
-}
-
-}  // namespace
-
-namespace {
-
 MarkerTrajectories ParseQtmStream(std::istream& stream, const std::string& source) {
   QtmLines lines{LineReader(stream, source)};
   const QtmHeader header = HeaderReader(lines).Read();
@@ -418,31 +391,6 @@ MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file) {
 MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source) {
   TextStream stream(text);
   return ParseQtmStream(stream, source);
-}
-
-void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& trajectories,
-                 int decimals) {
-  WriteFile(file, FormatQtmTsv(trajectories, decimals));
-}
-
-std::string FormatQtmTsv(const MarkerTrajectories& trajectories, int decimals) {
-  CheckNames(trajectories.names);
-  constexpr int kTimeDecimals = 5;
-  const auto& positions = trajectories.positions;
-  std::string text = HeaderText(trajectories);
-  // About "-1234.567" and a tab for each number.
-  text.reserve(text.size() +
-               static_cast<std::size_t>(positions.size()) * static_cast<std::size_t>(decimals + 7));
-  for (Eigen::Index i = 0; i < positions.rows(); ++i) {
-    text += std::to_string(i + 1) + "\t";
-    AppendFixed(static_cast<double>(i) / trajectories.rate_hz, kTimeDecimals, text);
-    for (Eigen::Index c = 0; c < positions.cols(); ++c) {
-      text += '\t';
-      if (!std::isnan(positions(i, c))) AppendFixed(1e3 * positions(i, c), decimals, text);
-    }
-    text += "\r\n";
-  }
-  return text;
 }
 
 }  // namespace elastocal
