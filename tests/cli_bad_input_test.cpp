@@ -31,6 +31,16 @@ TEST_F(Program, MalformedProjectAndUrdfAreNamedByLine) {
                 {"bad.urdf:"});
 }
 
+TEST_F(Program, ConvertDoesNotPromiseAFormatThatItDoesNotWrite) {
+  const std::string log = scratch_.Write("log.csv", "t,elbow_joint\n0,0.1\n0.01,0.2\n0.02,0.3\n");
+  const std::string output = (scratch_.path() / "out.c3d").string();
+  ExpectRefused(RunProgram("convert " + log + " -o " + output), {"out.c3d", ".tsv"});
+  EXPECT_FALSE(std::filesystem::exists(output));
+  const std::string written = (scratch_.path() / "out.csv").string();
+  EXPECT_EQ(RunProgram("convert " + log + " -o " + written).exit_code, 0);
+  EXPECT_EQ(RunProgram("info " + written).exit_code, 0);
+}
+
 // JSON holds nothing but UTF-8: a name that is not is refused before the fit and not after it.
 TEST_F(Program, NamesThatAreNotUtf8AreRefused) {
   std::string project = ReadFile(project_);

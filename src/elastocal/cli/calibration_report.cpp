@@ -40,6 +40,10 @@ std::string VerdictText(const CalibrationRun& run) {
   if (std::isfinite(deployment.compensated)) {
     text +=
         fmt::format(", {} mm with elastic compensation", Millimetres(deployment.compensated, 3));
+    if (!run.extra.empty()) {
+      text += fmt::format(" and {}, which only this program's own model knows",
+                          fmt::join(run.extra, ", "));
+    }
   }
   if (run.held_out) return text + ".\n";
   const bool folded = run.cross_validation.folds > 0;

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/io/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/recording_info.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 
@@ -77,7 +79,18 @@ int Info(const RecordingCommand& command) {
   return kFine;
 }
 
+/// A name that promises another format would mislead whoever opens the file.
+void CheckWrittenFormat(const std::string& output) {
+  const std::string extension = std::filesystem::path(output).extension().string();
+  for (const char* other : {".c3d", ".trc", ".npz", ".mcap", ".db3", ".bag"}) {
+    if (extension != other) continue;
+    throw InputError(output + ": found the extension " + extension +
+                     "; Qualisys TSV (.tsv) or a joint log (.csv) is what convert writes");
+  }
+}
+
 int Convert(const RecordingCommand& command) {
+  CheckWrittenFormat(command.output);
   OutputSet outputs;
   outputs.Protect({command.file});
   outputs.Declare(command.output);

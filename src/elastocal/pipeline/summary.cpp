@@ -171,7 +171,8 @@ void AddTrials(const CalibrationRun& run, Json& json) {
 }
 
 /// What a user takes home, and its error on data that were not used for it.
-Json DeploymentJson(const Deployment& deployment) {
+Json DeploymentJson(const CalibrationRun& run) {
+  const Deployment& deployment = run.deployment;
   const auto artefact = [&](double rmse) {
     return Json{{"rmse_3d_mm", Finite(1e3 * rmse)},
                 {"uncalibrated", Finite(1e3 * deployment.uncalibrated)}};
@@ -181,6 +182,7 @@ Json DeploymentJson(const Deployment& deployment) {
   json["urdf"] = artefact(deployment.urdf);
   json["urdf"]["model"] = ModelKindName(deployment.urdf_kind);
   json["compensated"] = artefact(deployment.compensated);
+  if (!run.extra.empty()) json["compensated"]["not_exported"] = run.extra;
   return json;
 }
 
@@ -227,7 +229,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["status"] = RunStatus(run);
   json["message"] = result.message;
   json["settled"] = result.settled;
-  json["deployed"] = DeploymentJson(run.deployment);
+  json["deployed"] = DeploymentJson(run);
   json["objections"] = run.verdict.objections;
   json["chains"] = CoverageJson(run);
   json["remarks"] = run.verdict.remarks;

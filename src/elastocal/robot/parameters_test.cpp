@@ -36,7 +36,7 @@ TEST(Parameters, NamesOfKinds) {
   }
 }
 
-TEST(Parameters, CompliancesAndBiasesAreElastic) {
+TEST(Parameters, CompliancesBiasesAndCorrectionsAreElastic) {
   std::string compliances, elastic;
   for (int i = 0; i < kParameterKindCount; ++i) {
     const auto kind = static_cast<ParameterKind>(i);
@@ -45,7 +45,7 @@ TEST(Parameters, CompliancesAndBiasesAreElastic) {
     EXPECT_FALSE(IsElastic(kind) && (IsAngle(kind) || IsExternal(kind))) << KindName(kind);
   }
   EXPECT_EQ(compliances, "torsion bending base_force base_moment ");
-  EXPECT_EQ(elastic, "torsion bending base_force base_moment torque_bias ");
+  EXPECT_EQ(elastic, "torsion bending base_force base_moment torque_bias correction ");
 }
 
 TEST(Parameters, FindsByName) {
