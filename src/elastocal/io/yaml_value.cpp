@@ -215,9 +215,10 @@ double YamlValue::Number() const {
 }
 
 double YamlValue::Number(const NumberRange& range) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const bool takes_infinity = range.or_infinity || (range.with_upper && std::isinf(range.upper));
-  if (takes_infinity && kind_ == Kind::kScalar && scalar_ == ".inf") return kInfinity;
+  if (takes_infinity && kind_ == Kind::kScalar && scalar_ == ".inf") {
+    return std::numeric_limits<double>::infinity();
+  }
   const std::optional<double> found = kind_ == Kind::kScalar ? ParseNumber(scalar_) : std::nullopt;
   Expect(found && range.Contains(*found), range.InWords());
   return found.value_or(0.0);
