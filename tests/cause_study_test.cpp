@@ -25,8 +25,8 @@ namespace {
 
 using Kind = ParameterKind;
 
-constexpr int kFirstSeed = 1000;         // those below 200 served to develop the tests of causes
-constexpr double kMarkerNoise = 0.1e-3;  // m: of a posture, which is the mean of many frames
+constexpr std::uint64_t kFirstSeed = 1000;  // those below 200 served to develop the tests of causes
+constexpr double kMarkerNoise = 0.1e-3;     // m: of a posture, which is the mean of many frames
 
 constexpr const char* kProject = R"(
 robot: {urdf: models/talos/talos.urdf}
@@ -118,7 +118,7 @@ TEST(Causes, TheInjectedOneIsNamedFirst) {
     int first = 0;
     double without = 0.0, with = 0.0;
     for (int seed = 1; seed <= Seeds(); ++seed) {
-      const auto s = static_cast<std::uint64_t>(kFirstSeed + seed);
+      const auto s = kFirstSeed + static_cast<std::uint64_t>(seed);
       const CauseReport report = StudyCauses(project, Record(project, &injected, s), s);
       const CauseSearch& search = report.search;
       const std::string named = search.chosen.empty() ? "nothing" : search.chosen.front().cause;
@@ -144,7 +144,7 @@ TEST(Causes, NothingIsNamedWhereNothingIs) {
   int named = 0;
   double error = 0.0;
   for (int seed = 1; seed <= Seeds(); ++seed) {
-    const auto s = static_cast<std::uint64_t>(kFirstSeed + seed);
+    const auto s = kFirstSeed + static_cast<std::uint64_t>(seed);
     const CauseReport report = StudyCauses(project, Record(project, nullptr, 100 + s), s);
     error += report.search.error / Seeds();
     if (!report.search.accepted) continue;

@@ -150,7 +150,8 @@ class StudyMaker {
                                          k) != body.nuisance_blocks.end();
       if (is_nuisance && nuisance != nullptr) *nuisance = J.middleCols(at, size);
       for (int c = 0; c < size; ++c) {
-        const int column = column_[static_cast<std::size_t>(first_[k] + c)];
+        const int column =
+            column_[static_cast<std::size_t>(first_[k]) + static_cast<std::size_t>(c)];
         if (column >= 0) wide.col(column) += J.col(at + c);
       }
       at += size;

@@ -109,7 +109,7 @@ class C3dReader {
       stated = by_long;
       saturated = false;
     }
-    const double limit = static_cast<double>(std::numeric_limits<int>::max());
+    const auto limit = static_cast<double>(std::numeric_limits<int>::max());
     const std::uint64_t count = Whole(stated, "the number of frames", limit);
     if (count > room) {
       source_.Fail(source_.size(), "the file ends after " + std::to_string(room) + " of " +
