@@ -11,10 +11,10 @@ target_compile_options(elastocal_warnings INTERFACE
 # name in an unnamed namespace may come twice in a layer. OFF (presets dev and tidy): each source by
 # itself, which also shows a missing #include.
 option(ELASTOCAL_UNITY "Compile several sources of a layer as one" ON)
-set(ELASTOCAL_UNITY_BATCH 8)
+set(ELASTOCAL_UNITY_BATCH 24)
 
-# elastocal_unity(OUT NAME source...): the sources, or few that include them by relative names. (CMake's
-# UNITY_BUILD has absolute ones, and ccache then finds nothing in another folder.)
+# elastocal_unity(OUT NAME source...): the sources, or few of equal size that include them by relative names.
+# (CMake's UNITY_BUILD has absolute ones, and ccache then finds nothing in another folder.)
 function(elastocal_unity out name)
   if(NOT ELASTOCAL_UNITY)
     set(${out} ${ARGN} PARENT_SCOPE)
@@ -24,13 +24,16 @@ function(elastocal_unity out name)
   set(number 0)
   set(count 0)
   set(content "")
+  list(LENGTH ARGN sources)
+  math(EXPR units "(${sources} + ${ELASTOCAL_UNITY_BATCH} - 1) / ${ELASTOCAL_UNITY_BATCH}")
+  math(EXPR batch "(${sources} + ${units} - 1) / ${units}")
   foreach(source IN LISTS ARGN)
     cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
     cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
     string(REGEX REPLACE "^src/" "" source ${source})
     string(APPEND content "#include \"${source}\"\n")
     math(EXPR count "${count} + 1")
-    if(count EQUAL ELASTOCAL_UNITY_BATCH)
+    if(count EQUAL batch)
       list(APPEND joined "${content}")
       set(content "")
       set(count 0)

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kCone = 60.0 * kRadiansPerDegree;
+constexpr double kHandCone = 60.0 * kRadiansPerDegree;
 
 /// Places of a chain's tip in random postures, all else at rest, in the root link's frame, m.
 std::vector<Eigen::Vector3d> TipPlaces(const RobotTree& tree, const ChainSetup& setup,
@@ -83,7 +83,7 @@ void SetLegWorkspace(const RobotTree& tree, const Limb& limb, const RestPosture&
     box.upper.z() = std::max(box.lower.z() + 0.05 * height, std::min(box.upper.z(), highest));
   }
   setup.box = RoundedBox(box);
-  if (limb.joints.size() >= 6) setup.largest_turn = kCone;
+  if (limb.joints.size() >= 6) setup.largest_turn = kHandCone;
   setup.floor_z = -rest.root_height + kAboveFloor * height;
 }
 

@@ -61,20 +61,22 @@ namespace {
 /// Groups whose deviation is from `least` on and below `most_angle` or `most_spread`.
 std::vector<SpecialGeometry> FindGroups(const RobotTree& tree, double least, double most_angle,
                                         double most_spread) {
-  using Kind = SpecialGeometry::Kind;
+  using GroupKind = SpecialGeometry::Kind;
   std::vector<SpecialGeometry> groups;
   const auto revolute = [&](int k) {
     return k >= 0 && tree.joints[k].type == JointType::kRevolute;
   };
-  const auto angle = [&](int a, int b) { return Deviation(tree, {Kind::kParallelAxes, {a, b}}); };
+  const auto angle = [&](int a, int b) {
+    return Deviation(tree, {GroupKind::kParallelAxes, {a, b}});
+  };
   for (int c = 0; c < static_cast<int>(tree.joints.size()); ++c) {
     const int b = Previous(tree, c);
     if (!revolute(c) || !revolute(b)) continue;
     const double off = angle(b, c);
-    if (off >= least && off < most_angle) groups.push_back({Kind::kParallelAxes, {b, c}});
+    if (off >= least && off < most_angle) groups.push_back({GroupKind::kParallelAxes, {b, c}});
     const int a = Previous(tree, b);
     if (!revolute(a) || off < 0.1 || angle(a, b) < 0.1) continue;
-    const SpecialGeometry wrist{Kind::kSphericalWrist, {a, b, c}};
+    const SpecialGeometry wrist{GroupKind::kSphericalWrist, {a, b, c}};
     const double spread = Deviation(tree, wrist);
     if (spread >= least && spread < most_spread) groups.push_back(wrist);
   }
