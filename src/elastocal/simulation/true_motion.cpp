@@ -18,7 +18,7 @@ void CheckStanding(const Transform& T_world_waist, double height, double time_s)
 
 TrueMotion PlayMotion(const TrueRobot& robot, const std::vector<int>& support, const Motion& motion,
                       const Transform& T_camera_world, const PhysicsOptions& options) {
-  constexpr double kLongestSettling = 4.0;  // s; friction may go on creeping
+  constexpr double kLongestCreep = 4.0;  // s; friction may go on creeping
   TrueMotion result;
   for (const Marker& marker : robot.markers) result.marker_names.push_back(marker.name);
   for (int k : robot.tree.coordinate_joint) {
@@ -31,7 +31,7 @@ TrueMotion PlayMotion(const TrueRobot& robot, const std::vector<int>& support, c
   result.torques.resize(frames, joints);
 
   VirtualRobot body(robot, support, PostureAt(motion, 0.0), options);
-  body.Settle(kLongestSettling);
+  body.Settle(kLongestCreep);
   const double height = body.WaistPose().translation().z();
   for (std::size_t s = 0; s < support.size(); ++s) {
     result.T_camera_foot.push_back(T_camera_world * body.SolePose(static_cast<int>(s)));
