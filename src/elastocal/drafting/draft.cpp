@@ -224,7 +224,7 @@ void WarnOfGuesses(ProjectDraft& draft) {
   if (guessed > 0) {
     draft.warnings.push_back(
         std::to_string(guessed) + " of " + std::to_string(draft.tree.body_count()) +
-        " bodies have no box, cylinder or sphere in the URDF: markers and spheres are on shapes "
+        " bodies have no shape that could be read: markers and spheres are on shapes "
         "guessed from joints and masses");
   }
   for (const DraftedSole& sole : draft.soles) {
@@ -252,13 +252,13 @@ void WarnOfGuesses(ProjectDraft& draft) {
 }  // namespace
 
 ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
-                          const Semantics& semantics) {
+                          const Semantics& semantics, const MeshPlaces& places) {
   const RobotTree described = ParseUrdf(urdf, source);
   if (described.joints.empty()) {
     throw InputError(source + ": the robot has no movable joint; nothing can be calibrated");
   }
   ProjectDraft draft;
-  draft.shapes = ReadBodyShapes(described, urdf, source);
+  draft.shapes = ReadBodyShapes(described, urdf, source, places);
   draft.warnings = draft.shapes.warnings;
   draft.limbs = FindLimbs(described, draft.shapes, semantics);
   draft.soles = FindSoles(described, draft.shapes, draft.limbs);

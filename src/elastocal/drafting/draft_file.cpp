@@ -220,6 +220,7 @@ std::string FormatDraftSummary(const ProjectDraft& draft) {
                      {"chains", chains},
                      {"markers", 3 * draft.clusters.size()},
                      {"spheres", draft.spheres.size()},
+                     {"meshes", draft.shapes.meshes},
                      {"rest", draft.rest.source},
                      {"stands", draft.stands},
                      {"soles", soles},

@@ -110,6 +110,7 @@ std::vector<Bound> MakeBounds() {
       {"URDF cylinder.radius", "m", 0, 100, "the largest machines"},
       {"URDF cylinder.length", "m", 0, 100, "the largest machines"},
       {"URDF sphere.radius", "m", 0, 100, "the largest machines"},
+      {"URDF mesh.scale", "", -1e6, 1e6, "units from nanometres on; negative: mirrored"},
       {"URDF mimic.multiplier", "", -1e3, 1e3, "a gear"},
       {"URDF mimic.offset", "rad or m", -1e3, 1e3, "joints' limits"},
       {"assess --marker-noise-mm", "mm", 1e-3, 100, "cameras' noise"},
