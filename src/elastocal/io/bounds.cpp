@@ -27,6 +27,9 @@ constexpr const char* kTurns = "two turns";
 
 std::vector<Bound> MakeBounds() {
   std::vector<Bound> list = {
+      {"couplings[].of.*", "", -1e3, 1e3, "a gear"},
+      {"couplings[].offset_deg", "deg", -720, 720, kTurns},
+      {"couplings[].offset_mm", "mm", -1e4, 1e4, kBody},
       {"markers.clusters[].positions_mm[][]", "mm", -1e4, 1e4, kBody},
       {"markers.single[].position_mm[]", "mm", -1e4, 1e4, kBody},
       {"recording.not_recorded_deg.*", "deg", -720, 720, kTurns},
