@@ -168,8 +168,8 @@ class DraftWriter {
       text_ +=
           draft_.soles.empty()
               ? "# No legs were found: the root link is held still.\n"
-              : "# The robot does not balance on one or two flat soles of legs with six joints\n"
-                "# each: the root link is held still, for instance on a stand.\n";
+              : "# The robot does not balance on one or two flat soles of legs with five\n"
+                "# joints or more each: the root link is held still, for instance on a stand.\n";
       return;
     }
     text_ +=
