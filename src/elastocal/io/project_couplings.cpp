@@ -10,12 +10,13 @@ Coupling ReadCoupling(const YamlValue& value, const RobotTree& tree) {
   const bool turns = tree.joints[coupling.joint].type == JointType::kRevolute;
   const char* offset = turns ? "offset_deg" : "offset_mm";
   value.ExpectKeys({"joint", "of", offset});
-  for (const auto& [name, factor] : value.Get("of").Entries()) {
+  const YamlValue of = value.Get("of");  // Entries() belongs to it
+  for (const auto& [name, factor] : of.Entries()) {
     const int joint = FindNamedBy(factor, [&] { return FindJoint(tree, name); });
     coupling.of.emplace_back(joint, factor.Bounded());
     factor.Expect(coupling.of.back().second != 0.0, "a factor other than 0");
   }
-  value.Get("of").Expect(!coupling.of.empty(), "joints and their factors");
+  of.Expect(!coupling.of.empty(), "joints and their factors");
   if (const auto given = value.Find(offset)) {
     coupling.offset = (turns ? kOneDegree : kOneMm) * given->Bounded();
   }

@@ -50,7 +50,7 @@ Link ReadLink(const UrdfLink& source) {
 
 Eigen::Vector3d ReadAxis(const UrdfJoint& joint, std::vector<std::string>& warnings) {
   constexpr double kShortest = 1e-6;  // below this it is rounding noise, not a direction
-  constexpr double kRounding = 0.01;
+  constexpr double kRounding = 0.1;
   const auto axis = joint.element.FindFirst("axis");
   if (!axis) return Eigen::Vector3d::UnitX();
   const Eigen::Vector3d xyz = axis->Vector("xyz");
