@@ -19,5 +19,6 @@ set(ELASTOCAL_calibration_DEPENDENCIES
   "ZLIB"
   "Threads")
 set(ELASTOCAL_planning_DEPENDENCIES
+  "assimp"
   "Ipopt"
   "mujoco 2.2.2")

@@ -2,7 +2,7 @@
 # that find_package(elastocal COMPONENTS ...) reads.
 #
 #   runtime      the robot at run time, for controllers: only Eigen is needed
-#   calibration  the layer `pipeline` and all that it uses: neither MuJoCo nor Ipopt is needed
+#   calibration  the layer `pipeline` and all that it uses: neither Assimp, MuJoCo nor Ipopt is needed
 #   planning     all other layers
 #
 # elastocal::elastocal stands for all layers, or for those of the components asked for.

@@ -33,6 +33,26 @@ TEST(InitProgram, WritesAProjectThatInspectAndDesignTakeAsItIs) {
   EXPECT_NE(ReadFile(motion).find(",none,"), std::string::npos);  // the root link is held
 }
 
+TEST(InitProgram, FindsMeshesInPackagesThatAreNamed) {
+  const ScratchFolder folder;
+  std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  urdf.insert(urdf.find('>', urdf.find("<link name=\"tool\"")) + 1,
+              "<visual><geometry><mesh filename=\"package://tool/t.obj\"/></geometry></visual>");
+  const std::string arm = folder.Write("arm.urdf", urdf);
+  std::filesystem::create_directory(folder.path() / "elsewhere");
+  folder.Write("elsewhere/t.obj",
+               "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const std::string out = (folder.path() / "out").string();
+  const ProgramResult missing = RunProgram("init " + arm + " -o " + out);
+  EXPECT_EQ(missing.exit_code, 0) << missing.err;
+  EXPECT_NE(missing.err.find("--package tool=DIR"), std::string::npos) << missing.err;
+  const std::string package = " --package tool=" + (folder.path() / "elsewhere").string();
+  const ProgramResult found = RunProgram("init" + package + " " + arm + " --force -o " + out);
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_NE(found.out.find("1 meshes read"), std::string::npos) << found.out;
+  EXPECT_EQ(found.err.find("missing"), std::string::npos) << found.err;
+}
+
 TEST(InitProgram, ReplacesNothingUnasked) {
   const ScratchFolder folder;
   const std::string urdf = SourceFile("tests/robots/arm6.urdf").string();
@@ -54,6 +74,8 @@ TEST(InitProgram, BadInputIsNamedAndNothingIsWritten) {
   for (const auto& [words, part] : {std::pair<std::string, std::string>{still, "no movable joint"},
                                     {urdf + " --srdf " + bad_srdf, "bad.srdf:1"},
                                     {urdf + " --srdf none.srdf", "none.srdf"},
+                                    {urdf + " --package arm", "NAME=DIR"},
+                                    {urdf + " --package arm=nowhere", "no folder 'nowhere'"},
                                     {folder.path().string(), "folder"},
                                     {"none.urdf", "none.urdf"}}) {
     const ProgramResult result = RunProgram("init " + words + " -o " + out);

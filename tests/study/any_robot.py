@@ -55,8 +55,10 @@ def main():
     parser.add_argument("--program", required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--limit-s", type=int, default=1200, help="of one step")
+    parser.add_argument("--steps", default=",".join(STEPS), help="the first ones, with commas between them")
     parser.add_argument("robots", nargs="*")
     options = parser.parse_args()
+    steps = [step for step in STEPS if step in options.steps.split(",")]
     root = pathlib.Path(__file__).resolve().parents[2]
     robots = options.robots
     if not robots:
@@ -65,8 +67,8 @@ def main():
         for urdf in files:
             srdf = sorted(urdf.parent.glob("*.srdf"))
             robots.append(",".join([str(urdf)] + [str(file) for file in srdf[:1]]))
-    print("| robot | " + " | ".join(STEPS) + " | held-out motions, mm | s |")
-    print("|---|" + "---|" * (len(STEPS) + 2))
+    print("| robot | " + " | ".join(steps) + " | held-out motions, mm | s |")
+    print("|---|" + "---|" * (len(steps) + 2))
     reasons = []
     for robot in robots:
         urdf, _, srdf = robot.partition(",")
@@ -74,7 +76,7 @@ def main():
         folder = options.work / name
         values = {"urdf": urdf, "srdf": f"--srdf={srdf}" if srdf else "", "d": str(folder)}
         cells, begin = [], time.monotonic()
-        for step in STEPS:
+        for step in steps:
             code, reason = run_step(options.program, step, values, options.limit_s)
             cells.append("ok" if code == 0 else f"exit {code}")
             if code != 0:

@@ -34,21 +34,27 @@ class MarkerPositionFinder {
     geometry_ = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
     unknown_of_.assign(model.tree.coordinate_count(), -1);
     for (int joint : model.active_joints) {
-      int& unknown = unknown_of_[model.tree.joints[joint].coordinate];
-      if (unknown < 0) unknown = count_++;
+      for (const Drive& drive : DrivesOf(model.tree.joints[joint])) {
+        int& unknown = unknown_of_[drive.coordinate];
+        if (unknown < 0) unknown = count_++;
+      }
     }
     for (const Parameter& parameter : model.parameters) {
-      Column column;
+      std::vector<Column> columns;
       if (parameter.kind == ParameterKind::kTheta || parameter.kind == ParameterKind::kR) {
         const Joint& joint = model.tree.joints[parameter.joint];
         const bool moves =
             (joint.type == JointType::kRevolute) == (parameter.kind == ParameterKind::kTheta);
-        if (moves)
-          column = {kWaistParameterCount + unknown_of_[joint.coordinate], joint.multiplier};
+        if (moves) {
+          for (const Drive& drive : DrivesOf(joint)) {
+            columns.push_back(
+                {kWaistParameterCount + unknown_of_[drive.coordinate], drive.multiplier});
+          }
+        }
       }
-      columns_.push_back(column);
+      columns_.push_back(std::move(columns));
     }
-    for (int i = 0; i < kWaistParameterCount; ++i) columns_[i] = {i, 1.0};
+    for (int i = 0; i < kWaistParameterCount; ++i) columns_[i] = {{i, 1.0}};
   }
 
   /// Positions of all coordinates in posture `i`.
@@ -82,8 +88,8 @@ class MarkerPositionFinder {
 
  private:
   struct Column {
-    int unknown = -1;
-    double factor = 1.0;
+    int unknown;
+    double factor;
   };
 
   /// Where the search in a posture begins.
@@ -167,10 +173,10 @@ class MarkerPositionFinder {
       const auto block = jacobian_.Block(m);
       Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, size);
       for (std::size_t k = 0; k < parameters.size(); ++k) {
-        const Column& column = columns_[parameters[k]];
-        if (column.unknown < 0) continue;
-        J.col(column.unknown) +=
-            column.factor / kMarkerSd * block.col(static_cast<Eigen::Index>(k));
+        for (const Column& column : columns_[parameters[k]]) {
+          J.col(column.unknown) +=
+              column.factor / kMarkerSd * block.col(static_cast<Eigen::Index>(k));
+        }
       }
       // A marker far off is wrong itself, or waits for the joints to come nearer.
       const double weight = 1.0 / (1.0 + residual.squaredNorm() / 100.0);
@@ -186,7 +192,7 @@ class MarkerPositionFinder {
   GeneralizedJacobian jacobian_;
   Geometry geometry_;
   std::vector<int> unknown_of_;  // by coordinate: its number beyond those of the waist; -1
-  std::vector<Column> columns_;  // by parameter
+  std::vector<std::vector<Column>> columns_;  // by parameter: the unknowns that act like it
   int count_ = 0;
   Eigen::MatrixXd information_;
   Eigen::VectorXd gradient_;

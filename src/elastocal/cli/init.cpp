@@ -1,5 +1,7 @@
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -21,6 +23,7 @@ namespace {
 struct InitCommand {
   CommonOptions common;
   std::string urdf, srdf, output;
+  std::vector<std::string> packages;
   bool force = false;
 };
 
@@ -38,6 +41,34 @@ std::filesystem::path PlaceOfUrdf(const std::filesystem::path& urdf,
   if (!std::filesystem::equivalent(copy, urdf, none)) return copy;
   if (!changed) return {};
   return folder / (urdf.stem().string() + "_soles" + urdf.extension().string());
+}
+
+/// The folders in an environment variable, with `below` added to each.
+void AddRoots(const char* variable, const std::filesystem::path& below, MeshPlaces& places) {
+  const char* value = std::getenv(variable);
+  std::istringstream list(value == nullptr ? "" : value);
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (!folder.empty()) places.roots.push_back(std::filesystem::path(folder) / below);
+  }
+}
+
+MeshPlaces FindPlaces(const InitCommand& command) {
+  MeshPlaces places;
+  places.urdf = command.urdf;
+  for (const std::string& given : command.packages) {
+    const std::size_t equals = given.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      throw InputError("--package: found '" + given + "'; NAME=DIR was expected");
+    }
+    const std::filesystem::path folder = given.substr(equals + 1);
+    if (FileTypeOf(folder) != std::filesystem::file_type::directory) {
+      throw InputError("--package: there is no folder '" + folder.string() + "'");
+    }
+    places.packages[given.substr(0, equals)] = folder;
+  }
+  AddRoots("ROS_PACKAGE_PATH", "", places);
+  AddRoots("AMENT_PREFIX_PATH", "share", places);
+  return places;
 }
 
 std::string ChainTable(const ProjectDraft& draft) {
@@ -63,7 +94,7 @@ int Init(const InitCommand& command) {
   const std::string urdf = ReadFile(command.urdf);
   Semantics semantics;
   if (!command.srdf.empty()) semantics = ParseSemantics(ReadFile(command.srdf), command.srdf);
-  const ProjectDraft draft = DraftProject(urdf, command.urdf, semantics);
+  const ProjectDraft draft = DraftProject(urdf, command.urdf, semantics, FindPlaces(command));
   const std::filesystem::path copy = PlaceOfUrdf(command.urdf, folder, draft.urdf != urdf);
 
   RefuseToReplace(project, command.force);
@@ -81,9 +112,9 @@ int Init(const InitCommand& command) {
   outputs.Publish();
 
   const bool quiet = command.common.Silent();
-  Print(quiet, fmt::format("Robot {}: {} joints, {} markers, {} spheres\n\n{}\n", draft.tree.name,
-                           draft.tree.joints.size(), 3 * draft.clusters.size(),
-                           draft.spheres.size(), ChainTable(draft)));
+  Print(quiet, fmt::format("Robot {}: {} joints, {} meshes read, {} markers, {} spheres\n\n{}\n",
+                           draft.tree.name, draft.tree.joints.size(), draft.shapes.meshes,
+                           3 * draft.clusters.size(), draft.spheres.size(), ChainTable(draft)));
   Print(quiet, "Posture of rest: " + draft.rest.source + "\n");
   Print(quiet, fmt::format("Wrote {}{}\nLook at it, correct what is wrong, then: elastocal inspect "
                            "{}\n",
@@ -103,6 +134,12 @@ void AddInit(CLI::App& app, Action& action) {
       ->add_option("--srdf", options->srdf,
                    "Semantic description: names of limbs, posture of rest, links that never touch")
       ->type_name("FILE");
+  command
+      ->add_option("--package", options->packages,
+                   "Folder of a package that meshes are in; otherwise they are looked for in "
+                   "ROS_PACKAGE_PATH, AMENT_PREFIX_PATH and above the robot description")
+      ->allow_extra_args(false)
+      ->type_name("NAME=DIR");
   command
       ->add_option("-o,--output", options->output,
                    "Folder for project.yaml and a copy of the robot description")

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "elastocal/drafting/primitive.hpp"
 #include "elastocal/io/urdf_outline.hpp"
@@ -17,48 +19,120 @@ namespace {
 constexpr double kLeastDensity = 20.0;   // kg/m^3: foam
 constexpr double kUsualDensity = 900.0;  // kg/m^3: of a robot's link, motors and hollows together
 
-/// The primitive of an element `collision` or `visual`; nothing for a mesh.
-std::optional<Primitive> ReadPrimitive(const XmlElement& element, const Transform& T_body_link) {
-  const auto geometry = element.Find("geometry");
-  if (!geometry) return std::nullopt;
-  Primitive shape;
-  if (const auto box = geometry->Find("box")) {
-    shape.half = 0.5 * box->Vector("size");
-  } else if (const auto cylinder = geometry->Find("cylinder")) {
-    shape.kind = Primitive::Kind::kCylinder;
-    const double radius = cylinder->Number("radius");
-    shape.half = {radius, radius, 0.5 * cylinder->Number("length")};
-  } else if (const auto sphere = geometry->Find("sphere")) {
-    shape.kind = Primitive::Kind::kSphere;
-    shape.half.setConstant(sphere->Number("radius"));
-  } else {
-    return std::nullopt;
-  }
-  const UrdfOrigin origin = ReadUrdfOrigin(element);
-  shape.T_body_shape = T_body_link * FromXyzRpy(origin.xyz, origin.rpy);
-  return shape;
-}
+/// A shape of a link, in its body's frame.
+struct LinkShape {
+  std::optional<Primitive> primitive;   ///< nothing for a mesh
+  std::vector<Eigen::Vector3d> points;  ///< of its surface, m
+  double volume = 0.0;                  ///< m^3
+};
 
-std::vector<Primitive> ReadPrimitives(const XmlElement& link, const Transform& T_body_link) {
-  for (const char* purpose : {"collision", "visual"}) {
-    std::vector<Primitive> shapes;
-    for (const XmlElement& element : link.Children()) {
-      if (element.Tag() != purpose) continue;
-      if (const auto shape = ReadPrimitive(element, T_body_link)) shapes.push_back(*shape);
+/// The shapes of the links of a URDF, with what is to be said of meshes.
+class ShapeReader {
+ public:
+  ShapeReader(const RobotTree& tree, const MeshPlaces& places)
+      : places_(places), spacing_(kSpacing * LongestBranch(tree)), largest_(RobotSize(tree)) {}
+
+  std::vector<LinkShape> Read(const XmlElement& link, const Transform& T_body_link) {
+    for (const char* purpose : {"collision", "visual"}) {
+      std::vector<LinkShape> shapes;
+      for (const XmlElement& element : link.Children()) {
+        const auto geometry =
+            element.Tag() == purpose ? element.Find("geometry") : std::optional<XmlElement>();
+        if (!geometry) continue;
+        const UrdfOrigin origin = ReadUrdfOrigin(element);
+        auto shape = ReadGeometry(*geometry, T_body_link * FromXyzRpy(origin.xyz, origin.rpy));
+        if (shape) shapes.push_back(std::move(*shape));
+      }
+      if (!shapes.empty()) return shapes;
     }
-    if (!shapes.empty()) return shapes;
+    return {};
   }
-  return {};
-}
 
-/// The points of shapes that are not inside another of them.
-std::vector<Eigen::Vector3d> OuterPoints(const std::vector<Primitive>& shapes) {
+  int meshes_read() const { return meshes_read_; }
+
+  std::vector<std::string> Warnings() const {
+    std::vector<std::string> warnings = faults_;
+    for (const auto& [package, names] : missing_) {
+      const std::string what = package.empty() ? "" : " of package " + Quote(package);
+      const std::string help =
+          package.empty() ? "" : "; give its folder by --package " + package + "=DIR";
+      warnings.push_back("meshes" + what + " are missing: " + std::to_string(names.size()) +
+                         ", the first one " + Quote(names.front()) + help);
+    }
+    return warnings;
+  }
+
+ private:
+  static constexpr double kSpacing = 0.004;  // of the longest branch: 5 mm on 1.25 m
+  static constexpr std::size_t kMostPoints = 20000;
+
+  std::optional<LinkShape> ReadGeometry(const XmlElement& geometry, const Transform& T_body_shape) {
+    if (const auto mesh = geometry.Find("mesh")) return ReadTriangles(*mesh, T_body_shape);
+    Primitive shape;
+    shape.T_body_shape = T_body_shape;
+    if (const auto box = geometry.Find("box")) {
+      shape.half = 0.5 * box->Vector("size");
+    } else if (const auto cylinder = geometry.Find("cylinder")) {
+      shape.kind = Primitive::Kind::kCylinder;
+      const double radius = cylinder->Number("radius");
+      shape.half = {radius, radius, 0.5 * cylinder->Number("length")};
+    } else if (const auto sphere = geometry.Find("sphere")) {
+      shape.kind = Primitive::Kind::kSphere;
+      shape.half.setConstant(sphere->Number("radius"));
+    } else {
+      return std::nullopt;
+    }
+    return LinkShape{shape, SurfacePoints(shape), shape.Volume()};
+  }
+
+  std::optional<LinkShape> ReadTriangles(const XmlElement& mesh, const Transform& T_body_shape) {
+    const std::string name = mesh.Text("filename");
+    const Eigen::Vector3d scale =
+        mesh.Has("scale") ? mesh.Vector("scale") : Eigen::Vector3d(1.0, 1.0, 1.0);
+    const auto file = FindMesh(name, places_);
+    if (!file) {
+      std::vector<std::string>& names = missing_[PackageOf(name)];
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      return std::nullopt;
+    }
+    std::string reason;
+    std::vector<Triangle> triangles = ReadMesh(*file, reason);
+    double extent = 0.0;
+    for (Triangle& triangle : triangles) {
+      for (Eigen::Vector3d& p : triangle) {
+        p = p.cwiseProduct(scale);
+        extent = std::max(extent, p.norm());
+        p = T_body_shape * p;
+      }
+    }
+    if (extent > largest_) {
+      reason = "it reaches " + FormatNumber(std::round(10.0 * extent) / 10.0) +
+               " m from its origin, further than the robot; is its unit the metre?";
+    }
+    if (!reason.empty()) {
+      faults_.push_back("mesh " + Quote(name) + " is left out: " + reason);
+      return std::nullopt;
+    }
+    ++meshes_read_;
+    return LinkShape{std::nullopt, ThinOut(SurfacePoints(triangles, spacing_), kMostPoints),
+                     VolumeOf(triangles)};
+  }
+
+  const MeshPlaces& places_;
+  double spacing_, largest_;
+  int meshes_read_ = 0;
+  std::map<std::string, std::vector<std::string>> missing_;  ///< names of meshes by their package
+  std::vector<std::string> faults_;
+};
+
+/// The points of shapes that are not inside a primitive among them.
+std::vector<Eigen::Vector3d> OuterPoints(const std::vector<LinkShape>& shapes) {
   constexpr double kDepth = 1e-6;
   std::vector<Eigen::Vector3d> points;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    for (const Eigen::Vector3d& point : SurfacePoints(shapes[i])) {
-      const bool hidden = std::any_of(shapes.begin(), shapes.end(), [&](const Primitive& other) {
-        return &other != &shapes[i] && other.Contains(point, kDepth);
+  for (const LinkShape& shape : shapes) {
+    for (const Eigen::Vector3d& point : shape.points) {
+      const bool hidden = std::any_of(shapes.begin(), shapes.end(), [&](const LinkShape& other) {
+        return &other != &shape && other.primitive && other.primitive->Contains(point, kDepth);
       });
       if (!hidden) points.push_back(point);
     }
@@ -119,27 +193,30 @@ std::vector<Eigen::Vector3d> GuessPoints(const RobotTree& tree, int body, double
 }  // namespace
 
 RobotShapes ReadBodyShapes(const RobotTree& tree, const std::string& text,
-                           const std::string& source) {
+                           const std::string& source, const MeshPlaces& places) {
   const XmlText xml(text, source);
   const UrdfOutline outline = ReadUrdfOutline(xml);
-  std::vector<std::vector<Primitive>> shapes(Size(tree.body_count()));
+  std::vector<std::vector<LinkShape>> shapes(Size(tree.body_count()));
   RobotShapes result;
+  ShapeReader reader(tree, places);
   for (const UrdfLink& described : outline.links) {
     const auto link =
         std::find_if(tree.links.begin(), tree.links.end(),
                      [&](const Link& candidate) { return candidate.name == described.name; });
     if (link == tree.links.end()) continue;
-    for (const Primitive& shape : ReadPrimitives(described.element, link->T_body_link)) {
-      if (link->mass > 0.0 && link->mass < kLeastDensity * shape.Volume()) {
+    for (LinkShape& shape : reader.Read(described.element, link->T_body_link)) {
+      if (link->mass > 0.0 && link->mass < kLeastDensity * shape.volume) {
         result.warnings.push_back("link " + Quote(link->name) + ": a shape of " +
-                                  FormatNumber(std::round(1e3 * shape.Volume())) +
+                                  FormatNumber(std::round(1e3 * shape.volume)) +
                                   " litres is left out, the link has only " +
                                   FormatNumber(link->mass) + " kg");
         continue;
       }
-      shapes[Size(link->body)].push_back(shape);
+      shapes[Size(link->body)].push_back(std::move(shape));
     }
   }
+  result.meshes = reader.meshes_read();
+  for (std::string& warning : reader.Warnings()) result.warnings.push_back(std::move(warning));
   const double longest = LongestBranch(tree);
   for (int body = 0; body < tree.body_count(); ++body) {
     BodyShape shape{BodyLink(tree, body), OuterPoints(shapes[Size(body)]), false};

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "elastocal/drafting/mesh.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
 namespace elastocal {
@@ -20,16 +21,18 @@ struct BodyShape {
 
 struct RobotShapes {
   std::vector<BodyShape> bodies;  ///< one a body of the tree
+  int meshes = 0;                 ///< that were read
   std::vector<std::string> warnings;
 };
 
-/// Reads the boxes, cylinders and spheres of a URDF: those for collisions or, on a link without
-/// any, those to look at. Meshes are passed over. A shape that would be lighter than 20 kg/m^3 with
-/// the mass of its link is no shape of this link and is left out with a warning. `text` is the URDF
-/// that `tree` was read from, `source` names it in messages. Throws InputError for sizes that are
-/// no numbers within bounds.
+/// Reads the boxes, cylinders, spheres and meshes of a URDF: those for collisions or, on a link
+/// without any that can be read, those to look at. A shape that would be lighter than 20 kg/m^3
+/// with the mass of its link, or a mesh larger than the robot, is no shape of this link and is left
+/// out with a warning; so is a mesh that is missing or cannot be read. `text` is the URDF that
+/// `tree` was read from, `source` names it in messages. Throws InputError for sizes that are no
+/// numbers within bounds.
 RobotShapes ReadBodyShapes(const RobotTree& tree, const std::string& text,
-                           const std::string& source);
+                           const std::string& source, const MeshPlaces& places);
 
 /// Length of the longest branch: the sum of the distances between joints from the root to the end
 /// of a body, m. Lengths that a draft has to choose are shares of it.

@@ -106,7 +106,7 @@ class ClusterPlacer {
  public:
   ClusterPlacer(const RobotTree& tree, const RobotShapes& shapes, const Eigen::VectorXd& rest)
       : tree_(tree),
-        shapes_(shapes),
+        shapes_(Thinned(shapes)),
         T_rest_(BodyPoses(tree, rest)),
         T_zero_(BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()))),
         longest_(LongestBranch(tree)) {
@@ -133,6 +133,13 @@ class ClusterPlacer {
   std::vector<DraftedCluster> clusters;
 
  private:
+  /// Every point is compared with all others.
+  static RobotShapes Thinned(RobotShapes shapes) {
+    constexpr std::size_t kMost = 600;
+    for (BodyShape& body : shapes.bodies) body.points = ThinOut(body.points, kMost);
+    return shapes;
+  }
+
   std::vector<DraftedCluster>::const_iterator Find(int body) const {
     return std::find_if(clusters.begin(), clusters.end(),
                         [&](const DraftedCluster& c) { return c.body == body; });
@@ -209,7 +216,7 @@ class ClusterPlacer {
   }
 
   const RobotTree& tree_;
-  const RobotShapes& shapes_;
+  RobotShapes shapes_;
   std::vector<Transform> T_rest_, T_zero_;
   double longest_, floor_;
   std::set<int> placed_;

@@ -202,17 +202,16 @@ void JoinMirrors(ProjectDraft& draft) {
   draft.designs = std::move(joined);
 }
 
-/// Whether the legs have six joints of their own each, which `plan` needs to balance.
+/// Whether the legs have five joints of their own or more each, which `plan` needs to balance.
 bool CanBalance(const RobotTree& tree, const Limbs& limbs) {
+  constexpr std::size_t kLeast = 5;
   for (const Limb& limb : limbs.limbs) {
     if (!limb.leg) continue;
-    if (limb.joints.size() != 6) return false;
-    for (const int k : limb.joints) {
-      const Joint& joint = tree.joints[Size(k)];
-      const auto drivers =
-          std::count_if(tree.joints.begin(), tree.joints.end(),
-                        [&](const Joint& j) { return j.coordinate == joint.coordinate; });
-      if (drivers > 1 || joint.type != JointType::kRevolute) return false;
+    const std::vector<int> own = ChainCoordinates(tree, 0, limb.tip_link);
+    if (own.size() < kLeast) return false;
+    for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
+      const bool in_leg = std::find(limb.joints.begin(), limb.joints.end(), k) != limb.joints.end();
+      if (!in_leg && IsMovedBy(tree.joints[Size(k)], own)) return false;
     }
   }
   return true;
@@ -224,7 +223,7 @@ void WarnOfGuesses(ProjectDraft& draft) {
   if (guessed > 0) {
     draft.warnings.push_back(
         std::to_string(guessed) + " of " + std::to_string(draft.tree.body_count()) +
-        " bodies have no box, cylinder or sphere in the URDF: markers and spheres are on shapes "
+        " bodies have no shape that could be read: markers and spheres are on shapes "
         "guessed from joints and masses");
   }
   for (const DraftedSole& sole : draft.soles) {
@@ -240,7 +239,8 @@ void WarnOfGuesses(ProjectDraft& draft) {
   }
   if (!draft.soles.empty() && !draft.stands) {
     draft.warnings.push_back(
-        "the robot does not balance on one or two legs of six joints each: the draft takes its "
+        "the robot does not balance on one or two legs of five joints or more each: the draft "
+        "takes its "
         "root link to be held still, for instance on a stand");
   }
   for (const Joint& joint : draft.tree.joints) {
@@ -252,14 +252,15 @@ void WarnOfGuesses(ProjectDraft& draft) {
 }  // namespace
 
 ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
-                          const Semantics& semantics) {
+                          const Semantics& semantics, const MeshPlaces& places) {
   const RobotTree described = ParseUrdf(urdf, source);
   if (described.joints.empty()) {
     throw InputError(source + ": the robot has no movable joint; nothing can be calibrated");
   }
   ProjectDraft draft;
-  draft.shapes = ReadBodyShapes(described, urdf, source);
+  draft.shapes = ReadBodyShapes(described, urdf, source, places);
   draft.warnings = draft.shapes.warnings;
+  draft.warnings.insert(draft.warnings.end(), described.warnings.begin(), described.warnings.end());
   draft.limbs = FindLimbs(described, draft.shapes, semantics);
   draft.soles = FindSoles(described, draft.shapes, draft.limbs);
   draft.urdf = AddSoleLinks(urdf, described, draft.soles);

@@ -38,10 +38,10 @@ struct ProjectDraft {
 };
 
 /// Drafts a project from a URDF and, if there is one, its SRDF. `source` names the URDF in
-/// messages. The same texts give the same draft. Throws InputError for texts that cannot be read
-/// and for a robot without movable joints.
+/// messages; `places` is where its meshes are. The same files give the same draft. Throws
+/// InputError for texts that cannot be read and for a robot without movable joints.
 ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
-                          const Semantics& semantics);
+                          const Semantics& semantics, const MeshPlaces& places = {});
 
 /// The draft as a project file (docs/formats.md) with comments that say where its values are from.
 /// `urdf` is the path of the robot description as seen from the file.

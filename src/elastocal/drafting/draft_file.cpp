@@ -168,8 +168,8 @@ class DraftWriter {
       text_ +=
           draft_.soles.empty()
               ? "# No legs were found: the root link is held still.\n"
-              : "# The robot does not balance on one or two flat soles of legs with six joints\n"
-                "# each: the root link is held still, for instance on a stand.\n";
+              : "# The robot does not balance on one or two flat soles of legs with five\n"
+                "# joints or more each: the root link is held still, for instance on a stand.\n";
       return;
     }
     text_ +=
@@ -220,6 +220,7 @@ std::string FormatDraftSummary(const ProjectDraft& draft) {
                      {"chains", chains},
                      {"markers", 3 * draft.clusters.size()},
                      {"spheres", draft.spheres.size()},
+                     {"meshes", draft.shapes.meshes},
                      {"rest", draft.rest.source},
                      {"stands", draft.stands},
                      {"soles", soles},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <regex>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +101,102 @@ TEST(Draft, SpheresCoverTheShapesOfTalosWithin15Millimetres) {
   EXPECT_LT(draft.spheres.size(), 70U);
 }
 
+/// A pole with a slider and two arms, all of one rod each; `shape` is the geometry of the root.
+std::string PoleUrdf(const std::string& shape, const std::string& mass) {
+  const auto joint = [](const std::string& name, const std::string& parent, double y) {
+    return "<link name='" + name +
+           "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
+           "ixz='0' iyz='0'/></inertial></link><joint name='" +
+           name + "_joint' type='revolute'><parent link='" + parent + "'/><child link='" + name +
+           "'/><origin xyz='0.2 " + std::to_string(y) +
+           " 0.3'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='100'/>"
+           "</joint>";
+  };
+  return "<robot name='pole'><link name='pole'><inertial><mass value='" + mass +
+         "'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision>"
+         "<geometry>" +
+         shape + "</geometry></collision></link>" + joint("l1", "pole", 0.2) +
+         joint("l2", "l1", 0.0) + joint("r1", "pole", -0.2) + joint("r2", "r1", 0.0) + "</robot>";
+}
+
+/// The URDF of TALOS with its boxes as meshes of twelve triangles in `folder`.
+std::string TalosOfMeshes(const ScratchFolder& folder) {
+  const std::regex box("<box size=\"([^ ]*) ([^ ]*) ([^\"]*)\"/>");
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf")), replaced;
+  int count = 0;
+  for (std::smatch found; std::regex_search(urdf, found, box); urdf = found.suffix()) {
+    std::string obj;
+    for (int corner = 0; corner < 8; ++corner) {
+      obj += "v";
+      for (int i = 0; i < 3; ++i) {
+        obj +=
+            ((corner >> i) % 2 == 0 ? " -" : " ") + std::to_string(500.0 * std::stod(found[i + 1]));
+      }
+      obj += "\n";
+    }
+    for (const char* side : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
+      obj += std::string("f ") + side + "\n";
+    }
+    const std::string name = "box" + std::to_string(++count) + ".obj";
+    folder.Write(name, obj);
+    replaced += found.prefix().str() + "<mesh filename='" + name + "' scale='1e-3 1e-3 1e-3'/>";
+  }
+  return replaced + urdf;
+}
+
+TEST(Draft, MeshesAreShapesLikeOthers) {
+  const ScratchFolder folder;
+  const std::string urdf = TalosOfMeshes(folder);
+  MeshPlaces places;
+  places.urdf = folder.Write("meshes.urdf", urdf);
+  const ProjectDraft boxes = DraftFile("models/talos/talos.urdf");
+  const ProjectDraft meshes = DraftProject(urdf, "meshes.urdf", {}, places);
+  EXPECT_EQ(meshes.shapes.meshes, 23);  // those for collisions
+  ASSERT_EQ(meshes.soles.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    // Six decimals of half a length in mm, and single precision.
+    EXPECT_EQ(meshes.soles[i].link, boxes.soles[i].link);
+    EXPECT_LT((meshes.soles[i].lower - boxes.soles[i].lower).norm(), 1e-6);
+    EXPECT_LT((meshes.soles[i].upper - boxes.soles[i].upper).norm(), 1e-6);
+  }
+  EXPECT_EQ(meshes.clusters.size(), boxes.clusters.size());
+  // Points of the boxes' surfaces that the mesh's own points are not.
+  for (const BodyShape& body : boxes.shapes.bodies) {
+    for (const Eigen::Vector3d& p : body.points) {
+      double outside = std::numeric_limits<double>::infinity();
+      for (const CollisionSphere& sphere : meshes.spheres) {
+        if (sphere.link != body.link) continue;
+        outside = std::min(outside, (p - sphere.p_link_centre).norm() - sphere.radius);
+      }
+      EXPECT_LT(outside, 0.015) << boxes.tree.links[Size(body.link)].name;
+    }
+  }
+}
+
+TEST(Draft, MissingMeshesAreOneWarning) {
+  const ScratchFolder folder;
+  const std::string mesh = "<mesh filename='package://pole/arm.stl'/>";
+  std::string urdf = PoleUrdf(mesh, "10");
+  const std::size_t link = urdf.find("</link>", urdf.find("name='l1'"));
+  urdf.insert(link,
+              "<visual><geometry><mesh filename='package://pole/hand.stl'/></geometry></visual>");
+  const ProjectDraft draft = DraftProject(urdf, "pole", {});
+  EXPECT_TRUE(draft.shapes.bodies[0].guessed);
+  ASSERT_FALSE(draft.warnings.empty());
+  EXPECT_EQ(draft.warnings[0],
+            "meshes of package 'pole' are missing: 2, the first one 'package://pole/arm.stl'; give "
+            "its folder by --package pole=DIR");
+  // In millimetres, without a scale that says so.
+  folder.Write("arm.stl",
+               "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 200 0 0\nvertex 0 200 "
+               "0\nendloop\nendfacet\nendsolid\n");
+  MeshPlaces places;
+  places.packages["pole"] = folder.path();
+  const ProjectDraft large = DraftProject(PoleUrdf(mesh, "10"), "pole", {}, places);
+  EXPECT_TRUE(large.shapes.bodies[0].guessed);
+  EXPECT_NE(large.warnings[0].find("200 m"), std::string::npos) << large.warnings[0];
+}
+
 TEST(Draft, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
   for (const char* robot : {"models/talos/talos.urdf", "tests/robots/mini_humanoid.urdf"}) {
     const ScratchFolder folder;
@@ -149,24 +246,6 @@ TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
     EXPECT_NEAR((sole.upper - sole.lower).x(), 0.210, 1e-3);
     EXPECT_NEAR((sole.upper - sole.lower).y(), 0.130, 1e-3);
   }
-}
-
-/// A pole with a slider and two arms, all of one rod each; `shape` is the geometry of the root.
-std::string PoleUrdf(const std::string& shape, const std::string& mass) {
-  const auto joint = [](const std::string& name, const std::string& parent, double y) {
-    return "<link name='" + name +
-           "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
-           "ixz='0' iyz='0'/></inertial></link><joint name='" +
-           name + "_joint' type='revolute'><parent link='" + parent + "'/><child link='" + name +
-           "'/><origin xyz='0.2 " + std::to_string(y) +
-           " 0.3'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='100'/>"
-           "</joint>";
-  };
-  return "<robot name='pole'><link name='pole'><inertial><mass value='" + mass +
-         "'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision>"
-         "<geometry>" +
-         shape + "</geometry></collision></link>" + joint("l1", "pole", 0.2) +
-         joint("l2", "l1", 0.0) + joint("r1", "pole", -0.2) + joint("r2", "r1", 0.0) + "</robot>";
 }
 
 TEST(Draft, AShapeThatIsTooLightForItsSizeIsLeftOut) {

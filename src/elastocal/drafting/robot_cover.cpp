@@ -68,8 +68,9 @@ class SymmetricCover {
   }
 
   bool Symmetric(int from, int to) const {
+    constexpr std::size_t kEnough = 1200;
     const std::vector<Eigen::Vector3d>& others = shapes_.bodies[Size(to)].points;
-    for (const Eigen::Vector3d& p : shapes_.bodies[Size(from)].points) {
+    for (const Eigen::Vector3d& p : ThinOut(shapes_.bodies[Size(from)].points, kEnough)) {
       double nearest = std::numeric_limits<double>::infinity();
       const Eigen::Vector3d image = Image(from, to, p);
       for (const Eigen::Vector3d& other : others) {
@@ -130,6 +131,8 @@ RobotShapes WithFingers(const RobotTree& tree, const RobotShapes& shapes, const 
     }
     joined.bodies[Size(body)].points.clear();
   }
+  constexpr std::size_t kMost = 20000;
+  for (BodyShape& body : joined.bodies) body.points = ThinOut(body.points, kMost);
   return joined;
 }
 

@@ -61,8 +61,10 @@ std::size_t Nearest(const std::vector<Eigen::Vector3d>& centres, const Eigen::Ve
 }
 
 /// Balls around groups of points: groups by the nearest centre, centres of balls in turn.
-std::vector<CollisionSphere> Balls(const Points3& points, int count) {
+std::vector<CollisionSphere> Balls(const Points3& all, int count) {
   constexpr int kRounds = 12;
+  constexpr std::size_t kEnough = 1200;  // to find the centres by; the radii reach all
+  const Points3 points = ThinOut(all, kEnough);
   std::vector<Eigen::Vector3d> centres = {BallCentre(points)};
   if (count > 1) centres.clear();
   Eigen::Vector3d next = points.front();
@@ -85,6 +87,10 @@ std::vector<CollisionSphere> Balls(const Points3& points, int count) {
     for (std::size_t i = 0; i < centres.size(); ++i) {
       if (!groups[i].empty()) centres[i] = BallCentre(groups[i]);
     }
+  }
+  if (points.size() < all.size()) {
+    groups.assign(centres.size(), {});
+    for (const Eigen::Vector3d& p : all) groups[Nearest(centres, p)].push_back(p);
   }
   std::vector<CollisionSphere> balls;
   for (std::size_t i = 0; i < centres.size(); ++i) {

@@ -27,6 +27,9 @@ constexpr const char* kTurns = "two turns";
 
 std::vector<Bound> MakeBounds() {
   std::vector<Bound> list = {
+      {"couplings[].of.*", "", -1e3, 1e3, "a gear"},
+      {"couplings[].offset_deg", "deg", -720, 720, kTurns},
+      {"couplings[].offset_mm", "mm", -1e4, 1e4, kBody},
       {"markers.clusters[].positions_mm[][]", "mm", -1e4, 1e4, kBody},
       {"markers.single[].position_mm[]", "mm", -1e4, 1e4, kBody},
       {"recording.not_recorded_deg.*", "deg", -720, 720, kTurns},
@@ -110,6 +113,7 @@ std::vector<Bound> MakeBounds() {
       {"URDF cylinder.radius", "m", 0, 100, "the largest machines"},
       {"URDF cylinder.length", "m", 0, 100, "the largest machines"},
       {"URDF sphere.radius", "m", 0, 100, "the largest machines"},
+      {"URDF mesh.scale", "", -1e6, 1e6, "units from nanometres on; negative: mirrored"},
       {"URDF mimic.multiplier", "", -1e3, 1e3, "a gear"},
       {"URDF mimic.offset", "rad or m", -1e3, 1e3, "joints' limits"},
       {"assess --marker-noise-mm", "mm", 1e-3, 100, "cameras' noise"},

@@ -11,6 +11,7 @@
 
 #include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/robot/coupling.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/special_geometry.hpp"
 #include "elastocal/tables/text.hpp"
@@ -76,9 +77,7 @@ Eigen::VectorXd CoordinateOffsets(const RobotTree& tree,
 std::map<int, Transform> ChangedOrigins(const CalibrationResult& calibration,
                                         const Eigen::VectorXd& q_offset) {
   const ErrorModel& model = calibration.model;
-  const auto offset = [&](const Joint& joint) {
-    return joint.multiplier * q_offset[joint.coordinate];
-  };
+  const auto offset = [&](const Joint& joint) { return JointRate(joint, q_offset); };
   Eigen::VectorXd in_origins = calibration.delta;
   std::set<int> changed;
   for (int i = 0; i < model.parameter_count(); ++i) {
@@ -221,7 +220,8 @@ CalibratedUrdf MakeCalibratedUrdf(const std::string& urdf, const std::string& so
   }
   result.text = ReplaceOrigins(urdf, source, result.calibrated);
 
-  const RobotTree written = ParseUrdf(result.text, source + " (calibrated)");
+  RobotTree written = ParseUrdf(result.text, source + " (calibrated)");
+  CopyDrives(model.tree, written);  // couplings are not in a URDF
   const double difference = LargestDifference(calibration, written, q_offset);
   if (!(difference <= kGateTolerance)) {
     throw std::runtime_error(fmt::format(

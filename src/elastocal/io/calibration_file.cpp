@@ -177,6 +177,10 @@ std::string NominalFingerprint(const ErrorModel& model) {
     text.Add(joint.parent_body == 0 ? "waist" : tree.joints[joint.parent_body - 1].name);
     text.Add(tree.joints[tree.coordinate_joint[joint.coordinate]].name);
     text.Add(joint.multiplier);
+    for (const Drive& drive : joint.more) {
+      text.Add(tree.joints[tree.coordinate_joint[drive.coordinate]].name);
+      text.Add(drive.multiplier);
+    }
     text.Add(joint.offset);
     const JointPlacement& placement = model.placements[k];
     text.Add(placement.T_parent_pre);

@@ -156,12 +156,14 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
     throw InputError(Place(file.string(), 1) + "this is XML; a project file (YAML) was expected");
   }
   const YamlValue root = YamlValue::Parse(text, file.string());
-  root.ExpectKeys({"robot", "chains", "markers", "torque_sensors", "force_torque_sensors",
-                   "recording", "placement", "measurement", "identifiability", "calibration",
-                   "elasticity", "collision", "design", "standing", "contact"});
+  root.ExpectKeys({"robot", "couplings", "chains", "markers", "torque_sensors",
+                   "force_torque_sensors", "recording", "placement", "measurement",
+                   "identifiability", "calibration", "elasticity", "collision", "design",
+                   "standing", "contact"});
   Project project;
   project.file = file;
   ReadRobot(root.Get("robot"), project);
+  if (const auto section = root.Find("couplings")) ReadCouplings(*section, project);
   if (const auto section = root.Find("chains")) ReadChains(*section, project);
   const auto contact = root.Find("contact");
   const auto markers = root.Find("markers");

@@ -116,6 +116,32 @@ TEST(Project, ReadsTheProjectsOfTheRepository) {
   EXPECT_EQ(arm.urdf, talos.urdf);
 }
 
+TEST(Project, ReadsCouplings) {
+  const Project project = Parse(
+      "couplings: [{joint: bend_joint, of: {shoulder_joint: -1, elbow_joint: -0.5}, offset_deg: "
+      "90}]\n");
+  EXPECT_EQ(project.tree.coordinate_count(), Parse().tree.coordinate_count() - 1);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(project.tree.coordinate_count());
+  const auto position = [&](const std::string& name) -> double {
+    return JointPosition(project.tree.joints[FindJoint(project.tree, name)], q);
+  };
+  q[project.tree.joints[FindJoint(project.tree, "shoulder_joint")].coordinate] = 0.2;
+  q[project.tree.joints[FindJoint(project.tree, "elbow_joint")].coordinate] = 0.4;
+  EXPECT_NEAR(position("bend_joint"), M_PI / 2 - 0.2 - 0.2, 1e-15);
+  const auto expect = [](const std::string& coupling, std::initializer_list<std::string> parts) {
+    ExpectError("couplings: [" + coupling + "]", parts);
+  };
+  expect("{joint: bend_joint, of: {bend_jointt: 1}}", {"p.yaml:3: ", "did you mean 'bend_joint'"});
+  expect("{joint: bend_joint, of: {shoulder_joint: 0}}", {"shoulder_joint", "other than 0"});
+  expect("{joint: bend_joint, of: {}}", {"couplings[0].of", "joints and their factors"});
+  expect("{joint: bend_joint, of: {bend_joint: 1}}",
+         {"couplings[0]", "'bend_joint' follows itself"});
+  expect("{joint: bend_joint, of: {shoulder_joint: 1}, offset_mm: 1}",
+         {"'offset_mm'", "'offset_deg'"});
+  expect("{joint: bend_joint, of: {shoulder_joint: 1e9}}",
+         {"shoulder_joint", "from -1000 to 1000"});
+}
+
 TEST(Project, LeavesDefaultsWhereTheFileSaysNothing) {
   const Project project = Parse();
   const CalibrationOptions calibration;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/tables/text.hpp"
@@ -88,7 +89,7 @@ void ConnectJoint(int j, UrdfOutline& outline) {
   }
   child.parent_joint = j;
   const auto mimic = joint.element.Find("mimic");
-  if (!mimic || joint.type == "fixed" || joint.type == "floating") return;
+  if (!mimic || joint.type == "fixed" || joint.type == "floating" || joint.type == "planar") return;
   joint.leader =
       Named(*mimic, "joint", joint.name, "the joint that it mimics,", outline.joint_index);
 }
@@ -121,20 +122,96 @@ void FindRoot(UrdfOutline& outline) {
   }
 }
 
-/// A floating joint says that the robot stands free in the world: the tree begins below it.
-void DropFloatingRoot(UrdfOutline& outline) {
-  const int root = outline.root;
-  const auto at_root = std::count_if(outline.joints.begin(), outline.joints.end(),
-                                     [&](const UrdfJoint& joint) { return joint.parent == root; });
-  for (UrdfJoint& joint : outline.joints) {
-    if (joint.type != "floating" && joint.type != "planar") continue;
-    if (joint.type == "planar" || joint.parent != root || at_root > 1) {
-      joint.element.Fail("joint " + Quote(joint.name) + " is " + joint.type +
-                         "; joints may be fixed, revolute, continuous or prismatic, and one "
-                         "floating joint may be all that the root link carries");
+bool IsFree(const UrdfJoint& joint) { return joint.type == "floating" || joint.type == "planar"; }
+
+/// What floating and planar joints separate, each named by its own root link.
+class Parts {
+ public:
+  explicit Parts(const UrdfOutline& outline) : root_(outline.links.size()) {
+    for (int link = 0; link < static_cast<int>(outline.links.size()); ++link) {
+      root_[link] = RootOf(outline, link);
+      ++parts_[root_[link]].links;
     }
-    joint.dropped = true;
-    outline.root = joint.child;
+    for (const UrdfJoint& joint : outline.joints) {
+      if (joint.type != "fixed" && !IsFree(joint)) ++parts_[root_[joint.child]].movable;
+    }
+  }
+
+  bool Has(int root, int link) const { return root_[link] == root; }
+  int movable(int root) const { return parts_.at(root).movable; }
+
+  /// The one with the most movable joints; of equal ones the larger, and not the world alone.
+  int Robot(const UrdfOutline& outline) const {
+    int best = -1;
+    const auto rank = [&](int root) {
+      const Part& part = parts_.at(root);
+      return std::tuple(part.movable, part.links, root != outline.root);
+    };
+    for (const auto& [root, unused] : parts_) {
+      if (best < 0 || rank(root) > rank(best)) best = root;
+    }
+    return best;
+  }
+
+ private:
+  struct Part {
+    int links = 0, movable = 0;
+  };
+
+  static int RootOf(const UrdfOutline& outline, int link) {
+    for (;;) {
+      const int carrier = outline.links[link].parent_joint;
+      if (carrier < 0 || IsFree(outline.joints[carrier])) return link;
+      link = outline.joints[carrier].parent;
+    }
+  }
+
+  std::vector<int> root_;      ///< by link
+  std::map<int, Part> parts_;  ///< by root
+};
+
+/// Keeps the robot of what floating and planar joints part. Above it is the world, in which it
+/// stands free; what hangs on it or beside it is said to be left out.
+void KeepRobot(UrdfOutline& outline) {
+  if (std::none_of(outline.joints.begin(), outline.joints.end(), IsFree)) return;
+  const Parts parts(outline);
+  const int robot = parts.Robot(outline);
+  for (int i = 0; i < static_cast<int>(outline.links.size()); ++i) {
+    outline.links[i].dropped = !parts.Has(robot, i);
+  }
+  for (UrdfJoint& joint : outline.joints) {
+    joint.dropped = IsFree(joint) || outline.links[joint.child].dropped;
+    if (!IsFree(joint) || joint.child == robot) continue;
+    const int left_out = parts.movable(joint.child);
+    outline.warnings.push_back(
+        "joint " + Quote(joint.name) + " is " + joint.type + ": what it carries (link " +
+        Quote(outline.links[joint.child].name) + ") is left out" +
+        (left_out > 0 ? ", with " + std::to_string(left_out) + " movable joints" : ""));
+  }
+  if (robot != outline.root && parts.movable(outline.root) > 0) {
+    outline.warnings.push_back("link " + Quote(outline.links[robot].name) +
+                               " is taken as the root link; what carries it is left out, with " +
+                               std::to_string(parts.movable(outline.root)) + " movable joints");
+  }
+  outline.root = robot;
+}
+
+/// A joint that follows one that cannot move cannot move either.
+void FixFollowersOfFixed(UrdfOutline& outline) {
+  for (bool found = true; found;) {
+    found = false;
+    for (UrdfJoint& joint : outline.joints) {
+      if (joint.dropped || joint.leader < 0 || outline.joints[joint.leader].type != "fixed") {
+        continue;
+      }
+      if (joint.element.Get("mimic").NumberOr("offset", 0.0) != 0.0) continue;
+      outline.warnings.push_back("joint " + Quote(joint.name) + " mimics " +
+                                 Quote(outline.joints[joint.leader].name) +
+                                 ", which is fixed: it is taken as fixed too");
+      joint.type = "fixed";
+      joint.leader = -1;
+      found = true;
+    }
   }
 }
 
@@ -143,7 +220,9 @@ void CheckMimics(const std::vector<UrdfJoint>& joints) {
     if (joint.leader < 0) continue;
     const UrdfJoint& leader = joints[joint.leader];
     const std::string both = "joint " + Quote(joint.name) + " mimics " + Quote(leader.name);
-    if (leader.type == "fixed" || leader.dropped) joint.element.Fail(both + ", which is fixed");
+    if (joint.dropped) continue;
+    if (leader.dropped) joint.element.Fail(both + ", which is no joint of the robot");
+    if (leader.type == "fixed") joint.element.Fail(both + ", which is fixed, with an offset");
     std::size_t steps = 0;
     for (int j = joint.leader; j >= 0; j = joints[j].leader) {
       if (++steps > joints.size()) joint.element.Fail(both + ", and so in the end itself");
@@ -173,7 +252,8 @@ UrdfOutline ReadUrdfOutline(const XmlText& xml) {
     ConnectJoint(static_cast<int>(j), outline);
   }
   FindRoot(outline);
-  DropFloatingRoot(outline);
+  KeepRobot(outline);
+  FixFollowersOfFixed(outline);
   CheckMimics(outline.joints);
   return outline;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/io/urdf_outline.hpp"
@@ -33,28 +34,44 @@ Link ReadLink(const UrdfLink& source) {
   if (!inertial) return link;
   const Transform T_link_inertial = ToTransform(ReadUrdfOrigin(*inertial));
   link.mass = inertial->Get("mass").Number("value");
-  const XmlElement entries = inertial->Get("inertia");
+  link.com = T_link_inertial.translation();
+  const auto found = inertial->Find("inertia");
+  if (!found) return link;  // mass and place are what statics needs
+  const XmlElement& entries = *found;
   // Numbers may throw, which Eigen does not stand in the middle of a list.
   const double ixx = entries.Number("ixx"), ixy = entries.Number("ixy"),
                ixz = entries.Number("ixz"), iyy = entries.Number("iyy"),
                iyz = entries.Number("iyz"), izz = entries.Number("izz");
   Eigen::Matrix3d inertia;
   inertia << ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz;
-  link.com = T_link_inertial.translation();
   link.inertia = T_link_inertial.linear() * inertia * T_link_inertial.linear().transpose();
   return link;
 }
 
-Eigen::Vector3d ReadAxis(const UrdfJoint& joint) {
+Eigen::Vector3d ReadAxis(const UrdfJoint& joint, std::vector<std::string>& warnings) {
   constexpr double kShortest = 1e-6;  // below this it is rounding noise, not a direction
-  const auto axis = joint.element.Find("axis");
+  constexpr double kRounding = 0.1;
+  const auto axis = joint.element.FindFirst("axis");
   if (!axis) return Eigen::Vector3d::UnitX();
   const Eigen::Vector3d xyz = axis->Vector("xyz");
-  if (xyz.stableNorm() < kShortest) axis->Fail("the axis is zero; a direction was expected");
+  const double length = xyz.stableNorm();
+  if (length < kShortest) axis->Fail("the axis is zero; a direction was expected");
+  const auto children = joint.element.Children();
+  const auto axes = std::count_if(children.begin(), children.end(),
+                                  [](const XmlElement& child) { return child.Tag() == "axis"; });
+  if (axes > 1) {
+    warnings.push_back("joint " + Quote(joint.name) + " has " + std::to_string(axes) +
+                       " axes; the first one counts");
+  }
+  if (std::abs(length - 1.0) > kRounding) {
+    warnings.push_back("joint " + Quote(joint.name) + " has an axis of the length " +
+                       FormatNumber(std::round(1e3 * length) / 1e3) +
+                       "; it is taken as a direction only");
+  }
   return xyz.stableNormalized().normalized();
 }
 
-JointLimits ReadLimits(const UrdfJoint& joint) {
+JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warnings) {
   JointLimits limits = {-kInfinity, kInfinity, kInfinity, kInfinity};
   const bool continuous = joint.type == "continuous";
   if (continuous && !joint.element.Find("limit")) return limits;
@@ -62,12 +79,13 @@ JointLimits ReadLimits(const UrdfJoint& joint) {
   limits.velocity = limit.Number("velocity");
   limits.effort = limit.Number("effort");
   if (continuous) return limits;
-  const double lower = limit.NumberOr("lower", 0.0), upper = limit.NumberOr("upper", 0.0);
-  limits.lower = lower;
-  limits.upper = upper;
-  if (lower > upper) {
-    limit.Fail("joint " + Quote(joint.name) + ": lower limit " + FormatNumber(lower) +
-               " is above upper limit " + FormatNumber(upper));
+  limits.lower = limit.NumberOr("lower", 0.0);
+  limits.upper = limit.NumberOr("upper", 0.0);
+  if (limits.lower > limits.upper) {
+    warnings.push_back("joint " + Quote(joint.name) + ": lower limit " +
+                       FormatNumber(limits.lower) + " is above upper limit " +
+                       FormatNumber(limits.upper) + "; they are exchanged");
+    std::swap(limits.lower, limits.upper);
   }
   return limits;
 }
@@ -79,9 +97,11 @@ class TreeBuilder {
 
   RobotTree Build() {
     tree_.name = outline_.robot;
+    tree_.warnings = outline_.warnings;
     AddLinks();
     child_joints_.resize(outline_.links.size());
     for (std::size_t j = 0; j < outline_.joints.size(); ++j) {
+      if (outline_.joints[j].dropped) continue;
       child_joints_[outline_.joints[j].parent].push_back(static_cast<int>(j));
     }
     tree_joint_.resize(outline_.joints.size(), -1);
@@ -96,13 +116,11 @@ class TreeBuilder {
   }
 
  private:
-  /// The root first, the others as in the file, without that above a floating joint.
+  /// The root first, the others as in the file.
   void AddLinks() {
     std::vector<int> order = {outline_.root};
-    const int carrier = outline_.links[outline_.root].parent_joint;
     for (int i = 0; i < static_cast<int>(outline_.links.size()); ++i) {
-      const bool dropped = carrier >= 0 && i == outline_.joints[carrier].parent;
-      if (i != outline_.root && !dropped) order.push_back(i);
+      if (i != outline_.root && !outline_.links[i].dropped) order.push_back(i);
     }
     tree_link_.resize(outline_.links.size(), -1);
     for (int i : order) {
@@ -142,8 +160,8 @@ class TreeBuilder {
     joint.child_link = tree_link_[source.child];
     joint.parent_body = TreeLink(source.parent).body;
     joint.T_parent_child = ToTransform(source.origin);
-    joint.axis = ReadAxis(source);
-    joint.limits = ReadLimits(source);
+    joint.axis = ReadAxis(source, tree_.warnings);
+    joint.limits = ReadLimits(source, tree_.warnings);
     joint.mimic = source.leader >= 0;
     tree_joint_[j] = static_cast<int>(tree_.joints.size());
     tree_.joints.push_back(joint);
@@ -161,6 +179,7 @@ class TreeBuilder {
     std::vector<bool> done(outline_.joints.size(), false);
     for (std::size_t j = 0; j < outline_.joints.size(); ++j) {
       std::vector<int> followers;
+      if (outline_.joints[j].dropped) continue;
       for (int next = static_cast<int>(j); !done[next]; next = outline_.joints[next].leader) {
         done[next] = true;
         if (outline_.joints[next].leader < 0) break;

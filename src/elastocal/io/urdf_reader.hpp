@@ -7,9 +7,11 @@
 
 namespace elastocal {
 
-/// Reads a URDF. Joints may be fixed, revolute, continuous or prismatic, with `mimic`; a floating
-/// joint at the root is left out (its child becomes the root). Transmissions, sensors, meshes and
-/// the like are passed over. Throws InputError naming file and line.
+/// Reads a URDF. Joints may be fixed, revolute, continuous or prismatic, with `mimic`; floating and
+/// planar ones part it, and the part with the most movable joints is the robot. Transmissions,
+/// sensors, meshes and the like are passed over. What is odd but clear is read and named in the
+/// tree's `warnings`: limits the wrong way round, several axes or one of another length than 1, an
+/// inertia left out. Throws InputError naming file and line.
 RobotTree ReadUrdf(const std::filesystem::path& file);
 
 /// The same from text; `source` names it in messages.

@@ -146,15 +146,62 @@ TEST(UrdfReader, FloatingRootIsLeftOut) {
   EXPECT_EQ(tree.joints[0].parent_body, 0);
 }
 
-TEST(UrdfReader, FloatingOrPlanarElsewhereIsAnError) {
-  const std::string links = Link("a") + Link("b") + Link("c");
+void ExpectWarning(const RobotTree& tree, const std::string& part) {
+  ASSERT_EQ(tree.warnings.size(), 1u);
+  EXPECT_NE(tree.warnings[0].find(part), std::string::npos) << tree.warnings[0];
+}
+
+TEST(UrdfReader, FloatingAndPlanarJointsPartTheRobotFromTheRest) {
+  const std::string arm = Link("a") + Link("b") + Joint("hip", "revolute", "a", "b");
+  // A ball in its hand, with something that turns on it.
+  const RobotTree holder = ParseLinks(
+      arm + Link("c") + Link("ball") + Link("lid") + Joint("more", "revolute", "b", "c") +
+      Joint("free", "floating", "c", "ball", "") + Joint("hinge", "continuous", "ball", "lid", ""));
+  EXPECT_EQ(holder.links.size(), 3u);
+  EXPECT_EQ(holder.joints.size(), 2u);
+  ExpectWarning(holder, "'free' is floating: what it carries (link 'ball') is left out, with 1 ");
+  // A robot beside a camera in the world: nothing of the robot is left out.
+  const RobotTree beside = ParseLinks(Link("camera") + Link("world") + arm +
+                                      Joint("on", "fixed", "world", "camera", "") +
+                                      Joint("free", "floating", "world", "a", ""));
+  EXPECT_EQ(beside.links.size(), 2u);
+  EXPECT_EQ(beside.links[0].name, "a");
+  EXPECT_TRUE(beside.warnings.empty());
+  const RobotTree wheeled =
+      ParseLinks(Link("floor") + arm + Joint("p", "planar", "floor", "a", ""));
+  EXPECT_EQ(wheeled.links[0].name, "a");
+  EXPECT_EQ(wheeled.joints.size(), 1u);
+  // The robot is what carries; a mimic joint of it must not follow what is left out.
   ExpectLinksError(
-      links + Joint("hip", "revolute", "a", "b") + Joint("free", "floating", "b", "c", ""),
-      {"r.urdf:6: ", "'free'", "floating"});
-  ExpectLinksError(
-      links + Joint("hip", "revolute", "a", "b") + Joint("free", "floating", "a", "c", ""),
-      {"r.urdf:6: ", "'free'", "floating"});
-  ExpectJointError("planar", "", {"r.urdf:4: ", "'j'", "planar"});
+      arm + Link("c") + Link("d") + Link("e") + Joint("free", "floating", "b", "c", "") +
+          Joint("lid", "revolute", "c", "d") +
+          Joint("k", "revolute", "b", "e", std::string(kLimit) + "<mimic joint='lid'/>"),
+      {"'k' mimics 'lid'", "no joint of the robot"});
+}
+
+TEST(UrdfReader, ReadsWhatIsOddButClear) {
+  const auto parse = [](const std::string& more) {
+    return ParseLinks(Link("a") + Link("b") + Joint("j", "revolute", "a", "b", more));
+  };
+  const RobotTree turned = parse("<limit lower='2' upper='1' velocity='1' effort='1'/>");
+  EXPECT_EQ(turned.joints[0].limits.lower, 1.0);
+  EXPECT_EQ(turned.joints[0].limits.upper, 2.0);
+  ExpectWarning(turned, "'j': lower limit 2 is above upper limit 1");
+  const RobotTree axes = parse(std::string(kLimit) + "<axis xyz='0 1 0'/><axis xyz='0 0 1'/>");
+  EXPECT_EQ(axes.joints[0].axis, Eigen::Vector3d::UnitY());
+  ExpectWarning(axes, "'j' has 2 axes");
+  ExpectWarning(parse(std::string(kLimit) + "<axis xyz='0 0 3'/>"), "length 3");
+  EXPECT_TRUE(parse(std::string(kLimit) + "<axis xyz='0 0.707 0.707'/>").warnings.empty());
+  const RobotTree heavy = ParseLinks(
+      "<link name='a'><inertial><origin xyz='1 2 3'/><mass value='5'/></inertial></link>");
+  EXPECT_EQ(heavy.links[0].mass, 5.0);
+  EXPECT_EQ(heavy.links[0].com, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(heavy.links[0].inertia.isZero());
+  const RobotTree follower =
+      ParseLinks(Link("a") + Link("b") + Link("c") + Joint("k", "fixed", "a", "b") +
+                 Joint("j", "revolute", "b", "c", std::string(kLimit) + "<mimic joint='k'/>"));
+  EXPECT_TRUE(follower.joints.empty());
+  ExpectWarning(follower, "'j' mimics 'k', which is fixed");
 }
 
 TEST(UrdfReader, NamesMalformedXml) {
@@ -239,8 +286,6 @@ TEST(UrdfReader, NamesWrongJoint) {
   ExpectJointError("prismatic", "", {"r.urdf:4: ", "'j'", "<limit>"});
   ExpectJointError("revolute", "<limit lower='0' upper='1' velocity='1'/>",
                    {"r.urdf:4: ", "'j'", "'effort'"});
-  ExpectJointError("revolute", "<limit lower='2' upper='1' velocity='1' effort='1'/>",
-                   {"r.urdf:4: ", "'j'", "lower limit 2", "upper limit 1"});
   ExpectJointError("revolute", std::string(kLimit) + "\n<axis xyz='0 0 0'/>",
                    {"r.urdf:5: ", "axis is zero"});
   ExpectJointError("revolute", std::string(kLimit) + kLimit, {"r.urdf:4: ", "second <limit>"});
@@ -283,7 +328,9 @@ TEST(UrdfReader, NamesMimicsThatLeadNowhere) {
                        Joint("k", "revolute", "b", "c", mimic("j")),
                    {"r.urdf:5: ", "'j'", "itself"});
   ExpectLinksError(
-      links + Joint("j", "revolute", "a", "b", mimic("k")) + Joint("k", "fixed", "b", "c"),
+      links +
+          Joint("j", "revolute", "a", "b", std::string(kLimit) + "<mimic joint='k' offset='1'/>") +
+          Joint("k", "fixed", "b", "c"),
       {"r.urdf:5: ", "'j'", "'k'", "fixed"});
 }
 

@@ -74,6 +74,11 @@ std::optional<XmlElement> XmlElement::Find(const char* child) const {
   return XmlElement(*text_, first);
 }
 
+std::optional<XmlElement> XmlElement::FindFirst(const char* child) const {
+  const pugi::xml_node first = node_.child(child);
+  return first ? std::optional(XmlElement(*text_, first)) : std::nullopt;
+}
+
 XmlElement XmlElement::Get(const char* child) const {
   const std::optional<XmlElement> found = Find(child);
   if (!found) Fail(Label() + " has no <" + child + ">");

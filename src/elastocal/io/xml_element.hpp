@@ -52,6 +52,8 @@ class XmlElement {
   /// The child element of this name. Programs do not agree on which of two counts, so a second one
   /// is an error.
   std::optional<XmlElement> Find(const char* child) const;
+  /// The first child element of this name, whatever follows.
+  std::optional<XmlElement> FindFirst(const char* child) const;
   XmlElement Get(const char* child) const;
 
   std::size_t AttributeCount() const;

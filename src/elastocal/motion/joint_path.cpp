@@ -120,8 +120,11 @@ double LeastDuration(const StandingRobot& robot, const Eigen::MatrixXd& control)
       QuinticSplineBasisRows(static_cast<int>(control.rows()), kSamples, 1) * control;
   double duration = 0.0;
   for (const Joint& joint : robot.tree.joints) {
-    const double fastest =
-        std::abs(joint.multiplier) * slope.col(joint.coordinate).cwiseAbs().maxCoeff();
+    Eigen::VectorXd rate = Eigen::VectorXd::Zero(slope.rows());
+    for (const Drive& drive : DrivesOf(joint)) {
+      rate += drive.multiplier * slope.col(drive.coordinate);
+    }
+    const double fastest = rate.cwiseAbs().maxCoeff();
     duration = std::max(duration, fastest / (robot.limits.velocity_share * joint.limits.velocity));
   }
   return duration;

@@ -4,44 +4,66 @@
 #include <string>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/moving_chain.hpp"
 
 namespace elastocal {
+
+namespace {
+
+/// The step that does what is wanted: of several the shortest, of none the one that comes nearest.
+Eigen::VectorXd LeastStep(const Eigen::MatrixXd& screws,
+                          const Eigen::Matrix<double, 6, 1>& wanted) {
+  if (screws.cols() == 6) return screws.partialPivLu().solve(wanted);
+  return screws.completeOrthogonalDecomposition().solve(wanted);
+}
+
+}  // namespace
 
 LegChain::LegChain(const RobotTree& tree, int sole_link)
     : tree_(tree),
       sole_link_(sole_link),
       joints_(JointsToBody(tree, tree.links[static_cast<std::size_t>(sole_link)].body)) {
-  bool own = joints_.size() == 6;
-  for (const int k : joints_) {
-    const Joint& joint = tree.joints[static_cast<std::size_t>(k)];
-    own = own && !joint.mimic && joint.type == JointType::kRevolute;
-    coordinates_.push_back(joint.coordinate);
+  constexpr std::size_t kLeast = 5;
+  coordinates_ = ChainCoordinates(tree, 0, sole_link);
+  bool own = coordinates_.size() >= kLeast;
+  for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
+    const bool in_leg = std::find(joints_.begin(), joints_.end(), k) != joints_.end();
+    own = own && (in_leg || !IsMovedBy(tree.joints[static_cast<std::size_t>(k)], coordinates_));
   }
   if (own) return;
   throw InputError("robot '" + tree.name + "': '" +
                    tree.links[static_cast<std::size_t>(sole_link)].name + "' is at the end of " +
                    std::to_string(joints_.size()) +
-                   " joints; expected a leg of six revolute joints of its own to balance on");
+                   " joints; expected a leg of five or more joints of its own to balance on");
 }
 
-Transform LegChain::Evaluate(const Eigen::VectorXd& q, Eigen::Matrix<double, 6, 6>& screws) const {
-  // Each column is a rotation and the velocity of the point at the root's origin.
+Transform LegChain::Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const {
+  screws.setZero(6, static_cast<Eigen::Index>(coordinates_.size()));
   Transform T = Transform::Identity();
-  for (int i = 0; i < 6; ++i) {
-    const int k = joints_[static_cast<std::size_t>(i)];
+  for (const int k : joints_) {
+    const Joint& joint = tree_.joints[static_cast<std::size_t>(k)];
     T = T * ParentBodyToChild(tree_, k, q);
-    const Eigen::Vector3d axis = T.linear() * tree_.joints[static_cast<std::size_t>(k)].axis;
-    screws.col(i).head<3>() = axis;
-    screws.col(i).tail<3>() = T.translation().cross(axis);
+    const Eigen::Vector3d axis = T.linear() * joint.axis;
+    Eigen::Matrix<double, 6, 1> screw;
+    if (joint.type == JointType::kRevolute) {
+      screw << axis, T.translation().cross(axis);
+    } else {
+      screw << Eigen::Vector3d::Zero(), axis;
+    }
+    for (const Drive& drive : DrivesOf(joint)) {
+      const auto at = std::find(coordinates_.begin(), coordinates_.end(), drive.coordinate);
+      screws.col(at - coordinates_.begin()) += drive.multiplier * screw;
+    }
   }
   return T * tree_.links[static_cast<std::size_t>(sole_link_)].T_body_link;
 }
 
 Transform LegChain::SolePose(const Eigen::VectorXd& q) const {
-  Eigen::Matrix<double, 6, 6> screws;
+  Eigen::MatrixXd screws;
   return Evaluate(q, screws);
 }
 
@@ -49,7 +71,7 @@ bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
   constexpr int kIterations = 40;
   constexpr double kReached = 1e-11;
   constexpr double kLargestMove = 0.3;  // rad
-  Eigen::Matrix<double, 6, 6> screws;
+  Eigen::MatrixXd screws;
   for (int i = 0; i < kIterations; ++i) {
     const Transform found = Evaluate(q, screws);
     const Eigen::Vector3d turn = RotationVector(T_root_sole.linear() * found.linear().transpose());
@@ -57,11 +79,11 @@ bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
     if (turn.norm() < kReached && move.norm() < kReached) return true;
     Eigen::Matrix<double, 6, 1> wanted;
     wanted << turn, move - turn.cross(found.translation());
-    Eigen::Matrix<double, 6, 1> step = screws.partialPivLu().solve(wanted);
+    Eigen::VectorXd step = LeastStep(screws, wanted);
     const double largest = step.cwiseAbs().maxCoeff();
     if (!(largest < 1e6)) return false;
     step *= std::min(1.0, kLargestMove / std::max(largest, 1e-12));
-    for (int j = 0; j < 6; ++j) q[coordinates_[static_cast<std::size_t>(j)]] += step[j];
+    q(coordinates_) += step;
   }
   return false;
 }

@@ -8,11 +8,13 @@
 
 namespace elastocal {
 
-/// A leg: the joints from the root link to a sole. They must be six, and none may be a mimic joint
-/// or drive one.
+/// A leg: the joints from the root link to a sole. It has five or more entries of q of its own;
+/// joints within it may be coupled, but not to joints elsewhere. With more than six, the leg stays
+/// near the posture from which it is placed; with five, only some poses of the sole are in reach
+/// (those parallel to the root link, where what is missing is the joint about the vertical).
 class LegChain {
  public:
-  /// Keeps a reference. Throws InputError for another number of joints, and for mimic joints.
+  /// Keeps a reference. Throws InputError for fewer joints, and for coupling to joints elsewhere.
   LegChain(const RobotTree& tree, int sole_link);
 
   int sole_link() const { return sole_link_; }
@@ -27,7 +29,9 @@ class LegChain {
   bool Place(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
  private:
-  Transform Evaluate(const Eigen::VectorXd& q, Eigen::Matrix<double, 6, 6>& screws) const;
+  /// Pose of the sole; sets `screws` to its derivatives, 6 x coordinates: a rotation and the
+  /// velocity of the point at the root's origin.
+  Transform Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const;
 
   const RobotTree& tree_;
   int sole_link_;

@@ -35,8 +35,8 @@ void CheckJoints(const StandingRobot& robot, const RobotState& state, Eigen::Ind
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     const Joint& joint = tree.joints[k];
     const double position = JointPosition(joint, state.q);
-    const double speed = joint.multiplier * state.velocity[joint.coordinate];
-    const double acceleration = joint.multiplier * state.acceleration[joint.coordinate];
+    const double speed = JointRate(joint, state.velocity);
+    const double acceleration = JointRate(joint, state.acceleration);
     const int index = static_cast<int>(k);
     const double less = LessMargin(joint.limits, robot.limits.position_margin);
     Least(margins.position,

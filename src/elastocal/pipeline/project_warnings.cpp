@@ -58,6 +58,35 @@ void WarnOfCluster(const Project& project, const MarkerCluster& cluster,
   }
 }
 
+/// Whether a joint joins the two bodies.
+bool Carries(const RobotTree& tree, int body, int carried) {
+  return carried > 0 && tree.joints[Size(carried - 1)].parent_body == body;
+}
+
+/// Markers that are deep in another part while the robot rests. The spheres are thicker than what
+/// they cover, and those of neighbours overlap.
+void WarnOfHiddenMarkers(const Project& project, std::vector<std::string>& warnings) {
+  constexpr double kDeep = 0.5;  // of the radius
+  const RobotTree& tree = project.tree;
+  const std::vector<Transform> poses = LinkTransforms(tree, project.motion.rest);
+  for (const Marker& marker : project.markers) {
+    const Eigen::Vector3d p = poses[Size(marker.link)] * marker.p_link_marker;
+    for (const CollisionSphere& sphere : project.motion.spheres) {
+      const int one = tree.links[Size(sphere.link)].body,
+                other = tree.links[Size(marker.link)].body;
+      if (one == other || Carries(tree, one, other) || Carries(tree, other, one)) continue;
+      const double inside =
+          sphere.radius - (poses[Size(sphere.link)] * sphere.p_link_centre - p).norm();
+      if (inside < kDeep * sphere.radius) continue;
+      warnings.push_back(fmt::format(
+          "marker '{}': at rest it is {:.0f} mm inside the sphere '{}' of another link; cameras do "
+          "not see it there, and what they do not see does not count: put it further out",
+          marker.name, 1e3 * inside, sphere.name));
+      break;
+    }
+  }
+}
+
 /// Joints at the end of a chain beyond which there is no marker.
 void WarnOfBlindEnd(const Project& project, const Chain& chain,
                     std::vector<std::string>& warnings) {
@@ -81,13 +110,15 @@ void WarnOfBlindEnd(const Project& project, const Chain& chain,
 }  // namespace
 
 std::vector<std::string> ProjectWarnings(const Project& project) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = project.tree.warnings;
   for (const Joint& joint : project.tree.joints) {
     if (joint.mimic || joint.limits.lower < joint.limits.upper) continue;
     warnings.push_back("joint '" + joint.name +
-                       "': its lower and upper limits are equal; it is not moved");
+                       "': its lower and upper limits are equal; it is not moved, so that its "
+                       "offset is not told from the frames beside it: give it its range");
   }
   for (const MarkerCluster& cluster : project.clusters) WarnOfCluster(project, cluster, warnings);
+  WarnOfHiddenMarkers(project, warnings);
   for (const Chain& chain : project.chains) WarnOfBlindEnd(project, chain, warnings);
   for (std::string& warning : InertiaWarnings(project.tree)) {
     warnings.push_back(std::move(warning));

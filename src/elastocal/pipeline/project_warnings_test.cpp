@@ -26,7 +26,7 @@ constexpr const char* kImpossible =
     "iyz='0'/></inertial>";
 
 std::vector<std::string> Warnings(const std::string& tip_limit, const std::string& inertial,
-                                  const std::string& positions) {
+                                  const std::string& positions, const std::string& more = "") {
   const ScratchFolder folder;
   folder.Write("arm.urdf", "<robot name='arm'><link name='base'/>" +
                                Joint("upper", "base", "lower='-1' upper='1'", kSolid) +
@@ -35,7 +35,7 @@ std::vector<std::string> Warnings(const std::string& tip_limit, const std::strin
       "project.yaml",
       "robot: {urdf: arm.urdf}\nchains: [{name: arm, tip: hand}]\nmarkers: {clusters: [{name: UP, "
       "link: upper, positions_mm: " +
-          positions + "}]}\n")));
+          positions + "}]}\n" + more)));
 }
 
 bool Says(const std::vector<std::string>& warnings, const std::string& text) {
@@ -58,6 +58,21 @@ TEST(ProjectWarnings, NameWhatCostsSomething) {
   EXPECT_TRUE(Says(Warnings(free, kSolid, "[[0, 0, 0], [1, 0, 0], [0, 0.7, 0]]"), "0.7 mm apart"));
   EXPECT_TRUE(
       Says(Warnings(free, kSolid, "[[5000, 0, 0], [5100, 0, 0], [5030, 60, 0]]"), "5100 mm from"));
+}
+
+TEST(ProjectWarnings, NameMarkersInsideOtherLinks) {
+  // The hand's origin is 600 mm above that of the base, and 300 mm above that of its neighbour.
+  const std::string hand =
+      "collision: {spheres: [{name: palm, link: hand, centre_mm: [0, 0, 0], radius_mm: 100}]}\n";
+  const auto warned = [&](const std::string& third, const std::string& low) {
+    const std::string markers = "[[0, 0, 0], [100, 0, 0], " + third +
+                                "]}], single: [{name: LOW, link: base, position_mm: " + low;
+    return Warnings("lower='-1' upper='1'", kSolid, markers, hand);
+  };
+  EXPECT_TRUE(Says(warned("[30, 60, 0]", "[0, 30, 600]"),
+                   "'LOW': at rest it is 70 mm inside the sphere 'palm'"));
+  EXPECT_FALSE(Says(warned("[30, 60, 0]", "[0, 60, 600]"), "'LOW'"));  // less than half the radius
+  EXPECT_FALSE(Says(warned("[0, 30, 300]", "[0, 0, 0]"), "'UP_3'"));   // neighbours overlap
 }
 
 // The forearms' clusters of the embedded humanoid have sides of 57.7 and 57.8 mm; all else is fine.

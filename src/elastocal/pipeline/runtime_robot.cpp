@@ -69,6 +69,11 @@ void AddJoints(const StoredRobot& robot, RuntimeContent content, RuntimeModel& m
   const std::vector<int>& active = robot.model.active_joints;
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     const Joint& joint = tree.joints[k];
+    if (!joint.more.empty()) {
+      throw InputError("joint '" + joint.name +
+                       "' is coupled to several others, which the robot at "
+                       "run time does not know yet");
+    }
     ec_joint nominal = UrdfJoint(tree, joint);
     const bool has_errors = content != RuntimeContent::kNominal &&
                             std::binary_search(active.begin(), active.end(), static_cast<int>(k));

@@ -18,8 +18,7 @@ Elasticity ChainElasticity(const Project& project, const ChainSetup& setup) {
     }
   }
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
-    const auto& own = setup.coordinates;
-    if (std::find(own.begin(), own.end(), tree.joints[k].coordinate) == own.end()) continue;
+    if (!IsMovedBy(tree.joints[k], setup.coordinates)) continue;
     elasticity.torsion.push_back(static_cast<int>(k));
     if (tree.joints[k].type == JointType::kRevolute) {
       elasticity.bending.push_back(static_cast<int>(k));

@@ -23,8 +23,7 @@ std::vector<CollisionSphere> MovedSpheres(const RobotTree& tree, const MotionSet
   std::vector<CollisionSphere> moved;
   for (const CollisionSphere& sphere : motion.spheres) {
     for (int joint : JointsToBody(tree, tree.links[sphere.link].body)) {
-      const auto& own = chain.coordinates;
-      if (std::find(own.begin(), own.end(), tree.joints[joint].coordinate) != own.end()) {
+      if (IsMovedBy(tree.joints[joint], chain.coordinates)) {
         moved.push_back(sphere);
         break;
       }
@@ -155,9 +154,7 @@ BaseParameters FindChainParameters(const ErrorModel& model, const MotionSetup& m
                                    const ChainSetup& chain, IdentifiabilityOptions options) {
   for (const Parameter& parameter : model.parameters) {
     if (parameter.joint < 0) continue;
-    const int coordinate = model.tree.joints[parameter.joint].coordinate;
-    const auto& own = chain.coordinates;
-    if (std::find(own.begin(), own.end(), coordinate) == own.end()) {
+    if (!IsMovedBy(model.tree.joints[parameter.joint], chain.coordinates)) {
       options.hold.push_back(parameter.name);
     }
   }

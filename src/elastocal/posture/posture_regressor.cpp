@@ -25,8 +25,7 @@ bool IsLegCompliance(ParameterKind kind) {
 /// Whether the chain moves a joint of the leg.
 bool Moves(const MovingChain& chain, const ErrorModel& model, const SupportLeg& leg) {
   return std::any_of(leg.joints.begin(), leg.joints.end(), [&](int joint) {
-    const auto& own = chain.coordinates();
-    return std::find(own.begin(), own.end(), model.tree.joints[joint].coordinate) != own.end();
+    return IsMovedBy(model.tree.joints[joint], chain.coordinates());
   });
 }
 
@@ -79,9 +78,11 @@ void PostureRegressor::LayOut(const MovingChain& chain) {
     for (int k : JointsToBody(model_.tree, model_.tree.links[model_.markers[m].link].body)) {
       const Joint& joint = model_.tree.joints[k];
       const auto& moving = chain.coordinates();
-      const auto found = std::find(moving.begin(), moving.end(), joint.coordinate);
-      const int variable = found == moving.end() ? -1 : static_cast<int>(found - moving.begin());
-      path.push_back({k, MotionParameter(model_, k), variable, joint.multiplier});
+      for (const Drive& drive : DrivesOf(joint)) {
+        const auto found = std::find(moving.begin(), moving.end(), drive.coordinate);
+        const int variable = found == moving.end() ? -1 : static_cast<int>(found - moving.begin());
+        path.push_back({k, MotionParameter(model_, k), variable, drive.multiplier});
+      }
     }
     std::vector<MarkerColumn>& columns = columns_.emplace_back();
     const std::vector<int>& source = jacobian_.Columns(m);

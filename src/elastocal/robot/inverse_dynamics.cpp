@@ -17,8 +17,8 @@ struct BodyMotion {
 BodyMotion Outwards(const RobotTree& tree, int k, const BodyMotion& parent, const RobotState& state,
                     Vector3d& axis) {
   const Joint& joint = tree.joints[k];
-  const double rate = joint.multiplier * state.velocity[joint.coordinate];
-  const double acceleration = joint.multiplier * state.acceleration[joint.coordinate];
+  const double rate = JointRate(joint, state.velocity);
+  const double acceleration = JointRate(joint, state.acceleration);
   BodyMotion child;
   child.T_world_body = parent.T_world_body * ParentBodyToChild(tree, k, state.q);
   axis = child.T_world_body.linear() * joint.axis;
@@ -98,7 +98,7 @@ InverseDynamicsResult InverseDynamics(const RobotTree& tree,
     const double torque = joint.type == JointType::kRevolute
                               ? axes[k].dot(moments[k + 1] - centre.cross(forces[k + 1]))
                               : axes[k].dot(forces[k + 1]);
-    result.torques[joint.coordinate] += joint.multiplier * torque;
+    AddTorque(joint, torque, result.torques);
     forces[joint.parent_body] += forces[k + 1];
     moments[joint.parent_body] += moments[k + 1];
   }

@@ -6,15 +6,30 @@ namespace elastocal {
 
 using Eigen::Vector3d;
 
+namespace {
+
+/// What an entry of q that moves the joint is multiplied with.
+double Multiplier(const Joint& joint, int coordinate) {
+  double sum = 0.0;
+  for (const Drive& drive : DrivesOf(joint)) {
+    if (drive.coordinate == coordinate) sum += drive.multiplier;
+  }
+  return sum;
+}
+
+}  // namespace
+
 std::vector<int> ChainCoordinates(const RobotTree& tree, int from_link, int tip_link) {
   std::vector<int> joints = JointsToBody(tree, tree.links[tip_link].body);
   const auto from = std::find(joints.begin(), joints.end(), tree.links[from_link].body - 1);
   if (from != joints.end()) joints.erase(joints.begin(), from + 1);
   std::vector<int> coordinates;
   for (int joint : joints) {
-    const int coordinate = tree.joints[joint].coordinate;
-    if (std::find(coordinates.begin(), coordinates.end(), coordinate) == coordinates.end()) {
-      coordinates.push_back(coordinate);
+    for (const Drive& drive : DrivesOf(tree.joints[joint])) {
+      if (std::find(coordinates.begin(), coordinates.end(), drive.coordinate) ==
+          coordinates.end()) {
+        coordinates.push_back(drive.coordinate);
+      }
     }
   }
   return coordinates;
@@ -27,11 +42,13 @@ MovingChain::MovingChain(const RobotTree& tree, std::vector<int> coordinates, Ei
     const Joint& joint = tree_.joints[k];
     for (int inner : JointsToBody(tree_, static_cast<int>(k) + 1)) carries_[inner][k] = 1;
     driven_.push_back(driven_[joint.parent_body]);
-    const auto found = std::find(coordinates_.begin(), coordinates_.end(), joint.coordinate);
-    if (found == coordinates_.end()) continue;
-    driven_.back().push_back(
-        {static_cast<int>(k), static_cast<int>(found - coordinates_.begin()), joint.multiplier});
-    all_driven_.push_back(driven_.back().back());
+    for (const Drive& drive : DrivesOf(joint)) {
+      const auto found = std::find(coordinates_.begin(), coordinates_.end(), drive.coordinate);
+      if (found == coordinates_.end()) continue;
+      driven_.back().push_back(
+          {static_cast<int>(k), static_cast<int>(found - coordinates_.begin()), drive.multiplier});
+      all_driven_.push_back(driven_.back().back());
+    }
   }
   Move(q_(coordinates_));
 }
@@ -94,8 +111,9 @@ double MovingChain::PotentialCurvature(int inner, int outer) const {
 double MovingChain::GravityTorque(int coordinate) const {
   double torque = 0.0;
   for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
-    if (tree_.joints[k].coordinate != coordinate) continue;
-    torque -= tree_.joints[k].multiplier * MomentGradient(static_cast<int>(k)).dot(kGravity);
+    if (!IsMovedBy(tree_.joints[k], coordinate)) continue;
+    torque -=
+        Multiplier(tree_.joints[k], coordinate) * MomentGradient(static_cast<int>(k)).dot(kGravity);
   }
   return torque;
 }
@@ -103,10 +121,10 @@ double MovingChain::GravityTorque(int coordinate) const {
 Eigen::RowVectorXd MovingChain::GravityTorqueGradient(int coordinate) const {
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(size());
   for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
-    if (tree_.joints[k].coordinate != coordinate) continue;
+    if (!IsMovedBy(tree_.joints[k], coordinate)) continue;
     const int joint = static_cast<int>(k);
     for (const Driven& d : all_driven_) {
-      const double factor = tree_.joints[k].multiplier * d.multiplier;
+      const double factor = Multiplier(tree_.joints[k], coordinate) * d.multiplier;
       if (carries_[d.joint][joint]) {
         gradient[d.variable] += factor * PotentialCurvature(d.joint, joint);
       } else if (carries_[joint][d.joint]) {

@@ -37,8 +37,36 @@ int FindJoint(const RobotTree& tree, const std::string& name) {
   return FindByName(tree.joints, name, "movable joint", tree.name);
 }
 
+std::vector<Drive> DrivesOf(const Joint& joint) {
+  std::vector<Drive> drives = {{joint.coordinate, joint.multiplier}};
+  drives.insert(drives.end(), joint.more.begin(), joint.more.end());
+  return drives;
+}
+
+bool IsMovedBy(const Joint& joint, int coordinate) {
+  return joint.coordinate == coordinate ||
+         std::any_of(joint.more.begin(), joint.more.end(),
+                     [&](const Drive& drive) { return drive.coordinate == coordinate; });
+}
+
+bool IsMovedBy(const Joint& joint, const std::vector<int>& coordinates) {
+  return std::any_of(coordinates.begin(), coordinates.end(),
+                     [&](int coordinate) { return IsMovedBy(joint, coordinate); });
+}
+
+double JointRate(const Joint& joint, const Eigen::VectorXd& q_rate) {
+  double rate = joint.multiplier * q_rate[joint.coordinate];
+  for (const Drive& drive : joint.more) rate += drive.multiplier * q_rate[drive.coordinate];
+  return rate;
+}
+
+void AddTorque(const Joint& joint, double torque, Eigen::VectorXd& torques) {
+  torques[joint.coordinate] += joint.multiplier * torque;
+  for (const Drive& drive : joint.more) torques[drive.coordinate] += drive.multiplier * torque;
+}
+
 double JointPosition(const Joint& joint, const Eigen::VectorXd& q) {
-  return joint.multiplier * q[joint.coordinate] + joint.offset;
+  return JointRate(joint, q) + joint.offset;
 }
 
 Transform ParentBodyToChild(const RobotTree& tree, int joint, const Eigen::VectorXd& q) {

@@ -19,6 +19,12 @@ struct JointLimits {
 
 enum class JointType { kRevolute, kPrismatic };
 
+/// How an entry of the position vector q moves a joint.
+struct Drive {
+  int coordinate = 0;
+  double multiplier = 1.0;
+};
+
 /// A movable joint. It moves the body of the same index plus one: joint k moves body k + 1.
 struct Joint {
   std::string name;
@@ -32,7 +38,8 @@ struct Joint {
   /// A mimic joint shares the entry of the joint it follows; all others have (1, 0).
   int coordinate = 0;
   double multiplier = 1.0, offset = 0.0;
-  bool mimic = false;
+  bool mimic = false;            ///< its position is that of others: it has no entry of its own
+  std::vector<Drive> more = {};  ///< of a joint coupled to several others: what is added
 };
 
 /// A link of the URDF. Links joined by fixed joints form one body.
@@ -55,6 +62,8 @@ struct RobotTree {
   std::vector<Link> links;  ///< links[0] is the root link
   std::vector<Joint> joints;
   std::vector<int> coordinate_joint;  ///< for each entry of q, its joint
+  /// What the description leaves open or says oddly, and how it was taken.
+  std::vector<std::string> warnings;
 
   int body_count() const { return static_cast<int>(joints.size()) + 1; }
   int coordinate_count() const { return static_cast<int>(coordinate_joint.size()); }
@@ -64,6 +73,19 @@ struct RobotTree {
 /// name.
 int FindLink(const RobotTree& tree, const std::string& name);
 int FindJoint(const RobotTree& tree, const std::string& name);
+
+/// All that moves a joint.
+std::vector<Drive> DrivesOf(const Joint& joint);
+
+/// Whether an entry of q, or one of several, moves the joint.
+bool IsMovedBy(const Joint& joint, int coordinate);
+bool IsMovedBy(const Joint& joint, const std::vector<int>& coordinates);
+
+/// Velocity or acceleration of a joint for that of q.
+double JointRate(const Joint& joint, const Eigen::VectorXd& q_rate);
+
+/// Adds a joint's torque [N.m or N] to those of the entries of q that move it.
+void AddTorque(const Joint& joint, double torque, Eigen::VectorXd& torques);
 
 /// Position of a joint [rad or m] for the position vector `q` of the whole tree.
 double JointPosition(const Joint& joint, const Eigen::VectorXd& q);

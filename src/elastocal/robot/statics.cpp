@@ -51,7 +51,7 @@ Eigen::VectorXd StaticTorques(const RobotTree& tree, const Eigen::VectorXd& q,
     const Vector3d load = joint.type == JointType::kRevolute
                               ? TurningMoment(carried[k], T_root_child.translation(), gravity_waist)
                               : Vector3d(carried[k].side * carried[k].mass * gravity_waist);
-    torques[joint.coordinate] -= joint.multiplier * axis.dot(load);
+    AddTorque(joint, -axis.dot(load), torques);
   }
   return torques;
 }

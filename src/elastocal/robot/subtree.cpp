@@ -32,12 +32,16 @@ RobotTree Subtree(const RobotTree& tree, int link) {
     joint.parent_link = link_of.at(joint.parent_link);
     joint.child_link = link_of.at(joint.child_link);
     joint.parent_body = body_of.at(joint.parent_body);
-    const auto [entry, is_new] =
-        coordinate_of.try_emplace(joint.coordinate, subtree.coordinate_count());
     const int index = static_cast<int>(subtree.joints.size());
-    if (is_new) subtree.coordinate_joint.push_back(index);
-    if (!joint.mimic) subtree.coordinate_joint[entry->second] = index;
-    joint.coordinate = entry->second;
+    const auto renumber = [&](int coordinate) {
+      const auto [entry, is_new] =
+          coordinate_of.try_emplace(coordinate, subtree.coordinate_count());
+      if (is_new) subtree.coordinate_joint.push_back(index);
+      return entry->second;
+    };
+    joint.coordinate = renumber(joint.coordinate);
+    for (Drive& drive : joint.more) drive.coordinate = renumber(drive.coordinate);
+    if (!joint.mimic) subtree.coordinate_joint[joint.coordinate] = index;
     subtree.joints.push_back(joint);
   }
   return subtree;

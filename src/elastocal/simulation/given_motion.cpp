@@ -115,6 +115,12 @@ class GivenMotionPlanner {
     return q.maxCoeff() - q.minCoeff() > kMoves;
   }
 
+  bool MovesJoint(const Joint& joint, const Stretch& stretch) const {
+    const std::vector<Drive> drives = DrivesOf(joint);
+    return std::any_of(drives.begin(), drives.end(),
+                       [&](const Drive& drive) { return Moves(drive.coordinate, stretch); });
+  }
+
   std::vector<int> MovingChains(const Stretch& stretch) const {
     std::vector<int> moving;
     for (std::size_t c = 0; c < chains_.size(); ++c) {
@@ -126,7 +132,7 @@ class GivenMotionPlanner {
       }
       const std::vector<int> joints = JointsToBody(tree_, tree_.links[chain.tip_link].body);
       if (std::any_of(joints.begin(), joints.end(),
-                      [&](int k) { return Moves(tree_.joints[k].coordinate, stretch); })) {
+                      [&](int k) { return MovesJoint(tree_.joints[k], stretch); })) {
         moving.push_back(static_cast<int>(c));
       }
     }

@@ -171,6 +171,7 @@ std::vector<Transform> TrueLinkTransforms(const TrueRobot& robot,
     joint.coordinate = static_cast<int>(k);
     joint.multiplier = 1.0;
     joint.offset = 0.0;
+    joint.more.clear();
     tree.coordinate_joint.push_back(static_cast<int>(k));
   }
   return LinkTransforms(tree, positions);

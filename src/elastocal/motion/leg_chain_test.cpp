@@ -1,0 +1,90 @@
+#include "elastocal/motion/leg_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/random.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/test_robots.hpp"
+
+namespace elastocal {
+namespace {
+
+/// A leg with the joints of these letters (the axis that each turns about; "t" is a joint about the
+/// thigh), 0.1 m to the left. Its last link is the sole.
+RobotTree OneLeg(const std::string& axes) {
+  RobotTree tree = MakeRoot();
+  int link = 0, pitches = 0;
+  for (const char axis : axes) {
+    const bool pitch = axis == 'y';
+    // Hip, knee and ankle bend: 0.4 m of thigh, in halves where something turns it, and of shank.
+    const bool turned = axes.find('t') != std::string::npos;
+    const double down = axis == 't' || (pitch && pitches == 1 && turned) ? -0.2
+                        : pitch && pitches > 0                           ? -0.4
+                                                                         : 0.0;
+    const Eigen::Vector3d direction(axis == 'x', pitch, axis == 'z' || axis == 't');
+    link = AddJoint(tree, "leg_" + std::to_string(tree.joints.size() + 1), link,
+                    Offset(0, link == 0 ? 0.1 : 0.0, down), direction);
+    pitches += pitch ? 1 : 0;
+  }
+  AddFixedLink(tree, "sole", link, Offset(0, 0, -0.1));
+  return tree;
+}
+
+constexpr double kHip = -0.5, kKnee = 1.0;
+
+TEST(LegChain, OfSevenJointsStaysNearWhereItIsPlacedFrom) {
+  const RobotTree tree = OneLeg("zxytyyx");
+  const LegChain leg(tree, FindLink(tree, "sole"));
+  ASSERT_EQ(leg.coordinates().size(), 7u);
+  Eigen::VectorXd rest(7);
+  rest << 0, 0, kHip, 0, kKnee, kHip, 0;
+  Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::VectorXd q = rest + random.NormalVector(7, 0.05);
+    Eigen::VectorXd found = rest;
+    ASSERT_TRUE(leg.Place(leg.SolePose(q), found));
+    const Transform off = leg.SolePose(found).inverse() * leg.SolePose(q);
+    EXPECT_LT(off.translation().norm() + RotationAngle(off.linear()), 1e-10);
+    // Of all postures with this sole, the nearest but for the curvature of a step of 0.1 rad.
+    EXPECT_LT((found - rest).norm(), 1.05 * (q - rest).norm());
+  }
+}
+
+TEST(LegChain, OfFiveJointsReachesWhatIsParallelToTheRoot) {
+  const RobotTree tree = OneLeg("xyyyx");
+  const LegChain leg(tree, FindLink(tree, "sole"));
+  Eigen::VectorXd q(5);
+  q << 0, kHip, kKnee, kHip, 0;
+  Transform wanted = leg.SolePose(q);
+  wanted.translation() += Eigen::Vector3d(0.03, -0.05, 0.02);
+  ASSERT_TRUE(leg.Place(wanted, q));
+  EXPECT_LT((leg.SolePose(q).matrix() - wanted.matrix()).norm(), 1e-10);
+  wanted.linear() = RotAxis({0, 0, 1}, 0.2).linear();
+  EXPECT_FALSE(leg.Place(wanted, q));
+}
+
+TEST(LegChain, JointsOfALegMayFollowEachOtherButNoOthers) {
+  // The second knee bends as much as the first.
+  RobotTree tree = OneLeg("zxyyyyx");
+  for (const std::size_t k : {4u, 5u, 6u}) tree.joints[k].coordinate -= 1;
+  tree.joints[4].mimic = true;
+  tree.coordinate_joint = {0, 1, 2, 3, 5, 6};
+  const LegChain leg(tree, FindLink(tree, "sole"));
+  Eigen::VectorXd q(6);
+  q << 0, 0, -0.6, 0.6, -0.6, 0;
+  Transform wanted = leg.SolePose(q);
+  wanted.translation() += Eigen::Vector3d(0.03, -0.05, 0.02);
+  ASSERT_TRUE(leg.Place(wanted, q));
+  EXPECT_LT((leg.SolePose(q).matrix() - wanted.matrix()).norm(), 1e-10);
+
+  AddJoint(tree, "tail", 0, Offset(-0.1, 0, 0), {0, 1, 0});
+  MakeLastJointMimic(tree, 0, 1.0, 0.0);
+  ExpectInputError([&] { LegChain(tree, FindLink(tree, "sole")); },
+                   {"'sole'", "five or more joints of its own"});
+  const RobotTree four = OneLeg("xyyy");
+  ExpectInputError([&] { LegChain(four, FindLink(four, "sole")); }, {"4 joints"});
+}
+
+}  // namespace
+}  // namespace elastocal
