@@ -16,7 +16,7 @@ namespace elastocal {
 namespace {
 
 constexpr int kMostRows = 20000;
-constexpr double kMostSteps = 1e15;  // counts beyond are no whole numbers
+constexpr double kMostCounts = 1e15;  // counts beyond are no whole numbers
 
 /// What an instrument showed in a row.
 struct MeasuredRow {
@@ -165,7 +165,7 @@ std::string SessionKey(const Table& table, const ObservationColumns& columns,
       continue;
     }
     const double steps = std::round(table.Number(column) / rule.quantum);
-    if (!(std::abs(steps) < kMostSteps)) {
+    if (!(std::abs(steps) < kMostCounts)) {
       table.FailCell(column, "this is no number of steps of contact.sessions.counts.quantum");
     }
     const std::int64_t count = static_cast<std::int64_t>(steps) % rule.modulo;

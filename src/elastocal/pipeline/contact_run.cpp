@@ -16,10 +16,10 @@ namespace elastocal {
 namespace {
 
 constexpr int kUsualFolds = 10;
-constexpr int kFewestPostures = 8;      // tables and plates alone have 5 unknowns each
-constexpr double kPlainGain = 2.0;      // standard deviations: better by no chance
-constexpr double kLittleBetter = 0.95;  // of the error before: hardly anything was gained
-constexpr double kMostLeftOut = 0.25;   // share of observations
+constexpr int kFewestObservedPostures = 8;  // tables and plates alone have 5 unknowns each
+constexpr double kPlainGain = 2.0;          // standard deviations: better by no chance
+constexpr double kLittleBetter = 0.95;      // of the error before: hardly anything was gained
+constexpr double kMostLeftOut = 0.25;       // share of observations
 constexpr double kDegreeHere = 180.0 / M_PI;
 constexpr double kTiedVariance = 1e-6;  // relative, see TakePosterior
 
@@ -195,9 +195,9 @@ ContactRun CalibrateContacts(const Project& project,
   run.recording = JoinNames(run.observations.files);
   run.zero_offsets = options.zero_offsets;
   const int postures = run.observations.posture_count();
-  if (postures < kFewestPostures) {
+  if (postures < kFewestObservedPostures) {
     throw InputError(run.recording + ": " + std::to_string(postures) + " postures; at least " +
-                     std::to_string(kFewestPostures) + " were expected");
+                     std::to_string(kFewestObservedPostures) + " were expected");
   }
   tables.setup.hold = project.identifiability.hold;
   tables.setup.outlier_probability = project.calibration.outlier_probability;
