@@ -36,18 +36,18 @@ std::pair<double, double> Hip(const ContactRun& run) {
 
 TEST_F(TalosTable, TouchesThatAreLeftOutArePredicted) {
   ContactRun run = CalibrateContacts(project_, files_, {.folds = 50, .threads = 2});
-  ASSERT_EQ(run.touches.count(), 50);
+  ASSERT_EQ(run.observations.count(), 50);
   EXPECT_TRUE(run.deployable());
-  const TouchFigures& figures = run.calibrated.held_out.figures;
-  // docs/accuracy.md: 3.07 mm and 0.274 degrees; a change of less than 1 % is rounding.
-  EXPECT_NEAR(1e3 * figures.all.height, 3.07, 0.03);
+  const ObservationFigures& figures = run.calibrated.held_out.figures;
+  // docs/accuracy.md: 3.06 mm and 0.274 degrees; a change of less than 1 % is rounding.
+  EXPECT_NEAR(1e3 * figures.all.height, 3.06, 0.03);
   EXPECT_NEAR(figures.all.tilt() / kDegree, 0.274, 0.003);
   EXPECT_EQ(figures.by_plate[0].touches, 21);
   EXPECT_EQ(figures.by_plate[1].touches, 29);
   EXPECT_GT(1e3 * run.uncalibrated.held_out.figures.all.height, 12.0);
   EXPECT_NEAR(Hip(run).first, 2.01, 0.02);
   EXPECT_TRUE(run.closure.planned());
-  EXPECT_EQ(run.touches.sessions.size(), 9u);
+  EXPECT_EQ(run.observations.effects.size(), 9u);
 
   const auto summary = nlohmann::json::parse(MakeContactSummary(run));
   EXPECT_DOUBLE_EQ(summary["contact"]["kfold"]["height_mm"].get<double>(),
@@ -67,10 +67,10 @@ TEST_F(TalosTable, EachSideAloneFindsTheComplianceOfTheHips) {
 
 TEST_F(TalosTable, ATouchInTheAirIsNamed) {
   ContactRun run = CalibrateContacts(project_, files_, {.folds = 0});
-  Touches touches = run.touches;
+  Observations touches = run.observations;
   const int elbow = FindJoint(project_.tree, "arm_right_4_joint");
   touches.q(30, project_.tree.joints[elbow].coordinate) -= 0.3;
-  run.calibrated.estimate = EstimateContacts(run.model, touches, {});
+  run.calibrated.estimate = EstimateObserved(run.model, touches, {});
   const std::vector<std::string> texts = DescribeOutliers(run);
   ASSERT_EQ(texts.size(), 1u);
   EXPECT_NE(texts[0].find("right.csv:11: "), std::string::npos) << texts[0];

@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/contact_file.hpp"
-#include "elastocal/io/touch_table.hpp"
+#include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/random.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
+#include "tests/test_robots.hpp"
 
 namespace elastocal {
 namespace {
@@ -62,18 +63,16 @@ TEST(ContactInput, TheProjectSaysWhatIsWrong) {
   error(
       std::string(kFeet) + kPlates + ", sessions: {counts: {columns: [a], quantum: 0, modulo: 64}}",
       "quantum");
-  error(std::string(kFeet) + kPlates, "not possible yet",
-        "markers: {single: [{name: A, link: arm_left_7_link, position_mm: [0, 0, 9]}]}\n");
   ExpectInputError([] { CheckHasMarkers(ProjectOf(std::string(kFeet) + kPlates)); },
                    {"no markers"});
 }
 
-class TouchTableInput : public testing::Test {
+class ObservationTableInput : public testing::Test {
  protected:
-  TouchTables Read(const std::string& text, const std::string& contact = "",
-                   const std::string& rest = "recording: {ignore: [note]}\n") {
+  ObservationTables Read(const std::string& text, const std::string& contact = "",
+                         const std::string& rest = "recording: {ignore: [note]}\n") {
     std::ofstream(file_) << text;
-    return ReadTouchTables({file_}, ProjectOf(std::string(kFeet) + kPlates + contact, rest));
+    return ReadObservationTables({file_}, ProjectOf(std::string(kFeet) + kPlates + contact, rest));
   }
 
   ScratchFolder folder_;
@@ -81,7 +80,7 @@ class TouchTableInput : public testing::Test {
   Project project_ = ProjectOf(std::string(kFeet) + kPlates);
 };
 
-TEST_F(TouchTableInput, SaysWhatIsWrong) {
+TEST_F(ObservationTableInput, SaysWhatIsWrong) {
   const std::string fine = TableText(project_, 3);
   const auto replaced = [&](const std::string& from, const std::string& to) {
     std::string text = fine;
@@ -112,14 +111,15 @@ TEST_F(TouchTableInput, SaysWhatIsWrong) {
   std::ofstream(file_) << fine;
   ExpectInputError(
       [&] {
-        ReadTouchTables({file_}, ProjectOf(std::string(kFeet) + "plates: [{name: left, link: " +
-                                               "gripper_left_base_link, normal: [1, 0, 0]}]",
-                                           "recording: {ignore: [note]}\n"));
+        ReadObservationTables({file_},
+                              ProjectOf(std::string(kFeet) + "plates: [{name: left, link: " +
+                                            "gripper_left_base_link, normal: [1, 0, 0]}]",
+                                        "recording: {ignore: [note]}\n"));
       },
       {"no plate lies flat"});
 }
 
-TEST_F(TouchTableInput, APlateUpsideDownIsNamed) {
+TEST_F(ObservationTableInput, APlateUpsideDownIsNamed) {
   // The sole of a foot is level whatever the posture; as a plate, it is upright or upside down.
   const auto contact = [](const char* normal) {
     return std::string(
@@ -128,12 +128,13 @@ TEST_F(TouchTableInput, APlateUpsideDownIsNamed) {
   };
   std::ofstream(file_) << TableText(project_, 3);
   const char* ignore = "recording: {ignore: [note]}\n";
-  EXPECT_EQ(ReadTouchTables({file_}, ProjectOf(contact("1"), ignore)).touches.count(), 3);
-  ExpectInputError([&] { ReadTouchTables({file_}, ProjectOf(contact("-1"), ignore)); },
+  EXPECT_EQ(ReadObservationTables({file_}, ProjectOf(contact("1"), ignore)).observations.count(),
+            3);
+  ExpectInputError([&] { ReadObservationTables({file_}, ProjectOf(contact("-1"), ignore)); },
                    {"upside down"});
 }
 
-TEST_F(TouchTableInput, SessionsAreToldByCountsOfEncoders) {
+TEST_F(ObservationTableInput, SessionsAreToldByCountsOfEncoders) {
   std::string text = TableText(project_, 4, "", "count,other");
   std::string with;
   int row = 0;
@@ -147,35 +148,140 @@ TEST_F(TouchTableInput, SessionsAreToldByCountsOfEncoders) {
     ++row;
   }
   std::ofstream(file_) << with;
-  const TouchTables tables = ReadTouchTables(
+  const ObservationTables tables = ReadObservationTables(
       {file_},
       ProjectOf("feet: [{link: left_sole_link}], plates: [{name: p, link: right_sole_link}],"
                 " sessions: {counts: {columns: [count, other], quantum: 0.01, modulo: 64}}"));
-  ASSERT_EQ(tables.touches.sessions.size(), 2u);
-  EXPECT_EQ(tables.touches.sessions[0].name, "37/0");
-  EXPECT_EQ(tables.touches.touches[1].session, 0);  // -27 is 37 modulo 64
-  EXPECT_EQ(tables.touches.touches[2].session, 1);
-  EXPECT_EQ(tables.touches.touches[3].session, 0);  // a whole turn of the other
+  ASSERT_EQ(tables.observations.effects.size(), 2u);
+  EXPECT_EQ(tables.observations.effects[0].name, "37/0");
+  const auto session = [&](std::size_t i) { return tables.observations.all[i].effects; };
+  EXPECT_EQ(session(1), std::vector<int>{0});  // -27 is 37 modulo 64
+  EXPECT_EQ(session(2), std::vector<int>{1});
+  EXPECT_EQ(session(3), std::vector<int>{0});  // a whole turn of the other
 }
 
 TEST(ContactFile, IsReadAsItWasWritten) {
   const Project project = ProjectOf(std::string(kFeet) + kPlates);
-  ContactModel model = MakeContactModel(project.tree, {}, project.contact->setup, {}, {});
-  ContactFit fit;
-  fit.values.plate_tilts = {Eigen::Vector2d(0.1, 1.0 / 3.0)};
-  fit.values.tables = {{Eigen::Vector3d(0.6, 0.1, 0.7), Eigen::Vector3d(1e-3, -0.01, 0.02)}};
-  ContactFit other = fit;
-  other.values.tables[0].height_tilts[0] = 5.0;
+  ObservedRobot model = MakeObservedRobot(project.tree, {}, project.contact->setup, {}, {});
+  ObservationFit fit;
+  fit.spread = FirstSpread(model.setup.sources);
+  fit.values.quantities.push_back({Transform::Identity(), Eigen::Vector2d(0.1, 1.0 / 3.0)});
+  fit.values.quantities.push_back(
+      {Offset(0.6, 0.1, 0.7) * RotX(0.3), Eigen::Vector3d(1e-3, -0.01, 0.02)});
+  ObservationFit other = fit;
+  other.values.quantities[1].x[0] = 5.0;
   ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "calibration.yaml";
   std::ofstream(file) << MakeContactYaml(model, fit, other);
   const StoredContacts stored = ReadContacts(file, project);
-  EXPECT_EQ(stored.calibrated.plate_tilts[0], fit.values.plate_tilts[0]);
-  EXPECT_EQ(stored.calibrated.tables[0].height_tilts, fit.values.tables[0].height_tilts);
-  EXPECT_EQ(stored.uncalibrated.tables[0].height_tilts[0], 5.0);
+  const auto& read = stored.calibrated.quantities;
+  EXPECT_EQ(read.at("left.tilts").x, fit.values.quantities[0].x);
+  EXPECT_EQ(read.at("left.plane").x, fit.values.quantities[1].x);
+  EXPECT_TRUE(read.at("left.plane").origin.isApprox(fit.values.quantities[1].origin, 1e-15));
+  EXPECT_EQ(stored.uncalibrated.quantities.at("left.plane").x[0], 5.0);
   EXPECT_EQ(stored.calibrated.spread.sd, fit.spread.sd);
+  std::string text = MakeContactYaml(model, fit, other);
+  std::ofstream(file) << text.replace(text.find("left.plane"), 10, "left.plaen");
+  ExpectInputError([&] { ReadContacts(file, project); }, {"'left.plane' with 3 values"});
   std::ofstream(file) << "format: x\n";
   ExpectInputError([&] { ReadContacts(file, project); }, {"not made from touches"});
+}
+
+/// A project with one instrument of each kind and no plates.
+const char* const kInstruments = R"(
+instruments:
+  trackers: [{name: room}]
+  planes: [{name: wall, normal: [1, 0, 0]}]
+  poses: [{name: hand, link: arm_left_7_link, tracker: room}]
+  positions: [{name: ball, link: arm_right_7_link, tracker: room, columns: [bx, by, bz]}]
+  inertial_units: [{name: imu, link: base_link, rpy_deg: [0, 180, 0]}]
+  distances: [{name: tip, link: arm_left_7_link, plane: wall}]
+  wires: [{name: wire, link: arm_left_7_link, anchor_mm: [2000, 0, 0]}]
+recording: {ignore: [note]}
+)";
+
+Project InstrumentProject(const std::string& from = "", const std::string& to = "") {
+  std::string text =
+      "robot: {urdf: " + SourceFile("models/talos/talos.urdf").string() + "}\n" + kInstruments;
+  if (!from.empty()) text.replace(text.find(from), from.size(), to);
+  return ParseProject(text, "project.yaml");
+}
+
+TEST(InstrumentInput, TheProjectSaysWhatIsWrong) {
+  const auto error = [](const std::string& from, const std::string& to,
+                        const std::string& message) {
+    ExpectInputError([&] { InstrumentProject(from, to); }, {"project.yaml:", message});
+  };
+  error("poses:", "posse:", "did you mean 'poses'?");
+  error("arm_right_7_link", "arm_rihgt_7_link", "did you mean 'arm_right_7_link'?");
+  error("arm_left_7_link, tracker: room", "arm_left_7_link, tracker: rom", "did you mean 'room'?");
+  error("plane: wall", "plane: wal", "did you mean 'wall'?");
+  error("name: imu", "name: hand", "a second instrument of the name 'hand'");
+  error("[bx, by, bz]", "[bx, by]", "3 columns");
+  error("normal: [1, 0, 0]", "normal: [0, 0, 0]", "a direction");
+  error("rpy_deg: [0, 180, 0]", "rpy_deg: [0, 1800, 0]", "from -720 to 720");
+  error("anchor_mm: [2000, 0, 0]", "anchor_m: [2, 0, 0]", "did you mean 'anchor_mm'?");
+  error("link: arm_left_7_link, tracker: room}",
+        "link: arm_left_7_link, tracker: room, covariance: [[1]]}", "six rows");
+}
+
+/// A table in which all instruments show something in the first row. `cells` replaces cells.
+std::string InstrumentTable(const Project& project, const std::string& from = "",
+                            const std::string& to = "") {
+  std::string text = TableText(
+      project, 3, "",
+      "hand_x,hand_y,hand_z,hand_qx,hand_qy,hand_qz,hand_qw,bx,by,bz,imu_ax,imu_ay,imu_az,tip,"
+      "wire,note");
+  const std::string cells = "0.1,0.2,0.3,0,0.6,0,0.8,1,2,3,0.2,0.1,9.8,0,1.5,a\n";
+  text.replace(text.find(",a\n") + 1, 2, cells);
+  for (std::size_t at;
+       (at = text.find(",a\n", text.find(cells) + cells.size())) != std::string::npos;) {
+    text.replace(at + 1, 1, ",,,,,,,,,,,,,,,b");
+  }
+  if (!from.empty())
+    text.replace(text.rfind(from, text.find(cells) + cells.size()), from.size(), to);
+  return text;
+}
+
+TEST(InstrumentInput, ATableHoldsWhatAllInstrumentsShow) {
+  const Project project = InstrumentProject();
+  ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "t.csv";
+  std::ofstream(file) << InstrumentTable(project);
+  const ObservationTables tables = ReadObservationTables({file}, project);
+  ASSERT_EQ(tables.observations.count(), 5);
+  EXPECT_EQ(tables.observations.posture_count(), 3);
+  EXPECT_EQ(tables.observations.all[0].measured.tail<2>(), Eigen::Vector2d(0.0, 0.8));
+  EXPECT_EQ(tables.observations.all[1].measured, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(tables.setup.instruments[2]->name, "imu");
+  EXPECT_EQ(tables.observations.effects.size(), 1u);  // of the wall
+}
+
+TEST(InstrumentInput, TheTableSaysWhatIsWrong) {
+  const Project project = InstrumentProject();
+  ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "t.csv";
+  const auto error = [&](const std::string& from, const std::string& to,
+                         std::initializer_list<std::string> messages) {
+    std::ofstream(file) << InstrumentTable(project, from, to);
+    ExpectInputError([&] { ReadObservationTables({file}, project); }, messages);
+  };
+  error("0,0.8", "0,0.81", {"t.csv:2: ", "hand_qx", "length 1.008", "0.001"});
+  error("0.2,0.3,0,", "0.2,,0,", {"t.csv:2: ", "hand_z", "all or none"});
+  error("0.2,0.1,9.8", "0.02,0.01,1", {"t.csv:2: ", "imu_ax", "units of gravity"});
+  error("0.2,0.1,9.8", "0.02,0.01,5", {"t.csv:2: ", "at rest"});
+  error("1,2,3", "1000,2000,3000", {"t.csv:2: ", "bx", "in mm?"});
+  error("1,2,3", "1,x,3", {"t.csv:2: ", "by", "'x'"});
+  error("hand_qw", "hand_w", {"hand_w"});
+  error("hand_qw,", "note,", {"hand_qw"});
+  std::ofstream(file) << TableText(project, 3);
+  ExpectInputError([&] { ReadObservationTables({file}, project); },
+                   {"no column of any instrument", "hand_x"});
+  const Project posed = InstrumentProject();
+  std::string missing = InstrumentTable(posed);
+  missing.replace(missing.find("arm_left_3_joint"), 16, "note");
+  std::ofstream(file) << missing;
+  ExpectInputError([&] { ReadObservationTables({file}, posed); }, {"arm_left_3_joint"});
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "elastocal/contact/contact_fit.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/observation/observation_fit.hpp"
 #include "tests/biped.hpp"
 
 namespace elastocal {
@@ -25,27 +25,43 @@ inline int AddArm(RobotTree& tree, const std::string& name, int trunk, double si
   return link;
 }
 
-/// The biped with two arms, each with a plate under its hand, on both feet. `hold`: patterns.
-inline ContactModel MakeTouchingBiped(const std::vector<std::string>& hold = {}) {
-  RobotTree tree = MakeBiped().tree;
+/// The biped with two arms, each with a plate under its hand, on both feet.
+inline ObservationSetup TouchingSetup(RobotTree& tree) {
+  tree = MakeBiped().tree;
   const int trunk = FindLink(tree, "trunk_pitch_link");
-  ContactSetup setup;
+  ObservationSetup setup;
   for (const char* side : {"left", "right"}) {
     const double y = side[0] == 'l' ? 1.0 : -1.0;
     const int hand = AddArm(tree, std::string("arm_") + side, trunk, y);
-    setup.plates.push_back({side, hand, {Eigen::Vector3d(0.1, 0, -0.03), RotZ(0.3).linear()}});
+    AddPlate(setup, {side, hand, {Eigen::Vector3d(0.1, 0, -0.03), RotZ(0.3).linear()}});
     setup.feet.push_back(
         {FindLink(tree, std::string(side) + "_sole"), Offset(0, 0.085 * (y - 1), 0)});
   }
+  return setup;
+}
+
+/// Its model with some joints that give way (a root that is held still: one of them). `hold`:
+/// patterns of parameters.
+inline ObservedRobot MakeTouchingBiped(const RobotTree& tree, ObservationSetup setup,
+                                       const std::vector<std::string>& hold = {}) {
   setup.hold = hold;
+  if (setup.feet.empty()) {
+    return MakeObservedRobot(tree, {}, setup, {FindJoint(tree, "arm_left_2")}, {});
+  }
   setup.common = {{"left_3.compliance_z", "right_3.compliance_z"}};
   const std::vector<int> torsion = {FindJoint(tree, "left_3"), FindJoint(tree, "right_3"),
                                     FindJoint(tree, "arm_left_2")};
-  return MakeContactModel(tree, {}, setup, torsion, {FindJoint(tree, "left_3")});
+  return MakeObservedRobot(tree, {}, setup, torsion, {FindJoint(tree, "left_3")});
+}
+
+inline ObservedRobot MakeTouchingBiped(const std::vector<std::string>& hold = {}) {
+  RobotTree tree;
+  const ObservationSetup setup = TouchingSetup(tree);
+  return MakeTouchingBiped(tree, setup, hold);
 }
 
 /// A posture with bent knees, hands in front.
-inline Eigen::VectorXd TouchingPosture(const ContactModel& model, Random& random) {
+inline Eigen::VectorXd TouchingPosture(const ObservedRobot& model, Random& random) {
   const RobotTree& tree = model.robot.tree;
   Eigen::VectorXd q = random.NormalVector(tree.coordinate_count(), 0.15);
   const auto set = [&](const std::string& joint, double position) {
@@ -66,58 +82,61 @@ inline Eigen::VectorXd TouchingPosture(const ContactModel& model, Random& random
   return q;
 }
 
-/// What a robot with these values and tables leaves of a touch that its encoders say is q.
-inline Eigen::Vector3d LeftAt(const ContactModel& model, Touches& one,
-                              const ContactValues& values) {
-  return LeftOfTouches(model, one, values).row(0);
-}
-
 /// Touches of a robot with the errors `truth`: random postures in which the last three joints of
 /// the arm that touches, found by Newton's method, leave what `noise` draws (height, tilts). The
 /// plates take turns, and each plate has `sessions` sessions in turn.
-inline Touches SimulateTouches(const ContactModel& model, const ContactValues& truth, int count,
-                               int sessions, const Eigen::Vector3d& noise, Random& random) {
-  Touches touches;
+inline Observations SimulateTouches(const ObservedRobot& model, const ObservedValues& truth,
+                                    int count, int sessions, const Eigen::Vector3d& noise,
+                                    Random& random) {
+  Observations touches;
   touches.files = {"synthetic"};
   const int plates = static_cast<int>(model.setup.plates.size());
-  for (int s = 0; s < sessions * plates; ++s) touches.sessions.push_back({s % plates, "s"});
+  for (int s = 0; s < sessions * plates; ++s) {
+    touches.effects.push_back({model.instrument(s % plates).quantities[1], "s"});
+  }
   touches.q.resize(count, model.robot.tree.coordinate_count());
   for (int i = 0; i < count;) {
     const int plate = i % plates;
-    Touches one{touches.files, touches.sessions, {{plate, i % (sessions * plates), 0, i + 2}}, {}};
+    Observations one{touches.files, touches.effects, {{0, i + 2}}, {}, {}};
+    one.all.push_back({0, plate, {}, {i % (sessions * plates)}});
     one.q = TouchingPosture(model, random).transpose();
     const std::vector<int> joints =
         JointsToBody(model.robot.tree, model.robot.tree.links[model.setup.plates[plate].link].body);
     const Eigen::Vector3d wanted = Eigen::Vector3d(random.NormalVector(3, 1.0)).cwiseProduct(noise);
-    Eigen::Vector3d left = LeftAt(model, one, truth) - wanted;
+    const auto left_of = [&](const Observations& of) {
+      return Eigen::Vector3d(LeftOf(model, of, truth)[0] - wanted);
+    };
+    Eigen::Vector3d left = left_of(one);
+    constexpr std::size_t kFromHand[] = {1, 2, 4};  // wrist and shoulder
     for (int step = 0; step < 20 && left.norm() > 1e-14; ++step) {
       Eigen::Matrix3d J;
       for (int k = 0; k < 3; ++k) {
-        const std::size_t from_hand[] = {1, 2, 4};  // wrist and shoulder
-        const int joint = joints[joints.size() - from_hand[k]];
-        Touches moved = one;
+        const int joint = joints[joints.size() - kFromHand[k]];
+        Observations moved = one;
         moved.q(0, model.robot.tree.joints[joint].coordinate) += 1e-7;
-        J.col(k) = (LeftAt(model, moved, truth) - wanted - left) / 1e-7;
+        J.col(k) = (left_of(moved) - left) / 1e-7;
       }
       const Eigen::Vector3d change = J.fullPivLu().solve(-left);
       for (int k = 0; k < 3; ++k) {
-        const std::size_t from_hand[] = {1, 2, 4};
-        const int joint = joints[joints.size() - from_hand[k]];
+        const int joint = joints[joints.size() - kFromHand[k]];
         one.q(0, model.robot.tree.joints[joint].coordinate) += change[k];
       }
-      left = LeftAt(model, one, truth) - wanted;
+      left = left_of(one);
     }
     if (!(left.norm() < 1e-12) || one.q.cwiseAbs().maxCoeff() > 2.5) continue;  // out of reach
-    touches.touches.push_back(one.touches.front());
+    touches.postures.push_back(one.postures.front());
+    touches.all.push_back(one.all.front());
+    touches.all.back().posture = i;
     touches.q.row(i++) = one.q;
   }
   return touches;
 }
 
-/// Truth of the invented robot: errors of these sizes, tables at the height of the hands.
-inline ContactValues RandomTruth(const ContactModel& model, const ContactSpread& spread,
-                                 int sessions, Random& random) {
-  ContactValues truth;
+/// Truth of the invented robot: errors and quantities of the sizes that their sources have (1 cm
+/// where nobody knows anything), tables at the height of the hands, session effects likewise.
+inline ObservedValues RandomTruth(const ObservedRobot& model, int sessions, Random& random) {
+  const Spread spread = FirstSpread(model.setup.sources);
+  ObservedValues truth;
   truth.robot = Eigen::VectorXd::Zero(model.robot.parameter_count());
   const std::vector<SourceOfParameter> sources = SourcesOfParameters(model);
   std::vector<double> drawn(static_cast<std::size_t>(model.unknown_count), 0.0);
@@ -132,20 +151,53 @@ inline ContactValues RandomTruth(const ContactModel& model, const ContactSpread&
     }
     truth.robot[i] = drawn[unknown];
   }
+  for (const Quantity& quantity : model.setup.quantities) {
+    QuantityValue value{quantity.origin, Eigen::VectorXd::Zero(quantity.size())};
+    for (int k = 0; k < quantity.size(); ++k) {
+      value.x[k] = random.Normal(std::min(0.01, spread[quantity.sources[k]]));
+    }
+    truth.quantities.push_back(value);
+  }
   for (std::size_t p = 0; p < model.setup.plates.size(); ++p) {
-    truth.plate_tilts.emplace_back(random.NormalVector(2, spread[ContactSource::kPlateTilt]));
-    TablePlane table;
-    table.pivot = Eigen::Vector3d(0.4, p == 0 ? 0.1 : -0.3, 0.95);
-    table.height_tilts << 0.0, random.NormalVector(2, spread[ContactSource::kTableTilt]);
-    truth.tables.push_back(table);
+    QuantityValue& table = truth.quantities[model.instrument(static_cast<int>(p)).quantities[1]];
+    table.origin.translation() << 0.4, p == 0 ? 0.1 : -0.3, 0.95;
+    table.x[0] = 0.0;
   }
   for (std::size_t s = 0; s < sessions * model.setup.plates.size(); ++s) {
-    Eigen::Vector3d effect;
-    effect << random.Normal(spread[ContactSource::kSessionHeight]),
-        random.NormalVector(2, spread[ContactSource::kSessionTilt]);
-    truth.sessions.push_back(effect);
+    Eigen::VectorXd effect(3);
+    effect << random.Normal(spread[kSessionHeight]), random.NormalVector(2, spread[kSessionTilt]);
+    truth.effects.push_back(effect);
   }
   return truth;
+}
+
+/// Adds what every instrument but the plates measures in `count` postures of the true robot, arms
+/// anywhere, without noise.
+inline void AddMeasurements(const ObservedRobot& model, const ObservedValues& truth, int count,
+                            Observations& observations, Random& random) {
+  const int first = observations.posture_count();
+  const int plates = static_cast<int>(model.setup.plates.size());
+  observations.q.conservativeResize(first + count, model.robot.tree.coordinate_count());
+  for (int i = first; i < first + count; ++i) {
+    observations.postures.push_back({0, i + 2});
+    observations.q.row(i) = TouchingPosture(model, random).transpose();
+    for (const Joint& joint : model.robot.tree.joints) {
+      if (joint.name.starts_with("arm_")) {
+        observations.q(i, joint.coordinate) += random.Uniform(-1.2, 1.2);
+      }
+    }
+    for (int n = plates; n < static_cast<int>(model.setup.instruments.size()); ++n) {
+      observations.all.push_back({i, n, {}, {}});
+    }
+  }
+  const std::vector<Sight> sights =
+      SightsOf(model, observations, truth, ObservedLoads(model, observations, truth.robot));
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    Observation& of = observations.all[i];
+    if (of.instrument >= plates && of.measured.size() == 0) {
+      of.measured = model.instrument(of.instrument).Predict(sights[i]);
+    }
+  }
 }
 
 }  // namespace elastocal

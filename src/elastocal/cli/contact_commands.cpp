@@ -10,6 +10,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/pipeline/measurements.hpp"
@@ -21,8 +22,9 @@ namespace {
 constexpr double kToDegrees = 180.0 / M_PI;
 constexpr double kPerHundredNm = 100.0 * kToDegrees;  // rad/(N.m) to degrees per 100 N.m
 
-void AddFigures(const std::string& name, const ContactModel& model, const TouchFigures& figures,
-                TextTable& table) {
+void AddFigures(const std::string& name, const ObservedRobot& model,
+                const ObservationFigures& figures, TextTable& table) {
+  if (figures.all.touches == 0) return;
   const auto add = [&](const std::string& of, const TouchErrors& errors) {
     table.Add({name + of, std::to_string(errors.touches),
                fmt::format("{:.2f}", 1e3 * errors.height),
@@ -40,6 +42,24 @@ void AddFigures(const std::string& name, const ContactModel& model, const TouchF
 
 const std::vector<std::string> kFigureHeader = {"touches",    "number",     "height mm",
                                                 "tilt x deg", "tilt y deg", "max height mm"};
+
+/// Root mean squares of all instruments that are no plates; empty where there are none.
+std::string InstrumentText(const ObservedRobot& model, const ObservationFigures& uncalibrated,
+                           const ObservationFigures& calibrated) {
+  TextTable table({"instrument", "number", "rms of a coordinate", "uncalibrated", "calibrated"});
+  bool any = false;
+  for (std::size_t i = 0; i < calibrated.rows.size(); ++i) {
+    const RowErrors& after = calibrated.rows[i];
+    if (model.IsPlate(after.instrument)) continue;
+    any = true;
+    const ShownUnit unit = ShownUnitOf(after.unit);
+    table.Add({model.instrument(after.instrument).name, std::to_string(after.observations),
+               after.row + " " + unit.name,
+               fmt::format("{:.4g}", unit.factor * uncalibrated.rows[i].rms),
+               fmt::format("{:.4g}", unit.factor * after.rms)});
+  }
+  return any ? table.Render() : "";
+}
 
 std::string ComplianceText(const CalibrationResult& result) {
   std::string text;
@@ -74,6 +94,11 @@ std::string DescribeContactRun(const ContactRun& run) {
   std::string text;
   if (!run.deployable()) {
     text = "Verdict: do not deploy. " + run.verdict.objections.front() + "\n";
+  } else if (after.touches == 0) {
+    text = folded ? "Verdict: better on postures that were left out. Before deploying, validate on "
+                    "another day.\n"
+                  : "Verdict: better in the fit. Before deploying, cross-validate (--kfold) and "
+                    "validate.\n";
   } else {
     text = fmt::format(
         "Verdict: height of touches from {:.2f} to {:.2f} mm, tilt from {:.2f} to {:.2f} degrees\n"
@@ -83,9 +108,9 @@ std::string DescribeContactRun(const ContactRun& run) {
         folded ? "On touches that were left out. Before deploying, validate on another day."
                : "In the fit. Before deploying, cross-validate (--kfold) and validate.");
   }
-  text += fmt::format("{}: {} touches in {} sessions, {:.0f} numbers determined by them\n\n",
-                      run.model.robot.tree.name, run.touches.count(), run.touches.sessions.size(),
-                      run.result.posterior.effective_parameters);
+  text += fmt::format("{}: {} observations in {} postures, {:.0f} numbers determined by them\n\n",
+                      run.model.robot.tree.name, run.observations.count(),
+                      run.observations.posture_count(), run.result.posterior.effective_parameters);
   std::vector<std::string> header = kFigureHeader;
   header.front() = folded ? fmt::format("left out, {} folds", run.calibrated.held_out.folds)
                           : std::string("in the fit");
@@ -95,7 +120,9 @@ std::string DescribeContactRun(const ContactRun& run) {
     AddFigures("URDF alone", run.model, ContactRun::Judged(*run.geometric), table);
   }
   AddFigures("calibrated", run.model, ContactRun::Judged(run.calibrated), table);
-  text += table.Render();
+  if (after.touches > 0) text += table.Render();
+  text += InstrumentText(run.model, ContactRun::Judged(run.uncalibrated),
+                         ContactRun::Judged(run.calibrated));
   const std::string compliance = ComplianceText(run.result);
   if (!compliance.empty()) text += "\nCompliance\n" + compliance;
   text += "\nJoint offsets that are not zero\n" + OffsetText(run.result) + "\n";
@@ -169,12 +196,13 @@ int RunContactValidation(const ContactValidateOptions& options, const Project& p
   outputs.Publish();
 
   std::vector<std::string> header = kFigureHeader;
-  header.front() = run.table_refitted ? "table registered anew" : "table as it was";
+  header.front() = run.surroundings_refitted ? "table registered anew" : "table as it was";
   TextTable table(header);
   AddFigures("uncalibrated", run.model, run.uncalibrated, table);
   AddFigures("calibrated", run.model, run.calibrated, table);
-  Print(quiet,
-        fmt::format("{}, {} touches\n\n", run.recording, run.touches.count()) + table.Render());
+  Print(quiet, fmt::format("{}, {} postures\n\n", run.recording, run.observations.posture_count()) +
+                   (run.calibrated.all.touches > 0 ? table.Render() : "") +
+                   InstrumentText(run.model, run.uncalibrated, run.calibrated));
   PrintWarnings(run.warnings, options.common.verbose);
   if (!run.better()) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
   if (!folder.empty()) PrintReportPlace(folder, no_report, quiet);

@@ -16,7 +16,7 @@ void EmitList(const char* key, const Numbers& numbers, YAML::Emitter& yaml) {
   yaml << YAML::EndSeq;
 }
 
-void EmitFeet(const ContactModel& model, YAML::Emitter& yaml) {
+void EmitFeet(const ObservedRobot& model, YAML::Emitter& yaml) {
   yaml << YAML::Key << "feet" << YAML::Value << YAML::BeginSeq;
   for (const ContactFoot& foot : model.setup.feet) {
     yaml << YAML::BeginMap;
@@ -28,22 +28,22 @@ void EmitFeet(const ContactModel& model, YAML::Emitter& yaml) {
   yaml << YAML::EndSeq;
 }
 
-void EmitFit(const ContactModel& model, const ContactFit& fit, YAML::Emitter& yaml) {
-  yaml << YAML::Key << "plates" << YAML::Value << YAML::BeginSeq;
-  for (std::size_t p = 0; p < model.setup.plates.size(); ++p) {
-    const TablePlane& table = fit.values.tables[p];
+void EmitFit(const ObservedRobot& model, const ObservationFit& fit, YAML::Emitter& yaml) {
+  yaml << YAML::Key << "quantities" << YAML::Value << YAML::BeginSeq;
+  for (std::size_t i = 0; i < model.setup.quantities.size(); ++i) {
+    const QuantityValue& value = fit.values.quantities[i];
     yaml << YAML::BeginMap;
-    yaml << YAML::Key << "name" << YAML::Value << model.setup.plates[p].name;
-    EmitList("tilts_rad", fit.values.plate_tilts[p], yaml);
-    EmitList("table_pivot_m", table.pivot, yaml);
-    yaml << YAML::Key << "table_height_m" << YAML::Value << FormatNumber(table.height_tilts[0]);
-    EmitList("table_tilts_rad", table.height_tilts.tail<2>(), yaml);
+    yaml << YAML::Key << "name" << YAML::Value << model.setup.quantities[i].name;
+    EmitList("origin_xyz_m", value.origin.translation(), yaml);
+    EmitList("origin_rpy_rad", ToRpy(value.origin.linear(), Eigen::Vector3d::Zero()), yaml);
+    EmitList("values", value.x, yaml);
     yaml << YAML::EndMap;
   }
   yaml << YAML::EndSeq;
   yaml << YAML::Key << "spread" << YAML::Value << YAML::BeginMap;
-  for (int s = 0; s < kContactSourceCount; ++s) {
-    yaml << YAML::Key << ContactSourceName(static_cast<ContactSource>(s)) << YAML::Value
+  for (std::size_t s = 0; s < model.setup.sources.size(); ++s) {
+    if (model.setup.sources[s].role == Source::Role::kFixed) continue;
+    yaml << YAML::Key << model.setup.sources[s].name << YAML::Value
          << FormatNumber(fit.spread.sd[s]);
   }
   yaml << YAML::EndMap;
@@ -75,32 +75,38 @@ std::vector<ContactFoot> ReadFeet(const YamlValue& list, const Project& project)
 
 StoredContact ReadFit(const YamlValue& section, const Project& project) {
   StoredContact stored;
-  const std::vector<ContactPlate>& plates = project.contact->setup.plates;
-  const YamlValue list = section.Get("plates");
-  const std::vector<YamlValue> items = list.Items();
-  list.Expect(items.size() == plates.size(), "the plates of the project");
-  for (std::size_t p = 0; p < plates.size(); ++p) {
-    items[p].Get("name").Expect(items[p].Get("name").Text() == plates[p].name,
-                                Quote(plates[p].name) + ", the plate in the project");
-    stored.plate_tilts.push_back(ReadList<2>(items[p].Get("tilts_rad")));
-    TablePlane table;
-    table.pivot = ReadList<3>(items[p].Get("table_pivot_m"));
-    table.height_tilts << items[p].Get("table_height_m").Number(),
-        ReadList<2>(items[p].Get("table_tilts_rad"));
-    stored.tables.push_back(table);
+  for (const YamlValue& item : section.Get("quantities").Items()) {
+    QuantityValue value;
+    value.origin =
+        FromXyzRpy(ReadList<3>(item.Get("origin_xyz_m")), ReadList<3>(item.Get("origin_rpy_rad")));
+    const std::vector<YamlValue> numbers = item.Get("values").Items();
+    value.x.resize(static_cast<Eigen::Index>(numbers.size()));
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      value.x[static_cast<Eigen::Index>(i)] = numbers[i].Number();
+    }
+    stored.quantities[item.Get("name").Text()] = value;
   }
+  const ObservationSetup& setup = project.contact->setup;
+  for (const Quantity& quantity : setup.quantities) {
+    const auto found = stored.quantities.find(quantity.name);
+    section.Get("quantities")
+        .Expect(found != stored.quantities.end() && found->second.x.size() == quantity.size(),
+                Quote(quantity.name) + " with " + std::to_string(quantity.size()) +
+                    " values, as the project has it");
+  }
+  stored.spread = FirstSpread(setup.sources);
   const YamlValue spread = section.Get("spread");
-  for (int s = 0; s < kContactSourceCount; ++s) {
-    stored.spread.sd[s] =
-        spread.Get(ContactSourceName(static_cast<ContactSource>(s))).Number(kPositive);
+  for (std::size_t s = 0; s < setup.sources.size(); ++s) {
+    if (setup.sources[s].role == Source::Role::kFixed) continue;
+    stored.spread.sd[s] = spread.Get(setup.sources[s].name).Number(kPositive);
   }
   return stored;
 }
 
 }  // namespace
 
-std::string MakeContactYaml(const ContactModel& model, const ContactFit& calibrated,
-                            const ContactFit& uncalibrated) {
+std::string MakeContactYaml(const ObservedRobot& model, const ObservationFit& calibrated,
+                            const ObservationFit& uncalibrated) {
   YAML::Emitter yaml;
   yaml << YAML::BeginMap << YAML::Key << "contact" << YAML::Value << YAML::BeginMap;
   EmitFeet(model, yaml);
@@ -116,8 +122,8 @@ StoredContacts ReadContacts(const std::filesystem::path& file, const Project& pr
   const auto section = root.Find("contact");
   if (!section) {
     root.Fail(
-        "no key 'contact': this calibration was not made from touches; one that was is "
-        "expected, because the project has contact");
+        "no key 'contact': this calibration was not made from touches or instruments; one "
+        "that was is expected, because the project has contact or instruments");
   }
   return {ReadFeet(section->Get("feet"), project), ReadFit(*section, project),
           ReadFit(section->Get("uncalibrated"), project)};

@@ -1,25 +1,25 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "elastocal/contact/contact_fit.hpp"
 #include "elastocal/io/project.hpp"
+#include "elastocal/observation/observation_fit.hpp"
 
 namespace elastocal {
 
-/// The section `contact` of calibration.yaml (docs/formats.md): where the feet stand, tilts of the
-/// plates, planes of the tables, standard deviations of all sources; then plates and tables of the
-/// uncalibrated robot.
-std::string MakeContactYaml(const ContactModel& model, const ContactFit& calibrated,
-                            const ContactFit& uncalibrated);
+/// The section `contact` of calibration.yaml (docs/formats.md): where the feet stand, quantities
+/// beside the robot (tilts of plates, planes of tables, mountings, trackers), standard deviations
+/// of all sources; then the last two of the uncalibrated robot.
+std::string MakeContactYaml(const ObservedRobot& model, const ObservationFit& calibrated,
+                            const ObservationFit& uncalibrated);
 
-/// Plates and tables of a robot, and what varies.
+/// Quantities by name, and what varies, by source of the project's setup.
 struct StoredContact {
-  std::vector<Eigen::Vector2d> plate_tilts;
-  std::vector<TablePlane> tables;
-  ContactSpread spread;
+  std::map<std::string, QuantityValue> quantities;
+  Spread spread;
 };
 
 struct StoredContacts {
@@ -28,7 +28,7 @@ struct StoredContacts {
 };
 
 /// Reads the section. Throws InputError naming file, line and key: a calibration that was not made
-/// from touches, other feet or plates than the project's.
+/// from touches or instruments, other feet or quantities than the project's.
 StoredContacts ReadContacts(const std::filesystem::path& file, const Project& project);
 
 }  // namespace elastocal

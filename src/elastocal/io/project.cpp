@@ -159,24 +159,27 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
   root.ExpectKeys({"robot", "couplings", "chains", "markers", "torque_sensors",
                    "force_torque_sensors", "recording", "placement", "measurement",
                    "identifiability", "calibration", "elasticity", "collision", "design",
-                   "standing", "contact"});
+                   "standing", "contact", "instruments"});
   Project project;
   project.file = file;
   ReadRobot(root.Get("robot"), project);
   if (const auto section = root.Find("couplings")) ReadCouplings(*section, project);
   if (const auto section = root.Find("chains")) ReadChains(*section, project);
   const auto contact = root.Find("contact");
-  const auto markers = root.Find("markers");
-  if (contact && markers) {
-    contact->Fail("a project has markers or contact; both in one estimate are not possible yet");
+  const auto instruments = root.Find("instruments");
+  if (const auto section = root.Find("markers")) {
+    ReadMarkers(*section, project);
+  } else if (!contact && !instruments) {
+    root.Get("markers");
   }
-  if (!contact) ReadMarkers(root.Get("markers"), project);
   if (const auto section = root.Find("torque_sensors")) ReadTorqueSensors(*section, project);
   if (const auto section = root.Find("force_torque_sensors")) {
     ReadForceTorqueSensors(*section, project);
   }
   if (const auto section = root.Find("recording")) ReadRecordingColumns(*section, project);
-  if (contact) ReadContact(*contact, project);
+  if (contact) ReadContact(*contact, instruments || !project.markers.empty(), project);
+  if (instruments) ReadInstruments(*instruments, project);
+  if (project.contact && !project.markers.empty()) ObserveMarkers(project);
   ReadSettings(root, project);
   return project;
 }

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "elastocal/calibration/options.hpp"
-#include "elastocal/contact/contact_model.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_samples.hpp"
+#include "elastocal/observation/setup.hpp"
 #include "elastocal/robot/error_model.hpp"
 #include "elastocal/robot/motion_setup.hpp"
 #include "elastocal/robot/standing.hpp"
@@ -68,12 +68,15 @@ struct SessionRule {
   std::int64_t modulo = 0;
 };
 
-/// A robot that touches tables, instead of markers that cameras see.
+/// A robot that is observed otherwise than by markers alone: it touches tables, or instruments
+/// measure it.
 struct ContactProject {
-  ContactSetup setup;             ///< as far as the project tells: see PlaceFeet
+  ObservationSetup setup;         ///< as far as the project tells: see PlaceFeet
   std::vector<char> foot_placed;  ///< by foot: whether the project says where it stands
   std::string plate_column;       ///< names the plate of each touch; empty: see FindTouchingPlates
   SessionRule sessions;
+  /// Columns of a table by instrument of the setup, those of plates empty.
+  std::vector<std::vector<std::string>> columns;
 };
 
 /// Everything a project file says, checked and in SI units.
@@ -93,7 +96,7 @@ struct Project {
   CalibrationOptions calibration;
   ElasticityChoice elasticity;
   std::vector<Sole> soles;  ///< that the robot can stand on; none: it is not planned for
-  std::optional<ContactProject> contact;  ///< recordings are tables of touches, without markers
+  std::optional<ContactProject> contact;  ///< recordings are tables of touches and instruments
   MotionSetup motion;                     ///< what the calibration postures and motions keep to
 };
 

@@ -48,7 +48,8 @@ void ReadPlate(const YamlValue& value, Project& project) {
   }
   if (const auto point = value.Find("point_mm")) plate.face.p_link_face = PointFromMm(*point);
   if (const auto normal = value.Find("normal")) plate.face.R_link_face = FaceAxes(*normal);
-  project.contact->setup.plates.push_back(plate);
+  AddPlate(project.contact->setup, plate);
+  project.contact->columns.emplace_back();
 }
 
 std::vector<std::string> Texts(const YamlValue& list) {
@@ -74,16 +75,19 @@ void ReadSessions(const YamlValue& section, SessionRule& rule) {
 
 }  // namespace
 
-void ReadContact(const YamlValue& section, Project& project) {
+void ReadContact(const YamlValue& section, bool instruments, Project& project) {
   section.ExpectKeys({"feet", "plates", "plate_column", "sessions", "common"});
   project.contact.emplace();
-  for (const YamlValue& foot : section.Get("feet").Items()) ReadFoot(foot, project);
-  for (const YamlValue& plate : section.Get("plates").Items()) ReadPlate(plate, project);
-  ContactSetup& setup = project.contact->setup;
-  section.Get("feet").Expect(!setup.feet.empty() && setup.feet.size() <= kMostContacts,
-                             "1 to 100 feet");
-  section.Get("plates").Expect(!setup.plates.empty() && setup.plates.size() <= kMostContacts,
-                               "1 to 100 plates");
+  ObservationSetup& setup = project.contact->setup;
+  const auto list = [&](const char* key, bool needed) {
+    const std::optional<YamlValue> found = needed ? section.Get(key) : section.Find(key);
+    if (!found) return std::vector<YamlValue>();
+    std::vector<YamlValue> items = found->Items();
+    found->Expect(!items.empty() && items.size() <= kMostContacts, std::string("1 to 100 ") + key);
+    return items;
+  };
+  for (const YamlValue& plate : list("plates", !instruments)) ReadPlate(plate, project);
+  for (const YamlValue& foot : list("feet", !setup.plates.empty())) ReadFoot(foot, project);
   if (const auto column = section.Find("plate_column")) {
     project.contact->plate_column = column->Text();
   }

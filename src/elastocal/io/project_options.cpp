@@ -96,9 +96,10 @@ std::vector<int> MatchingJoints(const RobotTree& tree, const std::vector<std::st
 
 void CheckHasMarkers(const Project& project) {
   if (!project.markers.empty()) return;
-  throw InputError(project.file.string() +
-                   ": the project has no markers; with touches (contact) there are only calibrate, "
-                   "validate, compare and report");
+  throw InputError(
+      project.file.string() +
+      ": the project has no markers; with contact or instruments alone there are only calibrate, "
+      "validate, compare and report");
 }
 
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {

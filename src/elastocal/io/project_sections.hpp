@@ -26,7 +26,11 @@ void ReadStanding(const YamlValue& section, Project& project);
 void SetMotionDefaults(Project& project);
 void ReadCollision(const YamlValue& section, Project& project);
 void ReadDesign(const YamlValue& section, Project& project);
-void ReadContact(const YamlValue& section, Project& project);
+/// `instruments`: whether there are others than plates.
+void ReadContact(const YamlValue& section, bool instruments, Project& project);
+void ReadInstruments(const YamlValue& section, Project& project);
+/// Makes the markers, whose columns have been read, instruments like others.
+void ObserveMarkers(Project& project);
 void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options);
 
 constexpr double kOneDegree = M_PI / 180.0;  // rad

@@ -5,9 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/io/touch_table.hpp"
+#include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -15,10 +16,10 @@ namespace elastocal {
 namespace {
 
 constexpr int kUsualFolds = 10;
-constexpr int kFewestTouches = 8;       // tables and plates alone have 5 unknowns each
-constexpr double kPlainGain = 2.0;      // standard deviations: better by no chance
-constexpr double kLittleBetter = 0.95;  // of the error before: hardly anything was gained
-constexpr double kMostLeftOut = 0.25;   // share of touches
+constexpr int kFewestObservedPostures = 8;  // tables and plates alone have 5 unknowns each
+constexpr double kPlainGain = 2.0;          // standard deviations: better by no chance
+constexpr double kLittleBetter = 0.95;      // of the error before: hardly anything was gained
+constexpr double kMostLeftOut = 0.25;       // share of observations
 constexpr double kDegreeHere = 180.0 / M_PI;
 constexpr double kTiedVariance = 1e-6;  // relative, see TakePosterior
 
@@ -28,37 +29,38 @@ std::string JoinNames(const std::vector<std::string>& names) {
   return text;
 }
 
-ContactOutcome Estimate(const ContactModel& model, const Touches& touches, bool robot,
+ContactOutcome Estimate(const ObservedRobot& model, const Observations& observations, bool robot,
                         const ContactRunOptions& options, int folds) {
-  const ContactFreedom freedom{.robot = robot};
+  const ObservationFreedom freedom{.robot = robot};
   ContactOutcome outcome;
-  outcome.estimate = EstimateContacts(model, touches, freedom);
+  outcome.estimate = EstimateObserved(model, observations, freedom);
   outcome.in_sample =
-      MakeFigures(model, touches, LeftOfTouches(model, touches, outcome.estimate.fit.values));
+      MakeFigures(model, observations, LeftOf(model, observations, outcome.estimate.fit.values));
   if (folds > 0) {
-    outcome.held_out = CrossValidateTouches(model, touches, freedom, folds, options.threads,
-                                            robot ? options.progress : Progress());
+    outcome.held_out = CrossValidate(model, observations, freedom, folds, options.threads,
+                                     robot ? options.progress : Progress());
   }
   return outcome;
 }
 
 /// The same model without compliances; nothing where none is elastic.
-std::optional<ContactModel> WithoutCompliances(const ContactModel& model, const Touches& touches,
-                                               const Project& project) {
+std::optional<ObservedRobot> WithoutCompliances(const ObservedRobot& model,
+                                                const Observations& observations,
+                                                const Project& project) {
   const auto elastic = [](const Parameter& parameter) { return IsCompliance(parameter.kind); };
   const std::vector<Parameter>& parameters = model.robot.parameters;
   if (std::none_of(parameters.begin(), parameters.end(), elastic)) return std::nullopt;
-  ContactSetup setup = model.setup;
+  ObservationSetup setup = model.setup;
   setup.hold.push_back("*.compliance_*");
   const Elasticity& elasticity = model.robot.elasticity;
-  ContactModel rigid = MakeContactModel(project.tree, project.placement, setup, elasticity.torsion,
-                                        elasticity.bending);
-  KeepTouchedUnknowns(touches, rigid);
+  ObservedRobot rigid = MakeObservedRobot(project.tree, project.placement, setup,
+                                          elasticity.torsion, elasticity.bending);
+  KeepObservedUnknowns(observations, rigid);
   return rigid;
 }
 
 /// Standard deviations of the priors, by parameter; NaN for those that are not estimated.
-Eigen::VectorXd PriorSds(const ContactModel& model, const ContactSpread& spread) {
+Eigen::VectorXd PriorSds(const ObservedRobot& model, const Spread& spread) {
   const std::vector<SourceOfParameter> sources = SourcesOfParameters(model);
   Eigen::VectorXd sds = Eigen::VectorXd::Constant(model.robot.parameter_count(),
                                                   std::numeric_limits<double>::quiet_NaN());
@@ -70,7 +72,8 @@ Eigen::VectorXd PriorSds(const ContactModel& model, const ContactSpread& spread)
 
 /// Covariance of the parameters. Those that have one value in common would make it singular, so
 /// that nothing could be tested with it: each keeps a millionth of its variance to itself.
-void TakePosterior(const ContactModel& model, const ContactFit& fit, CalibrationResult& result) {
+void TakePosterior(const ObservedRobot& model, const ObservationFit& fit,
+                   CalibrationResult& result) {
   std::vector<int> entries;
   for (int i = 0; i < model.robot.parameter_count(); ++i) {
     if (model.unknown[i] < 0) continue;
@@ -82,7 +85,7 @@ void TakePosterior(const ContactModel& model, const ContactFit& fit, Calibration
   result.posterior.effective_parameters = fit.effective_parameters;
 }
 
-CalibrationResult ResultOf(const ContactModel& model, const ContactFit& fit, int equations) {
+CalibrationResult ResultOf(const ObservedRobot& model, const ObservationFit& fit, int equations) {
   CalibrationResult result;
   const auto elastic = [](const Parameter& parameter) { return IsElastic(parameter.kind); };
   result.kind = std::any_of(model.robot.parameters.begin(), model.robot.parameters.end(), elastic)
@@ -112,33 +115,45 @@ CalibrationResult ResultOf(const ContactModel& model, const ContactFit& fit, int
   return result;
 }
 
+/// The least error of any kind of row after calibration, over that before.
+double BestRatio(const ContactRun& run) {
+  const std::vector<RowErrors>& before = ContactRun::Judged(run.uncalibrated).rows;
+  const std::vector<RowErrors>& after = ContactRun::Judged(run.calibrated).rows;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    best = std::min(best, after[i].rms / std::max(before[i].rms, 1e-300));
+  }
+  return best;
+}
+
 void JudgeContacts(ContactRun& run) {
   Verdict& verdict = run.verdict;
-  const TouchErrors& before = ContactRun::Judged(run.uncalibrated).all;
-  const TouchErrors& after = ContactRun::Judged(run.calibrated).all;
   const bool held_out = run.calibrated.held_out.folds > 0;
-  const std::string on = held_out ? "on touches that were left out" : "on the touches of the fit";
+  const bool touches = run.touches_only();
+  const std::string what = touches ? "touches" : "observations";
+  const std::string on =
+      held_out ? "on " + what + " that were left out" : "on the " + what + " of the fit";
   if (run.calibrated.estimate.fit.termination != Termination::kConverged) {
     verdict.objections.push_back("the estimate has not converged: variances did not come to rest");
   }
   const auto left_out = static_cast<double>(run.calibrated.estimate.outliers.size());
-  if (left_out > kMostLeftOut * run.touches.count()) {
+  if (left_out > kMostLeftOut * run.observations.count()) {
     verdict.objections.push_back(
-        fmt::format("{:.0f} of {} touches are outliers", left_out, run.touches.count()));
+        fmt::format("{:.0f} of {} {} are outliers", left_out, run.observations.count(), what));
   }
-  const bool better = after.height < before.height || after.tilt() < before.tilt();
-  if (!better || run.gain_in_sds < -kPlainGain) {
+  const double ratio = BestRatio(run);
+  if (!(ratio < 1.0) || run.gain_in_sds < -kPlainGain) {
     verdict.objections.push_back("the calibrated robot is no better than the uncalibrated one " +
                                  on);
-  } else if (run.gain_in_sds < kPlainGain || (after.height > kLittleBetter * before.height &&
-                                              after.tilt() > kLittleBetter * before.tilt())) {
+  } else if (run.gain_in_sds < kPlainGain || ratio > kLittleBetter) {
     verdict.remarks.push_back("the calibrated robot is hardly better than the uncalibrated one " +
                               on);
   }
   if (!held_out) {
-    verdict.remarks.push_back("no touch was left out (--kfold 0): nothing was validated");
+    verdict.remarks.push_back("no " + std::string(touches ? "touch" : "posture") +
+                              " was left out (--kfold 0): nothing was validated");
   }
-  if (run.geometric) {
+  if (run.geometric && touches) {
     const TouchErrors& urdf = ContactRun::Judged(*run.geometric).all;
     verdict.remarks.push_back(fmt::format(
         "these figures hold with compensation of elasticity; the URDF alone leaves {:.2f} mm and "
@@ -150,7 +165,22 @@ void JudgeContacts(ContactRun& run) {
                                           run.calibrated.held_out.unsettled,
                                           run.calibrated.held_out.folds));
   }
-  verdict.remarks.push_back(DescribeClosure(run.closure));
+  if (run.model.setup.feet.size() > 1) verdict.remarks.push_back(DescribeClosure(run.closure));
+}
+
+/// What is left of an observation, for people: "position 1.2, 0.3, -4 mm".
+std::string LeftInWords(const Instrument& instrument, const Eigen::VectorXd& left) {
+  std::string text;
+  std::string name;
+  const std::vector<RowMeaning> rows = instrument.rows();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ShownUnit unit = ShownUnitOf(rows[i].unit);
+    if (rows[i].name != name) text += (text.empty() ? "" : "; ") + std::string(rows[i].name);
+    name = rows[i].name;
+    text += fmt::format(" {:.3g}", unit.factor * left[static_cast<Eigen::Index>(i)]);
+    if (i + 1 == rows.size() || rows[i + 1].name != name) text += std::string(" ") + unit.name;
+  }
+  return text;
 }
 
 }  // namespace
@@ -158,15 +188,16 @@ void JudgeContacts(ContactRun& run) {
 ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options) {
-  TouchTables tables = ReadTouchTables(recordings, project);
+  ObservationTables tables = ReadObservationTables(recordings, project);
   ContactRun run;
   run.warnings = std::move(tables.warnings);
-  run.touches = std::move(tables.touches);
-  run.recording = JoinNames(run.touches.files);
+  run.observations = std::move(tables.observations);
+  run.recording = JoinNames(run.observations.files);
   run.zero_offsets = options.zero_offsets;
-  if (run.touches.count() < kFewestTouches) {
-    throw InputError(run.recording + ": " + std::to_string(run.touches.count()) +
-                     " touches; at least " + std::to_string(kFewestTouches) + " were expected");
+  const int postures = run.observations.posture_count();
+  if (postures < kFewestObservedPostures) {
+    throw InputError(run.recording + ": " + std::to_string(postures) + " postures; at least " +
+                     std::to_string(kFewestObservedPostures) + " were expected");
   }
   tables.setup.hold = project.identifiability.hold;
   tables.setup.outlier_probability = project.calibration.outlier_probability;
@@ -175,27 +206,31 @@ ContactRun CalibrateContacts(const Project& project,
   };
   try {
     run.model =
-        MakeContactModel(project.tree, project.placement, tables.setup,
-                         joints(project.elasticity.torsion), joints(project.elasticity.bending));
+        MakeObservedRobot(project.tree, project.placement, tables.setup,
+                          joints(project.elasticity.torsion), joints(project.elasticity.bending));
   } catch (const InputError& error) {
     throw InputError(project.file.string() +
                      ": contact.common or identifiability.hold: " + error.what());
   }
-  KeepTouchedUnknowns(run.touches, run.model);
-  run.closure = CheckClosure(run.model, run.touches);
-  const int folds = options.folds.value_or(std::min(kUsualFolds, run.touches.count()));
-  run.uncalibrated = Estimate(run.model, run.touches, false, options, folds);
-  run.calibrated = Estimate(run.model, run.touches, true, options, folds);
-  const ContactFit& fit = run.calibrated.estimate.fit;
+  KeepObservedUnknowns(run.observations, run.model);
+  run.closure = CheckClosure(run.model, run.observations.q);
+  const int folds = options.folds.value_or(std::min(kUsualFolds, postures));
+  run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
+  run.calibrated = Estimate(run.model, run.observations, true, options, folds);
+  const ObservationFit& fit = run.calibrated.estimate.fit;
   const auto left = [&](const ContactOutcome& outcome) {
     return folds > 0 ? outcome.held_out.left
-                     : LeftOfTouches(run.model, run.touches, outcome.estimate.fit.values);
+                     : LeftOf(run.model, run.observations, outcome.estimate.fit.values);
   };
-  run.gain_in_sds = GainInSds(left(run.uncalibrated), left(run.calibrated), fit.spread);
-  const int equations = 3 * run.touches.count();
-  const auto rigid = WithoutCompliances(run.model, run.touches, project);
+  run.gain_in_sds = GainInSds(run.model, run.observations, left(run.uncalibrated),
+                              left(run.calibrated), fit.spread);
+  int equations = 0;
+  for (const Observation& of : run.observations.all) {
+    equations += run.model.instrument(of.instrument).size();
+  }
+  const auto rigid = WithoutCompliances(run.model, run.observations, project);
   if (rigid) {  // a figure beside the result: ten folds will do
-    run.geometric = Estimate(*rigid, run.touches, true, options, std::min(kUsualFolds, folds));
+    run.geometric = Estimate(*rigid, run.observations, true, options, std::min(kUsualFolds, folds));
   }
   run.result = ResultOf(run.model, fit, equations);
   JudgeContacts(run);
@@ -212,13 +247,16 @@ ContactRun CalibrateContacts(const Project& project,
 
 std::vector<std::string> DescribeOutliers(const ContactRun& run) {
   std::vector<std::string> texts;
-  for (const TouchOutlier& outlier : run.calibrated.estimate.outliers) {
-    const Touch& touch = run.touches.touches[outlier.touch];
-    texts.push_back(Place(run.touches.files[touch.file], touch.line) +
-                    fmt::format("the touch of plate '{}' contradicts the others and is left out: "
-                                "off by {:.1f} mm, {:.2f} and {:.2f} degrees; was there contact?",
-                                run.model.setup.plates[touch.plate].name, 1e3 * outlier.left[0],
-                                kDegreeHere * outlier.left[1], kDegreeHere * outlier.left[2]));
+  for (const ObservationOutlier& outlier : run.calibrated.estimate.outliers) {
+    const Observation& observation = run.observations.all[outlier.observation];
+    const PosturePlace& place = run.observations.postures[observation.posture];
+    const Instrument& instrument = run.model.instrument(observation.instrument);
+    const bool touch = run.model.IsPlate(observation.instrument);
+    texts.push_back(Place(run.observations.files[place.file], place.line) +
+                    fmt::format("{} '{}' contradicts the others and is left out: off by {}{}",
+                                touch ? "the touch of plate" : "what is measured by",
+                                instrument.name, LeftInWords(instrument, outlier.left),
+                                touch ? "; was there contact?" : ""));
   }
   return texts;
 }

@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/contact/standing_robot.hpp"
-#include "elastocal/contact/touch_figures.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
 #include "elastocal/io/project.hpp"
 #include "elastocal/math/progress.hpp"
+#include "elastocal/observation/observation_figures.hpp"
+#include "elastocal/observation/standing_robot.hpp"
 #include "elastocal/validation/verdict.hpp"
 
 namespace elastocal {
 
 struct ContactRunOptions {
-  /// Folds of the cross-validation, 2 to the number of touches; 0: none. By default one a touch, up
-  /// to ten.
+  /// Folds of the cross-validation, 2 to the number of postures; 0: none. By default one a posture,
+  /// up to ten.
   std::optional<int> folds = {};
   int threads = 1;
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
@@ -26,45 +26,47 @@ struct ContactRunOptions {
 
 /// An estimate with its errors in and out of sample.
 struct ContactOutcome {
-  ContactEstimate estimate;
-  TouchFigures in_sample;
-  TouchCrossValidation held_out;  ///< folds 0: none
+  ObservedEstimate estimate;
+  ObservationFigures in_sample;
+  ObservationCrossValidation held_out;  ///< folds 0: none
 };
 
-/// A calibration from touches.
+/// A calibration from touches and other instruments.
 struct ContactRun {
   std::string recording;  ///< the files, for people
-  Touches touches;
-  ContactModel model;
-  ContactOutcome uncalibrated;  ///< plates, tables and sessions only
+  Observations observations;
+  ObservedRobot model;
+  ContactOutcome uncalibrated;  ///< quantities beside the robot and sessions only
   ContactOutcome calibrated;
   /// Where joints are elastic: the robot without compliances. The URDF has its geometry, because a
   /// URDF has no springs.
   std::optional<ContactOutcome> geometric;
   ClosureEvidence closure;
-  double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) touches, see GainInSds
+  double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) postures, see GainInSds
   CalibrationResult result;  ///< the parameters of the robot
   Verdict verdict;
   std::optional<CalibratedUrdf> urdf;  ///< nothing where the verdict has objections
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
   std::vector<std::string> warnings;
 
-  /// On touches that were left out, where there are folds, else on those of the fit.
-  static const TouchFigures& Judged(const ContactOutcome& outcome) {
+  /// On postures that were left out, where there are folds, else on those of the fit.
+  static const ObservationFigures& Judged(const ContactOutcome& outcome) {
     return outcome.held_out.folds > 0 ? outcome.held_out.figures : outcome.in_sample;
   }
+  bool touches_only() const { return model.setup.plates.size() == model.setup.instruments.size(); }
   bool deployable() const { return verdict.objections.empty(); }
 };
 
-/// Calibrates a robot that touches tables while it stands on its feet, without a tracker: see
-/// EstimateContacts. `recordings`: tables of touches. The same input gives the same bits. Throws
-/// InputError for tables that cannot be read (ReadTouchTables) and folds that they do not allow.
+/// Calibrates a robot that touches tables or is measured by instruments while it stands on its feet
+/// or its root link is held still: see EstimateObserved. `recordings`: tables of observations. The
+/// same input gives the same bits. Throws InputError for tables that cannot be read
+/// (ReadObservationTables) and folds that they do not allow.
 ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options);
 
-/// What the touches that are left out, and how far they are off, are called: "left.csv:7: ...", one
-/// sentence each.
+/// What the observations that are left out, and how far they are off, are called: "left.csv:7:
+/// ...", one sentence each.
 std::vector<std::string> DescribeOutliers(const ContactRun& run);
 
 /// summary.json (docs/formats.md).

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "elastocal/contact/standing_robot.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/contact_file.hpp"
-#include "elastocal/io/touch_table.hpp"
+#include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/observation/standing_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/tables/text.hpp"
@@ -43,11 +43,20 @@ Eigen::VectorXd StoredErrors(const StoredCalibration& stored, const ErrorModel& 
   return errors;
 }
 
-Eigen::MatrixX3d Predict(const ContactValidation& run, const StoredContact& stored,
-                         const Eigen::VectorXd& errors) {
-  ContactValues values{errors, stored.plate_tilts, stored.tables, {}};
-  return run.table_refitted ? LeftAfterRegistration(run.model, run.touches, values, stored.spread)
-                            : LeftOfTouches(run.model, run.touches, values);
+std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
+                                           const StoredContact& stored,
+                                           const Eigen::VectorXd& errors) {
+  ObservedValues values{errors, {}, {}};
+  for (const Quantity& quantity : run.model.setup.quantities) {
+    const auto found = stored.quantities.find(quantity.name);
+    values.quantities.push_back(
+        found != stored.quantities.end()
+            ? found->second
+            : QuantityValue{quantity.origin, Eigen::VectorXd::Zero(quantity.size())});
+  }
+  return run.surroundings_refitted
+             ? LeftAfterRegistration(run.model, run.observations, values, stored.spread)
+             : LeftOf(run.model, run.observations, values);
 }
 
 }  // namespace
@@ -57,32 +66,33 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   const std::filesystem::path file = FindCalibrationFiles(calibration).calibration;
   const StoredCalibration stored = ReadCalibration(file);
   const StoredContacts contacts = ReadContacts(file, project);
-  TouchTables tables = ReadTouchTables({recording}, project, &contacts.feet);
+  ObservationTables tables = ReadObservationTables({recording}, project, &contacts.feet);
   ContactValidation run;
   run.calibration_file = file.string();
   run.recording = recording.string();
-  run.table_refitted = refit_table;
-  run.touches = std::move(tables.touches);
+  run.surroundings_refitted = refit_table;
+  run.observations = std::move(tables.observations);
   run.warnings = std::move(tables.warnings);
   // What is in common or held says nothing about values that are known.
   tables.setup.common.clear();
   run.model =
-      MakeContactModel(project.tree, project.placement, tables.setup,
-                       ElasticJointsOf(stored, project.tree, {".compliance_z"}),
-                       ElasticJointsOf(stored, project.tree, {".compliance_x", ".compliance_y"}));
+      MakeObservedRobot(project.tree, project.placement, tables.setup,
+                        ElasticJointsOf(stored, project.tree, {".compliance_z"}),
+                        ElasticJointsOf(stored, project.tree, {".compliance_x", ".compliance_y"}));
   if (stored.nominal != NominalFingerprint(run.model.robot)) {
     throw InputError(file.string() + ": made for robot '" + stored.robot +
                      "' with other nominal geometry than " + project.urdf.string() +
                      "; expected the URDF that was calibrated, not the calibrated one");
   }
   CheckParameters(stored, run.model.robot, {});
-  const Eigen::MatrixX3d before =
-      Predict(run, contacts.uncalibrated, Eigen::VectorXd::Zero(run.model.robot.parameter_count()));
-  const Eigen::MatrixX3d after =
-      Predict(run, contacts.calibrated, StoredErrors(stored, run.model.robot));
-  run.uncalibrated = MakeFigures(run.model, run.touches, before);
-  run.calibrated = MakeFigures(run.model, run.touches, after);
-  run.gain_in_sds = GainInSds(before, after, contacts.calibrated.spread);
+  const std::vector<Eigen::VectorXd> before = PredictStored(
+      run, contacts.uncalibrated, Eigen::VectorXd::Zero(run.model.robot.parameter_count()));
+  const std::vector<Eigen::VectorXd> after =
+      PredictStored(run, contacts.calibrated, StoredErrors(stored, run.model.robot));
+  run.uncalibrated = MakeFigures(run.model, run.observations, before);
+  run.calibrated = MakeFigures(run.model, run.observations, after);
+  run.gain_in_sds =
+      GainInSds(run.model, run.observations, before, after, contacts.calibrated.spread);
   return run;
 }
 
@@ -91,9 +101,9 @@ std::string MakeContactValidationJson(const ContactValidation& run) {
   json["status"] = run.better() ? "better" : "not better";
   json["calibration"] = run.calibration_file;
   json["recording"] = run.recording;
-  json["postures"] = run.touches.count();
+  json["postures"] = run.observations.posture_count();
   json["contact"] = FiguresJson(run.model, run.calibrated);
-  json["contact"]["table"] = run.table_refitted ? "refitted" : "as calibrated";
+  json["contact"]["table"] = run.surroundings_refitted ? "refitted" : "as calibrated";
   json["contact"]["uncalibrated"] = FiguresJson(run.model, run.uncalibrated);
   json["contact"]["gain_in_sds"] = run.gain_in_sds;
   json["warnings"] = run.warnings;

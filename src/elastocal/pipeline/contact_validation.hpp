@@ -4,20 +4,20 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/contact/touch_figures.hpp"
 #include "elastocal/io/project.hpp"
+#include "elastocal/observation/observation_figures.hpp"
 
 namespace elastocal {
 
-/// A calibration on touches of another day.
+/// A calibration on observations of another day.
 struct ContactValidation {
   std::string calibration_file, recording;
-  Touches touches;
-  ContactModel model;
-  /// Whether each touch was predicted by tables that the other touches of the file place; else by
-  /// those of the calibration.
-  bool table_refitted = false;
-  TouchFigures uncalibrated, calibrated;
+  Observations observations;
+  ObservedRobot model;
+  /// Whether each posture was predicted by tables and trackers that the others of the file place;
+  /// else by those of the calibration.
+  bool surroundings_refitted = false;
+  ObservationFigures uncalibrated, calibrated;
   double gain_in_sds = 0.0;  ///< see GainInSds
   std::vector<std::string> warnings;
 
@@ -26,7 +26,8 @@ struct ContactValidation {
   bool better() const { return gain_in_sds > 0.0; }
 };
 
-/// Predicts the touches of `recording` by a stored calibration, with the tables where they were
+/// Predicts the observations of `recording` by a stored calibration, with the surroundings where
+/// they were
 /// (`refit_table` false) or registered anew (LeftAfterRegistration). Sessions of another day are
 /// unknown: they have no effect. Throws InputError: files that cannot be read; a calibration of
 /// another robot or without touches.

@@ -1,12 +1,12 @@
-#include "elastocal/contact/standing_robot.hpp"
+#include "elastocal/observation/standing_robot.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "elastocal/contact/contact_residuals.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/robot/shared_support.hpp"
 
 namespace elastocal {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kClosedAngle = 0.01 * M_PI / 180.0;
 double DegreesOf(double angle) { return angle * 180.0 / M_PI; }
 
 /// The root link on the floor by the nominal robot.
-Transform NominalRoot(const ContactSetup& setup, const std::vector<Transform>& T_root_link) {
+Transform NominalRoot(const ObservationSetup& setup, const std::vector<Transform>& T_root_link) {
   std::vector<StandingFoot> feet;
   for (const ContactFoot& foot : setup.feet) {
     feet.push_back({T_root_link[foot.link], foot.T_floor_foot, foot.share});
@@ -35,7 +35,7 @@ std::string Rounded(double value, const char* format) {
 }  // namespace
 
 void PlaceFeet(const RobotTree& tree, const Eigen::MatrixXd& q, const std::vector<char>& placed,
-               ContactSetup& setup) {
+               ObservationSetup& setup) {
   const std::vector<Transform> upright =
       LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   for (ContactFoot& foot : setup.feet) {
@@ -62,7 +62,7 @@ void PlaceFeet(const RobotTree& tree, const Eigen::MatrixXd& q, const std::vecto
   }
 }
 
-std::vector<int> FindTouchingPlates(const RobotTree& tree, const ContactSetup& setup,
+std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetup& setup,
                                     const Eigen::MatrixXd& q, const std::string& source) {
   std::vector<int> touching;
   Eigen::VectorXd least(q.rows());
@@ -91,13 +91,13 @@ std::vector<int> FindTouchingPlates(const RobotTree& tree, const ContactSetup& s
                      "contact.feet of the project)"));
 }
 
-ClosureEvidence CheckClosure(const ContactModel& model, const Touches& touches) {
+ClosureEvidence CheckClosure(const ObservedRobot& model, const Eigen::MatrixXd& q) {
   ClosureEvidence evidence;
-  evidence.postures = touches.count();
-  Eigen::VectorXd distances = Eigen::VectorXd::Zero(touches.count());
-  for (int i = 0; i < touches.count(); ++i) {
-    const std::vector<Transform> T =
-        LinkTransforms(model.robot.tree, Eigen::VectorXd(touches.q.row(i)));
+  evidence.postures = static_cast<int>(q.rows());
+  if (model.setup.feet.empty()) return evidence;
+  Eigen::VectorXd distances = Eigen::VectorXd::Zero(q.rows());
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const std::vector<Transform> T = LinkTransforms(model.robot.tree, Eigen::VectorXd(q.row(i)));
     std::vector<StandingFoot> feet;
     for (const ContactFoot& foot : model.setup.feet) {
       feet.push_back({T[foot.link], foot.T_floor_foot, foot.share});
@@ -108,7 +108,7 @@ ClosureEvidence CheckClosure(const ContactModel& model, const Touches& touches) 
     const double angle = closure.bottomRows<3>().colwise().norm().maxCoeff();
     if (distances[i] < kClosed && angle < kClosedAngle) ++evidence.exact;
   }
-  evidence.median = touches.count() > 0 ? Median(distances) : 0.0;
+  evidence.median = q.rows() > 0 ? Median(distances) : 0.0;
   return evidence;
 }
 
@@ -121,7 +121,7 @@ std::string DescribeClosure(const ClosureEvidence& closure) {
   return "the feet's closure is refused as evidence: nominal kinematics closes it (to " + median +
          " in the median, exactly in " + std::to_string(closure.exact) + " of " +
          std::to_string(closure.postures) +
-         " touches), so the encoders repeat a plan that was made with the nominal model";
+         " postures), so the encoders repeat a plan that was made with the nominal model";
 }
 
 }  // namespace elastocal

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "elastocal/contact/contact_model.hpp"
+#include "elastocal/observation/observed_robot.hpp"
 
 namespace elastocal {
 
@@ -14,15 +14,15 @@ namespace elastocal {
 /// normal. The attitude of each foot flat on the floor is that of the zero posture with the root
 /// link upright; the first foot is the origin.
 void PlaceFeet(const RobotTree& tree, const Eigen::MatrixXd& q, const std::vector<char>& placed,
-               ContactSetup& setup);
+               ObservationSetup& setup);
 
 /// Which plate touches in each posture: the one that nominal kinematics puts flattest. Throws
 /// InputError where in most postures of `source` no plate is within 20 degrees of level, and says
 /// so if the plates seem to be upside down.
-std::vector<int> FindTouchingPlates(const RobotTree& tree, const ContactSetup& setup,
+std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetup& setup,
                                     const Eigen::MatrixXd& q, const std::string& source);
 
-/// Whether the closure of the feet says anything about the robot.
+/// Whether the closure of the feet says anything about the robot, in postures that are rows of q.
 struct ClosureEvidence {
   int postures = 0;
   int exact = 0;        ///< in which nominal kinematics closes it to 0.1 mm and 0.01 degrees
@@ -31,7 +31,7 @@ struct ClosureEvidence {
   /// model: a residual that nominal kinematics makes zero tells nothing.
   bool planned() const { return 2 * exact > postures; }
 };
-ClosureEvidence CheckClosure(const ContactModel& model, const Touches& touches);
+ClosureEvidence CheckClosure(const ObservedRobot& model, const Eigen::MatrixXd& q);
 
 /// What was found, as a sentence for users.
 std::string DescribeClosure(const ClosureEvidence& closure);

@@ -1,0 +1,80 @@
+#include "elastocal/io/measured_cells.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "elastocal/robot/statics.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kUnit = 1e-3;          // that a quaternion may be off
+constexpr double kGravityShare = 0.05;  // that an accelerometer may be off
+constexpr double kFarthest = 100.0;     // m: a large hall
+
+void CheckMetres(const Table& table, const Instrument& instrument, const std::vector<int>& columns,
+                 const Eigen::VectorXd& measured, int count) {
+  for (int i = 0; i < count; ++i) {
+    if (std::abs(measured[i]) <= kFarthest) continue;
+    table.FailCell(columns[i],
+                   fmt::format("{:g} m is no {} that '{}' can measure; is it in mm? "
+                               "metres were expected",
+                               measured[i], instrument.rows()[0].name, instrument.name));
+  }
+}
+
+void CheckQuaternion(const Table& table, const std::vector<int>& columns,
+                     Eigen::VectorXd& measured) {
+  const double length = measured.tail<4>().norm();
+  if (!(std::abs(length - 1.0) <= kUnit)) {
+    table.FailCell(columns[3],
+                   fmt::format("the quaternion has length {:.4g}; 1 within {:g} was expected, in "
+                               "the order x, y, z, w",
+                               length, kUnit));
+  }
+  measured.tail<4>() /= length;
+}
+
+void CheckAtRest(const Table& table, const std::vector<int>& columns,
+                 const Eigen::VectorXd& measured) {
+  const double gravity = kGravity.norm();
+  const double length = measured.norm();
+  if (std::abs(length - gravity) <= kGravityShare * gravity) return;
+  const bool in_g = std::abs(length - 1.0) <= kGravityShare;
+  table.FailCell(columns[0],
+                 fmt::format("the acceleration has length {:.4g}; {:g} m/s^2 within {:g} % were "
+                             "expected of an accelerometer at rest{}",
+                             length, gravity, 100.0 * kGravityShare,
+                             in_g ? "; is it in units of gravity?" : ""));
+}
+
+}  // namespace
+
+std::optional<Eigen::VectorXd> ReadMeasured(const Table& table, const Instrument& instrument,
+                                            const std::vector<int>& columns) {
+  if (columns.empty() || columns.front() < 0) return std::nullopt;
+  const auto is_gap = [&](int column) { return IsGap(table.Cell(column)); };
+  if (std::all_of(columns.begin(), columns.end(), is_gap)) return std::nullopt;
+  const auto gap = std::find_if(columns.begin(), columns.end(), is_gap);
+  if (gap != columns.end()) {
+    table.FailCell(*gap, "there is no number, but " + Quote(instrument.name) +
+                             " has other numbers in this row; all or none were expected");
+  }
+  Eigen::VectorXd measured(static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    measured[static_cast<Eigen::Index>(i)] = table.Number(columns[i]);
+  }
+  const std::string_view kind = instrument.kind();
+  if (kind == "gravity") {
+    CheckAtRest(table, columns, measured);
+  } else {
+    CheckMetres(table, instrument, columns, measured, std::min<int>(3, instrument.measured_size()));
+  }
+  if (kind == "pose") CheckQuaternion(table, columns, measured);
+  return measured;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/observation/instrument.hpp"
+#include "elastocal/tables/table_reader.hpp"
+
+namespace elastocal {
+
+/// What an instrument shows in the row of a table that was read last, from its columns; nothing
+/// where all cells are gaps. Throws InputError naming file, line and column: some cells are gaps;
+/// what is no number; what such an instrument cannot show (a quaternion that is not of length 1
+/// within 0.001, an accelerometer that does not show gravity within 5 %, millimetres for metres).
+std::optional<Eigen::VectorXd> ReadMeasured(const Table& table, const Instrument& instrument,
+                                            const std::vector<int>& columns);
+
+}  // namespace elastocal

@@ -1,0 +1,367 @@
+#include "elastocal/io/observation_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "elastocal/io/measured_cells.hpp"
+#include "elastocal/io/posture_checks.hpp"
+#include "elastocal/io/recording_columns.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/observation/standing_robot.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kMostRows = 20000;
+constexpr double kMostCounts = 1e15;  // counts beyond are no whole numbers
+
+/// What an instrument showed in a row.
+struct MeasuredRow {
+  int row = 0, instrument = 0;
+  Eigen::VectorXd measured;
+};
+
+/// One table as it was read.
+struct ObservationFile {
+  Recording postures;  // no markers
+  std::vector<std::string> sessions;
+  std::vector<std::string> plates;  // by row, where there is a column for them
+  std::vector<MeasuredRow> measured;
+};
+
+struct ObservationColumns {
+  std::vector<int> coordinates;
+  std::vector<int> sessions;
+  int plate = -1;
+  std::vector<std::vector<int>> instruments;  // of plates, and of those that are absent: empty
+
+  bool measures() const {
+    return std::any_of(instruments.begin(), instruments.end(),
+                       [](const std::vector<int>& of) { return !of.empty(); });
+  }
+};
+
+const std::string& NameOfCoordinate(const RobotTree& tree, int coordinate) {
+  return tree.joints[tree.coordinate_joint[coordinate]].name;
+}
+
+/// Throws InputError for a joint that moves a foot or what is observed and is not known.
+void CheckObservedJoints(const Table& table, const Project& project,
+                         const ObservationColumns& columns) {
+  const RobotTree& tree = project.tree;
+  const ObservationSetup& setup = project.contact->setup;
+  std::vector<int> links;
+  for (const ContactFoot& foot : setup.feet) links.push_back(foot.link);
+  const bool may_touch = columns.plate >= 0 || project.contact->plate_column.empty();
+  for (std::size_t i = 0; i < setup.instruments.size(); ++i) {
+    const bool plate = i < setup.plates.size();
+    if (plate ? !may_touch : columns.instruments[i].empty()) continue;
+    const std::vector<int>& of = setup.instruments[i]->links;
+    links.insert(links.end(), of.begin(), of.end());
+  }
+  for (int link : links) {
+    for (int k : JointsToBody(tree, tree.links[link].body)) {
+      const int coordinate = tree.joints[k].coordinate;
+      const std::string& name = NameOfCoordinate(tree, coordinate);
+      if (columns.coordinates[coordinate] >= 0 || project.recording.not_recorded.contains(name)) {
+        continue;
+      }
+      table.Fail("the column " + Quote(JointColumn(project, name)) + " of joint " + Quote(name) +
+                 ", which moves link " + Quote(tree.links[link].name) +
+                 ", is missing; a joint that stood still is given in recording.not_recorded_deg "
+                 "(or _mm) of " +
+                 project.file.string());
+    }
+  }
+}
+
+int FindSessionColumn(const Table& table, const std::string& column, const Project& project) {
+  const auto found = std::find(table.header().begin(), table.header().end(), column);
+  if (found == table.header().end()) {
+    table.Fail("there is no column " + Quote(column) + ", by which contact.sessions of " +
+               project.file.string() + " tells sessions apart" +
+               DidYouMean(column.substr(0, 60), table.header()));
+  }
+  return static_cast<int>(found - table.header().begin());
+}
+
+/// Gives the columns of instruments a meaning; returns the first quantity of each, which follow
+/// each other.
+std::vector<int> AddInstrumentRoles(const Project& project, int& quantities, ColumnRoles& roles) {
+  std::vector<int> first;
+  for (const std::vector<std::string>& columns : project.contact->columns) {
+    first.push_back(quantities);
+    for (const std::string& column : columns) AddRole(project, column, quantities++, roles);
+  }
+  return first;
+}
+
+/// The columns of an instrument in a table; empty where it has none.
+std::vector<int> InstrumentColumns(const Table& table, const Project& project,
+                                   std::size_t instrument, std::span<const int> found) {
+  const std::vector<std::string>& names = project.contact->columns[instrument];
+  if (names.empty() ||
+      !HasGroup(table, found, names,
+                "instrument " + Quote(project.contact->setup.instruments[instrument]->name))) {
+    return {};
+  }
+  return {found.begin(), found.end()};
+}
+
+ObservationColumns FindObservationColumns(const Table& table, const Project& project) {
+  const RobotTree& tree = project.tree;
+  const ContactProject& contact = *project.contact;
+  ColumnRoles roles;
+  int quantities = 0;
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    AddRole(project, JointColumn(project, NameOfCoordinate(tree, c)), quantities++, roles);
+  }
+  const std::vector<int> first = AddInstrumentRoles(project, quantities, roles);
+  const int plate = quantities;
+  if (!contact.plate_column.empty()) AddRole(project, contact.plate_column, quantities++, roles);
+  roles.emplace(project.recording.time, kPassedOver);
+  for (const std::string& column : contact.sessions.columns) roles.emplace(column, kPassedOver);
+  for (const Joint& joint : tree.joints) {
+    if (joint.mimic) roles.emplace(joint.name, kPassedOver);
+  }
+  ObservationColumns columns;
+  const std::vector<int> found =
+      FindRecordingColumns(table, std::move(roles), static_cast<std::size_t>(quantities), project);
+  columns.coordinates.assign(found.begin(), found.begin() + tree.coordinate_count());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const std::span<const int> own(found.begin() + first[i], contact.columns[i].size());
+    columns.instruments.push_back(InstrumentColumns(table, project, i, own));
+  }
+  if (!contact.plate_column.empty()) {
+    columns.plate = found[plate];
+    if (columns.plate < 0 && !columns.measures()) {
+      table.Fail("the column " + Quote(contact.plate_column) +
+                 ", which names the plate that touches, is missing");
+    }
+  }
+  for (const std::string& column : contact.sessions.columns) {
+    columns.sessions.push_back(FindSessionColumn(table, column, project));
+  }
+  if (contact.setup.plates.empty() && !columns.measures()) {
+    const std::vector<std::string>& of = contact.columns.front();
+    table.Fail("there is no column of any instrument of " + project.file.string() + "; " +
+               Quote(of.front()) + " is one of " + Quote(contact.setup.instruments.front()->name));
+  }
+  CheckObservedJoints(table, project, columns);
+  return columns;
+}
+
+/// What the row read last has for its session.
+std::string SessionKey(const Table& table, const ObservationColumns& columns,
+                       const SessionRule& rule) {
+  std::string key;
+  for (int column : columns.sessions) {
+    if (!key.empty()) key += "/";
+    if (rule.quantum <= 0.0) {
+      key += std::string(table.Cell(column));
+      continue;
+    }
+    const double steps = std::round(table.Number(column) / rule.quantum);
+    if (!(std::abs(steps) < kMostCounts)) {
+      table.FailCell(column, "this is no number of steps of contact.sessions.counts.quantum");
+    }
+    const std::int64_t count = static_cast<std::int64_t>(steps) % rule.modulo;
+    key += std::to_string(count < 0 ? count + rule.modulo : count);
+  }
+  return key;
+}
+
+ObservationFile ReadObservationFile(const std::filesystem::path& file, const Project& project) {
+  std::istringstream stream = OpenTable(file);
+  Table table(stream, file.string());
+  const ObservationColumns columns = FindObservationColumns(table, project);
+  const RobotTree& tree = project.tree;
+  const auto& instruments = project.contact->setup.instruments;
+  ObservationFile result;
+  Recording& postures = result.postures;
+  postures.source = file.string();
+  std::vector<double> q;
+  while (table.Next()) {
+    if (table.row_count() > kMostRows) table.Fail("more than 20000 rows; one a posture expected");
+    const int row = static_cast<int>(postures.line.size());
+    postures.line.push_back(table.line());
+    for (int c = 0; c < tree.coordinate_count(); ++c) {
+      const auto given = project.recording.not_recorded.find(NameOfCoordinate(tree, c));
+      const double elsewhere = given == project.recording.not_recorded.end() ? 0.0 : given->second;
+      q.push_back(columns.coordinates[c] < 0 ? elsewhere : table.Number(columns.coordinates[c]));
+    }
+    result.sessions.push_back(SessionKey(table, columns, project.contact->sessions));
+    if (columns.plate >= 0) result.plates.emplace_back(table.Cell(columns.plate));
+    for (std::size_t i = 0; i < instruments.size(); ++i) {
+      auto measured = ReadMeasured(table, *instruments[i], columns.instruments[i]);
+      if (measured) {
+        result.measured.push_back({row, static_cast<int>(i), std::move(*measured)});
+      }
+    }
+  }
+  if (postures.line.empty()) {
+    throw InputError(table.source() + ": no row below the header; postures expected");
+  }
+  postures.q = StackRows(q, postures.line.size());
+  postures.markers.resize(postures.q.rows(), 0);
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    if (columns.coordinates[c] < 0) {
+      postures.joints_not_recorded.push_back(NameOfCoordinate(tree, c));
+    }
+  }
+  CheckPlausible(postures, tree);
+  return result;
+}
+
+/// The plate that touches in each row, as its column says; -1: none.
+std::vector<int> NamedPlates(const ObservationFile& file, const ObservationSetup& setup) {
+  std::vector<std::string> names;
+  for (const ContactPlate& plate : setup.plates) names.push_back(plate.name);
+  std::vector<int> plates;
+  for (std::size_t i = 0; i < file.plates.size(); ++i) {
+    if (IsGap(file.plates[i])) {
+      plates.push_back(-1);
+      continue;
+    }
+    const auto found = std::find(names.begin(), names.end(), file.plates[i]);
+    if (found == names.end()) {
+      throw InputError(Place(file.postures.source, file.postures.line[i]) + "there is no plate " +
+                       Quote(file.plates[i]) + DidYouMean(file.plates[i].substr(0, 60), names));
+    }
+    plates.push_back(static_cast<int>(found - names.begin()));
+  }
+  return plates;
+}
+
+/// The same as it lies, in rows in which no instrument shows anything.
+std::vector<int> PlatesOf(const ObservationFile& file, const Project& project,
+                          const ObservationSetup& setup) {
+  if (!file.plates.empty()) return NamedPlates(file, setup);
+  std::vector<int> plates(file.postures.line.size(), -1);
+  if (setup.plates.empty() || !project.contact->plate_column.empty()) return plates;
+  std::vector<char> shown(plates.size(), 0);
+  for (const MeasuredRow& of : file.measured) shown[static_cast<std::size_t>(of.row)] = 1;
+  std::vector<int> touches;
+  for (std::size_t i = 0; i < plates.size(); ++i) {
+    if (shown[i] == 0) touches.push_back(static_cast<int>(i));
+  }
+  if (touches.empty()) return plates;
+  const std::vector<int> found = FindTouchingPlates(
+      project.tree, setup, file.postures.q(touches, Eigen::all), file.postures.source);
+  for (std::size_t k = 0; k < found.size(); ++k) plates[touches[k]] = found[k];
+  return plates;
+}
+
+/// Adds observations with the effects of their sessions.
+class ObservationCollector {
+ public:
+  explicit ObservationCollector(ObservationTables& tables) : tables_(tables) {}
+
+  void Add(Observation observation, const std::string& session) {
+    const Instrument& instrument =
+        *tables_.setup.instruments[static_cast<std::size_t>(observation.instrument)];
+    if (instrument.varying >= 0) {
+      const int quantity = instrument.quantities[instrument.varying];
+      std::vector<SessionEffect>& effects = tables_.observations.effects;
+      const auto [effect, is_new] =
+          sessions_.emplace(std::pair(quantity, session), static_cast<int>(effects.size()));
+      if (is_new) effects.push_back({quantity, session});
+      observation.effects = {effect->second};
+    }
+    tables_.observations.all.push_back(std::move(observation));
+  }
+
+ private:
+  ObservationTables& tables_;
+  std::map<std::pair<int, std::string>, int> sessions_;
+};
+
+void AddFile(const ObservationFile& file, const Project& project, int index,
+             ObservationCollector& collector, ObservationTables& tables) {
+  std::vector<PosturePlace>& postures = tables.observations.postures;
+  const int first = static_cast<int>(postures.size());
+  for (int line : file.postures.line) postures.push_back({index, line});
+  const bool by_file = project.contact->sessions.columns.empty();
+  const auto session = [&](int row) {
+    return by_file ? file.postures.source : file.sessions[static_cast<std::size_t>(row)];
+  };
+  const std::vector<int> plates = PlatesOf(file, project, tables.setup);
+  for (int row = 0; row < static_cast<int>(plates.size()); ++row) {
+    if (plates[row] >= 0) collector.Add({first + row, plates[row], {}, {}}, session(row));
+  }
+  for (const MeasuredRow& of : file.measured) {
+    collector.Add({first + of.row, of.instrument, of.measured, {}}, session(of.row));
+  }
+}
+
+std::vector<std::string> SilentInstruments(const ObservationTables& tables) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = tables.setup.plates.size(); i < tables.setup.instruments.size(); ++i) {
+    const std::vector<Observation>& all = tables.observations.all;
+    if (std::any_of(all.begin(), all.end(),
+                    [&](const Observation& of) { return of.instrument == static_cast<int>(i); })) {
+      continue;
+    }
+    warnings.push_back(Quote(tables.setup.instruments[i]->name) +
+                       " shows nothing in these tables; its quantities stay as the project has "
+                       "them");
+  }
+  return warnings;
+}
+
+}  // namespace
+
+ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>& files,
+                                        const Project& project,
+                                        const std::vector<ContactFoot>* feet) {
+  ObservationTables tables;
+  tables.setup = project.contact->setup;
+  std::vector<ObservationFile> read;
+  Eigen::Index rows = 0;
+  for (auto at = files.begin(); at != files.end(); ++at) {
+    const std::filesystem::path& file = *at;
+    if (std::find(files.begin(), at, file) != at) {
+      throw InputError(file.string() + ": the file is given twice; its rows would count twice");
+    }
+    if (FileTypeOf(file) == std::filesystem::file_type::directory) {
+      throw InputError(file.string() +
+                       ": this is a folder; tables of observations (CSV) were expected, because "
+                       "the project has contact or instruments");
+    }
+    read.push_back(ReadObservationFile(file, project));
+    rows += read.back().postures.q.rows();
+  }
+  Observations& observations = tables.observations;
+  observations.q.resize(rows, project.tree.coordinate_count());
+  rows = 0;
+  for (const ObservationFile& file : read) {
+    observations.q.middleRows(rows, file.postures.q.rows()) = file.postures.q;
+    rows += file.postures.q.rows();
+  }
+  if (feet != nullptr) {
+    tables.setup.feet = *feet;
+  } else if (!tables.setup.feet.empty()) {
+    PlaceFeet(project.tree, observations.q, project.contact->foot_placed, tables.setup);
+  }
+  ObservationCollector collector(tables);
+  for (std::size_t f = 0; f < read.size(); ++f) {
+    observations.files.push_back(read[f].postures.source);
+    AddFile(read[f], project, static_cast<int>(f), collector, tables);
+    for (std::string& warning : LimitWarnings(read[f].postures, project.tree)) {
+      tables.warnings.push_back(std::move(warning));
+    }
+  }
+  if (observations.all.empty()) {
+    throw InputError(observations.files.front() +
+                     ": in no row does an instrument show anything or a plate touch");
+  }
+  for (std::string& warning : SilentInstruments(tables)) {
+    tables.warnings.push_back(std::move(warning));
+  }
+  return tables;
+}
+
+}  // namespace elastocal

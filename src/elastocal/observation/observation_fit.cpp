@@ -1,0 +1,201 @@
+#include "elastocal/observation/observation_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastocal/calibration/posterior.hpp"
+#include "elastocal/math/statistics.hpp"
+#include "elastocal/optim/normal_equations.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kSettled = 1e-4;         // relative change of a standard deviation
+constexpr double kRoughlySettled = 1e-2;  // of a fit that only looks for outliers
+constexpr double kSlightStep = 1e-9;      // of the cost
+constexpr double kLeastNoise = 1e-9;      // SI: roundings
+constexpr double kHuberShare = 0.99;      // of observations that count whole
+constexpr double kOwnWeight = 1.0;        // numbers that the first guess of a variance stands for
+constexpr double kLeastRows = 0.01;    // share of rows that is left over where it is all but zero
+constexpr double kGrossFreedom = 4.0;  // of the Student distribution of observations
+
+/// Sum of squares over a source's rows, in units of its standard deviation, how many rows they
+/// are, how much of them the fit explains, and the squares of each observation.
+struct SourceSum {
+  double squares = 0.0, rows = 0.0, explained = 0.0;
+  std::vector<double> of_observations;
+};
+
+std::vector<SourceSum> SumBySource(const ObservationResiduals& residuals,
+                                   const ObservedRobot& model, const Observations& observations,
+                                   const std::vector<Eigen::VectorXd>& explained) {
+  std::vector<SourceSum> sums(model.setup.sources.size());
+  for (std::size_t b = 0; b < residuals.residual_blocks.size(); ++b) {
+    if (!residuals.residual_blocks[b].active) continue;
+    const int block = static_cast<int>(b);
+    const std::vector<int>& sources = residuals.Sources(block);
+    for (std::size_t row = 0; row < sources.size(); ++row) {
+      const auto r = static_cast<Eigen::Index>(row);
+      SourceSum& sum = sums[sources[row]];
+      const double square = residuals.Residual(block)[r] * residuals.Residual(block)[r];
+      sum.squares += square;
+      sum.rows += 1.0;
+      sum.explained += explained[b][r];
+      if (block < observations.count()) sum.of_observations.push_back(square);
+    }
+  }
+  return sums;
+}
+
+/// The largest relative change.
+double UpdateSpread(const std::vector<SourceSum>& sums, const std::vector<Source>& sources,
+                    bool robust, Spread& spread) {
+  double change = 0.0;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const SourceSum& sum = sums[s];
+    if (sum.rows <= 0.0 || sources[s].role == Source::Role::kFixed) continue;
+    const bool noise = sources[s].role == Source::Role::kNoise;
+    double squares = sum.squares;
+    if (robust && noise) {
+      const Eigen::Map<const Eigen::VectorXd> all(
+          sum.of_observations.data(), static_cast<Eigen::Index>(sum.of_observations.size()));
+      squares = sum.rows * Median(all) / ChiSquareQuantile(0.5, 1.0);
+    }
+    const double left = std::max(kLeastRows * sum.rows, sum.rows - sum.explained);
+    const double before = spread[static_cast<int>(s)];
+    const double variance =
+        (before * before * squares + kOwnWeight * sources[s].sd * sources[s].sd) /
+        (left + kOwnWeight);
+    spread[static_cast<int>(s)] = std::max(kLeastNoise, std::sqrt(variance));
+    change = std::max(change, std::abs(std::log(spread[static_cast<int>(s)] / before)));
+  }
+  return change;
+}
+
+/// Squared distance of an observation in units of its noise.
+double SquaredDistance(const Instrument& instrument, const Eigen::VectorXd& left,
+                       const Spread& spread) {
+  return (instrument.Weights(spread) * left).squaredNorm();
+}
+
+/// Huber's weights by the distance of each observation; those of 0 stay.
+double UpdateWeights(const ObservationResiduals& residuals, const ObservedRobot& model,
+                     const Observations& observations, const Spread& spread,
+                     std::vector<double>& weights) {
+  double change = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] <= 0.0) continue;
+    const Instrument& instrument = model.instrument(observations.all[i].instrument);
+    const double limit = ChiSquareQuantile(kHuberShare, instrument.size());
+    const double square = SquaredDistance(instrument, residuals.Left(static_cast<int>(i)), spread);
+    const double weight = square <= limit ? 1.0 : std::sqrt(limit / square);
+    change = std::max(change, std::abs(weight - weights[i]));
+    weights[i] = weight;
+  }
+  return change;
+}
+
+void TakeCovariance(const ObservedRobot& model, const ObservationResiduals& residuals,
+                    const Eigen::MatrixXd& covariance, ObservationFit& fit) {
+  fit.covariance = residuals.scale().asDiagonal() * covariance * residuals.scale().asDiagonal();
+  fit.entry_of_unknown.clear();
+  for (int u = 0; u < model.unknown_count; ++u) {
+    fit.entry_of_unknown.push_back(residuals.RobotEntry(u));
+  }
+  fit.entry_of_quantity.clear();
+  for (int q = 0; q < static_cast<int>(model.setup.quantities.size()); ++q) {
+    fit.entry_of_quantity.push_back(residuals.QuantityEntry(q));
+  }
+}
+
+/// Numbers of the observations that the unknowns explain, and how many are left.
+void TakeCounts(const std::vector<Eigen::VectorXd>& explained, ObservationFit& fit) {
+  fit.effective_parameters = 0.0;
+  double rows = 0.0;
+  for (std::size_t i = 0; i < fit.weights.size(); ++i) {
+    if (fit.weights[i] <= 0.0) continue;
+    fit.effective_parameters += explained[i].sum();
+    rows += static_cast<double>(explained[i].size());
+  }
+  fit.degrees_of_freedom = std::max(1.0, rows - fit.effective_parameters);
+}
+
+/// One step with all that follows from its linearisation; whether all came to rest.
+bool UpdateFit(const ObservedRobot& model, const Observations& observations,
+               const ObservationFitOptions& options, ObservationFit& fit) {
+  if (options.freedom.robot) fit.loads = ObservedLoads(model, observations, fit.values.robot);
+  ObservationResiduals residuals(model, observations, fit.loads, fit.spread, fit.weights,
+                                 options.freedom, fit.values);
+  const Eigen::VectorXd x = residuals.Start();
+  residuals.Evaluate(x, true);
+  const double cost = CostOf(residuals);
+  const NormalEquations equations(residuals);
+  const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
+  const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
+  const Eigen::VectorXd step =
+      BoundedStep(equations.information(), equations.gradient(), x, residuals.nonnegative);
+  const bool small = -equations.gradient().dot(step) < kSlightStep * (1.0 + cost);
+  Eigen::VectorXd next = x + step;
+  residuals.Evaluate(next, false);
+  ++fit.iterations;
+  if (!small && !(CostOf(residuals) <= cost)) {  // far from the solution: damped steps
+    next = Solve(residuals, x).x;
+    residuals.Evaluate(next, false);
+  }
+  fit.values = residuals.ToValues(next);
+  TakeCovariance(model, residuals, covariance, fit);
+  TakeCounts(explained, fit);
+  double change = 0.0;
+  if (options.estimate_spread) {
+    change = UpdateSpread(SumBySource(residuals, model, observations, explained),
+                          model.setup.sources, options.robust, fit.spread);
+  }
+  change = std::max(change, UpdateWeights(residuals, model, observations, fit.spread, fit.weights));
+  return options.robust ? change < kRoughlySettled : change < kSettled && small;
+}
+
+}  // namespace
+
+ObservationFit StartFit(const ObservedRobot& model, const Observations& observations) {
+  ObservationFit fit;
+  fit.values = NominalValues(model, observations);
+  fit.spread = FirstSpread(model.setup.sources);
+  fit.weights.assign(observations.all.size(), 1.0);
+  fit.loads = ObservedLoads(model, observations, fit.values.robot);
+  return fit;
+}
+
+ObservationFit FitObservations(const ObservedRobot& model, const Observations& observations,
+                               const ObservationFit& start, const ObservationFitOptions& options) {
+  ObservationFit fit = start;
+  fit.settled = false;
+  for (int update = 0; update < options.max_updates && !fit.settled; ++update) {
+    fit.settled = UpdateFit(model, observations, options, fit);
+  }
+  fit.termination = fit.settled ? Termination::kConverged : Termination::kNoConvergence;
+  return fit;
+}
+
+ObservedEstimate EstimateObserved(const ObservedRobot& model, const Observations& observations,
+                                  const ObservationFreedom& freedom) {
+  ObservedEstimate estimate;
+  ObservationFit start = StartFit(model, observations);
+  const ObservationFit robust = FitObservations(
+      model, observations, start, {.freedom = freedom, .robust = true, .max_updates = 60});
+  const double probability = model.setup.outlier_probability / std::max(1, observations.count());
+  const std::vector<Eigen::VectorXd> left = LeftOf(model, observations, robust.values);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const Instrument& instrument = model.instrument(observations.all[i].instrument);
+    const double rows = instrument.size();
+    const double limit = rows * FisherQuantile(1.0 - probability, rows, kGrossFreedom);
+    if (SquaredDistance(instrument, left[i], robust.spread) <= limit) continue;
+    estimate.outliers.push_back({static_cast<int>(i), left[i]});
+    start.weights[i] = 0.0;
+  }
+  start.values = robust.values;
+  start.spread = robust.spread;
+  estimate.fit = FitObservations(model, observations, start, {.freedom = freedom});
+  return estimate;
+}
+
+}  // namespace elastocal

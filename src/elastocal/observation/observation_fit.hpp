@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/observation/observation_residuals.hpp"
+#include "elastocal/optim/termination.hpp"
+
+namespace elastocal {
+
+/// Values with what was found to vary, and their uncertainty.
+struct ObservationFit {
+  ObservedValues values;
+  Spread spread;
+  std::vector<double> weights;  ///< by observation: 1, less where it is further off than the noise
+                                ///< explains, 0 for one that is left out
+  std::vector<JointLoads> loads;  ///< by posture
+  /// Posterior covariance of the unknowns, SI, and where they stand in it (-1: not estimated): each
+  /// unknown of the robot, the first number of each quantity.
+  Eigen::MatrixXd covariance;
+  std::vector<int> entry_of_unknown, entry_of_quantity;
+  double effective_parameters = 0.0;  ///< numbers that the observations determine
+  double degrees_of_freedom = 1.0;    ///< of the uncertainty: numbers left over for the noise
+  bool settled = false;               ///< whether the variances came to rest
+  Termination termination = Termination::kFailure;
+  int iterations = 0;
+};
+
+/// Fits what is free, from nominal or from `start`, to the observations whose weight is not 0. The
+/// standard deviations of all sources that are not fixed follow from the residuals (restricted
+/// maximum likelihood by Harville's fixed point, as VarianceComponent has it); each keeps
+/// the weight of one number at the standard deviation that it started from, so that a source of
+/// which few numbers tell anything neither vanishes nor explodes.
+struct ObservationFitOptions {
+  ObservationFreedom freedom = {};
+  bool estimate_spread = true;
+  /// By medians over observations, which those gone wrong cannot move.
+  bool robust = false;
+  int max_updates = 300;
+};
+ObservationFit FitObservations(const ObservedRobot& model, const Observations& observations,
+                               const ObservationFit& start, const ObservationFitOptions& options);
+
+/// Where every fit begins: nominal robot, all observations, nothing known of variances.
+ObservationFit StartFit(const ObservedRobot& model, const Observations& observations);
+
+/// An observation that contradicts the others: it is left out.
+struct ObservationOutlier {
+  int observation = 0;
+  Eigen::VectorXd left = {};  ///< SI
+};
+
+/// A whole estimate: a fit by medians; observations gone wrong are named and left out (further off
+/// than Student's t with four degrees of freedom allows); a fit by squares to the rest.
+struct ObservedEstimate {
+  ObservationFit fit;
+  std::vector<ObservationOutlier> outliers = {};
+};
+ObservedEstimate EstimateObserved(const ObservedRobot& model, const Observations& observations,
+                                  const ObservationFreedom& freedom);
+
+}  // namespace elastocal

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/observation/observed_posture.hpp"
+#include "elastocal/optim/least_squares.hpp"
+
+namespace elastocal {
+
+/// What is estimated; the rest stays.
+struct ObservationFreedom {
+  bool robot = true;
+  bool mountings = true;     ///< quantities of the robot
+  bool surroundings = true;  ///< other quantities
+  bool effects = true;       ///< of sessions
+};
+
+/// Observations as a least-squares problem: for every observation what is left of it, for every
+/// other unknown its deviation from nominal; each over the standard deviation of its source.
+///
+/// Unknowns, in blocks: those of the robot by joint, then quantities and effects as far as they are
+/// free.
+class ObservationResiduals : public LeastSquaresProblem {
+ public:
+  /// Keeps references. `loads`: by posture (none: nothing bends); `weights`: by observation; 0: it
+  /// takes no part.
+  ObservationResiduals(const ObservedRobot& model, const Observations& observations,
+                       const std::vector<JointLoads>& loads, const Spread& spread,
+                       const std::vector<double>& weights, const ObservationFreedom& freedom,
+                       const ObservedValues& at);
+
+  Eigen::VectorXd Start() const;
+  ObservedValues ToValues(const Eigen::VectorXd& x) const;
+  /// Entry of x of an unknown of the robot, first entry of a quantity; -1: it is not free.
+  int RobotEntry(int unknown) const { return free_.robot ? robot_entry_[unknown] : -1; }
+  int QuantityEntry(int quantity) const;
+  /// Value of one in each entry of x, SI.
+  const Eigen::VectorXd& scale() const { return scale_; }
+
+  /// Of each row of a residual block (the first blocks are the observations), its source.
+  const std::vector<int>& Sources(int block) const { return sources_[block]; }
+  /// What is left of an observation, SI.
+  const Eigen::VectorXd& Left(int observation) const { return left_[observation]; }
+
+  void Evaluate(const Eigen::VectorXd& x, bool with_jacobians) override;
+  const Eigen::VectorXd& Residual(int block) const override { return residuals_[block]; }
+  const RowMajorMatrix& Jacobian(int block) const override { return jacobians_[block]; }
+
+ private:
+  /// Where the derivatives of a leg's parameters go among the columns of an observation.
+  struct Column {
+    int source, target;
+    double scale;
+  };
+  struct InstrumentLayout {
+    std::vector<int> blocks;                   // of the robot that its observations depend on
+    std::vector<int> legs;                     // by link of the instrument; -1: the root link
+    std::vector<std::vector<Column>> of_feet;  // by foot
+    std::vector<std::vector<Column>> of_links;
+    int width = 0;  // columns of the robot
+  };
+  void AddRobotBlocks();
+  int AddBlock(int size);
+  void AddPrior(int block, const std::vector<int>& sources, const std::vector<double>& units);
+  InstrumentLayout LayOut(const Instrument& instrument) const;
+  std::vector<Column> ColumnsOf(int leg, const std::vector<int>& first_column) const;
+  void AddObservations();
+  void AddPriors();
+  void EvaluateObservation(int index, const ObservedValues& values, bool with_jacobians);
+  void FillJacobian(int index, const ObservationResidual& at);
+
+  const ObservedRobot& model_;
+  const Observations& observations_;
+  const std::vector<JointLoads>& loads_;
+  const Spread& spread_;
+  const std::vector<double>& weights_;
+  ObservationFreedom free_;
+  ObservedValues at_;
+  ObservedPosture posture_;
+  std::vector<int> robot_entry_;     // by unknown of the robot
+  std::vector<int> block_of_entry_;  // likewise
+  std::vector<int> first_entry_;     // by block
+  int robot_blocks_ = 0;
+  std::vector<int> quantity_block_, effect_block_;  // -1: not free
+  Eigen::VectorXd scale_;
+  std::vector<InstrumentLayout> layout_;                // by instrument
+  std::vector<std::vector<int>> by_posture_;            // observations
+  std::vector<std::vector<int>> sources_;               // by residual block
+  std::vector<std::vector<double>> weights_of_priors_;  // by prior block: of its rows
+  std::vector<Eigen::VectorXd> left_;
+  std::vector<Eigen::VectorXd> residuals_;
+  std::vector<RowMajorMatrix> jacobians_;
+};
+
+}  // namespace elastocal

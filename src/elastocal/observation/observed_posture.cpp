@@ -1,0 +1,164 @@
+#include "elastocal/observation/observed_posture.hpp"
+
+#include "elastocal/robot/statics.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Moves the origins of trackers' poses to where the nominal robot suggests them.
+void RegisterTrackers(const ObservedRobot& model, const Observations& observations,
+                      const std::vector<Sight>& sights, ObservedValues& values) {
+  std::vector<Instrument::Landmarks> landmarks(values.quantities.size());
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const Observation& observation = observations.all[i];
+    const Instrument& instrument = model.instrument(observation.instrument);
+    instrument.AddLandmarks(sights[i], observation.measured,
+                            landmarks[instrument.quantities.front()]);
+  }
+  for (std::size_t q = 0; q < landmarks.size(); ++q) {
+    const auto count = static_cast<Eigen::Index>(landmarks[q].size());
+    if (count == 0) continue;
+    Eigen::Matrix3Xd here(3, count);
+    Eigen::Matrix3Xd there(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      here.col(i) = landmarks[q][static_cast<std::size_t>(i)].first;
+      there.col(i) = landmarks[q][static_cast<std::size_t>(i)].second;
+    }
+    values.quantities[q].origin = Transform(Eigen::umeyama(there, here, false));
+  }
+}
+
+}  // namespace
+
+void ObservedPosture::Evaluate(const Geometry& geometry, const ObservedValues& values,
+                               const Eigen::VectorXd& q, const JointLoads& loads) {
+  jacobian_.Evaluate(geometry, q, loads);
+  if (model_.root_tilt < 0) {
+    RootOnFeet root = PlaceRootOnFeet(Feet());
+    T_floor_root_ = root.T_floor_root;
+    by_foot_ = std::move(root.by_foot);
+    return;
+  }
+  const Eigen::VectorXd& tilts = values.quantities[model_.root_tilt].x;
+  T_floor_root_ = RotX(tilts[0]) * RotY(tilts[1]);
+  by_tilt_.col(0).head<3>() = Eigen::Vector3d::UnitX();
+  by_tilt_.col(1).head<3>() = RotX(tilts[0]).linear().col(1);
+}
+
+std::vector<StandingFoot> ObservedPosture::Feet() const {
+  std::vector<StandingFoot> feet;
+  for (std::size_t i = 0; i < model_.setup.feet.size(); ++i) {
+    const ContactFoot& foot = model_.setup.feet[i];
+    feet.push_back({jacobian_.LegPose(static_cast<int>(i)), foot.T_floor_foot, foot.share});
+  }
+  return feet;
+}
+
+Sight ObservedPosture::SightOf(const Observations& observations, const Observation& observation,
+                               const ObservedValues& values) const {
+  const Instrument& instrument = model_.instrument(observation.instrument);
+  Sight sight;
+  for (int link : instrument.links) {
+    const int leg = model_.leg_of_link[link];
+    sight.T_floor_link.push_back(T_floor_root_ * (leg < 0
+                                                      ? model_.robot.tree.links[link].T_body_link
+                                                      : jacobian_.LegPose(leg)));
+  }
+  for (int quantity : instrument.quantities) {
+    sight.values.push_back(values.quantities[quantity]);
+    for (int effect : observation.effects) {
+      if (observations.effects[effect].quantity != quantity || values.effects.empty()) continue;
+      sight.values.back().x += values.effects[effect];
+    }
+  }
+  return sight;
+}
+
+std::vector<JointLoads> ObservedLoads(const ObservedRobot& model, const Observations& observations,
+                                      const Eigen::VectorXd& errors) {
+  const Geometry geometry = ApplyErrors(model.robot, errors);
+  GeneralizedJacobian jacobian(model.robot);
+  std::vector<int> links;
+  for (const ContactFoot& foot : model.setup.feet) links.push_back(foot.link);
+  std::vector<JointLoads> loads;
+  for (int i = 0; i < observations.posture_count(); ++i) {
+    const Eigen::VectorXd q = observations.q.row(i);
+    JointLoads load;
+    for (int step = 0; step < 2; ++step) {  // of the rigid, then of the deflected robot
+      if (links.empty()) {
+        load = GravityLoads(model.robot, geometry, q, kGravity, 0, load);
+        continue;
+      }
+      jacobian.Evaluate(geometry, q, load);
+      std::vector<StandingFoot> feet;
+      for (std::size_t f = 0; f < links.size(); ++f) {
+        const ContactFoot& foot = model.setup.feet[f];
+        feet.push_back({jacobian.LegPose(static_cast<int>(f)), foot.T_floor_foot, foot.share});
+      }
+      load = SharedSupportLoads(model.robot, geometry, q, links, feet, load);
+    }
+    loads.push_back(std::move(load));
+  }
+  return loads;
+}
+
+std::vector<Sight> SightsOf(const ObservedRobot& model, const Observations& observations,
+                            const ObservedValues& values, const std::vector<JointLoads>& loads) {
+  const Geometry geometry = ApplyErrors(model.robot, values.robot);
+  ObservedPosture posture(model);
+  std::vector<Sight> sights(observations.all.size());
+  for (int i = 0; i < observations.posture_count(); ++i) {
+    posture.Evaluate(geometry, values, observations.q.row(i),
+                     loads.empty() ? JointLoads() : loads[static_cast<std::size_t>(i)]);
+    for (std::size_t k = 0; k < sights.size(); ++k) {
+      if (observations.all[k].posture != i) continue;
+      sights[k] = posture.SightOf(observations, observations.all[k], values);
+    }
+  }
+  return sights;
+}
+
+ObservedValues NominalValues(const ObservedRobot& model, const Observations& observations) {
+  ObservedValues values;
+  values.robot = Eigen::VectorXd::Zero(model.robot.parameter_count());
+  for (const Quantity& quantity : model.setup.quantities) {
+    values.quantities.push_back({quantity.origin, Eigen::VectorXd::Zero(quantity.size())});
+  }
+  for (const SessionEffect& effect : observations.effects) {
+    values.effects.emplace_back(
+        Eigen::VectorXd::Zero(model.setup.quantities[effect.quantity].size()));
+  }
+  const std::vector<Sight> sights = SightsOf(model, observations, values, {});
+  RegisterTrackers(model, observations, sights, values);
+  for (std::size_t n = 0; n < model.setup.instruments.size(); ++n) {
+    std::vector<Sight> own;
+    std::vector<Eigen::VectorXd> measured;
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+      if (observations.all[i].instrument != static_cast<int>(n)) continue;
+      own.push_back(sights[i]);
+      measured.push_back(observations.all[i].measured);
+    }
+    if (own.empty()) continue;
+    std::vector<QuantityValue*> of;
+    for (int quantity : model.setup.instruments[n]->quantities) {
+      of.push_back(&values.quantities[quantity]);
+    }
+    model.setup.instruments[n]->Begin(own, measured, of);
+  }
+  return values;
+}
+
+std::vector<Eigen::VectorXd> LeftOf(const ObservedRobot& model, const Observations& observations,
+                                    const ObservedValues& values) {
+  const std::vector<Sight> sights =
+      SightsOf(model, observations, values, ObservedLoads(model, observations, values.robot));
+  std::vector<Eigen::VectorXd> left;
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const Observation& observation = observations.all[i];
+    left.push_back(
+        model.instrument(observation.instrument).Evaluate(sights[i], observation.measured).left);
+  }
+  return left;
+}
+
+}  // namespace elastocal

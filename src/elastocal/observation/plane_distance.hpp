@@ -1,0 +1,24 @@
+#pragma once
+
+#include "elastocal/observation/instrument.hpp"
+
+namespace elastocal {
+
+/// A point of a link at a known distance [m] from a plane that does not move: a tip that touches a
+/// table or a wall (distance 0), or a height gauge, which shows one coordinate.
+///
+/// Quantities: the plane; the position of the point on its link, as displacement from the origin
+/// [m].
+class PlaneDistance : public Instrument {
+ public:
+  const char* kind() const override { return "plane distance"; }
+  std::vector<RowMeaning> rows() const override { return {{"height", SourceUnit::kMetre}}; }
+  int measured_size() const override { return 1; }
+  ObservationResidual Evaluate(const Sight& sight, const Eigen::VectorXd& measured) const override;
+  Eigen::VectorXd Predict(const Sight& sight) const override;
+  /// The plane's pivot is the mean of where the nominal robot has the point, less the distances.
+  void Begin(const std::vector<Sight>& sights, const std::vector<Eigen::VectorXd>& measured,
+             std::vector<QuantityValue*>& values) const override;
+};
+
+}  // namespace elastocal

@@ -1,0 +1,168 @@
+#include "elastocal/observation/setup.hpp"
+
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+#include "elastocal/observation/gravity_direction.hpp"
+#include "elastocal/observation/plane_distance.hpp"
+#include "elastocal/observation/tracked.hpp"
+#include "elastocal/observation/wire_length.hpp"
+
+namespace elastocal {
+namespace {
+
+using Role = Source::Role;
+
+/// A source of `sd`, or the unknown one where that is 0.
+int PriorSource(ObservationSetup& setup, const std::string& name, SourceUnit unit, double sd) {
+  if (sd <= 0.0) return unit == SourceUnit::kRadian ? kUnknownTurn : kUnknownPlace;
+  return AddSource(setup, {name, unit, sd, Role::kFixed});
+}
+
+int NoiseSource(ObservationSetup& setup, const std::string& name, SourceUnit unit, double sd) {
+  return AddSource(setup, {name, unit, sd, Role::kNoise});
+}
+
+/// Where a point is on its link.
+int AddMountedPoint(ObservationSetup& setup, const std::string& name, const Eigen::Vector3d& p_link,
+                    double sd) {
+  Quantity point{name + ".point", {}, false};
+  point.sources.assign(3, PriorSource(setup, name + ".mounting", SourceUnit::kMetre, sd));
+  point.origin.translation() = p_link;
+  return AddQuantity(setup, std::move(point));
+}
+
+template <typename Kind>
+std::shared_ptr<Kind> MakeInstrument(const std::string& name, std::vector<int> links,
+                                     std::vector<int> quantities, std::vector<int> noise) {
+  auto instrument = std::make_shared<Kind>();
+  instrument->name = name;
+  instrument->links = std::move(links);
+  instrument->quantities = std::move(quantities);
+  instrument->noise = std::move(noise);
+  return instrument;
+}
+
+std::vector<int> TrackedLinks(int link, const Tracker& tracker) {
+  if (tracker.carrier < 0) return {link};
+  return {link, tracker.carrier};
+}
+
+}  // namespace
+
+int AddSource(ObservationSetup& setup, Source source) {
+  setup.sources.push_back(std::move(source));
+  return static_cast<int>(setup.sources.size()) - 1;
+}
+
+int AddQuantity(ObservationSetup& setup, Quantity quantity) {
+  setup.quantities.push_back(std::move(quantity));
+  return static_cast<int>(setup.quantities.size()) - 1;
+}
+
+int AddPlane(ObservationSetup& setup, const std::string& name, const Eigen::Vector3d& normal) {
+  Quantity plane{name + ".plane", {kUnknownPlace, kTableTilt, kTableTilt}, true};
+  plane.origin.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix();
+  return AddQuantity(setup, std::move(plane));
+}
+
+void AddPlate(ObservationSetup& setup, const ContactPlate& plate) {
+  if (setup.instruments.size() != setup.plates.size()) {
+    throw std::invalid_argument("plates are the first instruments");
+  }
+  const int tilts = AddQuantity(setup, {plate.name + ".tilts", {kPlateTilt, kPlateTilt}, false});
+  const int table = AddPlane(setup, plate.name);
+  auto contact = MakeInstrument<FlushContact>(plate.name, {plate.link}, {tilts, table},
+                                              {kHeight, kTilt, kTilt});
+  contact->face = plate.face;
+  contact->varying = 1;
+  setup.plates.push_back(plate);
+  setup.instruments.push_back(std::move(contact));
+}
+
+void AddPlaneDistance(ObservationSetup& setup, const PlaneDistanceSetup& of) {
+  const int point = AddMountedPoint(setup, of.name, of.p_link, of.mounting_sd);
+  const int noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
+  auto distance = MakeInstrument<PlaneDistance>(of.name, {of.link}, {of.plane, point}, {noise});
+  distance->varying = 0;
+  setup.instruments.push_back(std::move(distance));
+}
+
+Tracker AddTracker(ObservationSetup& setup, const std::string& name, int carrier) {
+  Quantity pose{name + ".pose", {}, true};
+  pose.sources = {kUnknownPlace, kUnknownPlace, kUnknownPlace,
+                  kUnknownTurn,  kUnknownTurn,  kUnknownTurn};
+  return {AddQuantity(setup, std::move(pose)), carrier};
+}
+
+void AddTrackedPoint(ObservationSetup& setup, const TrackedPointSetup& of) {
+  const int point = AddMountedPoint(setup, of.name, of.p_link, of.mounting_sd);
+  const int noise = of.noise >= 0
+                        ? of.noise
+                        : NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
+  setup.instruments.push_back(
+      MakeInstrument<TrackedPoint>(of.name, TrackedLinks(of.link, of.tracker),
+                                   {of.tracker.quantity, point}, std::vector<int>(3, noise)));
+}
+
+void AddTrackedBody(ObservationSetup& setup, const TrackedBodySetup& of) {
+  Quantity mount{of.name + ".mounting", {}, false};
+  mount.origin = of.T_link;
+  const int place = PriorSource(setup, of.name + ".mounting", SourceUnit::kMetre, of.mounting_sd_m);
+  const int turn =
+      PriorSource(setup, of.name + ".mounting_turn", SourceUnit::kRadian, of.mounting_sd_rad);
+  mount.sources = {place, place, place, turn, turn, turn};
+  const int quantity = AddQuantity(setup, std::move(mount));
+  std::vector<int> noise;
+  Eigen::MatrixXd whitening;
+  if (of.covariance.size() > 0) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(of.covariance);
+    if (of.covariance.rows() != 6 || factor.info() != Eigen::Success) {
+      throw std::invalid_argument("the covariance of a pose is 6 x 6 and positive definite");
+    }
+    whitening = factor.matrixL().solve(Eigen::MatrixXd::Identity(6, 6));
+    noise.assign(6, NoiseSource(setup, of.name + ".noise", SourceUnit::kNone, 1.0));
+  } else {
+    const int p = NoiseSource(setup, of.name + ".position", SourceUnit::kMetre, of.position_sd);
+    const int r = NoiseSource(setup, of.name + ".rotation", SourceUnit::kRadian, of.rotation_sd);
+    noise = {p, p, p, r, r, r};
+  }
+  auto body = MakeInstrument<TrackedBody>(of.name, TrackedLinks(of.link, of.tracker),
+                                          {of.tracker.quantity, quantity}, std::move(noise));
+  body->whitening = std::move(whitening);
+  setup.instruments.push_back(std::move(body));
+}
+
+void AddInertialUnit(ObservationSetup& setup, const InertialUnitSetup& of) {
+  Quantity unit{of.name + ".mounting", {}, false};
+  unit.origin.linear() = of.R_link_unit;
+  unit.sources.assign(
+      3, PriorSource(setup, of.name + ".mounting", SourceUnit::kRadian, of.mounting_sd));
+  const int bias =
+      AddSource(setup, {of.name + ".bias", SourceUnit::kAcceleration, of.bias_sd, Role::kFixed});
+  unit.sources.resize(6, bias);
+  unit.sources.push_back(
+      AddSource(setup, {of.name + ".scale", SourceUnit::kNone, of.scale_sd, Role::kFixed}));
+  const int quantity = AddQuantity(setup, std::move(unit));
+  const int noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kAcceleration, of.noise_sd);
+  setup.instruments.push_back(
+      MakeInstrument<GravityDirection>(of.name, {of.link}, {quantity}, std::vector<int>(3, noise)));
+}
+
+void AddWire(ObservationSetup& setup, const WireSetup& of) {
+  Quantity anchor{of.name + ".anchor", {}, true};
+  anchor.sources.assign(
+      3, AddSource(setup, {of.name + ".anchor", SourceUnit::kMetre, of.anchor_sd, Role::kFixed}));
+  anchor.sources.push_back(
+      AddSource(setup, {of.name + ".zero", SourceUnit::kMetre, of.zero_sd, Role::kFixed}));
+  anchor.origin.translation() = of.p_floor;
+  const int fixed = AddQuantity(setup, std::move(anchor));
+  const int point = AddMountedPoint(setup, of.name, of.p_link, of.mounting_sd);
+  const int noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
+  setup.instruments.push_back(
+      MakeInstrument<WireLength>(of.name, {of.link}, {fixed, point}, {noise}));
+}
+
+}  // namespace elastocal

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "elastocal/observation/flush_contact.hpp"
+#include "elastocal/observation/instrument.hpp"
+
+namespace elastocal {
+
+/// A foot that stands on the floor in every posture and does not move.
+struct ContactFoot {
+  int link = 0;
+  /// Where it stands; the floor's frame is where the first foot stands, z up.
+  Transform T_floor_foot = Transform::Identity();
+  double share = 0.5;  ///< of the weight
+};
+
+/// A plate of the robot and the table that it touches: one table for each plate.
+struct ContactPlate {
+  std::string name;
+  int link = 0;
+  PlateFace face = {};
+};
+
+/// How a robot stands, and by what it is observed. Instruments, quantities and sources are added by
+/// the functions below.
+struct ObservationSetup {
+  /// None: the root link is held still, level but for a small unknown tilt, and is the floor's
+  /// frame.
+  std::vector<ContactFoot> feet = {};
+  std::vector<ContactPlate> plates = {};  ///< they are the first instruments
+  std::vector<std::shared_ptr<const Instrument>> instruments = {};
+  std::vector<Quantity> quantities = {};
+  std::vector<Source> sources = CommonSources();
+  /// Patterns of parameters that have one value in common, such as the compliance of both hips.
+  std::vector<std::vector<std::string>> common = {};
+  std::vector<std::string> hold = {};  ///< patterns of parameters that stay nominal
+  double outlier_probability = 0.01;   ///< that postures without a single outlier have one named
+};
+
+/// Index of a new source.
+int AddSource(ObservationSetup& setup, Source source);
+
+/// Index of a new quantity.
+int AddQuantity(ObservationSetup& setup, Quantity quantity);
+
+/// A plate that touches a table flush (FlushContact). Throws std::invalid_argument after other
+/// instruments.
+void AddPlate(ObservationSetup& setup, const ContactPlate& plate);
+
+/// Common to the descriptions below: `link` sees, `p_link` or `T_link` is nominal and uncertain by
+/// `mounting_sd`, `noise_sd` is a first guess (the data decide).
+
+/// The plane of a table, a wall or a gauge's reference: its normal is nominally `normal` and
+/// uncertain like a table's (kTableTilt), its place unknown. Index of the quantity.
+int AddPlane(ObservationSetup& setup, const std::string& name,
+             const Eigen::Vector3d& normal = Eigen::Vector3d::UnitZ());
+
+struct PlaneDistanceSetup {
+  std::string name;
+  int link = 0;
+  Eigen::Vector3d p_link = Eigen::Vector3d::Zero();  ///< m
+  int plane = 0;                                     ///< quantity, see AddPlane
+  double mounting_sd = 1e-3;                         ///< m
+  double noise_sd = 1e-3;                            ///< m
+};
+void AddPlaneDistance(ObservationSetup& setup, const PlaneDistanceSetup& of);
+
+/// A tracker that nobody knows the place of; `carrier`: link that carries it, -1: the floor does.
+struct Tracker {
+  int quantity = 0, carrier = -1;
+};
+Tracker AddTracker(ObservationSetup& setup, const std::string& name, int carrier = -1);
+
+struct TrackedPointSetup {
+  std::string name;
+  int link = 0;
+  Eigen::Vector3d p_link = Eigen::Vector3d::Zero();  ///< m
+  Tracker tracker = {};
+  double mounting_sd = 0.0;  ///< m; 0: unknown (1 m)
+  double noise_sd = 1e-3;    ///< m
+  int noise = -1;            ///< source that several have in common; -1: its own
+};
+void AddTrackedPoint(ObservationSetup& setup, const TrackedPointSetup& of);
+
+struct TrackedBodySetup {
+  std::string name;
+  int link = 0;
+  Transform T_link = Transform::Identity();
+  Tracker tracker = {};
+  double mounting_sd_m = 0.0, mounting_sd_rad = 0.0;  ///< 0: unknown (1 m, 1 rad)
+  double position_sd = 1e-3, rotation_sd = 2e-3;      ///< of the noise, m and rad
+  /// Of position [m] and rotation vector [rad] in the order and axes of TrackedBody, known up to a
+  /// factor, which the data decide; empty: position and rotation have a standard deviation each.
+  Eigen::MatrixXd covariance = {};
+};
+/// Throws std::invalid_argument for a covariance that is not positive definite.
+void AddTrackedBody(ObservationSetup& setup, const TrackedBodySetup& of);
+
+struct InertialUnitSetup {
+  std::string name;
+  int link = 0;
+  Eigen::Matrix3d R_link_unit = Eigen::Matrix3d::Identity();
+  double mounting_sd = 0.0;  ///< rad; 0: unknown (1 rad)
+  double bias_sd = 0.02;     ///< m/s^2
+  double scale_sd = 5e-3;
+  double noise_sd = 0.02;  ///< m/s^2
+};
+void AddInertialUnit(ObservationSetup& setup, const InertialUnitSetup& of);
+
+struct WireSetup {
+  std::string name;
+  int link = 0;
+  Eigen::Vector3d p_link = Eigen::Vector3d::Zero();   ///< m
+  Eigen::Vector3d p_floor = Eigen::Vector3d::Zero();  ///< the fixed point, roughly, m
+  double anchor_sd = 0.1, zero_sd = 0.01;             ///< m
+  double mounting_sd = 1e-3;                          ///< m
+  double noise_sd = 1e-3;                             ///< m
+};
+void AddWire(ObservationSetup& setup, const WireSetup& of);
+
+}  // namespace elastocal

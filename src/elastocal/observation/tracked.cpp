@@ -1,0 +1,132 @@
+#include "elastocal/observation/tracked.hpp"
+
+#include "elastocal/math/rotation_vector.hpp"
+
+namespace elastocal {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kArm =
+    0.1;  // m: of the points that stand for a pose where a tracker is registered
+
+/// What carries the tracker, on the floor.
+Transform CarrierOf(const Sight& sight) {
+  return sight.T_floor_link.size() > 1 ? sight.T_floor_link[1] : Transform::Identity();
+}
+
+/// A point as the tracker has it, with its derivatives by the screw of its link and the tracker's
+/// pose. (A screw of the tracker's carrier moves it the other way.)
+struct TrackerView {
+  Vector3d p;
+  Eigen::Matrix<double, 3, 6> by_screw, by_tracker;
+};
+
+TrackerView ViewOf(const Sight& sight, const Vector3d& p_floor) {
+  const Transform carrier = CarrierOf(sight);
+  const Transform T_floor_tracker = carrier * sight.values[0].Pose();
+  const Matrix3d R = T_floor_tracker.linear().transpose();
+  const Vector3d arm = p_floor - T_floor_tracker.translation();
+  TrackerView view;
+  view.p = R * arm;
+  view.by_screw = R * PointByScrew(p_floor);
+  view.by_tracker << -R * carrier.linear(),
+      R * Skew(arm) * carrier.linear() * sight.values[0].Turns();
+  return view;
+}
+
+/// By the screws of all links that it sees, given that of the link that moves.
+std::vector<ByScrew> ByLinks(const Sight& sight, const ByScrew& by_screw) {
+  if (sight.T_floor_link.size() > 1) return {by_screw, -by_screw};
+  return {by_screw};
+}
+
+Vector3d MarkOf(const Sight& sight) {
+  return sight.T_floor_link[0] * (sight.values[1].origin.translation() + sight.values[1].x);
+}
+
+Transform BodyInTracker(const Sight& sight) {
+  const Transform T_floor_tracker = CarrierOf(sight) * sight.values[0].Pose();
+  return T_floor_tracker.inverse(Eigen::Isometry) * sight.T_floor_link[0] * sight.values[1].Pose();
+}
+
+Eigen::Quaterniond Attitude(const Eigen::VectorXd& measured) {
+  return Eigen::Quaterniond(measured[6], measured[3], measured[4], measured[5]).normalized();
+}
+
+}  // namespace
+
+ObservationResidual TrackedPoint::Evaluate(const Sight& sight,
+                                           const Eigen::VectorXd& measured) const {
+  const TrackerView view = ViewOf(sight, MarkOf(sight));
+  const Matrix3d R_tracker_link = (CarrierOf(sight) * sight.values[0].Pose()).linear().transpose() *
+                                  sight.T_floor_link[0].linear();
+  return {view.p - measured, ByLinks(sight, view.by_screw), {view.by_tracker, R_tracker_link}};
+}
+
+Eigen::VectorXd TrackedPoint::Predict(const Sight& sight) const {
+  return ViewOf(sight, MarkOf(sight)).p;
+}
+
+void TrackedPoint::AddLandmarks(const Sight& sight, const Eigen::VectorXd& measured,
+                                Landmarks& landmarks) const {
+  landmarks.emplace_back(CarrierOf(sight).inverse(Eigen::Isometry) * MarkOf(sight), measured);
+}
+
+std::vector<RowMeaning> TrackedBody::rows() const {
+  std::vector<RowMeaning> rows(3, {"position", SourceUnit::kMetre});
+  rows.resize(6, {"rotation", SourceUnit::kRadian});
+  return rows;
+}
+
+ObservationResidual TrackedBody::Evaluate(const Sight& sight,
+                                          const Eigen::VectorXd& measured) const {
+  const Transform carrier = CarrierOf(sight);
+  const Transform& T_floor_link = sight.T_floor_link[0];
+  const Transform mount = sight.values[1].Pose();
+  const Transform T_floor_body = T_floor_link * mount;
+  const TrackerView view = ViewOf(sight, T_floor_body.translation());
+  const Matrix3d R_tracker_floor = (carrier * sight.values[0].Pose()).linear().transpose();
+  const Vector3d turn = RotationVector(Attitude(measured).toRotationMatrix().transpose() *
+                                       R_tracker_floor * T_floor_body.linear());
+  // By a rotation of the body in its own axes: inverse of the right Jacobian.
+  const Matrix3d by_own = InverseLeftJacobian(turn).transpose();
+  const Matrix3d by_turn = by_own * T_floor_body.linear().transpose();
+
+  ObservationResidual pose;
+  pose.left.resize(6);
+  pose.left << view.p - measured.head<3>(), turn;
+  ByScrew by_screw(6, 6);
+  by_screw << view.by_screw, by_turn * TurnByScrew();
+  pose.by_link = ByLinks(sight, by_screw);
+  Eigen::MatrixXd by_tracker = Eigen::MatrixXd::Zero(6, 6);
+  by_tracker.topRows<3>() = view.by_tracker;
+  by_tracker.bottomRightCorner<3, 3>() = -by_turn * carrier.linear() * sight.values[0].Turns();
+  Eigen::MatrixXd by_mount = Eigen::MatrixXd::Zero(6, 6);
+  by_mount.topLeftCorner<3, 3>() = R_tracker_floor * T_floor_link.linear();
+  by_mount.bottomRightCorner<3, 3>() =
+      by_own * mount.linear().transpose() * sight.values[1].Turns();
+  pose.by_quantity = {by_tracker, by_mount};
+  return pose;
+}
+
+Eigen::VectorXd TrackedBody::Predict(const Sight& sight) const {
+  const Transform pose = BodyInTracker(sight);
+  Eigen::VectorXd measured(7);
+  measured << pose.translation(), Eigen::Quaterniond(pose.linear()).coeffs();
+  return measured;
+}
+
+void TrackedBody::AddLandmarks(const Sight& sight, const Eigen::VectorXd& measured,
+                               Landmarks& landmarks) const {
+  const Transform seen =
+      CarrierOf(sight).inverse(Eigen::Isometry) * sight.T_floor_link[0] * sight.values[1].Pose();
+  for (int corner = 0; corner < 4; ++corner) {
+    Vector3d p = Vector3d::Zero();
+    if (corner < 3) p[corner] = kArm;
+    landmarks.emplace_back(seen * p, measured.head<3>() + Attitude(measured) * p);
+  }
+}
+
+}  // namespace elastocal

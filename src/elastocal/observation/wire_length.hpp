@@ -1,0 +1,22 @@
+#pragma once
+
+#include "elastocal/observation/instrument.hpp"
+
+namespace elastocal {
+
+/// A draw wire: measured is the distance of a point of a link to a fixed point, m, counted from an
+/// unknown zero.
+///
+/// Quantities: the fixed point, as displacement from the origin on the floor [m], and the zero that
+/// is added to the distance [m]: 4 numbers; the position of the point on its link, as displacement
+/// from the origin [m].
+class WireLength : public Instrument {
+ public:
+  const char* kind() const override { return "wire"; }
+  std::vector<RowMeaning> rows() const override { return {{"length", SourceUnit::kMetre}}; }
+  int measured_size() const override { return 1; }
+  ObservationResidual Evaluate(const Sight& sight, const Eigen::VectorXd& measured) const override;
+  Eigen::VectorXd Predict(const Sight& sight) const override;
+};
+
+}  // namespace elastocal

@@ -1,0 +1,97 @@
+#pragma once
+
+#include "tests/touching_biped.hpp"
+
+namespace elastocal {
+
+/// The touching biped with one instrument of each kind.
+struct InstrumentedBiped {
+  enum Stance { kOnFeet, kFixed };  ///< fixed: the root link is held still, and nothing is touched
+  enum Kinds {
+    kPlates = 1,
+    kPoses = 2,
+    kGravity = 4,
+    kTips = 8,
+    kWires = 16,
+    kPoints = 32,
+    kAll = 63
+  };
+
+  explicit InstrumentedBiped(Stance stance, int kinds = kAll,
+                             const std::vector<std::string>& hold = {})
+      : on_feet(stance == kOnFeet) {
+    RobotTree tree;
+    ObservationSetup setup = TouchingSetup(tree);
+    if (!on_feet || (kinds & kPlates) == 0) {
+      ObservationSetup without;
+      if (on_feet) without.feet = setup.feet;
+      setup = without;
+    }
+    const int left = FindLink(tree, "arm_left_5_link");
+    const int right = FindLink(tree, "arm_right_5_link");
+    const int trunk = FindLink(tree, "trunk_pitch_link");
+    if (kinds & (kPoses | kPoints)) {
+      const Tracker room = AddTracker(setup, "room");
+      if (kinds & kPoses) {
+        Transform T_link = RotX(0.4) * RotZ(0.7);
+        T_link.translation() << 0.05, -0.02, 0.03;
+        AddTrackedBody(setup, {.name = "hand", .link = left, .T_link = T_link, .tracker = room});
+        // Seen from the trunk, with a covariance of its own.
+        const Tracker head = AddTracker(setup, "head", trunk);
+        Eigen::MatrixXd covariance = 1e-6 * Eigen::MatrixXd::Identity(6, 6);
+        covariance(0, 4) = covariance(4, 0) = 5e-7;
+        covariance(3, 3) = 4e-6;
+        AddTrackedBody(
+            setup,
+            {.name = "other_hand", .link = right, .tracker = head, .covariance = covariance});
+      }
+      if (kinds & kPoints) {
+        for (int m = 0; m < 3; ++m) {
+          const Eigen::Vector3d p(0.05 * m, m == 1 ? 0.06 : -0.02, m == 2 ? 0.07 : 0.01);
+          AddTrackedPoint(
+              setup,
+              {.name = "marker" + std::to_string(m), .link = right, .p_link = p, .tracker = room});
+        }
+      }
+    }
+    if (kinds & kGravity) {
+      AddInertialUnit(setup, {.name = "imu", .link = 0, .R_link_unit = RotX(0.3).linear()});
+      AddInertialUnit(setup, {.name = "hand_imu", .link = left});
+    }
+    if (kinds & kTips) {
+      const int wall = AddPlane(setup, "wall", {1.0, 0.2, 0.1});
+      AddPlaneDistance(setup,
+                       {.name = "tip", .link = left, .p_link = {0.1, 0.0, 0.02}, .plane = wall});
+      AddPlaneDistance(setup, {.name = "gauge",
+                               .link = trunk,
+                               .p_link = {0.1, 0.1, 0.3},
+                               .plane = AddPlane(setup, "ground")});
+    }
+    if (kinds & kWires) {
+      AddWire(
+          setup,
+          {.name = "wire", .link = right, .p_link = {0.03, 0.0, 0.0}, .p_floor = {1.5, -0.6, 0.2}});
+    }
+    model = MakeTouchingBiped(tree, setup, hold);
+  }
+
+  bool touches() const { return !model.setup.plates.empty(); }
+
+  /// What the true robot shows without noise.
+  Observations Observe(const ObservedValues& truth, int touch_count, int posture_count,
+                       Random& random) const {
+    Observations all;
+    all.files = {"synthetic"};
+    if (touches()) {
+      const int sessions = static_cast<int>(truth.effects.size() / model.setup.plates.size());
+      all = SimulateTouches(model, truth, touch_count, sessions, Eigen::Vector3d::Zero(), random);
+    }
+    AddMeasurements(model, truth, posture_count, all, random);
+    return all;
+  }
+
+  bool on_feet;
+  ObservedRobot model;
+};
+
+}  // namespace elastocal

@@ -1,0 +1,278 @@
+#include "elastocal/observation/observation_fit.hpp"
+
+#include <Eigen/QR>
+#include <gtest/gtest.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/math/statistics.hpp"
+#include "elastocal/observation/observation_figures.hpp"
+#include "tests/instrumented_biped.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kDegreeOfArc = M_PI / 180.0;
+
+double Largest(const std::vector<Eigen::VectorXd>& left) {
+  double largest = 0.0;
+  for (const Eigen::VectorXd& of : left) largest = std::max(largest, of.cwiseAbs().maxCoeff());
+  return largest;
+}
+
+/// A fit to data without noise.
+ObservationFit FitExactly(const ObservedRobot& model, const Observations& seen) {
+  ObservationFit start = StartFit(model, seen);
+  for (std::size_t s = 0; s < model.setup.sources.size(); ++s) {
+    if (model.setup.sources[s].role != Source::Role::kNoise) continue;
+    // Less would drown what gravity hardly tells in roundings of the information.
+    start.spread.sd[s] = model.setup.sources[s].unit == SourceUnit::kNone ? 1e-4 : 1e-7;
+  }
+  return FitObservations(model, seen, start, {.estimate_spread = false, .max_updates = 30});
+}
+
+TEST(ObservationFit, PredictsOtherTouchesExactlyAfterTouchesWithoutNoise) {
+  const ObservedRobot model = MakeTouchingBiped({"*.compliance_*"});
+  Random random(11);
+  const ObservedValues truth = RandomTruth(model, 1, random);
+  const Observations seen = SimulateTouches(model, truth, 60, 1, Eigen::Vector3d::Zero(), random);
+  const Observations others = SimulateTouches(model, truth, 10, 1, Eigen::Vector3d::Zero(), random);
+  // 180 numbers determine all that touches see.
+  const ObservationFit fit = FitExactly(model, seen);
+  EXPECT_LT(Largest(LeftOf(model, others, fit.values)), 1e-8);
+}
+
+/// Each kind by itself and all together, on feet and with a root that is held still.
+class EveryKind : public testing::TestWithParam<std::pair<InstrumentedBiped::Stance, int>> {};
+
+TEST_P(EveryKind, IsPredictedExactlyAfterMeasurementsWithoutNoise) {
+  const InstrumentedBiped biped(GetParam().first, GetParam().second, {"*.compliance_*"});
+  Random random(21);
+  const ObservedValues truth = RandomTruth(biped.model, biped.touches() ? 1 : 0, random);
+  const Observations seen = biped.Observe(truth, 40, 160, random);
+  const Observations others = biped.Observe(truth, 4, 10, random);
+  const ObservationFit fit = FitExactly(biped.model, seen);
+  EXPECT_LT(Largest(LeftOf(biped.model, others, fit.values)), 1e-8);
+}
+
+constexpr auto kOnFeet = InstrumentedBiped::kOnFeet;
+constexpr auto kFixed = InstrumentedBiped::kFixed;
+INSTANTIATE_TEST_SUITE_P(ObservationFit, EveryKind,
+                         testing::Values(std::pair(kOnFeet, InstrumentedBiped::kPoses),
+                                         std::pair(kOnFeet, InstrumentedBiped::kGravity),
+                                         std::pair(kOnFeet, InstrumentedBiped::kTips),
+                                         std::pair(kOnFeet, InstrumentedBiped::kWires),
+                                         std::pair(kOnFeet, InstrumentedBiped::kPoints),
+                                         std::pair(kOnFeet, InstrumentedBiped::kAll),
+                                         std::pair(kFixed, InstrumentedBiped::kAll)));
+
+/// How many numbers of the robot the observations determine beside all quantities, prior aside.
+int RankOfRobot(const InstrumentedBiped& biped, const Observations& observations) {
+  ObservationFit fit = StartFit(biped.model, observations);
+  ObservationResiduals residuals(biped.model, observations, fit.loads, fit.spread, fit.weights, {},
+                                 fit.values);
+  residuals.Evaluate(residuals.Start(), true);
+  std::vector<Eigen::Index> first = {0};
+  for (int size : residuals.parameter_blocks) first.push_back(first.back() + size);
+  Eigen::Index rows = 0;
+  for (const Observation& of : observations.all) {
+    rows += biped.model.instrument(of.instrument).size();
+  }
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, first.back());
+  rows = 0;
+  for (int i = 0; i < observations.count(); ++i) {
+    const auto& block = residuals.Jacobian(i);
+    Eigen::Index column = 0;
+    for (int of : residuals.residual_blocks[i].parameter_blocks) {
+      J.block(rows, first[of], block.rows(), residuals.parameter_blocks[of]) =
+          block.middleCols(column, residuals.parameter_blocks[of]);
+      column += residuals.parameter_blocks[of];
+    }
+    rows += block.rows();
+  }
+  const auto rank = [](Eigen::MatrixXd columns) {
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+      const double norm = columns.col(c).norm();
+      if (norm > 0.0) columns.col(c) /= norm;
+    }
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+    qr.setThreshold(1e-9);
+    return static_cast<int>(qr.rank());
+  };
+  const Eigen::Index robot = biped.model.unknown_count;
+  return rank(J) - rank(J.rightCols(J.cols() - robot));
+}
+
+TEST(ObservationFit, TouchesAndInertialUnitsDetermineMoreThanEither) {
+  const std::vector<std::string> rigid = {"*.compliance_*"};
+  const auto rank = [&](int kinds) {
+    const InstrumentedBiped biped(kOnFeet, kinds, rigid);
+    Random random(31);
+    const ObservedValues truth = RandomTruth(biped.model, biped.touches() ? 1 : 0, random);
+    return RankOfRobot(biped, biped.Observe(truth, 60, 60, random));
+  };
+  const int touches = rank(InstrumentedBiped::kPlates);
+  const int units = rank(InstrumentedBiped::kGravity);
+  const int both = rank(InstrumentedBiped::kPlates | InstrumentedBiped::kGravity);
+  RecordProperty("touches", touches);
+  RecordProperty("units", units);
+  RecordProperty("both", both);
+  EXPECT_GT(both, touches) << touches << " " << units << " " << both;
+  EXPECT_GT(both, units) << touches << " " << units << " " << both;
+}
+
+/// Adds normal noise of the sizes that the sources have to all measurements.
+void AddNoise(const ObservedRobot& model, Observations& observations, Random& random) {
+  for (Observation& of : observations.all) {
+    const Instrument& instrument = model.instrument(of.instrument);
+    if (of.measured.size() == 0) continue;
+    const Eigen::MatrixXd factor = instrument.Weights(FirstSpread(model.setup.sources)).inverse();
+    const Eigen::VectorXd noise = factor * random.NormalVector(instrument.size(), 1.0);
+    if (of.measured.size() != 7) {
+      of.measured += noise;
+      continue;
+    }
+    of.measured.head<3>() += noise.head<3>();
+    const Eigen::Quaterniond attitude(of.measured[6], of.measured[3], of.measured[4],
+                                      of.measured[5]);
+    const Eigen::Vector3d turn = noise.tail<3>();
+    const Eigen::Quaterniond turned =
+        attitude * Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    of.measured.tail<4>() = turned.coeffs();
+  }
+}
+
+TEST(ObservationFit, TheMountingOfAnInertialUnitIsFoundWithItsUncertainty) {
+  // An offset of the joint that carries the unit turns it like its mounting does: angles are known
+  // here.
+  const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kGravity | InstrumentedBiped::kTips,
+                                {"*.compliance_*", "*.theta", "*.alpha", "*.beta", "*.gamma"});
+  const ObservedRobot& model = biped.model;
+  const auto find = [&](const std::string& name) {
+    int unit = 0;
+    while (model.setup.quantities[unit].name != name) ++unit;
+    return unit;
+  };
+  const int hand = find("hand_imu.mounting");
+  double squares = 0.0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Random random(40 + seed);
+    ObservedValues truth = RandomTruth(model, 0, random);
+    truth.quantities[hand].x.head<3>() << 0.4, -0.3, 1.2;  // far from what the project says
+    Observations seen = biped.Observe(truth, 0, 150, random);
+    AddNoise(model, seen, random);
+    const ObservationFit fit = EstimateObserved(model, seen, {}).fit;
+    EXPECT_TRUE(fit.settled);
+    for (int unit : {hand, find("imu.mounting")}) {
+      const Eigen::Vector3d error = RotationVector(
+          truth.quantities[unit].Rotation(0) * fit.values.quantities[unit].Rotation(0).transpose());
+      // 0.02 m/s^2 are 0.12 degrees, each of 150 postures tells two of three angles, and the bias
+      // is told beside them: 0.012 degrees for each angle, up to twice that.
+      if (unit == hand) {
+        EXPECT_LT(error.norm(), 0.05 * kDegreeOfArc);
+      }
+      const int entry = fit.entry_of_quantity[unit];
+      // The chart's rotation vector turns the axes by its left Jacobian.
+      const Eigen::Matrix3d turns = fit.values.quantities[unit].Turns(0);
+      const Eigen::Matrix3d covariance =
+          turns * fit.covariance.block<3, 3>(entry, entry) * turns.transpose();
+      squares += error.dot(covariance.llt().solve(error));
+      count += 3;
+    }
+  }
+  // Chi-squared of 36 numbers: 36 +- 8.5; three times that.
+  EXPECT_GT(squares, 11.0);
+  EXPECT_LT(squares, 61.0) << "of " << count;
+}
+
+TEST(ObservationFit, FindsTheComplianceOfTheHips) {
+  const ObservedRobot model = MakeTouchingBiped();
+  Random random(12);
+  const ObservedValues truth = RandomTruth(model, 1, random);
+  const Observations seen = SimulateTouches(model, truth, 100, 1, Eigen::Vector3d::Zero(), random);
+  const ObservedEstimate estimate = EstimateObserved(model, seen, {});
+  const int hip = FindParameter(model.robot.parameters, "left_3.compliance_z");
+  // Loads depend on the lengths of the legs, which touches do not determine: 1 mm in 0.5 m. One
+  // number of noise at its first guess, 3 mm, stands beside 300 without any.
+  EXPECT_NEAR(estimate.fit.values.robot[hip] / truth.robot[hip], 1.0, 1e-2);
+}
+
+TEST(ObservationFit, IntervalsCoverTheTruth) {
+  const ObservedRobot model = MakeTouchingBiped();
+  int inside = 0;
+  int all = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Random random(seed);
+    const ObservedValues truth = RandomTruth(model, 3, random);
+    const Observations touches =
+        SimulateTouches(model, truth, 60, 3, Eigen::Vector3d(2e-3, 4e-3, 4e-3), random);
+    const ObservationFit fit = EstimateObserved(model, touches, {}).fit;
+    EXPECT_TRUE(fit.settled);
+    const double factor = StudentQuantile(0.975, fit.degrees_of_freedom);
+    for (int i = 0; i < model.robot.parameter_count(); ++i) {
+      const Parameter& parameter = model.robot.parameters[i];
+      if (parameter.kind != ParameterKind::kTheta) continue;
+      const int entry = fit.entry_of_unknown[model.unknown[i]];
+      const double sd = std::sqrt(fit.covariance(entry, entry));
+      ++all;
+      if (std::abs(fit.values.robot[i] - truth.robot[i]) <= factor * sd) ++inside;
+    }
+  }
+  // 192 offsets, of which those of a robot are correlated: as about 70, so two standard errors
+  // are 5 %.
+  EXPECT_GT(inside, 0.90 * all) << inside << " of " << all;
+  EXPECT_LT(inside, 0.995 * all) << inside << " of " << all;
+}
+
+TEST(ObservationFit, NamesATouchWithoutContact) {
+  const ObservedRobot model = MakeTouchingBiped();
+  Random random(5);
+  const ObservedValues truth = RandomTruth(model, 1, random);
+  Observations touches =
+      SimulateTouches(model, truth, 40, 1, Eigen::Vector3d(2e-3, 4e-3, 4e-3), random);
+  const ObservedEstimate clean = EstimateObserved(model, touches, {});
+  EXPECT_TRUE(clean.outliers.empty());
+  const int elbow = FindJoint(model.robot.tree, "arm_right_3");
+  touches.q(17, model.robot.tree.joints[elbow].coordinate) -= 0.4;  // the hand is in the air
+  const ObservedEstimate estimate = EstimateObserved(model, touches, {});
+  ASSERT_EQ(estimate.outliers.size(), 1u);
+  EXPECT_EQ(estimate.outliers[0].observation, 17);
+  EXPECT_EQ(estimate.fit.weights[17], 0.0);
+}
+
+TEST(ObservationFit, SameTouchesGiveTheSameBitsOnAnyNumberOfThreads) {
+  const ObservedRobot model = MakeTouchingBiped();
+  Random random(7);
+  const ObservedValues truth = RandomTruth(model, 2, random);
+  const Observations touches =
+      SimulateTouches(model, truth, 24, 2, Eigen::Vector3d(2e-3, 4e-3, 4e-3), random);
+  const auto one = CrossValidate(model, touches, {}, 4, 1);
+  const auto two = CrossValidate(model, touches, {}, 4, 2);
+  EXPECT_EQ(one.left, two.left);
+  EXPECT_EQ(EstimateObserved(model, touches, {}).fit.values.robot,
+            EstimateObserved(model, touches, {}).fit.values.robot);
+}
+
+TEST(ObservationFit, ATableThatWasMovedIsRegisteredAnew) {
+  const ObservedRobot model = MakeTouchingBiped();
+  Random random(8);
+  ObservedValues truth = RandomTruth(model, 1, random);
+  const int table[] = {model.instrument(0).quantities[1], model.instrument(1).quantities[1]};
+  truth.quantities[table[0]].x += Eigen::Vector3d(0.02, 0.01, -0.005);
+  truth.quantities[table[1]].x[0] = -0.05;
+  const Observations touches =
+      SimulateTouches(model, truth, 16, 1, Eigen::Vector3d::Zero(), random);
+  ObservedValues known = truth;
+  for (int t : table) known.quantities[t].x.setZero();
+  known.effects.clear();
+  Spread exact = FirstSpread(model.setup.sources);
+  exact[kHeight] = exact[kTilt] = 1e-9;
+  EXPECT_LT(Largest(LeftAfterRegistration(model, touches, known, exact)), 1e-9);
+  EXPECT_GT(Largest(LeftOf(model, touches, known)), 0.01);
+  EXPECT_THROW(LeftAfterRegistration(model, SelectPostures(touches, {0, 1, 2, 3, 5}), known, exact),
+               InputError);
+}
+
+}  // namespace
+}  // namespace elastocal
