@@ -132,8 +132,12 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   if (exit_code != kFine) return exit_code;
   simulations.Start(in("motion.csv"), "", in("recording"));
   for (const std::string kind : {"sine", "random"}) {
-    exit_code = RunShown(
-        {"plan", project, "--kind", kind, "-o", in(kind + ".csv"), "--seed", seed_text}, options);
+    CommandLine plan = {"plan", project,           "--kind", kind,
+                        "-o",   in(kind + ".csv"), "--seed", seed_text};
+    if (options.count > 0 && kind == "random") {
+      plan.insert(plan.end(), {"--count", std::to_string(options.count)});
+    }
+    exit_code = RunShown(plan, options);
     if (exit_code != kFine) return exit_code;
     simulations.Start(in(kind + ".csv"), kind, in("recording_" + kind));
     calibrate.push_back(in("recording_" + kind));
@@ -176,8 +180,10 @@ void AddDemo(CLI::App& app, Action& action) {
       ->type_name("DIR")
       ->capture_default_str();
   command
-      ->add_option("--count", options->count,
-                   "Postures of each chain; default: as many as it takes (--quick: 60 in all)")
+      ->add_option(
+          "--count", options->count,
+          "Postures of each chain, designed and random; default: as many as it takes, and 20 "
+          "(--quick: 60 in all)")
       ->check(CLI::Range(4, 10000));
   command->add_flag("--quick", options->quick,
                     "Only estimate, from a generated table of random postures of the upper body, "

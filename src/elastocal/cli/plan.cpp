@@ -177,6 +177,11 @@ void AddPlan(CLI::App& app, Action& action) {
                    "Plan a validation motion of this kind, of all chains, instead")
       ->transform(CLI::IsMember({"sine", "random", "repeatability"}, CLI::ignore_case))
       ->excludes(postures);
+  auto* count = command
+                    ->add_option("--count", options->options.validation.random_postures,
+                                 "Postures of each chain, of --kind random")
+                    ->check(CLI::Range(1, 1000))
+                    ->capture_default_str();
   command->add_option("-o,--output", options->output, "Motion (CSV; docs/formats.md, Motion)")
       ->required()
       ->check(IsNamed)
@@ -230,10 +235,11 @@ void AddPlan(CLI::App& app, Action& action) {
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal plan models/talos/project.yaml --postures postures.yaml -o motion.csv");
-  command->callback([&action, options] {
+  command->callback([&action, options, count] {
     if (options->postures.empty() && options->kind.empty()) {
       throw CLI::RequiredError("--postures or --kind");
     }
+    if (*count && options->kind != "random") throw CLI::RequiresError("--count", "--kind random");
     action = [options] { return Plan(*options); };
   });
 }

@@ -174,8 +174,8 @@ MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std
   CheckOptions(options);
   const auto robot = StandProjectRobot(project, options.limits);
   Random random(seed);
-  std::vector<PostureTour> tours =
-      ValidationTours(*robot, project.motion, SetupsOfBothSides(project), kind, {}, random);
+  std::vector<PostureTour> tours = ValidationTours(
+      *robot, project.motion, SetupsOfBothSides(project), kind, options.validation, random);
   return PlanSets(project, *robot, std::move(tours), options, progress);
 }
 

@@ -21,6 +21,7 @@ struct MotionPlanOptions {
   PlanOptions plan = {};
   MotionLimits limits = {};
   int threads = 2;  ///< chains planned at a time; the result does not depend on it
+  ValidationOptions validation = {};  ///< of PlanValidationMotion
 };
 
 /// The worst value of a quantity over a whole motion beside its limit, in words for people.
