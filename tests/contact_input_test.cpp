@@ -284,5 +284,53 @@ TEST(InstrumentInput, TheTableSaysWhatIsWrong) {
   ExpectInputError([&] { ReadObservationTables({file}, posed); }, {"arm_left_3_joint"});
 }
 
+TEST(InstrumentInput, ImagesOfTagsAreReadFromATableOfCorners) {
+  const std::string text = "robot: {urdf: " + SourceFile("models/talos/talos.urdf").string() + R"(}
+instruments:
+  cameras: [{name: head, link: head_2_link, focal_px: [600, 600], centre_px: [320, 240]}]
+  tags: [{name: "7", link: arm_left_7_link, size_mm: 50}, {name: pole, size_mm: 200}]
+recording: {ignore: [note]}
+)";
+  const Project project = ParseProject(text, "project.yaml");
+  ScratchFolder folder;
+  const std::filesystem::path table = folder.path() / "t.csv";
+  const std::filesystem::path corners = folder.path() / "corners.csv";
+  std::string postures = TableText(project, 2, "", "frame,note");
+  postures.replace(postures.find(",a\n"), 3, ",f0,a\n");
+  postures.replace(postures.rfind(",a\n"), 3, ",f1,a\n");
+  std::ofstream(table) << postures;
+  const std::string fine = "frame,tag,corner,u,v\nf1,7,0,1,2\nf1,7,1,3,4\nf1,7,2,5,6\nf1,7,3,7,8\n";
+  const auto read = [&](std::string of, const std::string& from, const std::string& to) {
+    of.replace(of.find(from), from.size(), to);
+    std::ofstream(corners) << of;
+    return ReadObservationTables({table, corners}, project);
+  };
+  const ObservationTables tables = read(fine, "f1", "f1");
+  ASSERT_EQ(tables.observations.count(), 1);
+  EXPECT_EQ(tables.observations.all[0].posture, 1);
+  EXPECT_EQ(tables.observations.all[0].measured[5], 6.0);
+  EXPECT_EQ(tables.setup.instruments[0]->name, "head/7");
+  const auto error = [&](const std::string& from, const std::string& to,
+                         std::initializer_list<std::string> messages) {
+    ExpectInputError([&] { read(fine, from, to); }, messages);
+  };
+  error("f1,7,0", "f1,pale,0", {"corners.csv:2: ", "'tag'", "did you mean 'pole'?"});
+  error("f1,7,1", "f1,7,0", {"corners.csv:3: ", "comes twice"});
+  error("f1,7,1", "f1,7,4", {"corners.csv:3: ", "0, 1, 2 or 3"});
+  error("f1,7,3,7,8\n", "", {"corners.csv:2: ", "not all of its four corners"});
+  error("f1,7,0", "f2,7,0", {"not all of its four corners"});
+  error(",u,v", ",u,w", {"corners.csv", "w"});
+  error("1,2\n", "1,x\n", {"corners.csv:2: ", "'x'"});
+  std::ofstream(corners) << fine;
+  ExpectInputError([&] { ReadObservationTables({corners}, project); },
+                   {"this is a table of corners", "frame"});
+  std::ofstream(table) << postures.replace(postures.rfind("f1"), 2, "f0");
+  ExpectInputError(
+      [&] {
+        ReadObservationTables({table, corners}, project);
+      },
+      {"a second row has frame 'f0'"});
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -8,13 +8,14 @@ namespace elastocal {
 struct InstrumentedBiped {
   enum Stance { kOnFeet, kFixed };  ///< fixed: the root link is held still, and nothing is touched
   enum Kinds {
+    kImages = 64,
     kPlates = 1,
     kPoses = 2,
     kGravity = 4,
     kTips = 8,
     kWires = 16,
     kPoints = 32,
-    kAll = 63
+    kAll = 127
   };
 
   explicit InstrumentedBiped(Stance stance, int kinds = kAll,
@@ -72,7 +73,34 @@ struct InstrumentedBiped {
           setup,
           {.name = "wire", .link = right, .p_link = {0.03, 0.0, 0.0}, .p_floor = {1.5, -0.6, 0.2}});
     }
+    if (kinds & kImages) AddCameras(setup, trunk, left, right);
     model = MakeTouchingBiped(tree, setup, hold);
+  }
+
+  /// A camera on the trunk and one in the room see tags on both hands; one sees a tag that stands.
+  static void AddCameras(ObservationSetup& setup, int trunk, int left, int right) {
+    CameraSetup head{.name = "camera", .link = trunk};
+    head.camera = {620.0, 610.0, 320.0, 240.0, 0.08, -0.05, 2e-3, -1e-3, 0.01};
+    // Ahead and down.
+    head.T_parent = RotZ(-0.5 * M_PI) * RotX(-0.5 * M_PI - 0.7);
+    head.T_parent.translation() << 0.05, 0.0, 0.55;
+    CameraSetup room{.name = "room_camera"};
+    room.camera = {500.0, 500.0, 400.0, 300.0};
+    room.T_parent = RotZ(0.5 * M_PI) * RotX(-0.5 * M_PI - 0.2);
+    room.T_parent.translation() << 2.5, -0.1, 1.2;
+    const MountedCamera cameras[] = {AddCamera(setup, head), AddCamera(setup, room)};
+    TagSetup back{.name = "back", .link = left, .size = 0.06};
+    back.T_parent = RotY(-0.8);
+    TagSetup top{.name = "top", .link = right, .size = 0.06};
+    top.T_parent = RotY(0.9) * RotZ(0.3);
+    TagSetup stand{.name = "stand", .size = 0.1};
+    stand.T_parent.translation() << 0.6, 0.1, 0.7;
+    const MountedTag tags[] = {AddTag(setup, back), AddTag(setup, top), AddTag(setup, stand)};
+    for (const MountedCamera& camera : cameras) {
+      for (const MountedTag& tag : tags) {
+        if (camera.of.link >= 0 || tag.of.link >= 0) AddSeenTag(setup, camera, tag);
+      }
+    }
   }
 
   bool touches() const { return !model.setup.plates.empty(); }

@@ -63,6 +63,7 @@ INSTANTIATE_TEST_SUITE_P(ObservationFit, EveryKind,
                                          std::pair(kOnFeet, InstrumentedBiped::kTips),
                                          std::pair(kOnFeet, InstrumentedBiped::kWires),
                                          std::pair(kOnFeet, InstrumentedBiped::kPoints),
+                                         std::pair(kOnFeet, InstrumentedBiped::kImages),
                                          std::pair(kOnFeet, InstrumentedBiped::kAll),
                                          std::pair(kFixed, InstrumentedBiped::kAll)));
 
@@ -184,6 +185,29 @@ TEST(ObservationFit, TheMountingOfAnInertialUnitIsFoundWithItsUncertainty) {
   // Chi-squared of 36 numbers: 36 +- 8.5; three times that.
   EXPECT_GT(squares, 11.0);
   EXPECT_LT(squares, 61.0) << "of " << count;
+}
+
+TEST(ObservationFit, ThePoseOfACameraLiesInItsInterval) {
+  const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kImages, {"*.compliance_*"});
+  const ObservedRobot& model = biped.model;
+  int camera = 0;
+  while (model.setup.quantities[camera].name != "camera.mounting") ++camera;
+  double squares = 0.0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Random random(60 + seed);
+    const ObservedValues truth = RandomTruth(model, 0, random);
+    Observations seen = biped.Observe(truth, 0, 60, random);
+    AddNoise(model, seen, random);
+    const ObservationFit fit = EstimateObserved(model, seen, {}).fit;
+    EXPECT_TRUE(fit.settled);
+    const int entry = fit.entry_of_quantity[camera];
+    const Eigen::VectorXd error = fit.values.quantities[camera].x - truth.quantities[camera].x;
+    squares += error.dot(fit.covariance.block(entry, entry, 6, 6).llt().solve(error));
+  }
+  // Chi-squared of 36 numbers: 36 +- 8.5; three times that. (The camera's pose begins at nominal,
+  // so that both charts are the same.)
+  EXPECT_GT(squares, 11.0);
+  EXPECT_LT(squares, 61.0);
 }
 
 TEST(ObservationFit, FindsTheComplianceOfTheHips) {

@@ -132,7 +132,7 @@ inline Observations SimulateTouches(const ObservedRobot& model, const ObservedVa
   return touches;
 }
 
-/// Truth of the invented robot: errors and quantities of the sizes that their sources have (1 cm
+/// Truth of the invented robot: errors and quantities of the sizes that their sources have (0.1
 /// where nobody knows anything), tables at the height of the hands, session effects likewise.
 inline ObservedValues RandomTruth(const ObservedRobot& model, int sessions, Random& random) {
   const Spread spread = FirstSpread(model.setup.sources);
@@ -154,7 +154,7 @@ inline ObservedValues RandomTruth(const ObservedRobot& model, int sessions, Rand
   for (const Quantity& quantity : model.setup.quantities) {
     QuantityValue value{quantity.origin, Eigen::VectorXd::Zero(quantity.size())};
     for (int k = 0; k < quantity.size(); ++k) {
-      value.x[k] = random.Normal(std::min(0.01, spread[quantity.sources[k]]));
+      value.x[k] = random.Normal(std::min(0.1, spread[quantity.sources[k]]));
     }
     truth.quantities.push_back(value);
   }
@@ -195,9 +195,13 @@ inline void AddMeasurements(const ObservedRobot& model, const ObservedValues& tr
   for (std::size_t i = 0; i < sights.size(); ++i) {
     Observation& of = observations.all[i];
     if (of.instrument >= plates && of.measured.size() == 0) {
+      if (!model.instrument(of.instrument).Sees(sights[i])) continue;
       of.measured = model.instrument(of.instrument).Predict(sights[i]);
     }
   }
+  std::erase_if(observations.all, [&](const Observation& of) {
+    return of.instrument >= plates && of.measured.size() == 0;
+  });
 }
 
 }  // namespace elastocal

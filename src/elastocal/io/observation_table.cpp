@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "elastocal/io/detections.hpp"
 #include "elastocal/io/measured_cells.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/recording_columns.hpp"
@@ -16,6 +17,7 @@ namespace elastocal {
 namespace {
 
 constexpr int kMostRows = 20000;
+constexpr const char* kFrameColumnName = "frame";
 constexpr double kMostCounts = 1e15;  // counts beyond are no whole numbers
 
 /// What an instrument showed in a row.
@@ -29,18 +31,19 @@ struct ObservationFile {
   Recording postures;  // no markers
   std::vector<std::string> sessions;
   std::vector<std::string> plates;  // by row, where there is a column for them
+  std::vector<std::string> frames;  // likewise for images
   std::vector<MeasuredRow> measured;
 };
 
 struct ObservationColumns {
   std::vector<int> coordinates;
   std::vector<int> sessions;
-  int plate = -1;
+  int plate = -1, frame = -1;
   std::vector<std::vector<int>> instruments;  // of plates, and of those that are absent: empty
 
   bool measures() const {
-    return std::any_of(instruments.begin(), instruments.end(),
-                       [](const std::vector<int>& of) { return !of.empty(); });
+    return frame >= 0 || std::any_of(instruments.begin(), instruments.end(),
+                                     [](const std::vector<int>& of) { return !of.empty(); });
   }
 };
 
@@ -58,7 +61,8 @@ void CheckObservedJoints(const Table& table, const Project& project,
   const bool may_touch = columns.plate >= 0 || project.contact->plate_column.empty();
   for (std::size_t i = 0; i < setup.instruments.size(); ++i) {
     const bool plate = i < setup.plates.size();
-    if (plate ? !may_touch : columns.instruments[i].empty()) continue;
+    const bool image = !plate && project.contact->columns[i].empty();
+    if (plate ? !may_touch : image ? columns.frame < 0 : columns.instruments[i].empty()) continue;
     const std::vector<int>& of = setup.instruments[i]->links;
     links.insert(links.end(), of.begin(), of.end());
   }
@@ -122,6 +126,8 @@ ObservationColumns FindObservationColumns(const Table& table, const Project& pro
   const std::vector<int> first = AddInstrumentRoles(project, quantities, roles);
   const int plate = quantities;
   if (!contact.plate_column.empty()) AddRole(project, contact.plate_column, quantities++, roles);
+  const int frame = quantities;
+  if (!contact.seen_tags.empty()) AddRole(project, kFrameColumnName, quantities++, roles);
   roles.emplace(project.recording.time, kPassedOver);
   for (const std::string& column : contact.sessions.columns) roles.emplace(column, kPassedOver);
   for (const Joint& joint : tree.joints) {
@@ -135,6 +141,7 @@ ObservationColumns FindObservationColumns(const Table& table, const Project& pro
     const std::span<const int> own(found.begin() + first[i], contact.columns[i].size());
     columns.instruments.push_back(InstrumentColumns(table, project, i, own));
   }
+  if (!contact.seen_tags.empty()) columns.frame = found[frame];
   if (!contact.plate_column.empty()) {
     columns.plate = found[plate];
     if (columns.plate < 0 && !columns.measures()) {
@@ -148,7 +155,8 @@ ObservationColumns FindObservationColumns(const Table& table, const Project& pro
   if (contact.setup.plates.empty() && !columns.measures()) {
     const std::vector<std::string>& of = contact.columns.front();
     table.Fail("there is no column of any instrument of " + project.file.string() + "; " +
-               Quote(of.front()) + " is one of " + Quote(contact.setup.instruments.front()->name));
+               Quote(of.empty() ? kFrameColumnName : of.front()) + " is one of " +
+               Quote(contact.setup.instruments.front()->name));
   }
   CheckObservedJoints(table, project, columns);
   return columns;
@@ -195,6 +203,7 @@ ObservationFile ReadObservationFile(const std::filesystem::path& file, const Pro
     }
     result.sessions.push_back(SessionKey(table, columns, project.contact->sessions));
     if (columns.plate >= 0) result.plates.emplace_back(table.Cell(columns.plate));
+    if (columns.frame >= 0) result.frames.emplace_back(table.Cell(columns.frame));
     for (std::size_t i = 0; i < instruments.size(); ++i) {
       auto measured = ReadMeasured(table, *instruments[i], columns.instruments[i]);
       if (measured) {
@@ -244,6 +253,9 @@ std::vector<int> PlatesOf(const ObservationFile& file, const Project& project,
   if (setup.plates.empty() || !project.contact->plate_column.empty()) return plates;
   std::vector<char> shown(plates.size(), 0);
   for (const MeasuredRow& of : file.measured) shown[static_cast<std::size_t>(of.row)] = 1;
+  for (std::size_t i = 0; i < file.frames.size(); ++i) {
+    if (!IsGap(file.frames[i])) shown[i] = 1;
+  }
   std::vector<int> touches;
   for (std::size_t i = 0; i < plates.size(); ++i) {
     if (shown[i] == 0) touches.push_back(static_cast<int>(i));
@@ -297,6 +309,39 @@ void AddFile(const ObservationFile& file, const Project& project, int index,
   }
 }
 
+/// The posture of each frame.
+std::map<std::string, int> PosturesOfFrames(const std::vector<ObservationFile>& files) {
+  std::map<std::string, int> postures;
+  int first = 0;
+  for (const ObservationFile& file : files) {
+    for (std::size_t i = 0; i < file.frames.size(); ++i) {
+      if (IsGap(file.frames[i])) continue;
+      if (!postures.emplace(file.frames[i], first + static_cast<int>(i)).second) {
+        throw InputError(Place(file.postures.source, file.postures.line[i]) + "a second row has " +
+                         "frame " + Quote(file.frames[i]));
+      }
+    }
+    first += static_cast<int>(file.postures.line.size());
+  }
+  return postures;
+}
+
+void AddDetections(const std::vector<std::filesystem::path>& files, const Project& project,
+                   const std::map<std::string, int>& postures, ObservationTables& tables) {
+  for (const std::filesystem::path& file : files) {
+    for (Detection& detection : ReadDetections(file, project)) {
+      const auto found = postures.find(detection.frame);
+      if (found == postures.end()) {
+        throw InputError(Place(file.string(), detection.line) + "no row of a table of " +
+                         "observations has frame " + Quote(detection.frame) +
+                         " in its column 'frame'");
+      }
+      tables.observations.all.push_back(
+          {found->second, detection.instrument, std::move(detection.pixels), {}});
+    }
+  }
+}
+
 std::vector<std::string> SilentInstruments(const ObservationTables& tables) {
   std::vector<std::string> warnings;
   for (std::size_t i = tables.setup.plates.size(); i < tables.setup.instruments.size(); ++i) {
@@ -320,6 +365,7 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
   ObservationTables tables;
   tables.setup = project.contact->setup;
   std::vector<ObservationFile> read;
+  std::vector<std::filesystem::path> detections;
   Eigen::Index rows = 0;
   for (auto at = files.begin(); at != files.end(); ++at) {
     const std::filesystem::path& file = *at;
@@ -331,8 +377,17 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
                        ": this is a folder; tables of observations (CSV) were expected, because "
                        "the project has contact or instruments");
     }
+    if (IsDetectionTable(file)) {
+      detections.push_back(file);
+      continue;
+    }
     read.push_back(ReadObservationFile(file, project));
     rows += read.back().postures.q.rows();
+  }
+  if (read.empty()) {
+    throw InputError(files.front().string() +
+                     ": this is a table of corners; a table of observations with the positions of "
+                     "the joints and a column 'frame' was expected beside it");
   }
   Observations& observations = tables.observations;
   observations.q.resize(rows, project.tree.coordinate_count());
@@ -354,6 +409,7 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
       tables.warnings.push_back(std::move(warning));
     }
   }
+  AddDetections(detections, project, PosturesOfFrames(read), tables);
   if (observations.all.empty()) {
     throw InputError(observations.files.front() +
                      ": in no row does an instrument show anything or a plate touch");

@@ -68,6 +68,12 @@ struct SessionRule {
   std::int64_t modulo = 0;
 };
 
+/// What a camera of the project sees of a tag: an instrument.
+struct TagInCamera {
+  std::string camera, tag;
+  int instrument = 0;
+};
+
 /// A robot that is observed otherwise than by markers alone: it touches tables, or instruments
 /// measure it.
 struct ContactProject {
@@ -75,8 +81,9 @@ struct ContactProject {
   std::vector<char> foot_placed;  ///< by foot: whether the project says where it stands
   std::string plate_column;       ///< names the plate of each touch; empty: see FindTouchingPlates
   SessionRule sessions;
-  /// Columns of a table by instrument of the setup, those of plates empty.
+  /// Columns of a table by instrument of the setup; those of plates and of tags empty.
   std::vector<std::vector<std::string>> columns;
+  std::vector<TagInCamera> seen_tags;  ///< in tables of corners, see ReadDetections
 };
 
 /// Everything a project file says, checked and in SI units.

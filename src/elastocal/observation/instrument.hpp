@@ -61,6 +61,9 @@ class Instrument {
   /// shows nothing, an empty vector.)
   virtual Eigen::VectorXd Predict(const Sight& sight) const = 0;
 
+  /// Whether it can measure at all: a camera does not see what is behind it.
+  virtual bool Sees(const Sight&) const { return true; }
+
   /// Moves the origins of its own quantities to where the nominal robot suggests them, from all of
   /// its observations. By default they stay.
   virtual void Begin(const std::vector<Sight>& sights, const std::vector<Eigen::VectorXd>& measured,

@@ -1,6 +1,8 @@
 #include "elastocal/observation/observation_residuals.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -58,7 +60,10 @@ double LargestDifference(ObservationResiduals& residuals) {
 void CheckDerivatives(const InstrumentedBiped& biped, std::uint64_t seed) {
   Random random(seed);
   const ObservedValues truth = RandomTruth(biped.model, biped.touches() ? 2 : 0, random);
-  Observations all = biped.Observe(truth, 2, 2, random);
+  const Observations all = biped.Observe(truth, 2, 12, random);
+  std::set<std::string> kinds;
+  for (const Observation& of : all.all) kinds.insert(biped.model.instrument(of.instrument).kind());
+  EXPECT_EQ(kinds.size(), biped.touches() ? 7u : 6u);
   // Away from where everything fits; loads are constants of the problem, and bend the robot.
   const ObservedValues at = RandomTruth(biped.model, biped.touches() ? 2 : 0, random);
   const std::vector<JointLoads> loads = ObservedLoads(biped.model, all, at.robot);

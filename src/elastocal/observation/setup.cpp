@@ -6,6 +6,7 @@
 
 #include "elastocal/observation/gravity_direction.hpp"
 #include "elastocal/observation/plane_distance.hpp"
+#include "elastocal/observation/seen_tag.hpp"
 #include "elastocal/observation/tracked.hpp"
 #include "elastocal/observation/wire_length.hpp"
 
@@ -31,6 +32,17 @@ int AddMountedPoint(ObservationSetup& setup, const std::string& name, const Eige
   point.sources.assign(3, PriorSource(setup, name + ".mounting", SourceUnit::kMetre, sd));
   point.origin.translation() = p_link;
   return AddQuantity(setup, std::move(point));
+}
+
+/// How a frame sits on its link or, `of_surroundings`, on the floor.
+int AddMountedFrame(ObservationSetup& setup, const std::string& name, const Transform& nominal,
+                    double sd_m, double sd_rad, bool of_surroundings) {
+  Quantity mount{name + ".mounting", {}, of_surroundings};
+  mount.origin = nominal;
+  const int place = PriorSource(setup, name + ".mounting", SourceUnit::kMetre, sd_m);
+  const int turn = PriorSource(setup, name + ".mounting_turn", SourceUnit::kRadian, sd_rad);
+  mount.sources = {place, place, place, turn, turn, turn};
+  return AddQuantity(setup, std::move(mount));
 }
 
 template <typename Kind>
@@ -108,13 +120,8 @@ void AddTrackedPoint(ObservationSetup& setup, const TrackedPointSetup& of) {
 }
 
 void AddTrackedBody(ObservationSetup& setup, const TrackedBodySetup& of) {
-  Quantity mount{of.name + ".mounting", {}, false};
-  mount.origin = of.T_link;
-  const int place = PriorSource(setup, of.name + ".mounting", SourceUnit::kMetre, of.mounting_sd_m);
-  const int turn =
-      PriorSource(setup, of.name + ".mounting_turn", SourceUnit::kRadian, of.mounting_sd_rad);
-  mount.sources = {place, place, place, turn, turn, turn};
-  const int quantity = AddQuantity(setup, std::move(mount));
+  const int quantity =
+      AddMountedFrame(setup, of.name, of.T_link, of.mounting_sd_m, of.mounting_sd_rad, false);
   std::vector<int> noise;
   Eigen::MatrixXd whitening;
   if (of.covariance.size() > 0) {
@@ -163,6 +170,44 @@ void AddWire(ObservationSetup& setup, const WireSetup& of) {
   const int noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
   setup.instruments.push_back(
       MakeInstrument<WireLength>(of.name, {of.link}, {fixed, point}, {noise}));
+}
+
+MountedCamera AddCamera(ObservationSetup& setup, const CameraSetup& of) {
+  MountedCamera camera{of};
+  camera.pose = AddMountedFrame(setup, of.name, of.T_parent, of.mounting_sd_m, of.mounting_sd_rad,
+                                of.link < 0);
+  Quantity numbers{of.name + ".numbers", {}, false};
+  const auto source = [&](const char* name, double sd) {
+    return AddSource(setup, {of.name + name, SourceUnit::kNone, sd, Role::kFixed});
+  };
+  numbers.sources.assign(2, source(".focal", of.focal_sd));
+  numbers.sources.resize(4, source(".centre", of.centre_sd));
+  numbers.sources.resize(Camera::kNumbers, source(".distortion", of.distortion_sd));
+  camera.numbers = AddQuantity(setup, std::move(numbers));
+  camera.noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kPixel, of.noise_sd);
+  return camera;
+}
+
+MountedTag AddTag(ObservationSetup& setup, const TagSetup& of) {
+  return {of, AddMountedFrame(setup, of.name, of.T_parent, of.mounting_sd_m, of.mounting_sd_rad,
+                              of.link < 0)};
+}
+
+void AddSeenTag(ObservationSetup& setup, const MountedCamera& camera, const MountedTag& tag) {
+  std::vector<int> links;
+  if (camera.of.link >= 0) links.push_back(camera.of.link);
+  if (tag.of.link >= 0) links.push_back(tag.of.link);
+  auto seen = MakeInstrument<SeenTag>(camera.of.name + "/" + tag.of.name, std::move(links),
+                                      {camera.pose, tag.pose, camera.numbers},
+                                      std::vector<int>(8, camera.noise));
+  seen->camera = camera.of.camera;
+  seen->camera_carried = camera.of.link >= 0;
+  seen->tag_carried = tag.of.link >= 0;
+  const double half = 0.5 * tag.of.size;
+  seen->p_tag_corner << -half, half, half, -half,  //
+      -half, -half, half, half,                    //
+      0.0, 0.0, 0.0, 0.0;
+  setup.instruments.push_back(std::move(seen));
 }
 
 }  // namespace elastocal

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/observation/camera.hpp"
 #include "elastocal/observation/flush_contact.hpp"
 #include "elastocal/observation/instrument.hpp"
 
@@ -120,5 +121,39 @@ struct WireSetup {
   double noise_sd = 1e-3;                             ///< m
 };
 void AddWire(ObservationSetup& setup, const WireSetup& of);
+
+/// A camera on a link, or on the floor (`link` -1).
+struct CameraSetup {
+  std::string name;
+  int link = -1;
+  Transform T_parent = Transform::Identity();  ///< of the camera, nominal
+  Camera camera = {};
+  double mounting_sd_m = 0.05, mounting_sd_rad = 0.1;
+  double focal_sd = 0.01, centre_sd = 0.01;  ///< relative to the focal lengths
+  double distortion_sd = 0.02;
+  double noise_sd = 0.5;  ///< px
+};
+struct MountedCamera {
+  CameraSetup of;
+  int pose = 0, numbers = 0, noise = 0;  ///< quantities, source
+};
+MountedCamera AddCamera(ObservationSetup& setup, const CameraSetup& of);
+
+/// A square tag on a link, or on the floor (`link` -1): x to the right, y up, z out of it.
+struct TagSetup {
+  std::string name;
+  int link = -1;
+  Transform T_parent = Transform::Identity();  ///< of the tag's centre, nominal
+  double size = 0.05;                          ///< edge between the corners, m
+  double mounting_sd_m = 0.05, mounting_sd_rad = 0.1;
+};
+struct MountedTag {
+  TagSetup of;
+  int pose = 0;  ///< quantity
+};
+MountedTag AddTag(ObservationSetup& setup, const TagSetup& of);
+
+/// What the camera sees of the tag: an instrument of the name "camera/tag".
+void AddSeenTag(ObservationSetup& setup, const MountedCamera& camera, const MountedTag& tag);
 
 }  // namespace elastocal

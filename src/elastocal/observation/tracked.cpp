@@ -1,6 +1,7 @@
 #include "elastocal/observation/tracked.hpp"
 
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/observation/frame_view.hpp"
 
 namespace elastocal {
 namespace {
@@ -16,24 +17,8 @@ Transform CarrierOf(const Sight& sight) {
   return sight.T_floor_link.size() > 1 ? sight.T_floor_link[1] : Transform::Identity();
 }
 
-/// A point as the tracker has it, with its derivatives by the screw of its link and the tracker's
-/// pose. (A screw of the tracker's carrier moves it the other way.)
-struct TrackerView {
-  Vector3d p;
-  Eigen::Matrix<double, 3, 6> by_screw, by_tracker;
-};
-
-TrackerView ViewOf(const Sight& sight, const Vector3d& p_floor) {
-  const Transform carrier = CarrierOf(sight);
-  const Transform T_floor_tracker = carrier * sight.values[0].Pose();
-  const Matrix3d R = T_floor_tracker.linear().transpose();
-  const Vector3d arm = p_floor - T_floor_tracker.translation();
-  TrackerView view;
-  view.p = R * arm;
-  view.by_screw = R * PointByScrew(p_floor);
-  view.by_tracker << -R * carrier.linear(),
-      R * Skew(arm) * carrier.linear() * sight.values[0].Turns();
-  return view;
+FrameView ViewOf(const Sight& sight, const Vector3d& p_floor) {
+  return ViewFrom(CarrierOf(sight), sight.values[0], p_floor);
 }
 
 /// By the screws of all links that it sees, given that of the link that moves.
@@ -59,10 +44,10 @@ Eigen::Quaterniond Attitude(const Eigen::VectorXd& measured) {
 
 ObservationResidual TrackedPoint::Evaluate(const Sight& sight,
                                            const Eigen::VectorXd& measured) const {
-  const TrackerView view = ViewOf(sight, MarkOf(sight));
+  const FrameView view = ViewOf(sight, MarkOf(sight));
   const Matrix3d R_tracker_link = (CarrierOf(sight) * sight.values[0].Pose()).linear().transpose() *
                                   sight.T_floor_link[0].linear();
-  return {view.p - measured, ByLinks(sight, view.by_screw), {view.by_tracker, R_tracker_link}};
+  return {view.p - measured, ByLinks(sight, view.by_point_screw), {view.by_frame, R_tracker_link}};
 }
 
 Eigen::VectorXd TrackedPoint::Predict(const Sight& sight) const {
@@ -86,7 +71,7 @@ ObservationResidual TrackedBody::Evaluate(const Sight& sight,
   const Transform& T_floor_link = sight.T_floor_link[0];
   const Transform mount = sight.values[1].Pose();
   const Transform T_floor_body = T_floor_link * mount;
-  const TrackerView view = ViewOf(sight, T_floor_body.translation());
+  const FrameView view = ViewOf(sight, T_floor_body.translation());
   const Matrix3d R_tracker_floor = (carrier * sight.values[0].Pose()).linear().transpose();
   const Vector3d turn = RotationVector(Attitude(measured).toRotationMatrix().transpose() *
                                        R_tracker_floor * T_floor_body.linear());
@@ -98,10 +83,10 @@ ObservationResidual TrackedBody::Evaluate(const Sight& sight,
   pose.left.resize(6);
   pose.left << view.p - measured.head<3>(), turn;
   ByScrew by_screw(6, 6);
-  by_screw << view.by_screw, by_turn * TurnByScrew();
+  by_screw << view.by_point_screw, by_turn * TurnByScrew();
   pose.by_link = ByLinks(sight, by_screw);
   Eigen::MatrixXd by_tracker = Eigen::MatrixXd::Zero(6, 6);
-  by_tracker.topRows<3>() = view.by_tracker;
+  by_tracker.topRows<3>() = view.by_frame;
   by_tracker.bottomRightCorner<3, 3>() = -by_turn * carrier.linear() * sight.values[0].Turns();
   Eigen::MatrixXd by_mount = Eigen::MatrixXd::Zero(6, 6);
   by_mount.topLeftCorner<3, 3>() = R_tracker_floor * T_floor_link.linear();
