@@ -310,6 +310,12 @@ recording: {ignore: [note]}
   EXPECT_EQ(tables.observations.all[0].posture, 1);
   EXPECT_EQ(tables.observations.all[0].measured[5], 6.0);
   EXPECT_EQ(tables.setup.instruments[0]->name, "head/7");
+  std::string twice = text;
+  twice.replace(twice.find("instruments:"), 12,
+                "instruments:\n  trackers: [{name: t}]\n"
+                "  poses: [{name: \"7\", link: base_link, tracker: t}]");
+  ExpectInputError([&] { ParseProject(twice, "project.yaml"); },
+                   {"project.yaml:", "two things", "'7.mounting'"});
   const auto error = [&](const std::string& from, const std::string& to,
                          std::initializer_list<std::string> messages) {
     ExpectInputError([&] { read(fine, from, to); }, messages);

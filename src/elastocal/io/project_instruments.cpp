@@ -1,5 +1,6 @@
 #include <algorithm>
-#include <array>
+#include <set>
+#include <string>
 
 #include <Eigen/Eigenvalues>
 
@@ -241,6 +242,20 @@ MountedTag ReadTag(const YamlValue& value, Project& project) {
   return AddTag(project.contact->setup, tag);
 }
 
+/// Quantities and sources are told apart by their names, in the files of a calibration too.
+void CheckNames(const YamlValue& section, const ObservationSetup& setup) {
+  const auto check = [&](const auto& items) {
+    std::set<std::string> names;
+    for (const auto& item : items) {
+      if (names.insert(item.name).second) continue;
+      section.Fail("two things have a quantity or a noise of the name " + Quote(item.name) +
+                   "; name one of them otherwise");
+    }
+  };
+  check(setup.quantities);
+  check(setup.sources);
+}
+
 /// Cameras, tags, and every camera's view of every tag that can move against it.
 void ReadCameras(const YamlValue& section, Project& project) {
   std::vector<MountedCamera> cameras;
@@ -294,6 +309,7 @@ void ReadInstruments(const YamlValue& section, Project& project) {
   for (const YamlValue& value : ListOf(section, "distances")) ReadDistance(value, planes, project);
   for (const YamlValue& value : ListOf(section, "wires")) ReadWire(value, project);
   ReadCameras(section, project);
+  CheckNames(section, project.contact->setup);
   section.Expect(project.contact->setup.instruments.size() > project.contact->setup.plates.size(),
                  "at least one instrument: poses, positions, inertial_units, distances, wires, or "
                  "cameras and tags");
