@@ -11,7 +11,7 @@ struct InstrumentedBiped {
     kImages = 64,
     kPlates = 1,
     kPoses = 2,
-    kGravity = 4,
+    kInertial = 4,
     kTips = 8,
     kWires = 16,
     kPoints = 32,
@@ -55,7 +55,7 @@ struct InstrumentedBiped {
         }
       }
     }
-    if (kinds & kGravity) {
+    if (kinds & kInertial) {
       AddInertialUnit(setup, {.name = "imu", .link = 0, .R_link_unit = RotX(0.3).linear()});
       AddInertialUnit(setup, {.name = "hand_imu", .link = left});
     }

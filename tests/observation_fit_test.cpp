@@ -59,7 +59,7 @@ constexpr auto kOnFeet = InstrumentedBiped::kOnFeet;
 constexpr auto kFixed = InstrumentedBiped::kFixed;
 INSTANTIATE_TEST_SUITE_P(ObservationFit, EveryKind,
                          testing::Values(std::pair(kOnFeet, InstrumentedBiped::kPoses),
-                                         std::pair(kOnFeet, InstrumentedBiped::kGravity),
+                                         std::pair(kOnFeet, InstrumentedBiped::kInertial),
                                          std::pair(kOnFeet, InstrumentedBiped::kTips),
                                          std::pair(kOnFeet, InstrumentedBiped::kWires),
                                          std::pair(kOnFeet, InstrumentedBiped::kPoints),
@@ -113,8 +113,8 @@ TEST(ObservationFit, TouchesAndInertialUnitsDetermineMoreThanEither) {
     return RankOfRobot(biped, biped.Observe(truth, 60, 60, random));
   };
   const int touches = rank(InstrumentedBiped::kPlates);
-  const int units = rank(InstrumentedBiped::kGravity);
-  const int both = rank(InstrumentedBiped::kPlates | InstrumentedBiped::kGravity);
+  const int units = rank(InstrumentedBiped::kInertial);
+  const int both = rank(InstrumentedBiped::kPlates | InstrumentedBiped::kInertial);
   RecordProperty("touches", touches);
   RecordProperty("units", units);
   RecordProperty("both", both);
@@ -146,7 +146,7 @@ void AddNoise(const ObservedRobot& model, Observations& observations, Random& ra
 TEST(ObservationFit, TheMountingOfAnInertialUnitIsFoundWithItsUncertainty) {
   // An offset of the joint that carries the unit turns it like its mounting does: angles are known
   // here.
-  const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kGravity | InstrumentedBiped::kTips,
+  const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kInertial | InstrumentedBiped::kTips,
                                 {"*.compliance_*", "*.theta", "*.alpha", "*.beta", "*.gamma"});
   const ObservedRobot& model = biped.model;
   const auto find = [&](const std::string& name) {

@@ -8,17 +8,16 @@ namespace elastocal {
 
 std::vector<Source> CommonSources() {
   constexpr double kDegreeOfArc = M_PI / 180.0;
-  using Role = Source::Role;
   const Prior prior;
   std::vector<Source> sources(kCommonSources);
   const auto set = [&](CommonSource which, const char* name, SourceUnit unit, double sd,
-                       Role role = Role::kPrior) {
+                       Source::Role role = Source::Role::kPrior) {
     sources[which] = {name, unit, sd, role};
   };
   const SourceUnit metre = SourceUnit::kMetre;
   const SourceUnit radian = SourceUnit::kRadian;
-  set(kHeight, "height", metre, 3e-3, Role::kNoise);
-  set(kTilt, "tilt", radian, 0.3 * kDegreeOfArc, Role::kNoise);
+  set(kHeight, "height", metre, 3e-3, Source::Role::kNoise);
+  set(kTilt, "tilt", radian, 0.3 * kDegreeOfArc, Source::Role::kNoise);
   set(kSessionHeight, "session_height", metre, 1e-3);
   set(kSessionTilt, "session_tilt", radian, 0.2 * kDegreeOfArc);
   set(kTableTilt, "table_tilt", radian, kDegreeOfArc);
@@ -30,9 +29,9 @@ std::vector<Source> CommonSources() {
   set(kAngle, "angle", radian, prior[ParameterKind::kAlpha]);
   set(kTorsion, "torsion", SourceUnit::kNone, 1.0);
   set(kBending, "bending", SourceUnit::kNone, 1.0);
-  set(kUnknownPlace, "unknown_place", metre, 1.0, Role::kFixed);
-  set(kUnknownTurn, "unknown_turn", radian, 1.0, Role::kFixed);
-  set(kRootTilt, "root_tilt", radian, kDegreeOfArc, Role::kFixed);
+  set(kUnknownPlace, "unknown_place", metre, 1.0, Source::Role::kFixed);
+  set(kUnknownTurn, "unknown_turn", radian, 1.0, Source::Role::kFixed);
+  set(kRootTilt, "root_tilt", radian, kDegreeOfArc, Source::Role::kFixed);
   return sources;
 }
 
