@@ -21,6 +21,22 @@ Eigen::VectorXd LeastStep(const Eigen::MatrixXd& screws,
   return screws.completeOrthogonalDecomposition().solve(wanted);
 }
 
+/// Sum of the distances between the joints that carry a link, from the first one to the link, m.
+double LengthOf(const RobotTree& tree, int link) {
+  const auto poses = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  double length = 0.0;
+  Eigen::Vector3d end = poses[static_cast<std::size_t>(link)].translation();
+  const std::vector<int> joints =
+      JointsToBody(tree, tree.links[static_cast<std::size_t>(link)].body);
+  for (auto k = joints.rbegin(); k != joints.rend(); ++k) {
+    const int child = tree.joints[static_cast<std::size_t>(*k)].child_link;
+    const Eigen::Vector3d here = poses[static_cast<std::size_t>(child)].translation();
+    length += (end - here).norm();
+    end = here;
+  }
+  return length;
+}
+
 }  // namespace
 
 LegChain::LegChain(const RobotTree& tree, int sole_link)
@@ -34,6 +50,7 @@ LegChain::LegChain(const RobotTree& tree, int sole_link)
     const bool in_leg = std::find(joints_.begin(), joints_.end(), k) != joints_.end();
     own = own && (in_leg || !IsMovedBy(tree.joints[static_cast<std::size_t>(k)], coordinates_));
   }
+  length_ = LengthOf(tree, sole_link);
   if (own) return;
   throw InputError("robot '" + tree.name + "': '" +
                    tree.links[static_cast<std::size_t>(sole_link)].name + "' is at the end of " +

@@ -20,6 +20,9 @@ class LegChain {
   int sole_link() const { return sole_link_; }
   const std::vector<int>& coordinates() const { return coordinates_; }  ///< of q, from the root on
 
+  /// Sum of the distances between the joints from the first one to the sole in the zero posture, m.
+  double length() const { return length_; }
+
   /// Pose of the sole in the root link's frame.
   Transform SolePose(const Eigen::VectorXd& q) const;
 
@@ -35,6 +38,7 @@ class LegChain {
 
   const RobotTree& tree_;
   int sole_link_;
+  double length_ = 0.0;
   std::vector<int> joints_, coordinates_;
 };
 

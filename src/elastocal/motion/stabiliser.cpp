@@ -5,6 +5,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/smooth_step.hpp"
+#include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
 namespace {
@@ -24,6 +25,8 @@ Stabiliser::Stabiliser(const RobotTree& tree, const std::vector<Sole>& soles,
       inertias_(BodyInertias(tree)),
       correction_(Eigen::VectorXd::Zero(tree.coordinate_count())) {
   for (const Sole& sole : soles) legs_.emplace_back(tree, sole.link);
+  if (!legs_.empty()) leg_length_ = legs_[0].length();
+  weight_ = TotalMass(tree) * kGravity.norm();
 }
 
 Eigen::VectorXd Stabiliser::Correct(const Eigen::VectorXd& planned, const std::vector<int>& support,
@@ -62,13 +65,15 @@ void Stabiliser::LearnTurn(const StandingSense& sense, double interval_s) {
 }
 
 void Stabiliser::LearnFeet(const StandingSense& sense, double interval_s) {
-  if (legs_.size() != 2 || sense.wrenches.row(2).minCoeff() < options_.least_pressure) return;
+  if (legs_.size() != 2 || sense.wrenches.row(2).minCoeff() < options_.least_pressure * weight_)
+    return;
   const auto pressed = [&](Eigen::Index i) {
     return ZeroMomentPoint(sense.wrenches.col(i).head<3>(), sense.wrenches.col(i).tail<3>());
   };
   const Eigen::Vector2d apart = pressed(0) - pressed(1);
   const Eigen::Vector2d turn(apart.y(), -apart.x());  // lifts the edge that is loaded more
-  foot_ = Within(foot_ + options_.foot_rate * interval_s * turn, options_.largest_turn);
+  foot_ =
+      Within(foot_ + options_.foot_rate / leg_length_ * interval_s * turn, options_.largest_turn);
 }
 
 void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense& sense,
@@ -82,11 +87,12 @@ void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense&
     force += pressed;
     moment += T.linear() * wrench.tail<3>() + T.translation().cross(pressed);
   }
-  if (!(force.z() > options_.least_pressure)) return;
+  if (!(force.z() > options_.least_pressure * weight_)) return;
   const Eigen::Vector3d com = T_reference_root * CentreOfMass(tree_, inertias_, planned);
   const Eigen::Vector2d off = ZeroMomentPoint(force, moment) - com.head<2>();
   off_ += std::min(1.0, interval_s / options_.filter_s) * (off - off_);
-  shift_ = Within(shift_ - options_.shift_rate * interval_s * off_, options_.largest_shift);
+  shift_ = Within(shift_ - options_.shift_rate * interval_s * off_,
+                  options_.largest_shift * leg_length_);
 }
 
 Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
@@ -95,7 +101,7 @@ Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     const double height = (T_root_reference.inverse() * T_root_sole_[i]).translation().z();
     const double share =
-        1.0 - SmoothStep((height - options_.low_m) / (options_.high_m - options_.low_m));
+        1.0 - SmoothStep((height / leg_length_ - options_.low) / (options_.high - options_.low));
     if (share == 0.0) continue;
     Transform T_reference_root = T_root_reference.inverse();
     T_reference_root.linear() =

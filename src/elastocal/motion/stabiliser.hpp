@@ -19,21 +19,22 @@ struct StandingSense {
 };
 
 /// How fast a stabiliser corrects. It must be slower than the sway of the robot on its feet (about
-/// 3 rad/s), or the robot rocks from foot to foot.
+/// 3 rad/s), or the robot rocks from foot to foot. Lengths are shares of the leg's length, so that
+/// robots of every size are treated alike.
 struct StabiliserOptions {
   double turn_rate = 0.8;   ///< turn of the root link by the error of its inclination, 1/s
   double shift_rate = 0.3;  ///< shift of the root link by the error of the zero-moment point, 1/s
-  double foot_rate =
-      0.2;  ///< turn of two feet by the difference of their centres of pressure, rad/s per m
+  /// Turn of two feet by the difference of their centres of pressure, rad/s per length of a leg.
+  double foot_rate = 0.16;
   double filter_s = 0.5;        ///< time constant of the low-pass on the zero-moment point
-  double largest_shift = 0.10;  ///< m, in either direction
+  double largest_shift = 0.12;  ///< share, in either direction
   double largest_turn = 0.15;   ///< rad, about either axis, of root link and feet
   double largest_speed = 0.3;   ///< largest speed of a joint's correction, rad/s
   /// The correction of a lifted leg fades out between these planned heights of its sole over the
-  /// floor, m: below the first, the leg is corrected as if it stood; above the second, it goes as
-  /// planned.
-  double low_m = 0.02, high_m = 0.07;
-  double least_pressure = 100.0;  ///< least vertical force that gives a centre of pressure, N
+  /// floor, as shares: below the first, the leg is corrected as if it stood; above the second, it
+  /// goes as planned.
+  double low = 0.025, high = 0.085;
+  double least_pressure = 0.1;  ///< least vertical force that gives a centre of pressure, of weight
 };
 
 /// Keeps a robot with unknown errors over its feet. By slow integration of its measurements it
@@ -47,8 +48,8 @@ struct StabiliserOptions {
 /// section 3.6 plans.
 class Stabiliser {
  public:
-  /// Keeps a reference to the tree. Throws InputError if a sole is not at the end of a leg of six
-  /// joints.
+  /// Keeps a reference to the tree. Throws InputError if a sole is not at the end of a leg
+  /// (see LegChain).
   Stabiliser(const RobotTree& tree, const std::vector<Sole>& soles,
              const StabiliserOptions& options = {});
 
@@ -71,9 +72,10 @@ class Stabiliser {
   const RobotTree& tree_;
   StabiliserOptions options_;
   std::vector<BodyInertia> inertias_;
-  std::vector<LegChain> legs_;          ///< by sole
-  std::vector<Transform> T_root_sole_;  ///< as planned
-  int reference_ = 0;                   ///< the sole in whose axes turn and shift are expressed
+  std::vector<LegChain> legs_;              ///< by sole
+  double leg_length_ = 1.0, weight_ = 0.0;  ///< m, N
+  std::vector<Transform> T_root_sole_;      ///< as planned
+  int reference_ = 0;                       ///< the sole in whose axes turn and shift are expressed
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero(), turn_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d off_ = Eigen::Vector2d::Zero();   ///< filtered error of the zero-moment point, m
   Eigen::Vector2d foot_ = Eigen::Vector2d::Zero();  ///< turn of the first of two soles, rad

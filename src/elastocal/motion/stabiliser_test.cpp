@@ -87,8 +87,8 @@ TEST_F(BipedStabiliser, TurnsFeetUntilBothArePressedAlike) {
     const Eigen::Matrix3d R = LegChain(tree_, soles_[i].link).SolePose(q).linear();
     return RotationVector(T_root_sole_[i].linear().transpose() * R).y();
   };
-  EXPECT_NEAR(turned(0), -0.2 * 0.1 * 0.1, 1e-5);  // rate, distance, time
-  EXPECT_NEAR(turned(1), 0.2 * 0.1 * 0.1, 1e-5);
+  EXPECT_NEAR(turned(0), -0.16 / 0.812 * 0.1 * 0.1, 1e-5);  // rate, distance, time
+  EXPECT_NEAR(turned(1), 0.16 / 0.812 * 0.1 * 0.1, 1e-5);
 }
 
 TEST_F(BipedStabiliser, LetsALiftedLegGoAsPlanned) {

@@ -34,20 +34,6 @@ bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_so
   return false;
 }
 
-/// Sum of the distances between the joints that carry a link, from the first one to the link, m.
-double LengthOf(const RobotTree& tree, int link) {
-  const auto poses = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  double length = 0.0;
-  Eigen::Vector3d end = poses[Size(link)].translation();
-  const std::vector<int> joints = JointsToBody(tree, tree.links[Size(link)].body);
-  for (auto k = joints.rbegin(); k != joints.rend(); ++k) {
-    const Eigen::Vector3d here = poses[Size(tree.joints[Size(*k)].child_link)].translation();
-    length += (end - here).norm();
-    end = here;
-  }
-  return length;
-}
-
 /// Height of the root link above the soles: of the posture, if its knees are bent, and otherwise
 /// that of straight legs less the drop.
 double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
@@ -73,7 +59,7 @@ StandingRobot::StandingRobot(RobotTree robot, std::vector<Sole> feet, const Moti
     half_sole = legs.size() == 1 ? half : std::min(half_sole, half);
   }
   if (Held()) return;
-  leg_length = LengthOf(tree, soles[0].link);
+  leg_length = legs[0].length();
   constexpr double kZmpShare = 0.3;
   if (limits.zmp_margin < 0.0) limits.zmp_margin = kZmpShare * half_sole;
 }

@@ -141,7 +141,13 @@ TrueRobot NominalRobot(RobotTree tree, std::vector<Marker> markers, std::vector<
 
 TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options) {
   TrueRobot robot = nominal;
-  Drawing drawing(options, robot);
+  TruthOptions scaled = options;
+  const double height = StandingHeight(nominal.tree, nominal.legs);
+  if (height > 0.0) {
+    scaled.length_sd *= height / options.described_height;
+    scaled.com_sd *= height / options.described_height;
+  }
+  Drawing drawing(scaled, robot);
   drawing.Placements();
   drawing.Offsets();
   drawing.JointSprings();

@@ -19,6 +19,10 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 struct TruthOptions {
   std::uint64_t seed = 1;
 
+  /// Lengths below, but for those of markers, are of a robot on legs whose root link stands this
+  /// high [m]; on a robot that is half as high they are half as large.
+  double described_height = 1.083;
+
   // Geometry: every joint's placement has a general displacement (three lengths, three angles).
   double upper_offset_sd =
       M_PI / 180.0;  ///< of joint zeros, rad (for prismatic joints: length_sd, m)
