@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/elastocal.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
@@ -131,6 +133,40 @@ TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   EXPECT_NE(found[0].find(project_.tree.joints[2].name + ": its positions are off by"),
             std::string::npos)
       << found[0];
+}
+
+// A mistake that was named is undone by its name, in all trials, and by no other.
+TEST_F(Pipeline, MistakesAreUndoneOnRequest) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const auto as_trial = [&](TrialKind kind, std::uint64_t seed) {
+    Recording recording = MakeSyntheticRecording(
+        model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40, .seed = seed});
+    recording.trials = {{"swing", kind, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  };
+  Measurements measured;
+  measured.calibration = as_trial(TrialKind::kCalibration, 1);
+  measured.validation = as_trial(TrialKind::kRandom, 2);
+  measured.calibration_truth.resize(40);
+  measured.validation_truth.resize(40);
+  const Eigen::MatrixXd q = measured.calibration.q, q_validation = measured.validation.q;
+  const std::string joint = project_.tree.joints[2].name;
+  measured.calibration.q.col(2) *= -1.0;
+  measured.validation.q.col(2) *= -1.0;
+  ExpectInputError([&] { AcceptMistakes(project_, {"frozen:" + joint}, measured); },
+                   {"frozen:" + joint, "it shows sign:" + joint});
+  const std::vector<std::string> undone = AcceptMistakes(project_, {"sign:" + joint}, measured);
+  EXPECT_EQ(undone.size(), 2u);
+  EXPECT_EQ(measured.calibration.q, q);
+  EXPECT_EQ(measured.validation.q, q_validation);
+  ExpectInputError([&] { AcceptMistakes(project_, {"sign:" + joint}, measured); },
+                   {"it shows none"});
+
+  measured.calibration.q.col(2).tail(15).setConstant(measured.calibration.q(25, 2));
+  EXPECT_EQ(AcceptMistakes(project_, {"frozen:" + joint}, measured).size(), 1u);
+  EXPECT_LT(measured.calibration.posture_count(), 30);
+  EXPECT_EQ(measured.calibration_truth.size(), Size(measured.calibration.posture_count()));
 }
 
 TEST_F(Pipeline, InspectsEveryChainAndTheWhole) {

@@ -40,6 +40,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
        .zero_offsets =
            options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin,
        .seed = options.common.seed,
+       .accept = options.accept,
        .progress = TerminalSteps("reading and fitting", options.common.quiet)});
   const auto files = MakeCalibrationFiles(project, run);
   const std::string no_report = SetResults(
@@ -93,6 +94,12 @@ void AddCalibrate(CLI::App& app, Action& action) {
                    "apart, to be added to the encoders (encoder)")
       ->transform(CLI::IsMember({"origin", "encoder"}, CLI::ignore_case))
       ->capture_default_str();
+  command
+      ->add_option("--accept", options->accept,
+                   "Mistakes of the recording that are corrected before the fit, by the names that "
+                   "calibrate gave them: sign:JOINT, exchange:JOINT,JOINT, frozen:JOINT, "
+                   "labels:NAME,NAME")
+      ->type_name("NAME");
   AddCommonOptions(*command, options->common);
   command->footer(
       "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro and covariance.csv, and, "

@@ -17,6 +17,7 @@ struct CalibrateOptions {
   std::string fold_by = "posture";
   int threads = 2;
   std::string zero_offsets = "origin";
+  std::vector<std::string> accept;  ///< mistakes of the recording to correct
 };
 
 /// Calibrates, prints the tables and writes the output folder; nothing is written before everything

@@ -23,6 +23,7 @@ int Export(const ExportCommand& command) {
   const CalibratedRobot robot = OpenCalibratedRobot(command.calibration, command.project);
   OutputSet outputs;
   outputs.Protect(robot.inputs);
+  if (!command.options.mjcf.empty()) outputs.Protect({command.options.mjcf});
   outputs.Declare(command.output);
   outputs.Prepare();
   ExportOptions options = command.options;
@@ -60,6 +61,10 @@ void AddExport(CLI::App& app, Action& action) {
                    "Beginning of all names in C; default: the robot's name")
       ->check(IsNamed)
       ->type_name("NAME");
+  command
+      ->add_option("--mjcf", options->options.mjcf,
+                   "The nominal MuJoCo model of the robot, for --format mjcf")
+      ->type_name("FILE");
   command
       ->add_option("--min-significance", options->options.least_significance,
                    "Joints whose errors are all below so many standard deviations stay nominal")

@@ -49,9 +49,12 @@ int QuickDemo(const QuickDemoOptions& options) {
                   "noise: {}\n\n",
                   options.postures, (folder / "recording.csv").string()));
 
-  CalibrateOptions calibrate{
-      options.common, source.string(), folder.string(), {(folder / "recording.csv").string()}, 5,
-      "origin"};
+  CalibrateOptions calibrate;
+  calibrate.common = options.common;
+  calibrate.project = source.string();
+  calibrate.output = folder.string();
+  calibrate.recordings = {(folder / "recording.csv").string()};
+  calibrate.folds = 5;
   CalibrationRun run;
   const int exit_code = RunCalibration(calibrate, &run);
   Print(options.common.Silent(), TruthTable(CompareWithTruth(truth, run.comparison.largest())));

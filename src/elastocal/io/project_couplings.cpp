@@ -12,7 +12,8 @@ Coupling ReadCoupling(const YamlValue& value, const RobotTree& tree) {
   value.ExpectKeys({"joint", "of", offset});
   const YamlValue of = value.Get("of");  // Entries() belongs to it
   for (const auto& [name, factor] : of.Entries()) {
-    const int joint = FindNamedBy(factor, [&] { return FindJoint(tree, name); });
+    const int joint =
+        FindNamedBy(factor, [&, &joint_name = name] { return FindJoint(tree, joint_name); });
     coupling.of.emplace_back(joint, factor.Bounded());
     factor.Expect(coupling.of.back().second != 0.0, "a factor other than 0");
   }

@@ -21,4 +21,11 @@ std::map<std::string, UrdfOrigin> ReadOrigins(const std::string& urdf, const std
 std::string ReplaceOrigins(const std::string& urdf, const std::string& source,
                            const std::map<std::string, UrdfOrigin>& origins);
 
+/// The URDF with `shifts` [rad, m] added to the reference positions of joints, `<calibration
+/// rising>` and `falling`: where a joint of this URDF stands at the encoder's reference. A joint
+/// without them gets `rising` with a reference at the encoder's zero. Throws InputError like
+/// ReplaceOrigins.
+std::string ShiftReferencePositions(const std::string& urdf, const std::string& source,
+                                    const std::map<std::string, double>& shifts);
+
 }  // namespace elastocal

@@ -96,7 +96,9 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
     const std::string& name = robot.tree.links[Size(robot.soles[i].link)].name;
     Transform T_world_sole = T_root_link[Size(robot.soles[i].link)];
     if ((T_world_sole.linear().col(2) - Eigen::Vector3d::UnitZ()).norm() > kUpright) {
-      throw InputError("sole '" + name + "' does not lie flat in the zero posture (z upwards)");
+      throw InputError(
+          "robot '" + robot.tree.name + "': sole '" + name +
+          "' does not lie flat in the zero posture; a frame with z upwards was expected");
     }
     T_world_sole.translation().z() = 0.0;
     robot.T_world_sole.push_back(T_world_sole);

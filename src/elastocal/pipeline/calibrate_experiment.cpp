@@ -9,6 +9,7 @@
 #include "elastocal/io/output_files.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
@@ -81,6 +82,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // get one clock, and are reduced to the samples at which the markers are stable: for every marker
   // of a posture the same ones, so that none weighs more. The trials of all chains are joined.
   Measurements measured = ReadMeasurements(project, recordings);
+  run.undone = AcceptMistakes(project, options.accept, measured);
 
   // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
   run.elasticity = ChooseElasticity(measured.calibration, options.seed, options.threads, project);
@@ -148,6 +150,8 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.coverage = FindCoverage(project, measured);
   JudgeCoverage(run.coverage, run.verdict);
   run.warnings = std::move(measured.warnings);
+  for (const std::string& what : run.undone)
+    run.warnings.push_back("corrected on request: " + what);
   Append(run.verdict.remarks, run.warnings);
   if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra));
   run.zero_offsets = options.zero_offsets;

@@ -36,6 +36,8 @@ struct ExperimentOptions {
   /// Seed of the random postures that tell what is identifiable (instead of the project's) and of
   /// the deal of postures to folds (instead of 1).
   std::optional<std::uint64_t> seed = {};
+  /// Mistakes of the recording that are undone before anything is estimated (AcceptMistakes).
+  std::vector<std::string> accept = {};
   StepProgress progress = {};
 };
 
@@ -47,6 +49,7 @@ struct CalibrationRun {
   Excitation excitation;       ///< how well the recorded postures tell the parameters apart
   /// Faults of the recording as a whole (RecordingFault), in words; objections of the verdict.
   std::vector<std::string> faults;
+  std::vector<std::string> undone;          ///< mistakes that were undone on request, in words
   std::vector<ChainCoverage> coverage;      ///< what was recorded of each chain
   std::vector<ElasticityTrial> elasticity;  ///< tried, where the project leaves it open
   /// Causes beyond geometry and springs that were estimated, and what the search for them found.

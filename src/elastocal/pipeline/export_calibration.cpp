@@ -7,7 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/io/calibrated_mjcf.hpp"
 #include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/io/urdf_writer.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/runtime/c_header.hpp"
@@ -53,6 +56,14 @@ CalibratedUrdf UrdfOf(const CalibratedRobot& robot, const StoredCalibration& cal
   const CalibrationResult result = ResultOf(RestoreRobot(robot.project, calibration));
   const std::string file = robot.project.urdf.string();
   return MakeCalibratedUrdf(ReadFile(robot.project.urdf), file, result, zero_offsets);
+}
+
+std::string MjcfOf(const CalibratedRobot& robot, const CalibratedUrdf& apart,
+                   const std::filesystem::path& mjcf) {
+  if (mjcf.empty()) throw InputError("format mjcf: the nominal model was expected (--mjcf FILE)");
+  RobotTree calibrated = ParseUrdf(apart.text, robot.project.urdf.string() + " (calibrated)");
+  return MakeCalibratedMjcf(ReadFile(mjcf), mjcf.string(), robot.project.tree, calibrated,
+                            apart.encoder_offsets);
 }
 
 std::string PalYaml(const CalibratedUrdf& urdf, const std::string& heading) {
@@ -131,9 +142,11 @@ std::vector<ExportFormat> ExportFormats() {
           {"runtime", "the model that elastocal::Compensator reads, with elasticity"},
           {"urdf", "the URDF with calibrated joint origins"},
           {"urdf_encoder", "the same with the joints' zeros left to the encoders (see pal)"},
+          {"urdf_rising", "that one, the zeros added to <calibration rising>"},
           {"xacro", "what is added to the joint origins, as xacro properties"},
           {"pal", "seven numbers a joint: xyz, rpy and the zero of the encoder (YAML)"},
-          {"ros2_control", "the zeros of the encoders as offsets of transmissions"}};
+          {"ros2_control", "the zeros of the encoders as offsets of transmissions"},
+          {"mjcf", "the model of --mjcf with calibrated bodies, the zeros as ref of its joints"}};
 }
 
 std::string ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options) {
@@ -163,6 +176,10 @@ std::string ExportCalibration(const CalibratedRobot& robot, const ExportOptions&
   if (format == "urdf") return UrdfOf(robot, calibration, ZeroOffsets::kOrigin).text;
   const CalibratedUrdf apart = UrdfOf(robot, calibration, ZeroOffsets::kEncoder);
   if (format == "urdf_encoder") return apart.text;
+  if (format == "urdf_rising") {
+    return ShiftReferencePositions(apart.text, robot.project.urdf.string(), apart.encoder_offsets);
+  }
+  if (format == "mjcf") return MjcfOf(robot, apart, options.mjcf);
   if (format == "xacro") return MakeXacroOffsets(apart);
   if (format == "pal") return PalYaml(apart, heading);
   if (format == "ros2_control") return Ros2Transmissions(apart, heading);

@@ -14,7 +14,7 @@ struct ExportFormat {
   std::string what;  ///< in a few words
 };
 
-/// c99, runtime, urdf, urdf_encoder, xacro, pal, ros2_control.
+/// c99, runtime, urdf, urdf_encoder, urdf_rising, xacro, pal, ros2_control, mjcf.
 std::vector<ExportFormat> ExportFormats();
 
 struct ExportOptions {
@@ -23,7 +23,8 @@ struct ExportOptions {
   /// Only joints of which the calibration tells a displacement of at least so many standard
   /// deviations are exported; the others stay nominal. 0: all.
   double least_significance = 0.0;
-  std::string version;  ///< of the program, for comments
+  std::string version;              ///< of the program, for comments
+  std::filesystem::path mjcf = {};  ///< the nominal model that format mjcf changes
 };
 
 /// A calibration as text in a format:
@@ -31,13 +32,17 @@ struct ExportOptions {
 /// - c99: one self-contained header (runtime/c_header.hpp), with elasticity,
 /// - runtime: the file that Compensator reads (runtime/runtime_model.hpp), with elasticity,
 /// - urdf: the user's URDF with changed joint origins,
-/// - urdf_encoder: the same with the joints' zeros apart, in comments of their joints,
+/// - urdf_encoder: the same with the joints' zeros left to the encoders,
+/// - urdf_rising: that one, with the zeros added to the joints' <calibration rising>,
 /// - xacro: what is added to the origins of the URDF, as xacro properties,
 /// - pal: the seven numbers of each joint (xyz, rpy, zero of the encoder) as YAML,
-/// - ros2_control: the zeros of the encoders as offsets of SimpleTransmission.
+/// - ros2_control: the zeros of the encoders as offsets of SimpleTransmission,
+/// - mjcf: the user's MJCF with changed bodies, and the zeros as `ref` of its joints
+///   (io/calibrated_mjcf.hpp).
 ///
 /// A URDF is read back and compared with the model at 1000 postures (1e-9) before it is returned.
-/// Throws InputError for an unknown format, with the nearest known one.
+/// Throws InputError for an unknown format, with the nearest known one, and for mjcf without a
+/// model or with one that is not that of the URDF.
 std::string ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options);
 
 }  // namespace elastocal

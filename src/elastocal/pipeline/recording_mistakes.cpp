@@ -1,7 +1,9 @@
 #include "elastocal/pipeline/recording_mistakes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,15 +20,88 @@ namespace {
 
 constexpr double kLeftOfError = 0.5;  // at most, without a mistake
 constexpr std::size_t kMostMistakes = 3;
-constexpr std::size_t kMostTried = 3;  // of a kind, at a time
-constexpr double kClearlyRight = 0.2;  // of the error is left: no other suspicion is tried
-constexpr double kLikeTheMost = 0.95;  // of the widest prior
+constexpr std::size_t kMostTried = 3;     // of a kind, at a time
+constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
+constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
+constexpr double kLikeTheMost = 0.95;     // of the widest prior
 
 /// A suspicion of any kind.
 struct TriedCorrection {
-  std::string what;
+  std::string name, what;
   Recording corrected;
+  std::vector<int> left_out = {};  ///< postures that `corrected` is without, ascending
 };
+
+std::string NameOf(const LabelSuspicion& suspicion) {
+  return "labels:" + std::min(suspicion.a, suspicion.b) + "," + std::max(suspicion.a, suspicion.b);
+}
+
+std::string NameOf(const LogSuspicion& suspicion, const RobotTree& tree) {
+  const auto joint = [&](int coordinate) {
+    return tree
+        .joints[static_cast<std::size_t>(
+            tree.coordinate_joint[static_cast<std::size_t>(coordinate)])]
+        .name;
+  };
+  switch (suspicion.kind) {
+    case LogContradiction::kSign:
+      return "sign:" + joint(suspicion.coordinate);
+    case LogContradiction::kFrozen:
+      return "frozen:" + joint(suspicion.coordinate);
+    default: {
+      const std::string a = joint(suspicion.coordinate), b = joint(suspicion.other);
+      return "exchange:" + std::min(a, b) + "," + std::max(a, b);
+    }
+  }
+}
+
+/// What the nominal robot makes one suspect, with the recording that is left once it is undone; at
+/// most so many of labels and of the log.
+std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel& nominal,
+                                        const Recording& recording, std::size_t most) {
+  std::vector<TriedCorrection> tried;
+  for (const LabelSuspicion& one :
+       FindLabelSuspicions(nominal, recording, SeenClusters(project, recording))) {
+    if (tried.size() >= most) break;
+    tried.push_back(
+        {NameOf(one), DescribeSuspicion(one, recording), WithoutExchange(recording, one)});
+  }
+  const std::size_t labels = tried.size();
+  for (const LogSuspicion& one : FindLogSuspicions(nominal, recording)) {
+    if (tried.size() >= labels + most) break;
+    tried.push_back({NameOf(one, project.tree), DescribeSuspicion(one, project.tree, recording),
+                     WithoutMistake(recording, one),
+                     one.kind == LogContradiction::kFrozen ? one.postures : std::vector<int>()});
+  }
+  return tried;
+}
+
+ErrorModel NominalModel(const Project& project, const Recording& recording) {
+  return SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
+}
+
+/// Undoes what has one of these names; adds the names that the recording shows and what was undone.
+void Accept(const Project& project, const std::vector<std::string>& names, Recording& recording,
+            std::vector<std::optional<Transform>>& truth, std::set<std::string>& shown,
+            std::vector<std::string>& undone) {
+  if (recording.trials.empty()) return;
+  const ErrorModel nominal = NominalModel(project, recording);
+  for (std::size_t round = 0; round < kMostUndone; ++round) {
+    const TriedCorrection* next = nullptr;
+    const std::vector<TriedCorrection> tried = Suspicions(project, nominal, recording, kMostUndone);
+    for (const TriedCorrection& one : tried) {
+      shown.insert(one.name);
+      const bool wanted = std::find(names.begin(), names.end(), one.name) != names.end();
+      if (wanted && next == nullptr) next = &one;
+    }
+    if (next == nullptr) return;
+    undone.push_back(next->what);
+    for (auto at = next->left_out.rbegin(); at != next->left_out.rend(); ++at) {
+      if (!truth.empty()) truth.erase(truth.begin() + *at);
+    }
+    recording = Recording(next->corrected);
+  }
+}
 
 /// Whether the prior had to be widened beyond what an error of a robot can be: axes turned by half
 /// a turn explain a reversed sign perfectly.
@@ -60,14 +135,15 @@ class MistakeSearch {
   MistakeSearch(const Project& project, std::optional<std::uint64_t> seed,
                 const Measurements& measured, double error)
       : error_(error), project_(project), as_recorded_(measured), recording_(measured.calibration) {
-    nominal_ = SelectMarkers(MakeProjectModel(project, recording_.trials), recording_.marker_names);
+    nominal_ = NominalModel(project, recording_);
     seed_ = seed;
   }
 
   std::vector<RecordingMistake> Run() {
     std::vector<RecordingMistake> mistakes;
     while (mistakes.size() < kMostMistakes) {
-      const std::vector<TriedCorrection> tried = Suspicions();
+      const std::vector<TriedCorrection> tried =
+          Suspicions(project_, nominal_, recording_, kMostTried);
       if (tried.empty()) break;
       const TriedCorrection* best = nullptr;
       double least = kLeftOfError * error_;
@@ -79,7 +155,7 @@ class MistakeSearch {
         if (left < kClearlyRight * error_) break;
       }
       if (best == nullptr) break;
-      mistakes.push_back({best->what, error_, least});
+      mistakes.push_back({best->name, best->what, error_, least});
       recording_ = Recording(best->corrected);
       error_ = least;
     }
@@ -87,22 +163,6 @@ class MistakeSearch {
   }
 
  private:
-  std::vector<TriedCorrection> Suspicions() const {
-    std::vector<TriedCorrection> tried;
-    for (const LabelSuspicion& one :
-         FindLabelSuspicions(nominal_, recording_, SeenClusters(project_, recording_))) {
-      if (tried.size() >= kMostTried) break;
-      tried.push_back({DescribeSuspicion(one, recording_), WithoutExchange(recording_, one)});
-    }
-    const std::size_t labels = tried.size();
-    for (const LogSuspicion& one : FindLogSuspicions(nominal_, recording_)) {
-      if (tried.size() >= labels + kMostTried) break;
-      tried.push_back(
-          {DescribeSuspicion(one, project_.tree, recording_), WithoutMistake(recording_, one)});
-    }
-    return tried;
-  }
-
   /// Of a robot calibrated from the recording; infinite where nothing can be fitted.
   double Error(const Recording& recording) {
     if (!base_) {
@@ -142,15 +202,34 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
   return MistakeSearch(project, seed, measured, error).Run();
 }
 
+std::vector<std::string> AcceptMistakes(const Project& project,
+                                        const std::vector<std::string>& names,
+                                        Measurements& measured) {
+  std::vector<std::string> undone;
+  if (names.empty()) return undone;
+  std::set<std::string> shown;
+  Accept(project, names, measured.calibration, measured.calibration_truth, shown, undone);
+  Accept(project, names, measured.validation, measured.validation_truth, shown, undone);
+  for (const std::string& name : names) {
+    if (shown.contains(name)) continue;
+    throw InputError(fmt::format(
+        "--accept {}: the recording shows no such mistake; {}", name,
+        shown.empty() ? "it shows none" : fmt::format("it shows {}", fmt::join(shown, ", "))));
+  }
+  return undone;
+}
+
 std::string DescribeMistake(const RecordingMistake& mistake) {
   if (std::isinf(mistake.before)) {
     return fmt::format(
         "{}; without that the recording is explained to {:.3g} mm, with it only by errors that no "
-        "robot has",
-        mistake.what, 1e3 * mistake.after);
+        "robot has (--accept {} corrects it)",
+        mistake.what, 1e3 * mistake.after, mistake.name);
   }
-  return fmt::format("{}; without that the error of the fit falls from {:.3g} to {:.3g} mm",
-                     mistake.what, 1e3 * mistake.before, 1e3 * mistake.after);
+  return fmt::format(
+      "{}; without that the error of the fit falls from {:.3g} to {:.3g} mm (--accept {} corrects "
+      "it)",
+      mistake.what, 1e3 * mistake.before, 1e3 * mistake.after, mistake.name);
 }
 
 }  // namespace elastocal

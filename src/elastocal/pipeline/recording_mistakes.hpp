@@ -13,6 +13,7 @@ namespace elastocal {
 
 /// A mistake in a recording that was tried: undone, the recording fits far better.
 struct RecordingMistake {
+  std::string name;     ///< short, for AcceptMistakes: "sign:arm_left_7_joint"
   std::string what;     ///< in words
   double before = 0.0;  ///< rms distance of all markers from the fit, m; infinite: no robot fits
   double after = 0.0;   ///< the same once it is undone
@@ -29,7 +30,16 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result);
 
-/// "the sign of ... is reversed ...; without that the error falls from 14.2 to 0.31 mm"
+/// Undoes the mistakes of these names wherever the trials for calibration and for validation seem
+/// to have them, and says what was undone, in words: `sign:JOINT`, `exchange:JOINT,JOINT`,
+/// `frozen:JOINT` (its postures are left out), `labels:NAME,NAME` of two clusters or markers.
+/// Throws InputError for a name of which the recording shows nothing, with those that it does show.
+std::vector<std::string> AcceptMistakes(const Project& project,
+                                        const std::vector<std::string>& names,
+                                        Measurements& measured);
+
+/// "the sign of ... is reversed ...; without that the error falls from 14.2 to 0.31 mm (--accept
+/// NAME corrects it)"
 std::string DescribeMistake(const RecordingMistake& mistake);
 
 }  // namespace elastocal

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "elastocal/robot/robot_tree.hpp"
+
+namespace elastocal {
+
+/// A user's MJCF with the geometry of a calibrated robot in it; not a byte else is changed.
+///
+/// Bodies have the names of the URDF's links and joints those of its joints, as MuJoCo gives them
+/// when it reads the URDF; links on fixed joints may be fused into their parents. A body that a
+/// joint moves gets `pos` and `quat` of the calibrated URDF (`calibrated`, with the joints' zeros
+/// left to the encoders), its joint `ref`, so that qpos is the position of the encoder: position in
+/// the URDF = qpos + `encoder_offsets`. Elasticity has no place in it.
+///
+/// `nominal` is the tree of the URDF that was calibrated. Throws InputError naming file and line:
+/// no MJCF; a joint or the body of a joint is missing; a body that is more than 0.1 mm or 0.1 mrad
+/// from where the nominal URDF has it, or on another parent; a joint about another axis, or not in
+/// the origin of its body; an orientation given by anything but `quat`; global coordinates.
+std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& source,
+                               const RobotTree& nominal, const RobotTree& calibrated,
+                               const std::map<std::string, double>& encoder_offsets);
+
+}  // namespace elastocal

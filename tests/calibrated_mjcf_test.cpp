@@ -1,0 +1,180 @@
+// The exported MJCF, as MuJoCo plays it, against the calibrated URDF.
+#include "elastocal/io/calibrated_mjcf.hpp"
+
+#include <array>
+#include <memory>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+
+#include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/io/output_files.hpp"
+#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/io/urdf_writer.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+CalibrationResult WithDrawnErrors(const RobotTree& tree) {
+  std::vector<Marker> markers;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    markers.push_back({"m" + std::to_string(i), static_cast<int>(i), {0.1, 0.02, -0.03}});
+  }
+  CalibrationResult result;
+  result.model = MakeErrorModel(tree, markers);
+  std::vector<int> all;
+  for (int i = 0; i < result.model.parameter_count(); ++i) all.push_back(i);
+  result.delta = DrawErrors(result.model, all,
+                            {{ParameterKind::kTheta, 0.02},
+                             {ParameterKind::kR, 2e-3},
+                             {ParameterKind::kD, 2e-3},
+                             {ParameterKind::kB, 2e-3},
+                             {ParameterKind::kAlpha, 0.01},
+                             {ParameterKind::kBeta, 0.01},
+                             {ParameterKind::kGamma, 0.01}},
+                            5);
+  return result;
+}
+
+/// The bodies that joint `k` and those after it move, links on fixed joints fused.
+std::string BodyText(const RobotTree& tree, int parent_body) {
+  std::string text;
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const Joint& joint = tree.joints[k];
+    if (joint.parent_body != parent_body) continue;
+    const Transform T =
+        tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link * joint.T_parent_child;
+    const Eigen::Quaterniond q(T.linear());
+    text += fmt::format(
+        "<body name=\"{}\" pos=\"{:.17g} {:.17g} {:.17g}\" quat=\"{:.17g} {:.17g} {:.17g} "
+        "{:.17g}\">\n<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>\n"
+        "<joint name=\"{}\" type=\"{}\" axis=\"{:.17g} {:.17g} {:.17g}\"/>\n",
+        tree.links[static_cast<std::size_t>(joint.child_link)].name, T.translation().x(),
+        T.translation().y(), T.translation().z(), q.w(), q.x(), q.y(), q.z(), joint.name,
+        joint.type == JointType::kRevolute ? "hinge" : "slide", joint.axis.x(), joint.axis.y(),
+        joint.axis.z());
+    text += BodyText(tree, static_cast<int>(k) + 1) + "</body>\n";
+  }
+  return text;
+}
+
+std::string NominalMjcf(const RobotTree& tree, const std::string& compiler) {
+  const auto root = std::find_if(tree.links.begin(), tree.links.end(), [](const Link& link) {
+    return link.body == 0 && link.T_body_link.isApprox(Transform::Identity());
+  });
+  return "<mujoco>" + compiler + "<worldbody>\n<body name=\"" + root->name + "\">\n" +
+         BodyText(tree, 0) + "</body>\n</worldbody></mujoco>\n";
+}
+
+using Model = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
+
+Model Load(const std::string& text) {
+  const ScratchFolder folder;
+  std::array<char, 1000> error{};
+  const std::string file = folder.Write("robot.xml", text);
+  return {mj_loadXML(file.c_str(), nullptr, error.data(), error.size()), &mj_deleteModel};
+}
+
+struct CalibratedMjcf {
+  RobotTree nominal, calibrated;
+  std::map<std::string, double> offsets;
+  std::string text;
+};
+
+CalibratedMjcf Export(const std::string& robot, const std::string& compiler) {
+  const std::string urdf = ReadFile(SourceFile(robot));
+  CalibratedMjcf result;
+  result.nominal = ParseUrdf(urdf, robot);
+  const CalibratedUrdf apart =
+      MakeCalibratedUrdf(urdf, robot, WithDrawnErrors(result.nominal), ZeroOffsets::kEncoder);
+  result.calibrated = ParseUrdf(apart.text, "calibrated");
+  result.offsets = apart.encoder_offsets;
+  result.text = MakeCalibratedMjcf(NominalMjcf(result.nominal, compiler), "robot.xml",
+                                   result.nominal, result.calibrated, result.offsets);
+  return result;
+}
+
+/// MuJoCo's qpos is the encoder: bodies stand where the calibrated URDF has them at q + offset.
+void ExpectThatMujocoAgrees(const CalibratedMjcf& robot) {
+  const Model model = Load(robot.text);
+  ASSERT_NE(model, nullptr);
+  const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(model.get()),
+                                                               &mj_deleteData);
+  Random random(2);
+  for (int posture = 0; posture < 20; ++posture) {
+    const Eigen::VectorXd q = RandomPosture(robot.calibrated, random);
+    for (const Joint& joint : robot.calibrated.joints) {
+      const int id = mj_name2id(model.get(), mjOBJ_JOINT, joint.name.c_str());
+      ASSERT_GE(id, 0) << joint.name;
+      const auto offset = robot.offsets.find(joint.name);
+      data->qpos[model->jnt_qposadr[id]] = joint.multiplier * q[joint.coordinate] + joint.offset -
+                                           (offset == robot.offsets.end() ? 0.0 : offset->second);
+    }
+    mj_kinematics(model.get(), data.get());
+    const std::vector<Transform> T_root_link = LinkTransforms(robot.calibrated, q);
+    for (const Joint& joint : robot.calibrated.joints) {
+      const auto link = static_cast<std::size_t>(joint.child_link);
+      const int body =
+          mj_name2id(model.get(), mjOBJ_BODY, robot.calibrated.links[link].name.c_str());
+      const Eigen::Map<const Eigen::Vector3d> position(data->xpos + 3 * body);
+      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data->xmat + 9 * body);
+      EXPECT_LT((position - T_root_link[link].translation()).norm(), 1e-9) << joint.name;
+      EXPECT_LT((R - T_root_link[link].linear()).norm(), 1e-9) << joint.name;
+    }
+  }
+}
+
+TEST(CalibratedMjcf, MujocoStandsWhereTheCalibratedUrdfDoes) {
+  ExpectThatMujocoAgrees(Export("tests/robots/arm6.urdf", ""));
+}
+
+TEST(CalibratedMjcf, AnglesOfTheFileMayBeRadiansAndLinksMayFollowOthers) {
+  ExpectThatMujocoAgrees(Export("tests/robots/mini_humanoid.urdf", "<compiler angle=\"radian\"/>"));
+}
+
+TEST(CalibratedMjcf, NamesWhatDoesNotBelongToTheUrdf) {
+  const std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  const RobotTree tree = ParseUrdf(urdf, "arm6.urdf");
+  const std::string good = NominalMjcf(tree, "");
+  const auto refused = [&](const std::string& found, const std::string& with,
+                           const std::string& words) {
+    std::string text = good;
+    const std::size_t at = text.find(found);
+    ASSERT_NE(at, std::string::npos) << found;
+    text.replace(at, found.size(), with);
+    ExpectInputError([&] { MakeCalibratedMjcf(text, "a.xml", tree, tree, {}); }, {words});
+  };
+  refused("<mujoco>", "<mujoco><compiler coordinate=\"global\"/>", "global");
+  refused("<body name=\"" + tree.links[static_cast<std::size_t>(tree.joints[2].child_link)].name,
+          "<body name=\"other", "no body");
+  refused("quat=", "euler=\"0 0 0\" quat=", "'quat' was expected");
+  refused("<joint name=\"" + tree.joints[0].name, "<joint name=\"other", "has no joint");
+  refused("<joint name", "<joint pos=\"0 0 0.1\" name", "not in the origin");
+  refused("pos=\"", "pos=\"1", "from where the URDF");
+  ExpectInputError([&] { MakeCalibratedMjcf(urdf, "a.xml", tree, tree, {}); }, {"<mujoco>"});
+}
+
+TEST(ReferencePositions, AreShiftedByTheZeros) {
+  const std::string before =
+      "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n"
+      "<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/>"
+      "<calibration rising=\"0.5\"/></joint>\n"
+      "<joint name=\"k\" type=\"continuous\">\n  <parent link=\"b\"/><child link=\"c\"/></joint>"
+      "</robot>\n";
+  const std::string after = ShiftReferencePositions(before, "r.urdf", {{"j", 0.25}, {"k", -1.0}});
+  EXPECT_NE(after.find("<calibration rising=\"0.75\"/></joint>"), std::string::npos) << after;
+  EXPECT_NE(after.find("\n  <calibration rising=\"-1\"/>\n  <parent link=\"b\"/>"),
+            std::string::npos)
+      << after;
+  EXPECT_EQ(ShiftReferencePositions(before, "r.urdf", {{"j", 0.0}, {"k", 0.0}}), before);
+}
+
+}  // namespace
+}  // namespace elastocal
