@@ -54,13 +54,14 @@ class SuspicionSearch {
       }
       if (static_cast<int>(postures.size()) < kLeastJudged) continue;
       for (int a : coordinates_) {
-        TrySign(a, postures);
+        if (Range(Logged(a, postures)) >= LeastRange(a)) TrySign(a, postures);
         TryFrozen(a, postures);
         for (int b : coordinates_) {
           if (a < b) TryExchange(a, b, postures);
         }
       }
     }
+    FollowSigns();
     std::vector<LogSuspicion> found;
     for (auto& [key, suspicion] : found_) {
       const auto count = static_cast<double>(suspicion.postures.size());
@@ -107,11 +108,31 @@ class SuspicionSearch {
   void TrySign(int c, const std::vector<int>& postures) {
     const Eigen::VectorXd logged = Logged(c, postures);
     const Eigen::VectorXd shown = Shown(c, postures);
-    if (Range(logged) < LeastRange(c)) return;
     const double before = Typical(shown - logged);
     const double after = Typical(shown + logged);
     if (before < LeastDiscrepancy(c) || after > kFarBetter * before) return;
     Add(LogContradiction::kSign, c, -1, postures, before, after);
+  }
+
+  /// A sign that one trial shows to be reversed is so in others as well where the joint did not
+  /// move but is shown on the other side of zero.
+  void FollowSigns() {
+    std::vector<int> reversed;
+    for (const auto& [key, suspicion] : found_) {
+      if (suspicion.kind == LogContradiction::kSign) reversed.push_back(suspicion.coordinate);
+    }
+    for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
+      std::vector<int> postures;
+      for (int i = 0; i < recording_.posture_count(); ++i) {
+        if (recording_.trial[i] == trial) postures.push_back(i);
+      }
+      for (int c : reversed) {
+        if (!postures.empty() && Range(Logged(c, postures)) < LeastRange(c)) TrySign(c, postures);
+      }
+    }
+    for (auto& [key, suspicion] : found_) {
+      std::sort(suspicion.postures.begin(), suspicion.postures.end());
+    }
   }
 
   void TryExchange(int a, int b, const std::vector<int>& postures) {
