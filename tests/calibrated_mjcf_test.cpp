@@ -1,6 +1,7 @@
 // The exported MJCF, as MuJoCo plays it, against the calibrated URDF.
 #include "elastocal/io/calibrated_mjcf.hpp"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -14,34 +15,13 @@
 #include "elastocal/io/urdf_writer.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
-#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/drawn_calibration.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
-
-CalibrationResult WithDrawnErrors(const RobotTree& tree) {
-  std::vector<Marker> markers;
-  for (std::size_t i = 0; i < tree.links.size(); ++i) {
-    markers.push_back({"m" + std::to_string(i), static_cast<int>(i), {0.1, 0.02, -0.03}});
-  }
-  CalibrationResult result;
-  result.model = MakeErrorModel(tree, markers);
-  std::vector<int> all;
-  for (int i = 0; i < result.model.parameter_count(); ++i) all.push_back(i);
-  result.delta = DrawErrors(result.model, all,
-                            {{ParameterKind::kTheta, 0.02},
-                             {ParameterKind::kR, 2e-3},
-                             {ParameterKind::kD, 2e-3},
-                             {ParameterKind::kB, 2e-3},
-                             {ParameterKind::kAlpha, 0.01},
-                             {ParameterKind::kBeta, 0.01},
-                             {ParameterKind::kGamma, 0.01}},
-                            5);
-  return result;
-}
 
 /// The bodies that joint `k` and those after it move, links on fixed joints fused.
 std::string BodyText(const RobotTree& tree, int parent_body) {
@@ -93,7 +73,7 @@ CalibratedMjcf Export(const std::string& robot, const std::string& compiler) {
   CalibratedMjcf result;
   result.nominal = ParseUrdf(urdf, robot);
   const CalibratedUrdf apart =
-      MakeCalibratedUrdf(urdf, robot, WithDrawnErrors(result.nominal), ZeroOffsets::kEncoder);
+      MakeCalibratedUrdf(urdf, robot, WithErrors(result.nominal, 5), ZeroOffsets::kEncoder);
   result.calibrated = ParseUrdf(apart.text, "calibrated");
   result.offsets = apart.encoder_offsets;
   result.text = MakeCalibratedMjcf(NominalMjcf(result.nominal, compiler), "robot.xml",

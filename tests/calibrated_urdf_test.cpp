@@ -8,31 +8,11 @@
 #include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
-#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/drawn_calibration.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
-
-using Kind = ParameterKind;
-
-const std::map<Kind, double> kErrors = {
-    {Kind::kTheta, 0.02}, {Kind::kR, 2e-3},    {Kind::kD, 2e-3},    {Kind::kB, 2e-3},
-    {Kind::kAlpha, 0.01}, {Kind::kBeta, 0.01}, {Kind::kGamma, 0.01}};
-
-/// A "calibration" with drawn errors on every joint parameter: nothing needs to be estimated here.
-CalibrationResult WithErrors(const RobotTree& tree, std::uint64_t seed) {
-  std::vector<Marker> markers;  // one on every link: all joints are in the model
-  for (std::size_t i = 0; i < tree.links.size(); ++i) {
-    markers.push_back({"m" + std::to_string(i), static_cast<int>(i), {0.1, 0.02, -0.03}});
-  }
-  CalibrationResult result;
-  result.model = MakeErrorModel(tree, markers);
-  std::vector<int> all;
-  for (int i = 0; i < result.model.parameter_count(); ++i) all.push_back(i);
-  result.delta = DrawErrors(result.model, all, kErrors, seed);
-  return result;
-}
 
 class CalibratedUrdfOf : public ::testing::TestWithParam<std::string> {
  protected:
