@@ -9,7 +9,7 @@
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/io/posture_table.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/test_files.hpp"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bench/compare.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/jacobian.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "tests/mujoco_oracle.hpp"

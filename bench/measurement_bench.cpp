@@ -7,8 +7,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/output_files.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/measurement/smoothed_log.hpp"

@@ -1,9 +1,9 @@
 // Planning of motions: time against the number of postures, with the seconds of motion beside it.
 #include <benchmark/benchmark.h>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/motion/plan.hpp"
 #include "elastocal/motion/validation_tours.hpp"
+#include "elastocal/project/project.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {

@@ -4,9 +4,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/posture/chain_problem.hpp"
 #include "elastocal/posture/exchange.hpp"
+#include "elastocal/project/project.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {

@@ -1,8 +1,8 @@
 // The robot at run time: what a controller pays for a call, on whole TALOS.
 #include <benchmark/benchmark.h>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/runtime/compensator.hpp"
 #include "tests/runtime_calibration.hpp"
 #include "tests/test_files.hpp"

@@ -53,7 +53,7 @@ function(elastocal_unity out name)
 endfunction()
 
 # The layers that turn bytes into values: fuzzing is led by what it reaches in them.
-set(ELASTOCAL_FUZZED_LAYERS math tables robot measurement readers io)
+set(ELASTOCAL_FUZZED_LAYERS math tables files robot measurement readers description project io)
 
 # elastocal_layer(NAME [USES layer...] [LIBS public...] [PRIVATE_LIBS private...])
 #

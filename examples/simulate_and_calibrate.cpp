@@ -10,7 +10,7 @@
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 
 using namespace elastocal;

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/project/project.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // Beside robot.urdf, which the seeds name.

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "elastocal/io/posture_table.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/project/project.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const elastocal::Project project =

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "elastocal/io/urdf_reader.hpp"
-#include "elastocal/io/urdf_writer.hpp"
+#include "elastocal/description/urdf_reader.hpp"
+#include "elastocal/description/urdf_writer.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 

@@ -8,7 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "elastocal/elastocal.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"

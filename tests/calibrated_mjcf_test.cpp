@@ -1,5 +1,5 @@
 // The exported MJCF, as MuJoCo plays it, against the calibrated URDF.
-#include "elastocal/io/calibrated_mjcf.hpp"
+#include "elastocal/description/calibrated_mjcf.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
-#include "elastocal/io/calibrated_urdf.hpp"
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/urdf_reader.hpp"
-#include "elastocal/io/urdf_writer.hpp"
+#include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/description/urdf_reader.hpp"
+#include "elastocal/description/urdf_writer.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "tests/drawn_calibration.hpp"

@@ -1,11 +1,11 @@
-#include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/description/calibrated_urdf.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/description/urdf_reader.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "tests/drawn_calibration.hpp"

@@ -9,12 +9,12 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/outliers.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/pipeline/calibrate_experiment.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/validate_calibration.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "tests/program_fixture.hpp"
 
 namespace elastocal {

@@ -5,7 +5,7 @@
 
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/calibration_comparison.hpp"
 #include "tests/scratch_folder.hpp"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/io/posture_file.hpp"
 #include "elastocal/io/posture_table.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"

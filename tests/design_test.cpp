@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/posture/exchange.hpp"
+#include "elastocal/project/project.hpp"
 #include "tests/mujoco_oracle.hpp"
 #include "tests/test_files.hpp"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "tests/run_program.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"

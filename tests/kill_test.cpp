@@ -17,8 +17,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/math/random.hpp"
 #include "tests/program_fixture.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/inverse_dynamics.hpp"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/posture_table.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/run_program.hpp"
 #include "tests/scratch_folder.hpp"

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/posture_table.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/model_comparison.hpp"

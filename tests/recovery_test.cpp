@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/test_files.hpp"

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/runtime/compensator.hpp"
 #include "tests/runtime_calibration.hpp"
 #include "tests/test_files.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "elastocal/io/calibration_file.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/inverse_dynamics.hpp"
 #include "elastocal/robot/leg_load.hpp"
 #include "elastocal/robot/legs.hpp"

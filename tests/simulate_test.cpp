@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/io/experiment.hpp"
-#include "elastocal/io/output_files.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "tests/run_program.hpp"
 #include "tests/scratch_folder.hpp"

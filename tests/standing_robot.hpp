@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "elastocal/identifiability/base_parameters.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/simulation/standing_recording.hpp"
 
 namespace elastocal {

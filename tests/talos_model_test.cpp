@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/project.hpp"
-#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "tests/test_files.hpp"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/io/posture_file.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/pipeline/calibrate_experiment.hpp"

@@ -3,10 +3,9 @@
 /// Everything that calibrating a robot from recordings takes: `find_package(elastocal COMPONENTS
 /// calibration)`, target elastocal::elastocal. Begin with CalibrateExperiment.
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/io/posture_table.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrate_experiment.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
@@ -15,3 +14,4 @@
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/pipeline/summary.hpp"
 #include "elastocal/pipeline/validate_calibration.hpp"
+#include "elastocal/project/project.hpp"

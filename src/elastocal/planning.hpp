@@ -8,10 +8,10 @@
 //   const MotionPlan plan = PlanMotion(project, design.postures(), {});
 //   SimulateExperiment(project, {.motion = plan.whole.motion}, "recording");
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/planning/assess_postures.hpp"
 #include "elastocal/planning/design_postures.hpp"
 #include "elastocal/planning/known_truth.hpp"
 #include "elastocal/planning/plan_motion.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/planning/simulation_settings.hpp"
+#include "elastocal/project/project.hpp"

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/runtime/c_header.hpp"
 #include "tests/runtime_calibration.hpp"
 #include "tests/test_files.hpp"

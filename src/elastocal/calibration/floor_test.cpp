@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/math/transform.hpp"
 #include "tests/test_robots.hpp"
 
 namespace elastocal {
@@ -11,7 +12,7 @@ namespace {
 TEST(Floor, FlatSolesLeaveNothing) {
   const Eigen::Vector3d up(0.0, 0.6, 0.8), up_foot = Eigen::Vector3d::UnitX();
   Transform T = Transform::Identity();
-  T.linear() = Eigen::Quaterniond::FromTwoVectors(up_foot, up).toRotationMatrix();
+  T.linear() = RotationBetween(up_foot, up);
   T.translation() = 2.0 * up.unitOrthogonal();  // elsewhere on the floor
   const FloorResidual at = EvaluateFloor(T, Transform::Identity(), up, up_foot);
   EXPECT_LT(at.residual.norm(), 1e-15);

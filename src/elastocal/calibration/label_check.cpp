@@ -4,8 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include <Eigen/Geometry>
-
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -120,7 +118,7 @@ class LabelSuspicionSearch {
       to.col(count++) = MarkerPosition(recording_, nominal.posture, m);
     }
     if (count < kLeastPlacing) return std::nullopt;
-    return Transform(Eigen::umeyama(from.leftCols(count), to.leftCols(count), false));
+    return FitRigid(from.leftCols(count), to.leftCols(count));
   }
 
   /// Medians of a cluster's distances over the postures; NaN where never seen together.

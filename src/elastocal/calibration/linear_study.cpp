@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include <Eigen/QR>
-
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/variances.hpp"
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/math/statistics.hpp"
 
 namespace elastocal {
@@ -191,9 +190,7 @@ class StudyMaker {
 
   /// Leaves what the pose of the waist does not explain.
   void Eliminate(const Eigen::MatrixXd& nuisance, LinearStudy::Posture& of) const {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(nuisance);
-    const Eigen::MatrixXd Q =
-        qr.householderQ() * Eigen::MatrixXd::Identity(nuisance.rows(), nuisance.cols());
+    const Eigen::MatrixXd Q = ThinOrthogonalFactor(nuisance);
     of.residual -= Q * (Q.transpose() * of.residual);
     of.jacobian -= Q * (Q.transpose() * of.jacobian).eval();
   }

@@ -5,8 +5,8 @@
 #include <map>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 
 namespace elastocal {
@@ -79,7 +79,7 @@ BodyObservation MakeBodyObservation(int posture, int body, std::vector<int> mark
     ++rows;
   }
   observation.rotation_rows = rows - 3;
-  observation.basis = Eigen::HouseholderQR<Eigen::MatrixXd>(first.leftCols(rows)).householderQ();
+  observation.basis = OrthogonalFactor(first.leftCols(rows));
   observation.basis.leftCols(rows) = first.leftCols(rows);
   return observation;
 }

@@ -5,8 +5,7 @@
 #include <map>
 #include <optional>
 
-#include <Eigen/Eigenvalues>
-
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
@@ -23,10 +22,10 @@ constexpr double kRoughExcess = 0.25;     // more than the fit's part in it can 
 /// that alone determines a parameter has a residual of zero and a variance of zero. All in units of
 /// the noise.
 double SquaredDistance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  const double largest = eigen.eigenvalues().tail<1>()[0];
-  const Eigen::ArrayXd variances = eigen.eigenvalues().array().max(kLeastVariance * largest);
-  return ((eigen.eigenvectors().transpose() * residual).array().square() / variances).sum();
+  const SymmetricDecomposition eigen = DecomposeSymmetric(covariance);
+  const double largest = eigen.values.tail<1>()[0];
+  const Eigen::ArrayXd variances = eigen.values.array().max(kLeastVariance * largest);
+  return ((eigen.vectors.transpose() * residual).array().square() / variances).sum();
 }
 
 /// Of `size` numbers whose variance was estimated with `freedom` degrees of freedom.
@@ -166,12 +165,12 @@ class OutlierSearch {
       Name(b, worst, largest.square);
       const Eigen::MatrixXd M = Displacement(b, worst).bottomRows(own);
       // Singular in directions that do not change the shape.
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> reach(M.transpose() * P * M);
-      const Eigen::ArrayXd sizes = reach.eigenvalues().array();
+      const SymmetricDecomposition reach = DecomposeSymmetric(M.transpose() * P * M);
+      const Eigen::ArrayXd sizes = reach.values.array();
       const Eigen::VectorXd inverse =
           (sizes > kLeastReach * sizes.maxCoeff()).select(sizes.inverse(), 0.0);
-      const Eigen::MatrixXd gain = reach.eigenvectors() * inverse.asDiagonal() *
-                                   reach.eigenvectors().transpose() * M.transpose();
+      const Eigen::MatrixXd gain =
+          reach.vectors * inverse.asDiagonal() * reach.vectors.transpose() * M.transpose();
       z -= P * M * (gain * z);
       P -= Eigen::MatrixXd(P * M * gain * P);
       --left;
@@ -188,11 +187,11 @@ class OutlierSearch {
   /// shape (of three markers: across their plane) do not count.
   ShapeTest TestShape(const Eigen::MatrixXd& M, const Eigen::VectorXd& z,
                       const Eigen::MatrixXd& P) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> reach(M.transpose() * M);
-    const Eigen::ArrayXd sizes = reach.eigenvalues().array();
+    const SymmetricDecomposition reach = DecomposeSymmetric(M.transpose() * M);
+    const Eigen::ArrayXd sizes = reach.values.array();
     const Eigen::Index rank = (sizes > kLeastReach * sizes.maxCoeff()).count();
     if (rank == 0 || !(sizes.maxCoeff() > 0.0)) return {};
-    const Eigen::MatrixXd along = M * reach.eigenvectors().rightCols(rank);
+    const Eigen::MatrixXd along = M * reach.vectors.rightCols(rank);
     ShapeTest test;
     test.square = SquaredDistance(along.transpose() * z, along.transpose() * P * along);
     test.displacement = (along.transpose() * along).ldlt().solve(along.transpose() * z).norm();

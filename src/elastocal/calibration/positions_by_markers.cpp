@@ -6,8 +6,8 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
+#include "elastocal/math/transform.hpp"
 #include "elastocal/robot/jacobian.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
@@ -112,7 +112,7 @@ class MarkerPositionFinder {
     }
     Start start{.q = q};
     if (count < 3) return start;
-    start.T_ref_waist = Transform(Eigen::umeyama(from.leftCols(count), to.leftCols(count), false));
+    start.T_ref_waist = FitRigid(from.leftCols(count), to.leftCols(count));
     const Eigen::Matrix3Xd left = start.T_ref_waist * from.leftCols(count) - to.leftCols(count);
     start.misfit = std::sqrt(left.squaredNorm() / static_cast<double>(count));
     return start;

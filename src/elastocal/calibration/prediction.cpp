@@ -7,6 +7,7 @@
 #include "elastocal/calibration/loads.hpp"
 #include "elastocal/calibration/outliers.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/transform.hpp"
 #include "elastocal/robot/leg_load.hpp"
 
 namespace elastocal {
@@ -23,8 +24,7 @@ class Registration {
     if (from_.size() < 3) return std::nullopt;
     using Points = Eigen::Map<const Eigen::Matrix3Xd>;
     const auto count = static_cast<Eigen::Index>(from_.size());
-    return Transform(
-        Eigen::umeyama(Points(from_[0].data(), 3, count), Points(to_[0].data(), 3, count), false));
+    return FitRigid(Points(from_[0].data(), 3, count), Points(to_[0].data(), 3, count));
   }
 
  private:

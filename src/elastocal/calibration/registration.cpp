@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "elastocal/math/transform.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
@@ -24,8 +25,7 @@ Transform RegisterWaist(const ErrorModel& model, const Recording& recording) {
   if (nominal.empty()) return Transform::Identity();
   using Points = Eigen::Map<const Eigen::Matrix3Xd>;
   const auto count = static_cast<Eigen::Index>(nominal.size());
-  return Transform(Eigen::umeyama(Points(nominal[0].data(), 3, count),
-                                  Points(measured[0].data(), 3, count), false));
+  return FitRigid(Points(nominal[0].data(), 3, count), Points(measured[0].data(), 3, count));
 }
 
 }  // namespace elastocal

@@ -7,7 +7,7 @@
 #include "elastocal/cli/comparison_report.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/compare_calibrations.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 

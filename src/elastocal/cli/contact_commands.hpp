@@ -1,7 +1,7 @@
 #pragma once
 
 #include "elastocal/cli/calibration_run.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal::cli {
 

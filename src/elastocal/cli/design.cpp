@@ -11,7 +11,7 @@
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/design_postures.hpp"
 

@@ -8,7 +8,7 @@
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 
 namespace elastocal::cli {

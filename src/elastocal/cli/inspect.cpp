@@ -7,7 +7,7 @@
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/inspect_robot.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/robot/parameter_names.hpp"

@@ -1,6 +1,6 @@
 #include "elastocal/cli/option_checks.hpp"
 
-#include "elastocal/io/bounds.hpp"
+#include "elastocal/files/bounds.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal::cli {

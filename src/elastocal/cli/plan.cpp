@@ -14,7 +14,7 @@
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/plan_motion.hpp"
 

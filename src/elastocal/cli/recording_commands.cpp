@@ -8,7 +8,7 @@
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/recording_info.hpp"
 #include "elastocal/pipeline/result_folder.hpp"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "elastocal/cli/commands.hpp"
-#include "elastocal/io/output_set.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/files/output_set.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/report/run_record.hpp"
 
 namespace elastocal::cli {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "elastocal/description/urdf_outline.hpp"
 #include "elastocal/drafting/primitive.hpp"
-#include "elastocal/io/urdf_outline.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/text.hpp"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/arm_rest.hpp"
 #include "elastocal/drafting/workspaces.hpp"
-#include "elastocal/io/urdf_reader.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/posture/chain_problem.hpp"

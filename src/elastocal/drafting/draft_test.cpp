@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"

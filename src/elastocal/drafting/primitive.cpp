@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "elastocal/math/transform.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -98,7 +100,7 @@ Points SurfacePoints(const Primitive& shape) {
 
 Points RodPoints(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius) {
   const Eigen::Vector3d along = to - from;
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(
+  const auto turn = RotationBetween(
       Eigen::Vector3d::UnitZ(), along.norm() > 0.0 ? along.normalized() : Eigen::Vector3d::UnitZ());
   Points points;
   for (const Eigen::Vector3d& p : CylinderPoints(radius, 0.5 * along.norm())) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "elastocal/io/xml_element.hpp"
+#include "elastocal/files/xml_element.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/math/priority_qr.hpp"
-#include "elastocal/math/singular_values.hpp"
 
 namespace elastocal {
 namespace {

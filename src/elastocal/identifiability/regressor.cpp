@@ -2,23 +2,10 @@
 
 #include <algorithm>
 
-#include <Eigen/QR>
-
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/robot/jacobian.hpp"
 
 namespace elastocal {
-namespace {
-
-Eigen::MatrixXd TriangularFactor(const Eigen::MatrixXd& A) {
-  const Eigen::Index size = std::min(A.rows(), A.cols());
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(A)
-      .matrixQR()
-      .topRows(size)
-      .triangularView<Eigen::Upper>();
-}
-
-}  // namespace
-
 Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometry,
                                 const Eigen::MatrixXd& q,
                                 const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& seen) {

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/yaml_value.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/files/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/tables/text.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/io/calibrated_urdf.hpp"
+#include "elastocal/description/calibrated_urdf.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 
 namespace elastocal {

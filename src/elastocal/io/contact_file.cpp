@@ -2,8 +2,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/yaml_value.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/files/yaml_value.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {

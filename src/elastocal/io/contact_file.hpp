@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/observation/observation_fit.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -5,11 +5,11 @@
 
 #include <yaml-cpp/emitter.h>
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/project_sections.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/files/yaml_value.hpp"
 #include "elastocal/io/recorded_files.hpp"
-#include "elastocal/io/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/project/project_sections.hpp"
 #include "elastocal/readers/lengths.hpp"
 #include "elastocal/tables/text.hpp"
 

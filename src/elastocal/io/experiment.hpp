@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/measurement/recording.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/readers/recording_file.hpp"
 
 namespace elastocal {

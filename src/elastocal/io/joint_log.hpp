@@ -4,8 +4,8 @@
 #include <iosfwd>
 #include <string>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/measurement/trial.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

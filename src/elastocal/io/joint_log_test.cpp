@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/test_files.hpp"
 

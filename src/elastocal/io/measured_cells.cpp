@@ -1,7 +1,6 @@
 #include "elastocal/io/measured_cells.hpp"
 
 #include <algorithm>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -67,13 +66,14 @@ std::optional<Eigen::VectorXd> ReadMeasured(const Table& table, const Instrument
   for (std::size_t i = 0; i < columns.size(); ++i) {
     measured[static_cast<Eigen::Index>(i)] = table.Number(columns[i]);
   }
-  const std::string_view kind = instrument.kind();
-  if (kind == "gravity") {
+  const std::vector<RowMeaning> rows = instrument.rows();
+  if (rows.front().unit == SourceUnit::kAcceleration) {
     CheckAtRest(table, columns, measured);
   } else {
     CheckMetres(table, instrument, columns, measured, std::min<int>(3, instrument.measured_size()));
   }
-  if (kind == "pose") CheckQuaternion(table, columns, measured);
+  const bool turns = rows.back().unit == SourceUnit::kRadian;  // measured as a quaternion
+  if (turns) CheckQuaternion(table, columns, measured);
   return measured;
 }
 

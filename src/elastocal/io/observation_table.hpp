@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/observation/observed_robot.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/urdf_reader.hpp"
+#include "elastocal/description/urdf_reader.hpp"
 #include "tests/expect_input_error.hpp"
 
 namespace elastocal {

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/project_sections.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/project/project_sections.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/joint_motion.hpp"
 
 namespace elastocal {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"

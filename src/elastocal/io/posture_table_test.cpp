@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <set>
 
-#include "elastocal/io/bounds.hpp"
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/bounds.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/utf8.hpp"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/measurement/trial.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/readers/recording_file.hpp"
 
 namespace elastocal {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "elastocal/io/experiment.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_summary.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/output_files.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"

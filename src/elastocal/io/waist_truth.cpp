@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/table_writer.hpp"

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include <Eigen/QR>
+#include "elastocal/math/decompositions.hpp"
 
 namespace elastocal {
 
@@ -20,10 +20,7 @@ PriorityQrResult PriorityQr(const Eigen::MatrixXd& A, double tolerance) {
   const Eigen::VectorXd norms = A.colwise().norm();
   const Eigen::VectorXd inverse_norms = InverseColumnNorms(A);
   const Eigen::Index size = std::min(A.rows(), A.cols());
-  Eigen::MatrixXd R = Eigen::HouseholderQR<Eigen::MatrixXd>(A * inverse_norms.asDiagonal())
-                          .matrixQR()
-                          .topRows(size)
-                          .triangularView<Eigen::Upper>();
+  Eigen::MatrixXd R = TriangularFactor(A * inverse_norms.asDiagonal());
 
   // Orthonormal basis of the kept columns, grown one by one; projecting twice keeps it orthogonal.
   PriorityQrResult result;

@@ -18,6 +18,15 @@ Transform RotAxis(const Eigen::Vector3d& axis, double angle) {
   return T;
 }
 
+Eigen::Matrix3d RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+Transform FitRigid(const Eigen::Ref<const Eigen::Matrix3Xd>& from,
+                   const Eigen::Ref<const Eigen::Matrix3Xd>& to) {
+  return Transform(Eigen::umeyama(from, to, false));
+}
+
 Transform FromXyzRpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
   Transform T = RotZ(rpy.z()) * RotY(rpy.y()) * RotX(rpy.x());
   T.translation() = xyz;

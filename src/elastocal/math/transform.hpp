@@ -17,6 +17,14 @@ Transform TrZ(double distance);
 /// Rotation of `angle` about the unit vector `axis`.
 Transform RotAxis(const Eigen::Vector3d& axis, double angle);
 
+/// The smallest rotation that turns the direction `from` into the direction `to`.
+Eigen::Matrix3d RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+/// The rigid transform that brings the points `from` (columns, at least three, not on a line)
+/// nearest to the points `to`: least squares, no scale (Umeyama 1991).
+Transform FitRigid(const Eigen::Ref<const Eigen::Matrix3Xd>& from,
+                   const Eigen::Ref<const Eigen::Matrix3Xd>& to);
+
 /// URDF origin: translation `xyz` [m] and fixed-axis roll, pitch, yaw `rpy` [rad], R = Rz Ry Rx.
 Transform FromXyzRpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy);
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/moving_chain.hpp"
@@ -18,7 +18,7 @@ namespace {
 Eigen::VectorXd LeastStep(const Eigen::MatrixXd& screws,
                           const Eigen::Matrix<double, 6, 1>& wanted) {
   if (screws.cols() == 6) return screws.partialPivLu().solve(wanted);
-  return screws.completeOrthogonalDecomposition().solve(wanted);
+  return ShortestSolution(screws, wanted);
 }
 
 /// Sum of the distances between the joints that carry a link, from the first one to the link, m.

@@ -1,5 +1,6 @@
 #include "elastocal/observation/observed_posture.hpp"
 
+#include "elastocal/math/transform.hpp"
 #include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
@@ -24,7 +25,7 @@ void RegisterTrackers(const ObservedRobot& model, const Observations& observatio
       here.col(i) = landmarks[q][static_cast<std::size_t>(i)].first;
       there.col(i) = landmarks[q][static_cast<std::size_t>(i)].second;
     }
-    values.quantities[q].origin = Transform(Eigen::umeyama(there, here, false));
+    values.quantities[q].origin = FitRigid(there, here);
   }
 }
 

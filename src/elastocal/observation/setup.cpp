@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "elastocal/math/transform.hpp"
 #include "elastocal/observation/gravity_direction.hpp"
 #include "elastocal/observation/plane_distance.hpp"
 #include "elastocal/observation/seen_tag.hpp"
@@ -75,8 +76,7 @@ int AddQuantity(ObservationSetup& setup, Quantity quantity) {
 
 int AddPlane(ObservationSetup& setup, const std::string& name, const Eigen::Vector3d& normal) {
   Quantity plane{name + ".plane", {kUnknownPlace, kTableTilt, kTableTilt}, true};
-  plane.origin.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix();
+  plane.origin.linear() = RotationBetween(Eigen::Vector3d::UnitZ(), normal);
   return AddQuantity(setup, std::move(plane));
 }
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"

@@ -9,8 +9,8 @@
 
 #include "elastocal/calibration/knocks.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/description/calibrated_urdf.hpp"
 #include "elastocal/identifiability/observability.hpp"
-#include "elastocal/io/calibrated_urdf.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/coverage.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "elastocal/io/calibration_file.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

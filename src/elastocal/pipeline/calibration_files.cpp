@@ -1,8 +1,8 @@
 #include "elastocal/pipeline/calibration_files.hpp"
 
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
-#include "elastocal/io/output_set.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/checksums.hpp"
 #include "elastocal/pipeline/robot_views.hpp"

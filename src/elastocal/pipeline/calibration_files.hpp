@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/pipeline/calibrate_experiment.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 
 namespace elastocal {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 
 namespace elastocal {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/calibrated_urdf.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/description/calibrated_urdf.hpp"
 #include "elastocal/math/progress.hpp"
 #include "elastocal/observation/observation_figures.hpp"
 #include "elastocal/observation/standing_robot.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/validation/verdict.hpp"
 
 namespace elastocal {

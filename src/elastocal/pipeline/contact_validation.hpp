@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/observation/observation_figures.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

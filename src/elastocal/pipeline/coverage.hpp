@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/validation/verdict.hpp"
 
 namespace elastocal {

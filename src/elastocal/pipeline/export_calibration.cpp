@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/io/calibrated_mjcf.hpp"
-#include "elastocal/io/calibrated_urdf.hpp"
-#include "elastocal/io/urdf_reader.hpp"
-#include "elastocal/io/urdf_writer.hpp"
+#include "elastocal/description/calibrated_mjcf.hpp"
+#include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/description/urdf_reader.hpp"
+#include "elastocal/description/urdf_writer.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/runtime/c_header.hpp"

@@ -38,7 +38,7 @@ struct ExportOptions {
 /// - pal: the seven numbers of each joint (xyz, rpy, zero of the encoder) as YAML,
 /// - ros2_control: the zeros of the encoders as offsets of SimpleTransmission,
 /// - mjcf: the user's MJCF with changed bodies, and the zeros as `ref` of its joints
-///   (io/calibrated_mjcf.hpp).
+///   (description/calibrated_mjcf.hpp).
 ///
 /// A URDF is read back and compared with the model at 1000 postures (1e-9) before it is returned.
 /// Throws InputError for an unknown format, with the nearest known one, and for mjcf without a

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "elastocal/identifiability/base_parameters.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_summary.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

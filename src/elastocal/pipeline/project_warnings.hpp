@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

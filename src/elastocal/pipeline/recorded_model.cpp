@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/torque_check.hpp"
-#include "elastocal/math/singular_values.hpp"
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/parameter_names.hpp"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -4,9 +4,9 @@
 #include <set>
 #include <sstream>
 
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
-#include "elastocal/io/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/checksums.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/report/run_record.hpp"
 
 namespace elastocal {

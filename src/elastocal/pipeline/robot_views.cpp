@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "elastocal/io/output_files.hpp"
+#include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 
 namespace elastocal {

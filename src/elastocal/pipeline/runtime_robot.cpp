@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/transform.hpp"
 #include "elastocal/robot/legs.hpp"
 
 namespace elastocal {
@@ -21,8 +22,7 @@ ec_pose ToPose(const Transform& T) {
 /// A joint straight from the URDF: its twisted frame has z along the axis, and no errors.
 ec_joint UrdfJoint(const RobotTree& tree, const Joint& joint) {
   Transform R_child_twisted = Transform::Identity();
-  R_child_twisted.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
+  R_child_twisted.linear() = RotationBetween(Eigen::Vector3d::UnitZ(), joint.axis);
   ec_joint result{};
   result.twisted = ToPose(tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link *
                           joint.T_parent_child * R_child_twisted);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "elastocal/io/calibration_file.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/runtime/runtime_model.hpp"
 
 namespace elastocal {

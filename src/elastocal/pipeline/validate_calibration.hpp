@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "elastocal/io/calibration_file.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/measurement/recording.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/validation/transfer.hpp"
 
 namespace elastocal {

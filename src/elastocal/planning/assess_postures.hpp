@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "elastocal/io/posture_file.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/progress.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/posture/assess.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/project.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/joint_motion.hpp"
 #include "elastocal/runtime/compensator.hpp"
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/io/posture_file.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/progress.hpp"
 #include "elastocal/posture/design.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "elastocal/io/calibration_file.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/progress.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/simulation/stand_through.hpp"
 
 namespace elastocal {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/io/project.hpp"
+#include "elastocal/project/project.hpp"
 
 namespace elastocal {
 

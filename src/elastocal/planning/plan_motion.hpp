@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/io/output_set.hpp"
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/io/posture_file.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/progress.hpp"
 #include "elastocal/motion/plan.hpp"
 #include "elastocal/motion/validation_tours.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/simulation/stand_through.hpp"
 
 namespace elastocal {

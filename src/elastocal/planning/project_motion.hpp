@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "elastocal/io/posture_file.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/motion/plan.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/joint_motion.hpp"
 
 namespace elastocal {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/files/output_set.hpp"
 #include "elastocal/io/experiment.hpp"
-#include "elastocal/io/output_set.hpp"
-#include "elastocal/io/project.hpp"
 #include "elastocal/math/progress.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/simulation/given_motion.hpp"
 #include "elastocal/simulation/matched_experiment.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/yaml_value.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/files/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "elastocal/io/output_files.hpp"
-#include "elastocal/io/yaml_value.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/files/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/text.hpp"

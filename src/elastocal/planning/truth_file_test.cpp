@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/files/yaml_value.hpp"
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/waist_truth.hpp"
-#include "elastocal/io/yaml_value.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/posture/partial_optim.hpp"
 
 namespace elastocal {
@@ -17,13 +17,13 @@ constexpr double kSingular = 1e-12;  // of eigenvalues, relative
 /// Standard deviations by eigenvalues. They are infinite for parameters that the set does not
 /// determine.
 Eigen::VectorXd StandardDeviations(const Eigen::MatrixXd& information, double marker_sd) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-  const double floor = kSingular * eigen.eigenvalues().maxCoeff();
+  const SymmetricDecomposition eigen = DecomposeSymmetric(information);
+  const double floor = kSingular * eigen.values.maxCoeff();
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(information.rows());
   for (Eigen::Index k = 0; k < variance.size(); ++k) {
-    const Eigen::ArrayXd share = eigen.eigenvectors().col(k).array().square();
-    if (eigen.eigenvalues()[k] > floor) {
-      variance.array() += share / eigen.eigenvalues()[k];
+    const Eigen::ArrayXd share = eigen.vectors.col(k).array().square();
+    if (eigen.values[k] > floor) {
+      variance.array() += share / eigen.values[k];
     } else {
       for (Eigen::Index i = 0; i < variance.size(); ++i) {
         if (share[i] > 1e-12) variance[i] = kInfinity;
@@ -60,11 +60,7 @@ Assessment AssessPostures(PostureProblem& problem, const PostureSet& set,
   }
   assessment.parameter_sd = StandardDeviations(set.information(), options.marker_sd);
   if (set.Index(Criterion::kO1) > 0.0) {
-    const Eigen::VectorXd sigma =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(set.information(), Eigen::EigenvaluesOnly)
-            .eigenvalues()
-            .cwiseMax(0.0)
-            .cwiseSqrt();
+    const Eigen::VectorXd sigma = SymmetricValues(set.information()).cwiseMax(0.0).cwiseSqrt();
     assessment.indices = ComputeObservability(sigma, set.size());
     const double root = std::sqrt(set.size());
     const Eigen::VectorXd without = IndicesWithoutEach(set, Criterion::kO1);

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "elastocal/identifiability/observability.hpp"
+#include "elastocal/math/decompositions.hpp"
 
 namespace elastocal {
 namespace {
@@ -92,9 +92,9 @@ CriterionValue EvaluateCriterion(Criterion criterion, const Eigen::MatrixXd& inf
         0.5 * LogDet(factor) / columns - 0.5 * std::log(postures),
         factor.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())) / columns};
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-  const Eigen::VectorXd sigma = eigen.eigenvalues().reverse().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::MatrixXd V = eigen.eigenvectors().rowwise().reverse();
+  const SymmetricDecomposition eigen = DecomposeSymmetric(information);
+  const Eigen::VectorXd sigma = eigen.values.reverse().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd V = eigen.vectors.rowwise().reverse();
   const Eigen::VectorXd scale = IndexGradient(criterion, sigma).cwiseQuotient(sigma);
   return {std::log(Index(criterion, ComputeObservability(sigma, postures))),
           V * scale.asDiagonal() * V.transpose()};

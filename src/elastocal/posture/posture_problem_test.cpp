@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/random.hpp"
-#include "elastocal/math/singular_values.hpp"
+#include "elastocal/math/decompositions.hpp"
 #include "elastocal/posture/random_posture.hpp"
 #include "elastocal/robot/leg_load.hpp"
 #include "tests/leg_problem.hpp"

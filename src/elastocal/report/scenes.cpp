@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "elastocal/math/transform.hpp"
 #include "elastocal/report/encoding.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
@@ -57,9 +58,7 @@ Transform ToView(const CalibrationView& view) {
     return WaistPose(ApplyErrors(best.model, best.delta)).inverse();
   }
   Transform up = Transform::Identity();
-  up.linear() =
-      Eigen::Quaterniond::FromTwoVectors(-view.recording.gravity, Eigen::Vector3d::UnitZ())
-          .toRotationMatrix();
+  up.linear() = RotationBetween(-view.recording.gravity, Eigen::Vector3d::UnitZ());
   return up;
 }
 

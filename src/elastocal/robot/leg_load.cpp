@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "elastocal/math/rotation_vector.hpp"
-#include "elastocal/math/singular_values.hpp"
+#include "elastocal/math/decompositions.hpp"
 
 namespace elastocal {
 namespace {

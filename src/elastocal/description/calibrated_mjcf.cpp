@@ -1,0 +1,175 @@
+#include "elastocal/description/calibrated_mjcf.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "elastocal/files/xml_edit.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/transform.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kSamePlace = 1e-4;  // m and rad: of poses that were written with six digits
+constexpr double kSameAxis = 1e-4;
+
+struct MjcfBody {
+  XmlElement element;
+  std::string parent;  ///< name of the body that carries it; empty: the world
+};
+
+void CollectBodies(const XmlElement& within, const std::string& parent,
+                   std::map<std::string, MjcfBody>& bodies) {
+  for (const XmlElement& child : within.Children()) {
+    if (child.Tag() != "body") continue;
+    const std::string name = child.Has("name") ? child.Text("name") : "";
+    if (!name.empty()) bodies.insert({name, {child, parent}});
+    CollectBodies(child, name, bodies);
+  }
+}
+
+/// Angles of an MJCF are degrees unless it says otherwise.
+double AngleUnit(const XmlElement& root) {
+  double unit = M_PI / 180.0;
+  for (const XmlElement& element : root.Children()) {
+    if (element.Tag() != "compiler") continue;
+    if (element.Has("coordinate") && element.Text("coordinate") == "global") {
+      element.Fail("coordinate=\"global\"; bodies in the frames of their parents were expected");
+    }
+    if (element.Has("angle")) unit = element.Text("angle") == "radian" ? 1.0 : M_PI / 180.0;
+  }
+  return unit;
+}
+
+Eigen::Quaterniond ReadQuaternion(const XmlElement& body) {
+  for (const char* other : {"euler", "axisangle", "xyaxes", "zaxis"}) {
+    if (body.Has(other)) {
+      body.Fail(std::string("orientation by '") + other +
+                "'; 'quat' was expected, as MuJoCo saves models");
+    }
+  }
+  if (!body.Has("quat")) return Eigen::Quaterniond::Identity();
+  const std::string text = body.Text("quat");
+  std::array<double, 4> numbers{};
+  std::string_view rest = Trim(text);
+  for (double& number : numbers) {
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n"));
+    const std::optional<double> value = ParseNumber(word);
+    rest = Trim(rest.substr(word.size()));
+    if (!value) body.Fail("quat is " + Quote(text) + "; four finite numbers were expected");
+    number = *value;
+  }
+  const Eigen::Quaterniond quaternion(numbers[0], numbers[1], numbers[2], numbers[3]);
+  if (!rest.empty() || !(quaternion.norm() > 0.1)) {
+    body.Fail("quat is " + Quote(text) + "; four numbers w x y z were expected");
+  }
+  return quaternion.normalized();
+}
+
+Transform ReadBodyPose(const XmlElement& body) {
+  Transform T = Transform::Identity();
+  if (body.Has("pos")) T.translation() = body.Vector("pos");
+  T.linear() = ReadQuaternion(body).toRotationMatrix();
+  return T;
+}
+
+/// Where the URDF has the child link of a joint, in the frame of the MJCF's parent body: a link of
+/// the same part of the robot.
+Transform PoseInParent(const RobotTree& tree, const Joint& joint, const MjcfBody& body) {
+  const Link& carrier = tree.links[static_cast<std::size_t>(joint.parent_link)];
+  for (const Link& link : tree.links) {
+    if (link.name != body.parent || link.body != carrier.body) continue;
+    return link.T_body_link.inverse() * carrier.T_body_link * joint.T_parent_child;
+  }
+  body.element.Fail("the body is carried by " + Quote(body.parent) + "; " + Quote(carrier.name) +
+                    " or a link fixed to it was expected");
+}
+
+XmlElement JointOf(const MjcfBody& body, const Joint& joint) {
+  std::optional<XmlElement> found;
+  std::vector<std::string> names;
+  for (const XmlElement& child : body.element.Children()) {
+    if (child.Tag() != "joint" || !child.Has("name")) continue;
+    names.push_back(child.Text("name"));
+    if (names.back() == joint.name) found = child;
+  }
+  if (!found) {
+    body.element.Fail("the body has no joint " + Quote(joint.name) + DidYouMean(joint.name, names));
+  }
+  if (found->Has("pos") && found->Vector("pos").norm() > kSamePlace) {
+    found->Fail("joint " + Quote(joint.name) + " is not in the origin of its body");
+  }
+  if (found->Has("axis")) {
+    const Eigen::Vector3d axis = found->Vector("axis").normalized();
+    if (!((axis - joint.axis).norm() < kSameAxis)) {
+      found->Fail(
+          fmt::format("the axis of joint '{}' is ({:.4g} {:.4g} {:.4g}); that of the URDF, "
+                      "({:.4g} {:.4g} {:.4g}), was expected",
+                      joint.name, axis.x(), axis.y(), axis.z(), joint.axis.x(), joint.axis.y(),
+                      joint.axis.z()));
+    }
+  }
+  return *found;
+}
+
+void CheckNominal(const MjcfBody& body, const Joint& joint, const Transform& expected) {
+  const Transform off = expected.inverse() * ReadBodyPose(body.element);
+  const double turn = RotationAngle(off.linear());
+  if (off.translation().norm() <= kSamePlace && turn <= kSamePlace) return;
+  body.element.Fail(fmt::format(
+      "the body that joint '{}' moves is {:.3g} mm and {:.3g} deg from where the URDF that was "
+      "calibrated has it",
+      joint.name, 1e3 * off.translation().norm(), turn * 180.0 / M_PI));
+}
+
+std::string WriteQuaternion(const Eigen::Matrix3d& R) {
+  Eigen::Quaterniond quaternion(R);
+  if (quaternion.w() < 0.0) quaternion.coeffs() *= -1.0;
+  return FormatNumber(quaternion.w()) + " " + WriteVector(quaternion.vec());
+}
+
+}  // namespace
+
+std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& source,
+                               const RobotTree& nominal, const RobotTree& calibrated,
+                               const std::map<std::string, double>& encoder_offsets) {
+  const XmlText xml(mjcf, source);
+  const XmlElement root = xml.Root();
+  if (root.Tag() != "mujoco") {
+    root.Fail("found <" + std::string(root.Tag()) + ">; an MJCF model, <mujoco>, was expected");
+  }
+  const double angle_unit = AngleUnit(root);
+  std::map<std::string, MjcfBody> bodies;
+  std::vector<std::string> names;
+  if (const auto world = root.FindFirst("worldbody")) CollectBodies(*world, "", bodies);
+  for (const auto& [name, body] : bodies) names.push_back(name);
+  std::vector<XmlEdit> edits;
+  for (std::size_t k = 0; k < nominal.joints.size(); ++k) {
+    const Joint& joint = nominal.joints[k];
+    const std::string& child = nominal.links[static_cast<std::size_t>(joint.child_link)].name;
+    const auto body = bodies.find(child);
+    if (body == bodies.end()) {
+      root.Fail("no body " + Quote(child) + ", which joint " + Quote(joint.name) + " moves" +
+                DidYouMean(child, names));
+    }
+    CheckNominal(body->second, joint, PoseInParent(nominal, joint, body->second));
+    const XmlElement element = JointOf(body->second, joint);
+    const Transform T = PoseInParent(calibrated, calibrated.joints[k], body->second);
+    edits.push_back(SetAttribute(body->second.element, "pos", WriteVector(T.translation())));
+    edits.push_back(SetAttribute(body->second.element, "quat", WriteQuaternion(T.linear())));
+    const auto offset = encoder_offsets.find(joint.name);
+    if (offset == encoder_offsets.end() || offset->second == 0.0) continue;
+    const double unit = joint.type == JointType::kRevolute ? angle_unit : 1.0;
+    edits.push_back(SetAttribute(
+        element, "ref", FormatNumber(element.NumberOr("ref", 0.0) - offset->second / unit)));
+  }
+  return ApplyEdits(mjcf, std::move(edits));
+}
+
+}  // namespace elastocal

@@ -1,0 +1,407 @@
+#include "elastocal/description/urdf_reader.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/expect_input_error.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr const char* kLimit = R"(<limit lower="-1" upper="2" effort="30" velocity="4"/>)";
+
+std::string Link(const std::string& name) { return "<link name=\"" + name + "\"/>\n"; }
+
+std::string Joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& more = kLimit) {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+         "\"/><child link=\"" + child + "\"/>" + more + "</joint>\n";
+}
+
+/// `contents` begins on line 2.
+RobotTree ParseLinks(const std::string& contents) {
+  return ParseUrdf("<robot name=\"r\">\n" + contents + "</robot>\n", "r.urdf");
+}
+
+void ExpectLinksError(const std::string& contents, std::initializer_list<std::string> parts) {
+  ExpectInputError([&] { ParseLinks(contents); }, parts);
+}
+
+/// A robot of two links whose joint has `more` in it; the joint is on line 4.
+void ExpectJointError(const std::string& type, const std::string& more,
+                      std::initializer_list<std::string> parts) {
+  ExpectLinksError(Link("a") + Link("b") + Joint("j", type, "a", "b", more), parts);
+}
+
+TEST(UrdfReader, ReadsJoint) {
+  const RobotTree tree = ParseLinks(
+      Link("a") + Link("b") +
+      Joint("j", "revolute", "a", "b",
+            std::string(kLimit) + "<origin xyz='1 2\t3' rpy=\"0 0 0.5\"/><axis xyz='0 0 -2'/>"));
+  ASSERT_EQ(tree.joints.size(), 1u);
+  const elastocal::Joint& joint = tree.joints[0];
+  EXPECT_EQ(tree.name, "r");
+  EXPECT_EQ(joint.name, "j");
+  EXPECT_EQ(joint.type, JointType::kRevolute);
+  EXPECT_EQ(tree.links[joint.parent_link].name, "a");
+  EXPECT_EQ(tree.links[joint.child_link].name, "b");
+  EXPECT_TRUE(joint.axis.isApprox(-Eigen::Vector3d::UnitZ(), 1e-15));
+  // By way of a quaternion: a few roundings.
+  EXPECT_TRUE(joint.T_parent_child.isApprox(FromXyzRpy({1, 2, 3}, {0, 0, 0.5}), 1e-15));
+  EXPECT_EQ(joint.limits.lower, -1.0);
+  EXPECT_EQ(joint.limits.upper, 2.0);
+  EXPECT_EQ(joint.limits.effort, 30.0);
+  EXPECT_EQ(joint.limits.velocity, 4.0);
+  EXPECT_FALSE(joint.mimic);
+}
+
+TEST(UrdfReader, ContinuousJointHasNoPositionLimits) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const RobotTree tree =
+      ParseLinks(Link("a") + Link("b") + Link("c") + Joint("with", "continuous", "a", "b") +
+                 Joint("without", "continuous", "b", "c", ""));
+  EXPECT_EQ(tree.joints[0].limits.lower, -infinity);
+  EXPECT_EQ(tree.joints[0].limits.upper, infinity);
+  EXPECT_EQ(tree.joints[0].limits.velocity, 4.0);
+  EXPECT_EQ(tree.joints[1].limits.velocity, infinity);
+  EXPECT_EQ(tree.joints[1].limits.effort, infinity);
+  // The axis that URDF has by default.
+  EXPECT_EQ(tree.joints[1].axis, Eigen::Vector3d::UnitX());
+}
+
+TEST(UrdfReader, TurnsInertiaIntoTheLinksAxes) {
+  const RobotTree tree = ParseLinks(
+      "<link name='a'><inertial><origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/>"
+      "<mass value='5'/><inertia ixx='1' iyy='2' izz='3' ixy='0.1' ixz='0.2' iyz='0.3'/>"
+      "</inertial></link>");
+  const elastocal::Link& link = tree.links[0];
+  EXPECT_EQ(link.mass, 5.0);
+  EXPECT_TRUE(link.com.isApprox(Eigen::Vector3d(1, 2, 3), 1e-15));
+  // A quarter turn about z: the inertial frame's x is the link's y, its y the link's -x.
+  Eigen::Matrix3d expected;
+  expected << 2, -0.1, -0.3, -0.1, 1, 0.2, -0.3, 0.2, 3;
+  EXPECT_TRUE(link.inertia.isApprox(expected, 1e-14));
+}
+
+TEST(UrdfReader, LinksOnFixedJointsAreOneBody) {
+  const RobotTree tree =
+      ParseLinks(Link("tip") + Link("flange") + Link("arm") + Link("mount") + Link("base") +
+                 Joint("tip_j", "fixed", "flange", "tip", "<origin xyz='0 0 2'/>") +
+                 Joint("flange_j", "fixed", "arm", "flange", "<origin xyz='0 0 1'/>") +
+                 Joint("arm_j", "revolute", "mount", "arm") +
+                 Joint("mount_j", "fixed", "base", "mount", "<origin xyz='1 0 0' rpy='0 0 1'/>"));
+  ASSERT_EQ(tree.body_count(), 2);
+  EXPECT_EQ(tree.links[0].name, "base");
+  const auto link = [&](const std::string& name) { return tree.links[FindLink(tree, name)]; };
+  EXPECT_EQ(link("mount").body, 0);
+  EXPECT_TRUE(link("mount").T_body_link.isApprox(FromXyzRpy({1, 0, 0}, {0, 0, 1}), 1e-15));
+  EXPECT_EQ(link("arm").body, 1);
+  EXPECT_TRUE(link("arm").T_body_link.isApprox(Transform::Identity()));
+  EXPECT_EQ(link("tip").body, 1);
+  EXPECT_EQ(link("tip").T_body_link.translation(), Eigen::Vector3d(0, 0, 3));
+  EXPECT_EQ(tree.joints[0].parent_body, 0);
+}
+
+TEST(UrdfReader, JointsFollowTheFileAsFarAsTheTreeAllows) {
+  // b2 stands before the joint that carries it; z before a: neither alphabetical nor by depth.
+  const RobotTree tree =
+      ParseLinks(Link("root") + Link("l1") + Link("l2") + Link("l3") + Link("l4") +
+                 Joint("b2", "revolute", "l1", "l2") + Joint("z", "revolute", "root", "l3") +
+                 Joint("b1", "revolute", "root", "l1") + Joint("a", "revolute", "l3", "l4"));
+  std::vector<std::string> names;
+  for (const elastocal::Joint& joint : tree.joints) names.push_back(joint.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"z", "b1", "b2", "a"}));
+  EXPECT_EQ(tree.joints[2].parent_body, 2);
+  EXPECT_EQ(tree.coordinate_joint, (std::vector<int>{0, 1, 2, 3}));
+}
+
+TEST(UrdfReader, MimicJointsShareACoordinate) {
+  const RobotTree tree = ParseLinks(
+      Link("a") + Link("b") + Link("c") + Link("d") +
+      Joint("second", "revolute", "a", "b",
+            std::string(kLimit) + "<mimic joint='first' multiplier='3' offset='0.5'/>") +
+      Joint("first", "prismatic", "b", "c",
+            std::string(kLimit) + "<mimic joint='driver' multiplier='-2' offset='0.25'/>") +
+      Joint("driver", "revolute", "c", "d"));
+  ASSERT_EQ(tree.coordinate_count(), 1);
+  EXPECT_EQ(tree.coordinate_joint[0], 2);
+  // second = 3 (-2 q + 0.25) + 0.5
+  EXPECT_TRUE(tree.joints[0].mimic);
+  EXPECT_EQ(tree.joints[0].coordinate, 0);
+  EXPECT_EQ(tree.joints[0].multiplier, -6.0);
+  EXPECT_EQ(tree.joints[0].offset, 1.25);
+  EXPECT_EQ(tree.joints[1].type, JointType::kPrismatic);
+}
+
+TEST(UrdfReader, FloatingRootIsLeftOut) {
+  const RobotTree tree = ParseLinks(Link("world") + Link("waist") + Link("leg") +
+                                    Joint("free", "floating", "world", "waist", "") +
+                                    Joint("hip", "revolute", "waist", "leg"));
+  EXPECT_EQ(tree.links[0].name, "waist");
+  EXPECT_EQ(tree.links.size(), 2u);
+  ASSERT_EQ(tree.joints.size(), 1u);
+  EXPECT_EQ(tree.joints[0].parent_body, 0);
+}
+
+void ExpectWarning(const RobotTree& tree, const std::string& part) {
+  ASSERT_EQ(tree.warnings.size(), 1u);
+  EXPECT_NE(tree.warnings[0].find(part), std::string::npos) << tree.warnings[0];
+}
+
+TEST(UrdfReader, FloatingAndPlanarJointsPartTheRobotFromTheRest) {
+  const std::string arm = Link("a") + Link("b") + Joint("hip", "revolute", "a", "b");
+  // A ball in its hand, with something that turns on it.
+  const RobotTree holder = ParseLinks(
+      arm + Link("c") + Link("ball") + Link("lid") + Joint("more", "revolute", "b", "c") +
+      Joint("free", "floating", "c", "ball", "") + Joint("hinge", "continuous", "ball", "lid", ""));
+  EXPECT_EQ(holder.links.size(), 3u);
+  EXPECT_EQ(holder.joints.size(), 2u);
+  ExpectWarning(holder, "'free' is floating: what it carries (link 'ball') is left out, with 1 ");
+  // A robot beside a camera in the world: nothing of the robot is left out.
+  const RobotTree beside = ParseLinks(Link("camera") + Link("world") + arm +
+                                      Joint("on", "fixed", "world", "camera", "") +
+                                      Joint("free", "floating", "world", "a", ""));
+  EXPECT_EQ(beside.links.size(), 2u);
+  EXPECT_EQ(beside.links[0].name, "a");
+  EXPECT_TRUE(beside.warnings.empty());
+  const RobotTree wheeled =
+      ParseLinks(Link("floor") + arm + Joint("p", "planar", "floor", "a", ""));
+  EXPECT_EQ(wheeled.links[0].name, "a");
+  EXPECT_EQ(wheeled.joints.size(), 1u);
+  // The robot is what carries; a mimic joint of it must not follow what is left out.
+  ExpectLinksError(
+      arm + Link("c") + Link("d") + Link("e") + Joint("free", "floating", "b", "c", "") +
+          Joint("lid", "revolute", "c", "d") +
+          Joint("k", "revolute", "b", "e", std::string(kLimit) + "<mimic joint='lid'/>"),
+      {"'k' mimics 'lid'", "no joint of the robot"});
+}
+
+TEST(UrdfReader, ReadsWhatIsOddButClear) {
+  const auto parse = [](const std::string& more) {
+    return ParseLinks(Link("a") + Link("b") + Joint("j", "revolute", "a", "b", more));
+  };
+  const RobotTree turned = parse("<limit lower='2' upper='1' velocity='1' effort='1'/>");
+  EXPECT_EQ(turned.joints[0].limits.lower, 1.0);
+  EXPECT_EQ(turned.joints[0].limits.upper, 2.0);
+  ExpectWarning(turned, "'j': lower limit 2 is above upper limit 1");
+  const RobotTree axes = parse(std::string(kLimit) + "<axis xyz='0 1 0'/><axis xyz='0 0 1'/>");
+  EXPECT_EQ(axes.joints[0].axis, Eigen::Vector3d::UnitY());
+  ExpectWarning(axes, "'j' has 2 axes");
+  ExpectWarning(parse(std::string(kLimit) + "<axis xyz='0 0 3'/>"), "length 3");
+  EXPECT_TRUE(parse(std::string(kLimit) + "<axis xyz='0 0.707 0.707'/>").warnings.empty());
+  const RobotTree heavy = ParseLinks(
+      "<link name='a'><inertial><origin xyz='1 2 3'/><mass value='5'/></inertial></link>");
+  EXPECT_EQ(heavy.links[0].mass, 5.0);
+  EXPECT_EQ(heavy.links[0].com, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(heavy.links[0].inertia.isZero());
+  const RobotTree follower =
+      ParseLinks(Link("a") + Link("b") + Link("c") + Joint("k", "fixed", "a", "b") +
+                 Joint("j", "revolute", "b", "c", std::string(kLimit) + "<mimic joint='k'/>"));
+  EXPECT_TRUE(follower.joints.empty());
+  ExpectWarning(follower, "'j' mimics 'k', which is fixed");
+}
+
+TEST(UrdfReader, NamesMalformedXml) {
+  const auto expect = [](const std::string& text, std::initializer_list<std::string> parts) {
+    ExpectInputError([&] { ParseUrdf(text, "r.urdf"); }, parts);
+  };
+  expect("<robot name='r'>\n<link name='a'>\n</robot>",
+         {"r.urdf:3: ", "malformed XML: Start-end tags mismatch at 'robot>'"});
+  expect("<robot name='r'>\n<link name='a'/>\n",
+         {"r.urdf:2: ", "malformed XML: Start-end tags mismatch at the end of the text"});
+  expect("<robot name='r'>\n<link name=a/>\n</robot>", {"r.urdf:2: ", "attribute at 'a/>'"});
+  expect("<robot name='r'><!-- \n", {"r.urdf:1: ", "comment at the end of the text"});
+  expect("a,b\n1,2\n", {"r.urdf:1: ", "malformed XML: No document element found at 'a,b'"});
+  expect("", {"r.urdf:1: ", "malformed XML: No document element found at the end of the text"});
+  expect("<!-- only -->", {"r.urdf:1: ", "No document element found"});
+  expect("\n<sdf/>", {"r.urdf:2: ", "<sdf>", "<robot>"});
+  expect("<robot name='r'><link name='a'/></robot>\n<robot/>",
+         {"r.urdf:2: ", "second element", "'robot'"});
+  expect("<robot/>", {"r.urdf:1: ", "'name'"});
+  expect("<robot name='r'/>", {"r.urdf:1: ", "no <link>"});
+}
+
+TEST(UrdfReader, RefusesHostileBytes) {
+  ExpectInputError([] { ParseUrdf(std::string("<robot>\n\0", 9), "r.urdf"); },
+                   {"r.urdf:2: ", "NUL"});
+  ExpectInputError([] { ParseUrdf(std::string((16u << 20) + 1, ' '), "r.urdf"); },
+                   {"r.urdf", "16 MiB"});
+  const std::string utf16 = {'\xff', '\xfe', '<', '\0', 'r', '\0'};
+  ExpectInputError([&] { ParseUrdf(utf16, "r.urdf"); }, {"r.urdf:1: ", "NUL", "UTF-8"});
+  ExpectLinksError(Link("a\xe9"), {"r.urdf:2: ", "'name' of link", "text in UTF-8 was expected"});
+}
+
+/// Parsing, searching and destroying take no stack that grows with the depth.
+TEST(UrdfReader, PassesOverDeepNesting) {
+  std::string open, close;
+  for (int i = 0; i < 1000000; ++i) {
+    open += "<a>";
+    close += "</a>";
+  }
+  EXPECT_EQ(ParseLinks(Link("a") + open + close).links.size(), 1u);
+  ExpectLinksError(Link("a") + open, {"r.urdf:3: ", "malformed XML"});
+}
+
+TEST(UrdfReader, ReadsWhateverXmlMayHoldAroundTheRobot) {
+  const RobotTree tree = ParseUrdf(
+      "\xEF\xBB\xBF<?xml version='1.0' encoding='ISO-8859-1'?>\n"
+      "<!DOCTYPE robot [<!ENTITY x \"<link name='c'/>\">]><!-- caf\xe9 > <robot> --><?pi <a?>\n"
+      "<robot name='r'>words<link name='a'/><![CDATA[<link name='b'/>]]></robot>\n",
+      "r.urdf");
+  EXPECT_EQ(tree.links.size(), 1u);
+}
+
+TEST(UrdfReader, RefusesMoreLinksThanAnyRobotHas) {
+  std::string links;
+  for (int i = 0; i <= 5000; ++i) links += Link(std::to_string(i));
+  ExpectLinksError(links, {"r.urdf:5002: ", "more than 5000 links"});
+}
+
+TEST(UrdfReader, NamesWrongStructure) {
+  ExpectLinksError(Link("a") + Link("a"), {"r.urdf:3: ", "second link", "'a'"});
+  ExpectLinksError(Link("a") + Link("b") + Link("c") + Joint("j", "fixed", "a", "b") +
+                       Joint("j", "fixed", "a", "c"),
+                   {"r.urdf:6: ", "second joint", "'j'"});
+  ExpectLinksError(Link("waist") + Joint("j", "fixed", "waistt", "b"),
+                   {"r.urdf:3: ", "'waistt'", "did you mean 'waist'"});
+  ExpectLinksError(Link("waist") + Joint("j", "fixed", "waist", "b"),
+                   {"r.urdf:3: ", "child", "'b'"});
+  ExpectLinksError(Link("a") + Link("b") + Link("c") + Joint("j", "fixed", "a", "c") +
+                       Joint("k", "fixed", "b", "c"),
+                   {"r.urdf:6: ", "'c'", "'j'", "'k'", "one parent"});
+  ExpectLinksError(Link("a") + Link("b"), {"r.urdf:3: ", "'a'", "'b'", "one root"});
+  ExpectLinksError(
+      Link("a") + Link("b") + Joint("j", "fixed", "a", "b") + Joint("k", "fixed", "b", "a"),
+      {"r.urdf:2: ", "'a'", "loop"});
+  ExpectLinksError(Link("root") + Link("a") + Joint("j", "fixed", "a", "a"),
+                   {"r.urdf:3: ", "'a'", "loop"});
+}
+
+TEST(UrdfReader, NamesWrongJoint) {
+  ExpectJointError("revolut", kLimit, {"r.urdf:4: ", "'revolut'", "did you mean 'revolute'"});
+  ExpectJointError("revolute", "", {"r.urdf:4: ", "'j'", "<limit>"});
+  ExpectJointError("prismatic", "", {"r.urdf:4: ", "'j'", "<limit>"});
+  ExpectJointError("revolute", "<limit lower='0' upper='1' velocity='1'/>",
+                   {"r.urdf:4: ", "'j'", "'effort'"});
+  ExpectJointError("revolute", std::string(kLimit) + "\n<axis xyz='0 0 0'/>",
+                   {"r.urdf:5: ", "axis is zero"});
+  ExpectJointError("revolute", std::string(kLimit) + kLimit, {"r.urdf:4: ", "second <limit>"});
+  ExpectLinksError(Link("a") + "<joint name='j' type='fixed'><parent link='a'/></joint>",
+                   {"r.urdf:3: ", "'j'", "<child>"});
+  ExpectLinksError(Link("a") + "<joint type='fixed'/>", {"r.urdf:3: ", "<joint>", "'name'"});
+  ExpectLinksError("<link name='a'\n name='b'/>", {"r.urdf:2: ", "second attribute 'name'"});
+}
+
+TEST(UrdfReader, NamesWrongNumbers) {
+  for (const char* xyz : {"1 2", "1 2 3 4", "1 2 x", "1 2 nan", "1 2 1e999", "1,2,3", ""}) {
+    ExpectJointError("fixed", "\n<origin xyz='" + std::string(xyz) + "'/>",
+                     {"r.urdf:5: ", "'xyz'", "<origin> of joint 'j'", "'" + std::string(xyz) + "'",
+                      "three finite numbers"});
+  }
+  ExpectJointError("fixed", "<origin rpy='0 0 inf'/>", {"r.urdf:4: ", "'rpy'"});
+  ExpectJointError("revolute", "<limit lower='-1' upper='${x}' effort='1' velocity='1'/>",
+                   {"r.urdf:4: ", "'upper'", "'${x}'", "finite number"});
+  const auto inertial = [](const std::string& mass, const std::string& ixx) {
+    return "<link name='a'><inertial>\n<mass value='" + mass + "'/>\n<inertia ixx='" + ixx +
+           "' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";
+  };
+  ExpectLinksError(inertial("-1", "1"), {"r.urdf:3: ", "a number from 0 to"});
+  ExpectLinksError(inertial("heavy", "1"), {"r.urdf:3: ", "'heavy'"});
+  ExpectLinksError(
+      "<link name='a'><inertial><mass value='1'/>\n<inertia ixx='1' ixy='0' ixz='0' iyy='1' "
+      "iyz='0'/></inertial></link>",
+      {"r.urdf:3: ", "no attribute 'izz'"});
+  ExpectLinksError(inertial("1", "nan"), {"r.urdf:4: ", "'ixx'", "link 'a'", "'nan'"});
+}
+
+TEST(UrdfReader, NamesMimicsThatLeadNowhere) {
+  const auto mimic = [](const std::string& joint) {
+    return std::string(kLimit) + "<mimic joint='" + joint + "'/>";
+  };
+  ExpectJointError("revolute", mimic("nobody"), {"r.urdf:4: ", "'j'", "'nobody'"});
+  ExpectJointError("revolute", mimic("j"), {"r.urdf:4: ", "'j'", "itself"});
+  const std::string links = Link("a") + Link("b") + Link("c");
+  ExpectLinksError(links + Joint("j", "revolute", "a", "b", mimic("k")) +
+                       Joint("k", "revolute", "b", "c", mimic("j")),
+                   {"r.urdf:5: ", "'j'", "itself"});
+  ExpectLinksError(
+      links +
+          Joint("j", "revolute", "a", "b", std::string(kLimit) + "<mimic joint='k' offset='1'/>") +
+          Joint("k", "fixed", "b", "c"),
+      {"r.urdf:5: ", "'j'", "'k'", "fixed"});
+}
+
+TEST(UrdfReader, SaysThatAXacroFileIsToBeExpanded) {
+  ExpectLinksError("<xacro:include filename='x'/>", {"r.urdf:2: ", "xacro", "expand"});
+}
+
+TEST(UrdfReader, PassesOverWhatItDoesNotNeed) {
+  const RobotTree tree = ParseLinks(
+      "<material name='grey'/>" + Link("a") +
+      "<link name='b'><visual><origin xyz='x'/></visual><collision/></link>" +
+      Joint("j", "revolute", "a", "b",
+            std::string(kLimit) + "<calibration rising='0'/><dynamics damping='-'/>") +
+      "<transmission><joint name='j'/></transmission><gazebo><joint name='j' type='x'/></gazebo>");
+  EXPECT_EQ(tree.joints.size(), 1u);
+}
+
+TEST(UrdfReader, KeepsNamesWithMarkupAndAccents) {
+  const RobotTree tree = ParseLinks(Link("a&amp;b &lt;c&gt; 'é'"));
+  EXPECT_EQ(tree.links[0].name, "a&b <c> 'é'");
+}
+
+TEST(UrdfReader, ReadsTheModelsOfTheTests) {
+  const RobotTree arm = ReadUrdf(SourceFile("tests/robots/arm6.urdf"));
+  EXPECT_EQ(arm.joints.size(), 9u);
+  EXPECT_EQ(arm.coordinate_count(), 8);
+  const elastocal::Joint& finger = arm.joints[FindJoint(arm, "finger_right_joint")];
+  EXPECT_EQ(finger.multiplier, -1.0);
+  EXPECT_EQ(finger.offset, -0.002);
+  EXPECT_EQ(ReadUrdf(SourceFile("models/talos/talos.urdf")).coordinate_count(), 30);
+}
+
+/// The most links that are read, in one chain, each movable joint following the one before: nothing
+/// in it may take time or stack that grows out of hand.
+TEST(UrdfReader, ReadsTheLongestChain) {
+  const auto chain = [](int movable) {
+    std::string contents = Link("0");
+    for (int i = 1; i < 5000; ++i) {
+      const std::string name = std::to_string(i), last = std::to_string(i - 1);
+      contents += Link(name) + Joint(name, i <= movable ? "continuous" : "fixed", last, name,
+                                     i == 1 ? "" : "<mimic joint='" + last + "'/>");
+    }
+    return contents;
+  };
+  const RobotTree tree = ParseLinks(chain(300));
+  EXPECT_EQ(tree.joints.size(), 300u);
+  EXPECT_EQ(tree.coordinate_count(), 1);
+  ExpectLinksError(chain(301), {"r.urdf:1: ", "found 301 movable joints; at most 300"});
+}
+
+// Numbers, sizes and names that no robot has, which would overflow or take hours.
+TEST(UrdfReader, RefusesWhatNoRobotHas) {
+  const std::string links = Link("a") + "\n" + Link("b") + "\n";
+  const auto joint = [&](const std::string& limit) {
+    return links + "<joint name='j' type='revolute'><parent link='a'/><child link='b'/>\n<limit " +
+           limit + "/></joint>";
+  };
+  ExpectLinksError(joint("lower='-1e8' upper='1' velocity='1' effort='1'"),
+                   {"'lower'", "'-1e8'", "from -1000 to 1000", "continuous"});
+  ExpectLinksError(joint("lower='-1' upper='1' velocity='-1' effort='1'"), {"'velocity'", "'-1'"});
+  ExpectLinksError(joint("lower='-1' upper='1' velocity='1' effort='-1'"), {"'effort'", "'-1'"});
+  std::string attributes;
+  for (int i = 0; i < 101; ++i) attributes += " a" + std::to_string(i) + "='1'";
+  ExpectLinksError("<link name='a'" + attributes + "/>", {"more than 100 attributes"});
+  ExpectLinksError(Link(std::string(201, 'x')), {"more than 200 bytes"});
+}
+
+TEST(UrdfReader, NamesAMissingFile) {
+  ExpectInputError([] { ReadUrdf("nowhere/robot.urdf"); },
+                   {"nowhere/robot.urdf", "there is no such file"});
+}
+
+}  // namespace
+}  // namespace elastocal

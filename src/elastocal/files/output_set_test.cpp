@@ -1,0 +1,197 @@
+#include "elastocal/files/output_set.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "elastocal/files/output_files.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputSetTest : public testing::Test {
+ protected:
+  const ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path() / "folder";
+
+  static auto CountIn(const fs::path& folder) {
+    return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+  }
+};
+
+TEST_F(OutputSetTest, NothingIsVisibleBeforePublishing) {
+  WriteFile(folder_ / "a", "old");
+  OutputSet outputs;
+  outputs.Declare(folder_ / "a");
+  outputs.Declare(folder_ / "b");
+  outputs.Prepare();
+  outputs.Set(folder_ / "a", "new");
+  std::ofstream(outputs.StagingPath(folder_ / "b")) << "piece by piece";
+  EXPECT_EQ(ReadFile(folder_ / "a"), "old");
+  EXPECT_FALSE(fs::exists(folder_ / "b"));
+  outputs.Publish();
+  EXPECT_EQ(ReadFile(folder_ / "a"), "new");
+  EXPECT_EQ(ReadFile(folder_ / "b"), "piece by piece");
+}
+
+TEST_F(OutputSetTest, DroppedWithoutPublishingItLeavesNoTrace) {
+  {
+    OutputSet outputs;
+    outputs.Declare(folder_ / "deeper" / "a");
+    outputs.Prepare();
+    outputs.Set(folder_ / "deeper" / "a", "text");
+    EXPECT_TRUE(fs::exists(folder_ / "deeper"));
+  }
+  EXPECT_FALSE(fs::exists(folder_));
+}
+
+TEST_F(OutputSetTest, RemovesWhatWasDeclaredAndNotSetAndKeepsTheRest) {
+  WriteFiles({{folder_ / "mine", "old"}, {folder_ / "gone", "old"}, {folder_ / "other", "kept"}});
+  OutputSet outputs;
+  for (const char* name : {"mine", "gone"}) outputs.Declare(folder_ / name);
+  outputs.Prepare();
+  outputs.Set(folder_ / "mine", "new");
+  outputs.Publish();
+  EXPECT_EQ(ReadFile(folder_ / "mine"), "new");
+  EXPECT_FALSE(fs::exists(folder_ / "gone"));
+  EXPECT_EQ(ReadFile(folder_ / "other"), "kept");
+}
+
+TEST_F(OutputSetTest, NeverReplacesAnInput) {
+  WriteFile(folder_ / "input", "text");
+  fs::create_symlink("input", folder_ / "link");
+  OutputSet declared_first;
+  declared_first.Declare(folder_ / "link");
+  ExpectInputError([&] { declared_first.Protect({folder_ / "input"}); }, {"link", "an input"});
+  OutputSet protected_first;
+  protected_first.Protect({folder_ / "input", ""});
+  ExpectInputError([&] { protected_first.Declare(folder_ / ".." / "folder" / "input"); },
+                   {"an input; choose another output"});
+}
+
+TEST_F(OutputSetTest, RefusesTwoOutputsUnderOneName) {
+  OutputSet outputs;
+  outputs.Declare(folder_ / "a");
+  ExpectInputError([&] { outputs.Declare(folder_ / "." / "a"); }, {"this run writes", "already"});
+}
+
+TEST_F(OutputSetTest, SaysAtOnceWhatCannotBeWritten) {
+  fs::create_directories(folder_ / "is_folder");
+  OutputSet outputs;
+  outputs.Declare(folder_ / "fine");
+  outputs.Declare(folder_ / "is_folder");
+  ExpectInputError([&] { outputs.Prepare(); }, {"is_folder: is a folder"});
+}
+
+TEST_F(OutputSetTest, KeepsTheModeOfWhatItReplaces) {
+  WriteFile(folder_ / "secret", "old");
+  fs::permissions(folder_ / "secret", fs::perms::owner_read | fs::perms::owner_write);
+  WriteFile(folder_ / "secret", "new");
+  EXPECT_EQ(fs::status(folder_ / "secret").permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(OutputSetTest, SetNeedsADeclaration) {
+  OutputSet outputs;
+  EXPECT_THROW(outputs.Set(folder_ / "a", ""), std::invalid_argument);
+  EXPECT_THROW(outputs.StagingPath(folder_ / "a"), std::invalid_argument);
+}
+
+TEST_F(OutputSetTest, SeveralThreadsWriteIntoOneFolder) {
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&, i] {
+      for (int k = 0; k < 50; ++k) WriteFile(folder_ / std::to_string(i), std::to_string(k));
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(ReadFile(folder_ / std::to_string(i)), "49");
+  EXPECT_EQ(CountIn(folder_), 4);
+}
+
+/// A folder as a run leaves it that is killed right after its commit.
+void LeaveCommitted(const fs::path& folder) {
+  const fs::path staging = folder / ".elastocal-killed";
+  fs::create_directories(staging);
+  std::ofstream(staging / "a") << "new";
+  std::ofstream(staging / ".commit") << "+a" << '\0' << "+b" << '\0' << "-c" << '\0';
+}
+
+TEST_F(OutputSetTest, FinishesWhatAKilledRunHadCommitted) {
+  WriteFiles({{folder_ / "a", "old"}, {folder_ / "b", "new"}, {folder_ / "c", "old"}});
+  LeaveCommitted(folder_);  // b has its name already
+  RecoverOutputs(folder_);
+  EXPECT_EQ(ReadFile(folder_ / "a"), "new");
+  EXPECT_EQ(ReadFile(folder_ / "b"), "new");
+  EXPECT_EQ(CountIn(folder_), 2);
+}
+
+TEST_F(OutputSetTest, RecoveryTouchesNothingOutsideTheFolder) {
+  WriteFile(scratch_.path() / "outside", "text");
+  fs::create_directories(folder_ / ".elastocal-bad");
+  std::ofstream(folder_ / ".elastocal-bad" / ".commit") << "-../outside" << '\0';
+  RecoverOutputs(folder_);
+  EXPECT_EQ(ReadFile(scratch_.path() / "outside"), "text");
+}
+
+TEST_F(OutputSetTest, LeavesARunAloneThatIsStillAtWork) {
+  OutputSet outputs;
+  outputs.Declare(folder_ / "a");
+  outputs.Prepare();
+  RecoverOutputs(folder_);
+  outputs.Set(folder_ / "a", "text");
+  outputs.Publish();
+  EXPECT_EQ(ReadFile(folder_ / "a"), "text");
+}
+
+/// Files that are all of one run have one text.
+std::string OneText(const fs::path& folder) {
+  const std::string text = ReadFile(folder / "0");
+  for (int i = 1; i < 8; ++i) {
+    if (ReadFile(folder / std::to_string(i)) != text) return "of two runs";
+  }
+  return text;
+}
+
+void WriteEight(const fs::path& folder, const std::string& text) {
+  std::vector<std::pair<fs::path, std::string>> files;
+  for (int i = 0; i < 8; ++i) files.emplace_back(folder / std::to_string(i), text);
+  WriteFiles(files);
+}
+
+TEST_F(OutputSetTest, AKilledRunLeavesOneRunsFiles) {
+  const auto begin = std::chrono::steady_clock::now();
+  WriteEight(folder_, "0");
+  const std::chrono::duration<double, std::micro> once = std::chrono::steady_clock::now() - begin;
+  int finished = 0;
+  for (int kill_number = 0; kill_number < 100; ++kill_number) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      for (int run = 1;; ++run) WriteEight(folder_, std::to_string(run % 10));
+    }
+    usleep(static_cast<useconds_t>(once.count() * 0.07 * kill_number));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    RecoverOutputs(folder_);
+    const std::string text = OneText(folder_);
+    ASSERT_EQ(text.size(), 1u) << text;
+    finished += text != "0" ? 1 : 0;
+    ASSERT_EQ(CountIn(folder_), 8);
+  }
+  EXPECT_GT(finished, 0);  // else nothing was tried
+}
+
+}  // namespace
+}  // namespace elastocal

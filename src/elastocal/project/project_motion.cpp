@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <set>
+
+#include "elastocal/project/project_sections.hpp"
+#include "elastocal/robot/moving_chain.hpp"
+
+namespace elastocal {
+namespace {
+
+Eigen::Vector2d ReadCorner(const YamlValue& value) {
+  const std::vector<YamlValue> items = value.Items();
+  value.Expect(items.size() == 2, "two numbers, x and y");
+  return kOneMm * Eigen::Vector2d(items[0].Bounded(), items[1].Bounded());
+}
+
+int SphereNamedBy(const YamlValue& value, const std::vector<CollisionSphere>& spheres) {
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < spheres.size(); ++s) {
+    if (spheres[s].name == value.Text()) return static_cast<int>(s);
+    names.push_back(spheres[s].name);
+  }
+  value.Fail("there is no sphere " + Quote(value.Text()) + DidYouMean(value.Text(), names));
+}
+
+Box ReadBox(const YamlValue& value) {
+  value.ExpectKeys({"lower", "upper"});
+  const Box box{PointFromMm(value.Get("lower")), PointFromMm(value.Get("upper"))};
+  value.Expect((box.lower.array() < box.upper.array()).all(), "a lower corner below the upper one");
+  return box;
+}
+
+std::vector<SpherePair> ReadContacts(const YamlValue& value,
+                                     const std::vector<CollisionSphere>& spheres) {
+  std::vector<SpherePair> pairs;
+  for (const YamlValue& item : value.Items()) {
+    const std::vector<YamlValue> two = item.Items();
+    item.Expect(two.size() == 2, "the names of two spheres");
+    const SpherePair pair{SphereNamedBy(two[0], spheres), SphereNamedBy(two[1], spheres)};
+    if (spheres[pair.first].link == spheres[pair.second].link) {
+      item.Fail("the two spheres are on one link and cannot meet");
+    }
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
+  value.ExpectKeys({"chain", "mirror", "support", "box_mm", "cone_deg", "floor_mm", "contacts"});
+  const Chain& chain = project.chains[ChainNamedBy(value.Get("chain"), project)];
+  ChainSetup setup;
+  setup.name = chain.name;
+  setup.from_link = chain.from_link;
+  setup.tip_link = chain.tip_link;
+  setup.coordinates = ChainCoordinates(project.tree, chain.from_link, chain.tip_link);
+  if (const auto mirror = value.Find("mirror")) {
+    setup.mirror = project.chains[ChainNamedBy(*mirror, project)].name;
+  }
+  if (const auto support = value.Find("support")) {
+    setup.support = LinksNamedBy(*support, project.tree);
+  }
+  if (const auto box = value.Find("box_mm")) setup.box = ReadBox(*box);
+  if (const auto cone = value.Find("cone_deg")) {
+    setup.largest_turn = kOneDegree * cone->Bounded();
+  }
+  if (const auto floor = value.Find("floor_mm")) setup.floor_z = kOneMm * floor->Bounded();
+  if (const auto contacts = value.Find("contacts")) {
+    setup.contacts = ReadContacts(*contacts, project.motion.spheres);
+  }
+  return setup;
+}
+
+/// The limits with a share of the range left free at either end; half a turn or 0.5 m where there
+/// is none.
+void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
+  motion.lower.resize(tree.coordinate_count());
+  motion.upper.resize(tree.coordinate_count());
+  for (int i = 0; i < tree.coordinate_count(); ++i) {
+    const Joint& joint = tree.joints[tree.coordinate_joint[i]];
+    const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
+    const double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
+    const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
+    motion.lower[i] = lower + margin * (upper - lower);
+    motion.upper[i] = upper - margin * (upper - lower);
+  }
+}
+
+void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& motion) {
+  for (const auto& [name, value] : section.Entries()) {
+    const int joint = DriverNamedBy(name, value, tree);
+    const int i = tree.joints[joint].coordinate;
+    const double unit = tree.joints[joint].type == JointType::kRevolute ? kOneDegree : kOneMm;
+    motion.rest[i] = unit * value.Bounded();
+    value.Expect(motion.rest[i] >= motion.lower[i] && motion.rest[i] <= motion.upper[i],
+                 "a position within the joint's limits, " + FormatNumber(motion.lower[i] / unit) +
+                     " to " + FormatNumber(motion.upper[i] / unit));
+  }
+}
+
+}  // namespace
+
+void ReadStanding(const YamlValue& section, Project& project) {
+  section.ExpectKeys({"soles"});
+  const YamlValue list = section.Get("soles");
+  std::set<int> links;
+  for (const YamlValue& value : list.Items()) {
+    value.ExpectKeys({"link", "lower_mm", "upper_mm"});
+    Sole sole{LinkNamedBy(value.Get("link"), project.tree), ReadCorner(value.Get("lower_mm")),
+              ReadCorner(value.Get("upper_mm"))};
+    value.Expect((sole.lower.array() < sole.upper.array()).all(),
+                 "a lower corner below the upper one");
+    value.Expect(links.insert(sole.link).second, "a link that is no sole yet");
+    project.soles.push_back(sole);
+  }
+  list.Expect(project.soles.size() == 1 || project.soles.size() == 2, "one or two soles");
+}
+
+void ReadCollision(const YamlValue& section, Project& project) {
+  section.ExpectKeys({"margin_mm", "spheres"});
+  MotionSetup& motion = project.motion;
+  section.ReadBounded("margin_mm", motion.sphere_margin, kOneMm);
+  const auto spheres = section.Find("spheres");
+  if (!spheres) return;
+  for (const YamlValue& value : spheres->Items()) {
+    value.ExpectKeys({"name", "link", "centre_mm", "radius_mm"});
+    CollisionSphere sphere;
+    sphere.name = NewName(value.Get("name"), "sphere", motion.spheres);
+    sphere.link = LinkNamedBy(value.Get("link"), project.tree);
+    sphere.p_link_centre = PointFromMm(value.Get("centre_mm"));
+    sphere.radius = kOneMm * value.Get("radius_mm").Bounded();
+    motion.spheres.push_back(std::move(sphere));
+  }
+}
+
+void ReadDesign(const YamlValue& section, Project& project) {
+  section.ExpectKeys({"rest_deg", "limit_margin", "effort_share", "chains", "cameras_mm"});
+  MotionSetup& motion = project.motion;
+  if (const auto margin = section.Find("limit_margin")) {
+    SetLimits(project.tree, margin->Bounded(), motion);
+    motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
+  }
+  section.ReadBounded("effort_share", motion.effort_share);
+  if (const auto rest = section.Find("rest_deg")) ReadRest(*rest, project.tree, motion);
+  if (const auto cameras = section.Find("cameras_mm")) {
+    for (const YamlValue& camera : cameras->Items()) motion.cameras.push_back(PointFromMm(camera));
+  }
+  if (const auto chains = section.Find("chains")) {
+    for (const YamlValue& value : chains->Items()) {
+      ChainSetup setup = ReadChainSetup(value, project);
+      for (const ChainSetup& other : motion.chains) {
+        if (other.name == setup.name || other.mirror == setup.name) {
+          value.Fail("the chain " + Quote(setup.name) + " comes twice");
+        }
+      }
+      motion.chains.push_back(std::move(setup));
+    }
+  }
+}
+
+void SetMotionDefaults(Project& project) {
+  constexpr double kLimitMargin = 0.02;
+  SetLimits(project.tree, kLimitMargin, project.motion);
+  project.motion.rest = Eigen::VectorXd::Zero(project.tree.coordinate_count())
+                            .cwiseMax(project.motion.lower)
+                            .cwiseMin(project.motion.upper);
+}
+
+}  // namespace elastocal
