@@ -37,10 +37,10 @@ std::filesystem::path ModelsFolder() {
   return ELASTOCAL_SOURCE_MODELS;
 }
 
-using CommandLine = std::vector<std::string>;
+using Words = std::vector<std::string>;
 
 /// Prints a command as a user would give it, and does it.
-int RunShown(CommandLine command, const DemoOptions& options) {
+int RunShown(Words command, const DemoOptions& options) {
   const bool silent = options.common.Silent();
   Print(silent, fmt::format("\n$ elastocal {}\n", fmt::join(command, " ")));
   if (silent) command.push_back("--quiet");
@@ -54,7 +54,7 @@ class Simulations {
 
   void Start(const std::string& motion, const std::string& kind, const std::string& folder) {
     const std::size_t own = runs_.size();
-    CommandLine words = {"simulate", project_, "--motion", motion};
+    Words words = {"simulate", project_, "--motion", motion};
     if (!kind.empty()) words.insert(words.end(), {"--kind", kind});
     words.insert(words.end(), {"-o", folder, "--seed", std::to_string(seed_)});
     const auto play = [this, own, motion, kind, folder] {
@@ -86,7 +86,7 @@ class Simulations {
 
  private:
   struct Run {
-    CommandLine words;
+    Words words;
     std::string folder;
     std::future<SimulationRun> result;
   };
@@ -118,22 +118,20 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   };
   const std::uint64_t seed = options.common.seed.value_or(1);
   const std::string seed_text = std::to_string(seed);
-  CommandLine design = {"design", project, "-o", in("postures.yaml"), "--seed", seed_text};
+  Words design = {"design", project, "-o", in("postures.yaml"), "--seed", seed_text};
   if (options.count > 0) {
     design.insert(design.end(), {"--count", std::to_string(options.count)});
   }
   int exit_code = RunShown(design, options);
   if (exit_code != kFine) return exit_code;
-  CommandLine calibrate = {"calibrate",    project,       "-o",
-                           options.output, "--recording", in("recording")};
+  Words calibrate = {"calibrate", project, "-o", options.output, "--recording", in("recording")};
   Simulations simulations(project, seed);
   exit_code = RunShown({"plan", project, "--postures", in("postures.yaml"), "-o", in("motion.csv")},
                        options);
   if (exit_code != kFine) return exit_code;
   simulations.Start(in("motion.csv"), "", in("recording"));
   for (const std::string kind : {"sine", "random"}) {
-    CommandLine plan = {"plan", project,           "--kind", kind,
-                        "-o",   in(kind + ".csv"), "--seed", seed_text};
+    Words plan = {"plan", project, "--kind", kind, "-o", in(kind + ".csv"), "--seed", seed_text};
     if (options.count > 0 && kind == "random") {
       plan.insert(plan.end(), {"--count", std::to_string(options.count)});
     }
