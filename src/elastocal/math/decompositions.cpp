@@ -1,6 +1,7 @@
 #include "elastocal/math/decompositions.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -45,7 +46,12 @@ Eigen::MatrixXd ThinOrthogonalFactor(const Eigen::MatrixXd& A) {
 }
 
 Eigen::VectorXd ShortestSolution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  return A.completeOrthogonalDecomposition().solve(b);
+  const SingularValueDecomposition svd = DecomposeSingular(A);
+  const double floor = std::numeric_limits<double>::epsilon() *
+                       static_cast<double>(svd.values.size()) * svd.values.maxCoeff();
+  const Eigen::ArrayXd values = svd.values.array();
+  const Eigen::VectorXd inverse = (values > floor).select(values.inverse(), 0.0);
+  return svd.V * inverse.cwiseProduct(svd.U.transpose() * b);
 }
 
 }  // namespace elastocal

@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace elastocal {
+namespace {
+
+constexpr double kOpposite = 1e-8;  // length of the sum of directions that have no one axis
+
+}  // namespace
 
 Transform RotX(double angle) { return RotAxis(Eigen::Vector3d::UnitX(), angle); }
 Transform RotY(double angle) { return RotAxis(Eigen::Vector3d::UnitY(), angle); }
@@ -18,8 +23,17 @@ Transform RotAxis(const Eigen::Vector3d& axis, double angle) {
   return T;
 }
 
+// Eigen's FromTwoVectors has a singular value decomposition for opposite directions, which takes as
+// long to compile as the rest of this file.
 Eigen::Matrix3d RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+  const Eigen::Vector3d a = from.normalized();
+  const Eigen::Vector3d b = to.normalized();
+  if (!((a + b).norm() > kOpposite)) {
+    return Eigen::AngleAxisd(M_PI, a.unitOrthogonal()).toRotationMatrix();
+  }
+  const Eigen::Vector3d half = (a + b).normalized();  // the way from a to it, twice
+  const Eigen::Vector3d vector = a.cross(half);
+  return Eigen::Quaterniond(a.dot(half), vector.x(), vector.y(), vector.z()).toRotationMatrix();
 }
 
 Transform FitRigid(const Eigen::Ref<const Eigen::Matrix3Xd>& from,

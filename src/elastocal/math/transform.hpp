@@ -17,7 +17,8 @@ Transform TrZ(double distance);
 /// Rotation of `angle` about the unit vector `axis`.
 Transform RotAxis(const Eigen::Vector3d& axis, double angle);
 
-/// The smallest rotation that turns the direction `from` into the direction `to`.
+/// The smallest rotation that turns the direction `from` into the direction `to`; of opposite ones,
+/// half a turn about some axis across them.
 Eigen::Matrix3d RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// The rigid transform that brings the points `from` (columns, at least three, not on a line)

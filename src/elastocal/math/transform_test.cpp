@@ -97,6 +97,25 @@ TEST(ToRpy, RoundTripNearTheSingularity) {
   }
 }
 
+TEST(RotationBetween, TurnsOneDirectionIntoTheOtherByTheLeastAngle) {
+  const Vector3d from(1, -2, 3);
+  for (const Vector3d& to : {Vector3d(0.2, 0.1, -0.5), Vector3d(2, -4, 6), Vector3d(-1, 2, -3),
+                             Vector3d(-1, 2, -3.001)}) {
+    const Matrix3d R = RotationBetween(from, to);
+    EXPECT_LT((R * from.normalized() - to.normalized()).norm(), 1e-9);
+    EXPECT_LT((R * R.transpose() - Matrix3d::Identity()).norm(), 1e-14);
+    EXPECT_NEAR(R.determinant(), 1.0, 1e-14);
+    EXPECT_NEAR(std::cos(RotationAngle(R)), from.normalized().dot(to.normalized()), 1e-12);
+  }
+}
+
+TEST(FitRigid, FindsTheTransformOfPoints) {
+  Eigen::Matrix3Xd from(3, 4);
+  from << 0, 1, 0, 0.3, 0, 0, 1, -0.2, 0, 0, 0, 0.7;
+  const Transform T = FromXyzRpy({1, 2, 3}, {0.4, -0.2, 2.0});
+  EXPECT_LT((FitRigid(from, T * from).matrix() - T.matrix()).norm(), 1e-14);
+}
+
 TEST(RotationAngle, IsExactAtBothEnds) {
   const Vector3d axis = Vector3d(1, -2, 3).normalized();
   for (double angle : {0.0, 1e-12, 1e-9, 1e-6, 0.5, kHalfPi, 3.0, M_PI - 1e-9}) {
