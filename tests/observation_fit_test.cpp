@@ -26,7 +26,16 @@ ObservationFit FitExactly(const ObservedRobot& model, const Observations& seen) 
   for (std::size_t s = 0; s < model.setup.sources.size(); ++s) {
     if (model.setup.sources[s].role != Source::Role::kNoise) continue;
     // Less would drown what gravity hardly tells in roundings of the information.
-    start.spread.sd[s] = model.setup.sources[s].unit == SourceUnit::kNone ? 1e-4 : 1e-7;
+    switch (model.setup.sources[s].unit) {
+      case SourceUnit::kNone:
+        start.spread.sd[s] = 1e-4;
+        break;
+      case SourceUnit::kPixel:
+        start.spread.sd[s] = 1e-6;
+        break;
+      default:
+        start.spread.sd[s] = 1e-7;
+    }
   }
   return FitObservations(model, seen, start, {.estimate_spread = false, .max_updates = 30});
 }

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/registration.hpp"
@@ -46,6 +48,23 @@ Selection Without(const ErrorModel& model, const Recording& recording,
   for (const Outlier& outlier : verdict.markers) markers(outlier.posture, outlier.marker) = false;
   for (const LooseFooting& footing : verdict.footings) tied[footing.posture] = 0;
   return Select(model, recording, std::move(markers), std::move(tied));
+}
+
+/// Weights of the same bodies in another selection; 1 of what took no part before.
+RobustWeights WeightsIn(const Selection& after, const Selection& before,
+                        const RobustWeights& weights) {
+  if (weights.bodies.size() != before.bodies.size()) return {};
+  std::map<std::pair<int, int>, Weight> of;  // by posture and body
+  for (std::size_t b = 0; b < before.bodies.size(); ++b) {
+    const BodyObservation& body = before.bodies[b];
+    if (body.used) of.emplace(std::pair(body.posture, body.body), weights.bodies[b]);
+  }
+  RobustWeights result{{}, weights.ties};
+  for (const BodyObservation& body : after.bodies) {
+    const auto found = of.find({body.posture, body.body});
+    result.bodies.push_back(body.used && found != of.end() ? found->second : Weight());
+  }
+  return result;
 }
 
 bool Same(const OutlierVerdict& a, const OutlierVerdict& b) {
@@ -157,7 +176,9 @@ OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& b
                               Selection& selection, Fit& fit) {
   const auto fit_to = [&](const OutlierVerdict& without) {
     if (problem.options.outliers == OutlierPolicy::kRemove) {
-      selection = Without(problem.model, problem.recording, without);
+      Selection next = Without(problem.model, problem.recording, without);
+      fit.weights = WeightsIn(next, selection, fit.weights);
+      selection = std::move(next);
     }
     CheckEquations(problem.recording, fit.placement, selection, base, free, without.markers.size());
     fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
@@ -189,14 +210,12 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
                  CalibrationResult& result) {
   const Recording& recording = problem.recording;
   const double probability = problem.options.outlier_probability;
-  const bool remove = fixed == nullptr && problem.options.outliers == OutlierPolicy::kRemove;
   Selection selection = fixed != nullptr ? *fixed : SelectAll(problem.model, recording);
   OutlierVerdict verdict;
   CheckEquations(recording, fit.placement, selection, base, free, 0);
   if (fixed == nullptr) {
     fit = FitParameters(problem, selection, free, fit, Robustness::kMedians);
     verdict = FindOutliers(problem, selection, free, fit, probability);
-    if (remove) selection = Without(problem.model, recording, verdict);
   }
   if (fixed != nullptr) {
     fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
