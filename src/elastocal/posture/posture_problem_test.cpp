@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/math/random.hpp"
 #include "elastocal/math/decompositions.hpp"
+#include "elastocal/math/random.hpp"
 #include "elastocal/posture/random_posture.hpp"
 #include "elastocal/robot/leg_load.hpp"
 #include "tests/leg_problem.hpp"

@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/decompositions.hpp"
+#include "elastocal/math/rotation_vector.hpp"
 
 namespace elastocal {
 namespace {
