@@ -113,7 +113,7 @@ class MujocoJacobians {
       for (const Joint& joint : project.tree.joints) {
         mujoco_.SetPosition(joint.name, JointPosition(joint, q));
       }
-      qpos_.push_back(Eigen::VectorXd::Map(mujoco_.data()->qpos, mujoco_.model()->nq));
+      qpos_.emplace_back(Eigen::VectorXd::Map(mujoco_.data()->qpos, mujoco_.model()->nq));
       points_.push_back(MarkerPositions(model, geometry, q));
     }
     jacobian_.resize(3 * mujoco_.model()->nv);

@@ -103,6 +103,9 @@ TEST_F(Pipeline, ACalibrationIsValidatedOnAnotherRecording) {
   EXPECT_EQ(ValidationStatus(validation), "better");
   EXPECT_LT(validation.transfer.calibrated.metrics.rmse_3d,
             0.5 * validation.transfer.uncalibrated.metrics.rmse_3d);
+  ExpectInputError(
+      [&] { ValidateCalibration(project_, folder, table_, {.accept = {"sign:arm_2_joint"}}); },
+      {"sign:arm_2_joint", "it shows none"});
 }
 
 // The only trial of the estimate cannot show that one of its joints is off: the fit takes that for

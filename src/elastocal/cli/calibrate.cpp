@@ -94,12 +94,7 @@ void AddCalibrate(CLI::App& app, Action& action) {
                    "apart, to be added to the encoders (encoder)")
       ->transform(CLI::IsMember({"origin", "encoder"}, CLI::ignore_case))
       ->capture_default_str();
-  command
-      ->add_option("--accept", options->accept,
-                   "Mistakes of the recording that are corrected before the fit, by the names that "
-                   "calibrate gave them: sign:JOINT, exchange:JOINT,JOINT, frozen:JOINT, "
-                   "labels:NAME,NAME")
-      ->type_name("NAME");
+  AddAcceptOption(*command, options->accept);
   AddCommonOptions(*command, options->common);
   command->footer(
       "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro and covariance.csv, and, "

@@ -39,6 +39,9 @@ void AddOutputOptions(CLI::App& command, CommonOptions& options);
 /// The calibration that a command puts to use, and the project it belongs to.
 void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string& project);
 
+/// Mistakes of a recording to be corrected, see AcceptMistakes.
+void AddAcceptOption(CLI::App& command, std::vector<std::string>& names);
+
 /// What a parsed command line is to do; the result is the exit code.
 using Action = std::function<int()>;
 

@@ -59,6 +59,15 @@ void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string
       ->type_name("FILE");
 }
 
+void AddAcceptOption(CLI::App& command, std::vector<std::string>& names) {
+  command
+      .add_option("--accept", names,
+                  "Mistakes of the recording that are corrected before the fit, by the names that "
+                  "calibrate gave them: sign:JOINT, exchange:JOINT,JOINT, frozen:JOINT, "
+                  "labels:NAME,NAME")
+      ->type_name("NAME");
+}
+
 namespace {
 
 /// What is wrong with the first word of the command line where it is no command; else empty.

@@ -28,6 +28,7 @@ struct ValidateOptions {
   std::string output;  ///< folder; empty: none
   bool frozen = false;
   std::string refit;  ///< "table"; empty: nothing
+  std::vector<std::string> accept;
 };
 
 std::string Table(const TransferValidation& validation, bool frozen) {
@@ -57,6 +58,7 @@ void PrintRun(const ValidationRun& run, const CommonOptions& options) {
                       1e3 * outliers[i].residual));
   }
   PrintWarnings(run.warnings, options.verbose);
+  for (const std::string& mistake : run.mistakes) spdlog::error("{}", mistake);
   if (!run.converged()) spdlog::error("the fit of waist and markers has not converged");
   if (!run.better()) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
 }
@@ -67,6 +69,7 @@ int Validate(const ValidateOptions& options) {
   const Project project = ReadProject(options.project);
   if (project.contact) {
     if (options.frozen) throw InputError("--frozen is about markers; touches have --refit table");
+    if (!options.accept.empty()) throw InputError("--accept is about recordings of trials");
     return RunContactValidation({options.common, options.calibration, options.recording,
                                  options.output, options.refit == "table"},
                                 project);
@@ -80,9 +83,9 @@ int Validate(const ValidateOptions& options) {
   DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
 
-  const ValidationRun run =
-      ValidateCalibration(project, options.calibration, options.recording,
-                          {.frozen = options.frozen, .seed = options.common.seed});
+  const ValidationRun run = ValidateCalibration(
+      project, options.calibration, options.recording,
+      {.frozen = options.frozen, .seed = options.common.seed, .accept = options.accept});
   const std::string json = MakeValidationJson(run);
   outputs.Set(options.common.json_file, json);
   std::string no_report;
@@ -95,7 +98,7 @@ int Validate(const ValidateOptions& options) {
 
   PrintRun(run, options.common);
   if (!folder.empty()) PrintReportPlace(folder, no_report, quiet);
-  return run.converged() && run.better() ? kFine : kNotConverged;
+  return run.converged() && run.better() && run.mistakes.empty() ? kFine : kNotConverged;
 }
 
 }  // namespace
@@ -130,6 +133,7 @@ void AddValidate(CLI::App& app, Action& action) {
           "Of touches: what is registered anew, each touch by the others of the file: table")
       ->transform(CLI::IsMember({"table"}, CLI::ignore_case))
       ->type_name("WHAT");
+  AddAcceptOption(*command, options->accept);
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal validate project.yaml --calibration out "

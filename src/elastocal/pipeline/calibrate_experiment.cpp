@@ -150,8 +150,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.coverage = FindCoverage(project, measured);
   JudgeCoverage(run.coverage, run.verdict);
   run.warnings = std::move(measured.warnings);
-  for (const std::string& what : run.undone)
-    run.warnings.push_back("corrected on request: " + what);
+  for (const std::string& what : run.undone) run.warnings.push_back(DescribeUndone(what));
   Append(run.verdict.remarks, run.warnings);
   if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra));
   run.zero_offsets = options.zero_offsets;

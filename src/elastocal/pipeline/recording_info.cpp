@@ -16,6 +16,8 @@
 namespace elastocal {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 MarkerSight LookAt(const MarkerTrajectories& markers, int marker, int parts) {
   MarkerSight sight;
   sight.name = markers.names[static_cast<std::size_t>(marker)];
@@ -123,7 +125,6 @@ RecordingInfo DescribeRecording(const std::string& file, const ReaderOptions& op
 }
 
 std::string MakeInfoJson(const RecordingInfo& info) {
-  using Json = nlohmann::ordered_json;
   Json json = {{"format", info.file.format}, {"markers", nullptr}, {"joints", nullptr}};
   if (const auto& markers = info.file.markers) {
     Json list = Json::array();

@@ -130,40 +130,14 @@ double FitError(const CalibrationResult& result, const Recording& recording,
   return count == 0.0 ? std::numeric_limits<double>::infinity() : std::sqrt(squares / count);
 }
 
-class MistakeSearch {
+/// Calibrates the robot from recordings of the same trials.
+class Refitting {
  public:
-  MistakeSearch(const Project& project, std::optional<std::uint64_t> seed,
-                const Measurements& measured, double error)
-      : error_(error), project_(project), as_recorded_(measured), recording_(measured.calibration) {
-    nominal_ = NominalModel(project, recording_);
-    seed_ = seed;
-  }
+  Refitting(const Project& project, std::optional<std::uint64_t> seed, const Measurements& measured)
+      : project_(project), as_recorded_(measured), seed_(seed) {}
 
-  std::vector<RecordingMistake> Run() {
-    std::vector<RecordingMistake> mistakes;
-    while (mistakes.size() < kMostMistakes) {
-      const std::vector<TriedCorrection> tried =
-          Suspicions(project_, nominal_, recording_, kMostTried);
-      if (tried.empty()) break;
-      const TriedCorrection* best = nullptr;
-      double least = kLeftOfError * error_;
-      for (const TriedCorrection& one : tried) {
-        const double left = Error(one.corrected);
-        if (!(left < least)) continue;
-        least = left;
-        best = &one;
-        if (left < kClearlyRight * error_) break;
-      }
-      if (best == nullptr) break;
-      mistakes.push_back({best->name, best->what, error_, least});
-      recording_ = Recording(best->corrected);
-      error_ = least;
-    }
-    return mistakes;
-  }
-
- private:
-  /// Of a robot calibrated from the recording; infinite where nothing can be fitted.
+  /// Error of the robot that is calibrated from the recording; infinite where nothing can be
+  /// fitted.
   double Error(const Recording& recording) {
     if (!base_) {
       Measurements plain = as_recorded_;
@@ -180,11 +154,9 @@ class MistakeSearch {
     }
   }
 
-  double error_;  // of the fit so far, m
+ private:
   const Project& project_;
   const Measurements& as_recorded_;
-  Recording recording_;
-  ErrorModel nominal_;
   std::optional<std::uint64_t> seed_;
   std::optional<ErrorModel> model_;
   std::optional<BaseParameters> base_;
@@ -192,14 +164,42 @@ class MistakeSearch {
 
 }  // namespace
 
+std::vector<RecordingMistake> FindMistakesBy(
+    const Project& project, const Recording& recording, double error,
+    const std::function<double(const Recording&)>& error_of) {
+  std::vector<RecordingMistake> mistakes;
+  if (recording.trials.empty()) return mistakes;
+  const ErrorModel nominal = NominalModel(project, recording);
+  Recording current = recording;
+  while (mistakes.size() < kMostMistakes) {
+    const std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
+    const TriedCorrection* best = nullptr;
+    double least = kLeftOfError * error;
+    for (const TriedCorrection& one : tried) {
+      const double left = error_of(one.corrected);
+      if (!(left < least)) continue;
+      least = left;
+      best = &one;
+      if (left < kClearlyRight * error) break;
+    }
+    if (best == nullptr) break;
+    mistakes.push_back({best->name, best->what, error, least});
+    current = Recording(best->corrected);
+    error = least;
+  }
+  return mistakes;
+}
+
 std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     std::optional<std::uint64_t> seed,
                                                     const Measurements& measured,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result) {
   if (measured.calibration.trials.empty()) return {};
-  const double error = FitError(result, fitted, project.calibration);
-  return MistakeSearch(project, seed, measured, error).Run();
+  Refitting refitting(project, seed, measured);
+  return FindMistakesBy(project, measured.calibration,
+                        FitError(result, fitted, project.calibration),
+                        [&](const Recording& recording) { return refitting.Error(recording); });
 }
 
 std::vector<std::string> AcceptMistakes(const Project& project,
@@ -218,6 +218,8 @@ std::vector<std::string> AcceptMistakes(const Project& project,
   }
   return undone;
 }
+
+std::string DescribeUndone(const std::string& what) { return "corrected on request: " + what; }
 
 std::string DescribeMistake(const RecordingMistake& mistake) {
   if (std::isinf(mistake.before)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,12 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result);
 
+/// The same by any figure of how well a recording is explained, m: `error_of`, infinite where it is
+/// not explained at all. `error`: of the recording itself.
+std::vector<RecordingMistake> FindMistakesBy(
+    const Project& project, const Recording& recording, double error,
+    const std::function<double(const Recording&)>& error_of);
+
 /// Undoes the mistakes of these names wherever the trials for calibration and for validation seem
 /// to have them, and says what was undone, in words: `sign:JOINT`, `exchange:JOINT,JOINT`,
 /// `frozen:JOINT` (its postures are left out), `labels:NAME,NAME` of two clusters or markers.
@@ -38,8 +45,11 @@ std::vector<std::string> AcceptMistakes(const Project& project,
                                         const std::vector<std::string>& names,
                                         Measurements& measured);
 
-/// "the sign of ... is reversed ...; without that the error falls from 14.2 to 0.31 mm (--accept
-/// NAME corrects it)"
+/// What AcceptMistakes undid, as a warning: "corrected on request: ...".
+std::string DescribeUndone(const std::string& what);
+
+/// "the sign of ... is reversed ...; without that the error of the fit falls from 14.2 to 0.31 mm
+/// (--accept NAME corrects it)"
 std::string DescribeMistake(const RecordingMistake& mistake);
 
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 #include "elastocal/pipeline/validate_calibration.hpp"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
 
 namespace elastocal {
 namespace {
@@ -33,6 +35,65 @@ ElasticityChoice ElasticityOf(const StoredCalibration& calibration, const Projec
     if (has("x")) choice.bending->push_back(joint.name);
   }
   return choice;
+}
+
+/// rms distance of the markers from the calibrated robot, outliers included, m.
+double ErrorOf(const TransferValidation& transfer) {
+  return transfer.calibrated.metrics_all.rmse_3d;
+}
+
+/// Throws InputError for a calibration of another robot.
+void CheckApplies(const ValidationRun& run, const Project& project, const ErrorModel& model) {
+  if (run.calibration.nominal != NominalFingerprint(model)) {
+    throw InputError(run.calibration_file + ": made for robot '" + run.calibration.robot +
+                     "' with other nominal geometry than " + project.urdf.string() +
+                     "; expected the URDF that was calibrated, not the calibrated one");
+  }
+  std::vector<std::string> chains;
+  for (const Chain& chain : project.chains) chains.push_back(chain.name);
+  CheckParameters(run.calibration, MakeErrorModel(project.tree, project.markers, project.placement),
+                  chains);
+}
+
+void CheckWaist(const ValidationRun& run, const Recording& recording) {
+  if (!run.frozen || !recording.trials.empty() || run.calibration.T_ref_waist) return;
+  throw InputError(run.calibration_file +
+                   ": no key 'waist': made from trials, it says nothing of the "
+                   "waist in a table of postures; validate it without frozen");
+}
+
+TransferValidation TransferTo(const Recording& recording, const RecordedModel& robot,
+                              const Project& project, const ValidationRun& run) {
+  const StoredCalibration& stored = run.calibration;
+  if (!run.frozen) {
+    return ValidateTransfer(robot.model, recording, robot.base, project.calibration,
+                            stored.joint_errors);
+  }
+  return ValidateFrozen(robot.model, recording, project.calibration,
+                        {.T_ref_waist = stored.T_ref_waist,
+                         .joint_errors = stored.joint_errors,
+                         .externals = stored.externals,
+                         .uncalibrated_externals = stored.uncalibrated_externals});
+}
+
+/// What explains that the calibrated robot does not explain the recording.
+std::vector<RecordingMistake> FindMistakesIn(const Measurements& as_recorded,
+                                             const Project& project,
+                                             std::optional<std::uint64_t> seed,
+                                             const ValidationRun& run) {
+  std::optional<RecordedModel> robot;  // made when there is a suspicion
+  const auto error_of = [&](const Recording& corrected) {
+    if (!robot) {
+      Measurements measured = as_recorded;
+      robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
+    }
+    try {
+      return ErrorOf(TransferTo(corrected, *robot, project, run));
+    } catch (const InputError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  };
+  return FindMistakesBy(project, as_recorded.calibration, ErrorOf(run.transfer), error_of);
 }
 
 /// More than one outlier in twenty observations is worth a warning.
@@ -64,38 +125,24 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
                     .recording = {},
                     .transfer = {},
                     .frozen = options.frozen,
+                    .mistakes = {},
                     .warnings = {}};
   Project project = given;
   project.elasticity = ElasticityOf(run.calibration, given);
   Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
-  const RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
-  if (run.calibration.nominal != NominalFingerprint(robot.model)) {
-    throw InputError(file.string() + ": made for robot '" + run.calibration.robot +
-                     "' with other nominal geometry than " + project.urdf.string() +
-                     "; expected the URDF that was calibrated, not the calibrated one");
+  for (const std::string& what : AcceptMistakes(project, options.accept, measured)) {
+    run.warnings.push_back(DescribeUndone(what));
   }
-  std::vector<std::string> chains;
-  for (const Chain& chain : project.chains) chains.push_back(chain.name);
-  CheckParameters(run.calibration, MakeErrorModel(project.tree, project.markers, project.placement),
-                  chains);
-  if (options.frozen) {
-    const StoredCalibration& stored = run.calibration;
-    if (measured.calibration.trials.empty() && !stored.T_ref_waist) {
-      throw InputError(file.string() +
-                       ": no key 'waist': made from trials, it says nothing of the "
-                       "waist in a table of postures; validate it without frozen");
-    }
-    run.transfer = ValidateFrozen(robot.model, measured.calibration, project.calibration,
-                                  {.T_ref_waist = stored.T_ref_waist,
-                                   .joint_errors = stored.joint_errors,
-                                   .externals = stored.externals,
-                                   .uncalibrated_externals = stored.uncalibrated_externals});
-  } else {
-    run.transfer = ValidateTransfer(robot.model, measured.calibration, robot.base,
-                                    project.calibration, run.calibration.joint_errors);
+  const Measurements as_recorded = measured;
+  const RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
+  CheckApplies(run, project, robot.model);
+  CheckWaist(run, measured.calibration);
+  run.transfer = TransferTo(measured.calibration, robot, project, run);
+  for (const RecordingMistake& mistake : FindMistakesIn(as_recorded, project, options.seed, run)) {
+    run.mistakes.push_back(DescribeMistake(mistake));
   }
   run.recording = std::move(measured.calibration);
-  run.warnings = std::move(measured.warnings);
+  run.warnings.insert(run.warnings.end(), measured.warnings.begin(), measured.warnings.end());
   WarnOfOutliers(run);
   return run;
 }
@@ -132,6 +179,7 @@ std::string MakeValidationJson(const ValidationRun& run) {
                                 {"marker", run.recording.marker_names[outlier.marker]},
                                 {"residual_mm", 1e3 * outlier.residual}});
   }
+  json["mistakes"] = run.mistakes;
   json["warnings"] = run.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

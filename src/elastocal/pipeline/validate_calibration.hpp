@@ -20,6 +20,7 @@ struct ValidationRun {
   Recording recording;
   TransferValidation transfer;
   bool frozen = false;                ///< whether nothing was fitted
+  std::vector<std::string> mistakes;  ///< of the recording, which say nothing of the robot
   std::vector<std::string> warnings;  ///< what a user should know of, a sentence each
 
   bool converged() const;
@@ -32,10 +33,13 @@ struct TransferOptions {
   /// Fit nothing: waist and markers are those of the calibration (see ValidateFrozen).
   bool frozen = false;
   std::optional<std::uint64_t> seed = {};  ///< instead of the project's
+  /// Mistakes of the recording to be corrected first, see AcceptMistakes.
+  std::vector<std::string> accept = {};
 };
 
 /// Applies a stored calibration to another recording of the same robot: only waist and markers are
 /// fitted anew, for the calibrated and for the nominal robot (paper, section 6.1.4), or nothing.
+/// Mistakes in a recording of trials that explain its misfit are named (FindMistakesBy).
 ///
 /// `calibration`: the folder that calibrate wrote to, or its calibration.yaml. `recording`: a
 /// posture table or a recording folder; trials for validation will do. Throws InputError: files

@@ -85,11 +85,12 @@ std::vector<fs::path> MotionFiles::all() const {
 
 void SetMotionFiles(const MotionFiles& files, const Project& project, const MotionPlan& plan,
                     const std::vector<MotionTrial>& trials, OutputSet& outputs) {
-  constexpr int kEvery = 5;  // samples of a trajectory: 20 Hz
+  constexpr int kTrajectoryStep = 5;  // samples of a trajectory: 20 Hz
   outputs.Set(files.motion, FormatMotionTable(project.tree, plan.whole));
   outputs.Set(files.margins, FormatMotionSummary(project, plan, trials));
   if (!files.trajectory.empty()) {
-    outputs.Set(files.trajectory, FormatJointTrajectory(project.tree, plan.whole.motion, kEvery));
+    outputs.Set(files.trajectory,
+                FormatJointTrajectory(project.tree, plan.whole.motion, kTrajectoryStep));
   }
   if (files.chains.empty()) return;
   const std::vector<PlannedMotion> motions = ChainMotions(plan);
