@@ -43,7 +43,7 @@ struct ConvertedRecording {
 /// so that z points up, or joints as CSV. `up`: the axis that points up, where the file does not
 /// say. Throws InputError: what ReadAnyRecording refuses; a file without this part; both parts with
 /// kOnlyOne; an axis that nobody says or that contradicts the file.
-ConvertedRecording ConvertRecording(const std::string& file, const ReaderOptions& options,
+ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions& options,
                                     RecordingPart part, const std::string& up);
 
 }  // namespace elastocal

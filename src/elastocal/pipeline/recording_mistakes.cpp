@@ -96,8 +96,9 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
     }
     if (next == nullptr) return;
     undone.push_back(next->what);
-    for (auto at = next->left_out.rbegin(); at != next->left_out.rend(); ++at) {
-      if (!truth.empty()) truth.erase(truth.begin() + *at);
+    if (!truth.empty()) {
+      std::for_each(next->left_out.rbegin(), next->left_out.rend(),
+                    [&](int posture) { truth.erase(truth.begin() + posture); });
     }
     recording = Recording(next->corrected);
   }
@@ -106,12 +107,10 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
 /// Whether the prior had to be widened beyond what an error of a robot can be: axes turned by half
 /// a turn explain a reversed sign perfectly.
 bool IsNoRobot(const PriorScale& scale) {
-  for (PriorGroup group : {PriorGroup::kAngles, PriorGroup::kLengths}) {
-    if (scale.factor[static_cast<std::size_t>(group)] >= kLikeTheMost * MostWidening(group)) {
-      return true;
-    }
-  }
-  return false;
+  const auto at_most = [&](PriorGroup group) {
+    return scale.factor[static_cast<std::size_t>(group)] >= kLikeTheMost * MostWidening(group);
+  };
+  return at_most(PriorGroup::kAngles) || at_most(PriorGroup::kLengths);
 }
 
 /// rms distance of all markers from where a calibrated robot has them, m; infinite where that is no

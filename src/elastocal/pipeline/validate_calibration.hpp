@@ -44,7 +44,7 @@ struct TransferOptions {
 /// `calibration`: the folder that calibrate wrote to, or its calibration.yaml. `recording`: a
 /// posture table or a recording folder; trials for validation will do. Throws InputError: files
 /// that cannot be read; a calibration of a robot with other nominal geometry than the project's.
-ValidationRun ValidateCalibration(const Project& project, const std::filesystem::path& calibration,
+ValidationRun ValidateCalibration(const Project& given, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
                                   const TransferOptions& options = {});
 
