@@ -159,6 +159,14 @@ TEST_F(Pipeline, MistakesAreUndoneOnRequest) {
   measured.validation.q.col(2) *= -1.0;
   ExpectInputError([&] { AcceptMistakes(project_, {"frozen:" + joint}, measured); },
                    {"frozen:" + joint, "it shows sign:" + joint});
+  const auto error_of = [&](const Recording& corrected) {
+    return (corrected.q - q).norm() < 1e-12 ? 0.1 : 0.9;
+  };
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project_, measured.calibration, 1.0, error_of);
+  ASSERT_EQ(mistakes.size(), 1u);
+  EXPECT_EQ(mistakes[0].name, "sign:" + joint);
+  EXPECT_EQ(mistakes[0].after, 0.1);
   const std::vector<std::string> undone = AcceptMistakes(project_, {"sign:" + joint}, measured);
   EXPECT_EQ(undone.size(), 2u);
   EXPECT_EQ(measured.calibration.q, q);
