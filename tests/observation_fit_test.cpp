@@ -25,7 +25,8 @@ ObservationFit FitExactly(const ObservedRobot& model, const Observations& seen) 
   ObservationFit start = StartFit(model, seen);
   for (std::size_t s = 0; s < model.setup.sources.size(); ++s) {
     if (model.setup.sources[s].role != Source::Role::kNoise) continue;
-    // Less would drown what gravity hardly tells in roundings of the information.
+    // Less would drown what gravity hardly tells in roundings of the information; a pixel is about
+    // 2 mrad, so that 1e-6 of it is still finer than 1e-7 m or rad.
     switch (model.setup.sources[s].unit) {
       case SourceUnit::kNone:
         start.spread.sd[s] = 1e-4;

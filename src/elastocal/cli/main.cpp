@@ -63,8 +63,8 @@ void AddAcceptOption(CLI::App& command, std::vector<std::string>& names) {
   command
       .add_option("--accept", names,
                   "Mistakes of the recording that are corrected before the fit, by the names that "
-                  "calibrate gave them: sign:JOINT, exchange:JOINT,JOINT, frozen:JOINT, "
-                  "labels:NAME,NAME")
+                  "calibrate or validate gave them: sign:JOINT, exchange:JOINT,JOINT, "
+                  "frozen:JOINT, labels:NAME,NAME")
       ->type_name("NAME");
 }
 
