@@ -227,7 +227,7 @@ TEST(MarkerVisibility, HidesWhatIsBehindASphere) {
   PostureProblem hidden = MakeChainProblem(model, base.kept, motion, setup);
   ASSERT_TRUE(hidden.visible);
   EXPECT_TRUE(EvaluateRegressor(hidden, motion.rest).isZero(0.0));
-  motion.cameras.push_back({0.0, 5.0, -0.5});  // from the other side all are seen
+  motion.cameras.emplace_back(0.0, 5.0, -0.5);  // from the other side all are seen
   EXPECT_EQ((EvaluateRegressor(hidden, motion.rest).rowwise().norm().array() > 0.0).count(), 18);
 }
 
