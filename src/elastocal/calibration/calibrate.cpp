@@ -93,14 +93,18 @@ void Join(OutlierVerdict& into, const OutlierVerdict& others) {
 }
 
 /// The prior makes any number of equations enough; fewer than what could be identified are refused
-/// all the same.
-void CheckEquations(const Recording& recording, const Placement& placement,
+/// all the same, unless an earlier calibration tells it.
+void CheckEquations(const FitProblem& problem, const Placement& placement,
                     const Selection& selection, const BaseParameters& base,
                     const std::vector<int>& free, std::size_t outliers) {
+  const Recording& recording = problem.recording;
+  const EarlierPart earlier = PartOf(problem.options.earlier, problem.model, free);
   auto equations = 3 * selection.markers.count();
   Eigen::Index unknowns = std::count_if(free.begin(), free.end(), [&](int i) {
     return std::binary_search(base.kept.begin(), base.kept.end(), i);
   });
+  unknowns =
+      std::max<Eigen::Index>(0, unknowns - static_cast<Eigen::Index>(earlier.positions.size()));
   for (int i = 0; i < static_cast<int>(placement.T_ref_waist.size()); ++i) {
     unknowns += 6;
     if (placement.footing[i] >= 0 && selection.tied[i] != 0) equations += 6;
@@ -180,7 +184,7 @@ OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& b
       fit.weights = WeightsIn(next, selection, fit.weights);
       selection = std::move(next);
     }
-    CheckEquations(problem.recording, fit.placement, selection, base, free, without.markers.size());
+    CheckEquations(problem, fit.placement, selection, base, free, without.markers.size());
     fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
   };
   std::vector<OutlierVerdict> earlier;
@@ -212,7 +216,7 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
   const double probability = problem.options.outlier_probability;
   Selection selection = fixed != nullptr ? *fixed : SelectAll(problem.model, recording);
   OutlierVerdict verdict;
-  CheckEquations(recording, fit.placement, selection, base, free, 0);
+  CheckEquations(problem, fit.placement, selection, base, free, 0);
   if (fixed == nullptr) {
     fit = FitParameters(problem, selection, free, fit, Robustness::kMedians);
     verdict = FindOutliers(problem, selection, free, fit, probability);
@@ -250,7 +254,7 @@ void Estimate(const ErrorModel& model, const Recording& recording, const BasePar
   const std::vector<int> externals = OfKind(model, base, ModelKind::kUncalibrated, waist_moves);
   const Fit start = StartFit(problem, selection, delta);
   if (waist_moves) FindFootings(model, recording, options.slip, &result.slips);
-  CheckEquations(recording, start.placement, selection, base, externals, 0);
+  CheckEquations(problem, start.placement, selection, base, externals, 0);
   const Fit fit =
       FitParameters(problem, selection, externals, start,
                     fixed == nullptr ? Robustness::kMedians : Robustness::kMoments, kFewUpdates);

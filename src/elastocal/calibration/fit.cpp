@@ -146,17 +146,25 @@ std::vector<int> PostureOfBlocks(const Selection& selection, const BodyResiduals
   return posture;
 }
 
-/// Information of the prior on the unknowns in the units of the solver, a diagonal: of the
-/// parameters, then of what else is unknown.
-Eigen::VectorXd PriorInformation(const FitProblem& problem, const Prior& prior,
+/// Information of the prior on the unknowns in the units of the solver: of the parameters, then of
+/// what else is unknown.
+Eigen::MatrixXd PriorInformation(const FitProblem& problem, const Prior& prior,
                                  const std::vector<int>& parameters, Eigen::Index unknowns) {
-  Eigen::VectorXd information =
+  Eigen::VectorXd own =
       Eigen::VectorXd::Constant(unknowns, BodyResiduals::kPoseScale * BodyResiduals::kPoseScale);
+  Eigen::VectorXd unit(static_cast<Eigen::Index>(parameters.size()));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = problem.model.parameters[parameters[i]];
-    information[static_cast<Eigen::Index>(i)] =
-        std::pow(ParameterScale(parameter) / prior.Of(problem.model.tree, parameter), 2);
+    const auto at = static_cast<Eigen::Index>(i);
+    unit[at] = ParameterScale(parameter);
+    own[at] = std::pow(unit[at] / prior.Of(problem.model.tree, parameter), 2);
   }
+  Eigen::MatrixXd information = own.asDiagonal();
+  const EarlierPart earlier = PartOf(problem.options.earlier, problem.model, parameters);
+  if (earlier.positions.empty()) return information;
+  const Eigen::VectorXd scale = unit(earlier.positions);
+  information(earlier.positions, earlier.positions) =
+      scale.asDiagonal() * earlier.Information() * scale.asDiagonal();
   return information;
 }
 
@@ -178,9 +186,9 @@ void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
       equations.Scores(raised, PostureOfBlocks(selection, body), problem.recording.posture_count());
   const std::vector<int>& parameters = fit.posterior.parameters;
   const auto count = static_cast<Eigen::Index>(parameters.size());
-  const Eigen::VectorXd prior =
+  const Eigen::MatrixXd prior =
       PriorInformation(problem, residuals.prior, parameters, covariance.rows());
-  const Eigen::MatrixXd by_data = covariance - covariance * prior.asDiagonal() * covariance;
+  const Eigen::MatrixXd by_data = covariance - covariance * prior * covariance;
   const Eigen::VectorXd by_clusters = (covariance * scores).rowwise().squaredNorm();
   double expected = 0.0;
   double found = 0.0;
@@ -202,7 +210,7 @@ Eigen::MatrixXd DataInformation(const FitProblem& problem, const Prior& prior,
   const auto count = static_cast<Eigen::Index>(parameters.size());
   const Eigen::Index poses = equations.information().rows() - count;
   Eigen::MatrixXd information = equations.information();
-  information.diagonal() -= PriorInformation(problem, prior, parameters, information.rows());
+  information -= PriorInformation(problem, prior, parameters, information.rows());
   Eigen::MatrixXd own = information.topLeftCorner(count, count);
   if (poses > 0) {
     const auto across = information.topRightCorner(count, poses);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/calibration/earlier.hpp"
 #include "elastocal/robot/parameters.hpp"
 #include "elastocal/robot/posture_loads.hpp"
 #include "elastocal/robot/robot_tree.hpp"
@@ -96,6 +97,12 @@ struct CalibrationOptions {
   /// most MostWidening. A prior that is too narrow biases the estimates and makes their
   /// uncertainty too small.
   bool widen_prior = true;
+  /// What an earlier calibration of the robot says; of its parameters it is the prior, and it is
+  /// not widened.
+  EarlierEstimate earlier = {};
+  /// By how much a parameter drifts in a day, as a part of its prior's standard deviation: what an
+  /// earlier calibration says is less certain by the day (a random walk).
+  double drift = 0.02;
   /// White noise of one marker coordinate, m. Zero: estimated from the residuals.
   double marker_sd = 0.0;
   /// What happens to observations that contradict the others (FindOutliers).

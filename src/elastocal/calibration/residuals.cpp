@@ -117,9 +117,11 @@ void BodyResiduals::MakePriorBlocks() {
     J.middleCols(first - unknowns_.first_entry(block), rows).diagonal().setConstant(weight);
     jacobians_.push_back(std::move(J));
   };
+  const EarlierPart earlier = PartOf(in_.options.earlier, in_.model, unknowns_.free());
   for (std::size_t u = 0; u < unknowns_.free().size(); ++u) {
     const Parameter& parameter = in_.model.parameters[unknowns_.free()[u]];
     const int unknown = static_cast<int>(u);
+    if (std::binary_search(earlier.positions.begin(), earlier.positions.end(), unknown)) continue;
     add(unknowns_.block_of(unknown), unknown, 1,
         ParameterScale(parameter) / in_.prior.Of(in_.model.tree, parameter));
   }
@@ -127,6 +129,35 @@ void BodyResiduals::MakePriorBlocks() {
     const int block = unknowns_.FootingBlock(static_cast<int>(f));
     add(block, unknowns_.first_entry(block), 6, BodyUnknowns::kPoseScale);
   }
+  if (!earlier.positions.empty()) MakeEarlierBlock(earlier);
+}
+
+void BodyResiduals::MakeEarlierBlock(const EarlierPart& earlier) {
+  const Eigen::MatrixXd whitening = earlier.Whitening();
+  const int rows = static_cast<int>(whitening.rows());
+  ResidualBlock block{rows, {}, true};
+  for (int unknown : earlier.positions) {
+    const int of = unknowns_.block_of(unknown);
+    if (block.parameter_blocks.empty() || block.parameter_blocks.back() != of) {
+      block.parameter_blocks.push_back(of);
+    }
+  }
+  std::vector<int> entries;
+  for (int of : block.parameter_blocks) {
+    for (int i = 0; i < parameter_blocks[of]; ++i) entries.push_back(unknowns_.first_entry(of) + i);
+  }
+  RowMajorMatrix J = RowMajorMatrix::Zero(rows, static_cast<Eigen::Index>(entries.size()));
+  for (int i = 0; i < rows; ++i) {
+    const int unknown = earlier.positions[i];
+    const auto column = std::find(entries.begin(), entries.end(), unknown) - entries.begin();
+    J.col(column) =
+        whitening.col(i) * ParameterScale(in_.model.parameters[unknowns_.free()[unknown]]);
+  }
+  earlier_entries_ = std::move(entries);
+  earlier_offset_ = whitening * earlier.mean;
+  residual_blocks.push_back(std::move(block));
+  residuals_.emplace_back(rows);
+  jacobians_.push_back(std::move(J));
 }
 
 Eigen::VectorXd BodyResiduals::BodySds(std::size_t body) const {
@@ -184,7 +215,9 @@ void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobians) {
     }
   }
   EvaluateFloors();
-  const std::size_t first = residuals_.size() - prior_unknowns_.size();
+  const bool has_earlier = !earlier_entries_.empty();
+  if (has_earlier) residuals_.back() = jacobians_.back() * x_(earlier_entries_) - earlier_offset_;
+  const std::size_t first = residuals_.size() - prior_unknowns_.size() - (has_earlier ? 1 : 0);
   for (std::size_t p = 0; p < prior_unknowns_.size(); ++p) {
     Eigen::VectorXd& residual = residuals_[first + p];
     residual = prior_weights_[p] * x_.segment(prior_unknowns_[p], residual.size());

@@ -44,8 +44,9 @@ struct ResidualInputs {
 /// between measured and predicted positions (those on the foot that stands: from the footing, the
 /// others from the waist), in the basis of BodyObservation; for every posture on one foot what its
 /// constraint leaves (see support_tie.hpp); for every footing on a leg how far its sole is from
-/// flat on the floor (floor.hpp); for every parameter its deviation from nominal; for every footing
-/// (vaguely, 1 m and 1 rad) its displacement; each over its standard deviation.
+/// flat on the floor (floor.hpp); for every parameter its deviation from nominal, or together
+/// that from an earlier estimate; for every footing (vaguely, 1 m and 1 rad) its displacement; each
+/// over its standard deviation.
 ///
 /// The unknowns are those of BodyUnknowns. A body in a posture meets one waist (in a table of
 /// postures none), so that these are eliminated first.
@@ -63,7 +64,7 @@ class BodyResiduals : public LeastSquaresProblem {
   Placement ToPlacement(const Eigen::VectorXd& x) const { return unknowns_.ToPlacement(x); }
 
   /// Residual blocks: first the bodies of the selection, then the constraints, then those
-  /// of the floor, then the priors.
+  /// of the floor, then the priors, that of an earlier estimate last.
   int body_count() const { return static_cast<int>(in_.selection.bodies.size()); }
   const std::vector<int>& tied_postures() const { return tied_postures_; }
   int TieBlock(int tie) const { return body_count() + tie; }
@@ -84,6 +85,7 @@ class BodyResiduals : public LeastSquaresProblem {
   void MakeTieBlocks();
   void MakeFloorBlocks();
   void MakePriorBlocks();
+  void MakeEarlierBlock(const EarlierPart& earlier);
   Eigen::VectorXd BodySds(std::size_t body) const;
   Vector6d TieSds(int posture) const;
   /// Whether the body is the foot that the posture stands on.
@@ -107,6 +109,8 @@ class BodyResiduals : public LeastSquaresProblem {
   std::vector<std::vector<int>> blocks_of_posture_;
   std::vector<int> prior_unknowns_;    // by prior residual block: its first entry of x
   std::vector<double> prior_weights_;  // likewise: of the entries
+  std::vector<int> earlier_entries_;   // of x, of the last block; empty: there is no such block
+  Eigen::VectorXd earlier_offset_;
   Eigen::VectorXd x_;
   Geometry geometry_;
   std::vector<Eigen::VectorXd> sds_;  // by block, priors aside

@@ -146,11 +146,17 @@ RobustWeights EstimateWeights(const FitProblem& problem, const Selection& select
 
 PriorScale EstimatePriorScale(const FitProblem& problem, const Fit& fit) {
   const Prior prior = WidenedPrior(problem, fit);
+  const EarlierPart earlier =
+      PartOf(problem.options.earlier, problem.model, fit.posterior.parameters);
   std::array<double, kPriorGroupCount> squares{}, determined{};
   for (std::size_t i = 0; i < fit.posterior.parameters.size(); ++i) {
     const int index = fit.posterior.parameters[i];
     const ParameterKind kind = problem.model.parameters[index].kind;
     if (IsExternal(kind)) continue;
+    if (std::binary_search(earlier.positions.begin(), earlier.positions.end(),
+                           static_cast<int>(i))) {
+      continue;
+    }
     const auto diagonal = static_cast<Eigen::Index>(i);
     const double sd = prior.Of(problem.model.tree, problem.model.parameters[index]);
     const double variance = sd * sd;

@@ -23,8 +23,12 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
                                                       options.recordings.end());
   const Project project = ReadProject(options.project);
   if (project.contact) return RunContactCalibration(options, project);
-  const std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
+  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   OutputSet outputs;
+  if (!options.prior.empty()) {
+    const CalibrationFiles earlier = FindCalibrationFiles(options.prior);
+    inputs.insert(inputs.end(), {earlier.calibration, earlier.covariance});
+  }
   outputs.Protect(inputs);
   DeclareResults(folder, CalibrationFileNames(project), outputs);
   DeclareJson(options.common.json_file, outputs);
@@ -41,6 +45,8 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
            options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin,
        .seed = options.common.seed,
        .accept = options.accept,
+       .prior = options.prior,
+       .days = options.days,
        .progress = TerminalSteps("reading and fitting", options.common.quiet)});
   const auto files = MakeCalibrationFiles(project, run);
   const std::string no_report = SetResults(
@@ -93,6 +99,18 @@ void AddCalibrate(CLI::App& app, Action& action) {
                    "Where the joints' zero offsets go: into the URDF's joint origins (origin) or "
                    "apart, to be added to the encoders (encoder)")
       ->transform(CLI::IsMember({"origin", "encoder"}, CLI::ignore_case))
+      ->capture_default_str();
+  CLI::Option* prior =
+      command
+          ->add_option("--prior", options->prior,
+                       "An earlier calibration of the robot (output folder of calibrate): a few "
+                       "postures update it")
+          ->type_name("DIR");
+  command
+      ->add_option("--days", options->days,
+                   "Days since that calibration: the longer, the less it counts")
+      ->needs(prior)
+      ->check(InBounds("calibrate --days"))
       ->capture_default_str();
   AddAcceptOption(*command, options->accept);
   AddCommonOptions(*command, options->common);

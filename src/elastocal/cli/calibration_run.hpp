@@ -17,6 +17,8 @@ struct CalibrateOptions {
   std::string fold_by = "posture";
   int threads = 2;
   std::string zero_offsets = "origin";
+  std::string prior;                ///< an earlier calibration; empty: none
+  double days = 1.0;                ///< since then
   std::vector<std::string> accept;  ///< mistakes of the recording to correct
 };
 

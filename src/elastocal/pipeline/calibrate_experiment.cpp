@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
@@ -15,11 +16,17 @@
 namespace elastocal {
 namespace {
 
-/// By what the data tell before the prior, the waist being free in trials.
+/// By what the data, and those of an earlier calibration, tell before the prior, the waist being
+/// free in trials.
 Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& base,
-                        const Recording& recording) {
+                        const Recording& recording, const EarlierEstimate& earlier) {
   const std::vector<int>& fitted = result.posterior.parameters;
-  const Eigen::LDLT<Eigen::MatrixXd> root(result.posterior.data_information);
+  Eigen::MatrixXd information = result.posterior.data_information;
+  const EarlierPart known = PartOf(earlier, result.model, fitted);
+  if (!known.positions.empty()) {
+    information(known.positions, known.positions) += known.Information();
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> root(information);
   Eigen::MatrixXd U = root.matrixL();
   U = root.transpositionsP().transpose() * U;
   U *= root.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal();
@@ -84,11 +91,17 @@ CalibrationRun CalibrateExperiment(const Project& given,
   Measurements measured = ReadMeasurements(project, recordings);
   run.undone = AcceptMistakes(project, options.accept, measured);
 
-  // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
-  run.elasticity = ChooseElasticity(measured.calibration, options.seed, options.threads, project);
+  if (options.prior.empty()) {
+    // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
+    run.elasticity = ChooseElasticity(measured.calibration, options.seed, options.threads, project);
 
-  // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
-  run.causes = ChooseCauses(measured, options.seed, project);
+    // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
+    run.causes = ChooseCauses(measured, options.seed, project);
+  } else {
+    // Not in the paper: an earlier calibration tells both, and is the prior of the estimates.
+    Append(StartFromEarlier(options.prior, options.days, measured, options.seed, project),
+           run.warnings);
+  }
   run.extra = project.elasticity.extra;
 
   // Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
@@ -112,7 +125,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.faults = FindFaults(project, options.seed, as_recorded, robot, recording, run.comparison);
 
   // Eq. 12: how well the recorded postures tell the parameters apart.
-  run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording);
+  run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording, settings.earlier);
 
   // Section 6.1.4, Table 2: errors on postures and on motions that took no part in the estimate.
   const int folds = options.folds.value_or(UsualFolds(recording));
@@ -149,7 +162,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
                                 run.faults.end());
   run.coverage = FindCoverage(project, measured);
   JudgeCoverage(run.coverage, run.verdict);
-  run.warnings = std::move(measured.warnings);
+  Append(measured.warnings, run.warnings);
   for (const std::string& what : run.undone) run.warnings.push_back(DescribeUndone(what));
   Append(run.verdict.remarks, run.warnings);
   if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra));

@@ -38,6 +38,11 @@ struct ExperimentOptions {
   std::optional<std::uint64_t> seed = {};
   /// Mistakes of the recording that are undone before anything is estimated (AcceptMistakes).
   std::vector<std::string> accept = {};
+  /// An earlier calibration of the robot (the folder that calibrate wrote to, or its
+  /// calibration.yaml), `days` ago: its estimates and covariance are the prior, and its choice of
+  /// elasticity and causes stays.
+  std::filesystem::path prior = {};
+  double days = 1.0;
   StepProgress progress = {};
 };
 

@@ -8,7 +8,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
-#include "elastocal/pipeline/choose_causes.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 
@@ -21,38 +21,9 @@ bool HasConverged(const Refit& refit) {
   return refit.result.termination == Termination::kConverged;
 }
 
-/// The joints that the calibration found elastic, whatever the project would leave open.
-ElasticityChoice ElasticityOf(const StoredCalibration& calibration, const Project& project) {
-  ElasticityChoice choice = project.elasticity;
-  choice.extra = StoredCauses(project.tree, calibration.joint_errors);
-  choice.torsion.emplace();
-  choice.bending.emplace();
-  for (const Joint& joint : project.tree.joints) {
-    const auto has = [&](const char* axis) {
-      return calibration.joint_errors.contains(joint.name + ".compliance_" + axis);
-    };
-    if (has("z")) choice.torsion->push_back(joint.name);
-    if (has("x")) choice.bending->push_back(joint.name);
-  }
-  return choice;
-}
-
 /// rms distance of the markers from the calibrated robot, outliers included, m.
 double ErrorOf(const TransferValidation& transfer) {
   return transfer.calibrated.metrics_all.rmse_3d;
-}
-
-/// Throws InputError for a calibration of another robot.
-void CheckApplies(const ValidationRun& run, const Project& project, const ErrorModel& model) {
-  if (run.calibration.nominal != NominalFingerprint(model)) {
-    throw InputError(run.calibration_file + ": made for robot '" + run.calibration.robot +
-                     "' with other nominal geometry than " + project.urdf.string() +
-                     "; expected the URDF that was calibrated, not the calibrated one");
-  }
-  std::vector<std::string> chains;
-  for (const Chain& chain : project.chains) chains.push_back(chain.name);
-  CheckParameters(run.calibration, MakeErrorModel(project.tree, project.markers, project.placement),
-                  chains);
 }
 
 void CheckWaist(const ValidationRun& run, const Recording& recording) {
@@ -135,7 +106,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   }
   const Measurements as_recorded = measured;
   const RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
-  CheckApplies(run, project, robot.model);
+  CheckApplies(run.calibration, project, robot.model);
   CheckWaist(run, measured.calibration);
   run.transfer = TransferTo(measured.calibration, robot, project, run);
   for (const RecordingMistake& mistake : FindMistakesIn(as_recorded, project, options.seed, run)) {

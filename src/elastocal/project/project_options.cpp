@@ -142,13 +142,14 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
   section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "plausible_marker_sd_mm",
                       "outlier_probability", "support_threshold", "correlation_threshold",
                       "max_iterations", "support", "load", "extra", "slip_mm", "outliers",
-                      "floor_tilt_deg", "floor_height_mm"});
+                      "floor_tilt_deg", "floor_height_mm", "drift"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
   section.Read("widen_prior", options.widen_prior);
   section.ReadBounded("marker_sd_mm", options.marker_sd, kOneMm);
   section.ReadBounded("plausible_marker_sd_mm", options.plausible_marker_sd, kOneMm);
   section.ReadBounded("outlier_probability", options.outlier_probability);
   section.ReadBounded("support_threshold", options.support_threshold);
+  section.ReadBounded("drift", options.drift);
   section.ReadBounded("correlation_threshold", options.correlation_threshold);
   ReadChoice<SupportForm>(
       section, "support", options.support_form,

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/validation/moved_joints.hpp"
+#include "elastocal/validation/transfer.hpp"
+
+namespace elastocal {
+
+/// A few postures, and whether a calibration still explains them.
+struct CheckRun {
+  std::string calibration_file;
+  Recording recording;
+  TransferValidation transfer;  ///< waist and markers fitted, the joints as calibrated
+  CalibrationResult estimate;   ///< the calibration as the prior, every joint free to have moved
+  double rmse_estimate = 0.0;   ///< of `estimate` on the recording, outliers included, m
+  JointCheck check;
+  std::vector<std::string> warnings;
+
+  bool converged() const { return estimate.termination == Termination::kConverged; }
+};
+
+struct CheckOptions {
+  JointCheckOptions joints = {};
+  double days = 1.0;                       ///< since the calibration
+  std::optional<std::uint64_t> seed = {};  ///< instead of the project's
+  std::vector<std::string> accept = {};    ///< mistakes of the recording, see AcceptMistakes
+};
+
+/// Tells whether a stored calibration still explains a robot, from far fewer postures than it takes
+/// to calibrate (FindMovedJoints). Markers and cameras may have been set up anew.
+///
+/// `calibration`: the folder that calibrate wrote to, or its calibration.yaml, with its covariance.
+/// `recording`: a posture table or a recording folder. Throws InputError: files that cannot be
+/// read; a calibration of a robot with other nominal geometry than the project's, or without
+/// covariance; fewer equations than the waist and the markers have unknowns.
+CheckRun CheckCalibration(const Project& given, const std::filesystem::path& calibration,
+                          const std::filesystem::path& recording, const CheckOptions& options = {});
+
+/// "unchanged", "moved", "changed" (no single joint can be named) or "not converged".
+std::string CheckStatus(const CheckRun& run);
+
+/// The figures for programs (docs/formats.md).
+std::string MakeCheckJson(const CheckRun& run);
+
+}  // namespace elastocal

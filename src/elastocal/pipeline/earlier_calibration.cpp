@@ -1,0 +1,135 @@
+#include "elastocal/pipeline/earlier_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/choose_causes.hpp"
+
+namespace elastocal {
+
+ElasticityChoice ElasticityOf(const StoredCalibration& calibration, const Project& project) {
+  ElasticityChoice choice = project.elasticity;
+  choice.extra = StoredCauses(project.tree, calibration.joint_errors);
+  choice.torsion.emplace();
+  choice.bending.emplace();
+  for (const Joint& joint : project.tree.joints) {
+    const auto has = [&](const char* axis) {
+      return calibration.joint_errors.contains(joint.name + ".compliance_" + axis);
+    };
+    if (has("z")) choice.torsion->push_back(joint.name);
+    if (has("x")) choice.bending->push_back(joint.name);
+  }
+  return choice;
+}
+
+void CheckApplies(const StoredCalibration& calibration, const Project& project,
+                  const ErrorModel& model) {
+  if (calibration.nominal != NominalFingerprint(model)) {
+    throw InputError(calibration.source + ": made for robot '" + calibration.robot +
+                     "' with other nominal geometry than " + project.urdf.string() +
+                     "; expected the URDF that was calibrated, not the calibrated one");
+  }
+  std::vector<std::string> chains;
+  for (const Chain& chain : project.chains) chains.push_back(chain.name);
+  CheckParameters(calibration, MakeErrorModel(project.tree, project.markers, project.placement),
+                  chains);
+}
+
+EarlierEstimate MakeEarlierEstimate(const CalibrationEstimate& calibration, const ErrorModel& model,
+                                    const CalibrationOptions& options, double days) {
+  if (!calibration.has_covariance()) {
+    throw InputError(calibration.source +
+                     ": no covariance.csv beside it, which says how certain it is");
+  }
+  std::map<std::string, const Parameter*> of_model;
+  for (const Parameter& parameter : model.parameters) of_model[parameter.name] = &parameter;
+  std::map<std::string, const ParameterEstimate*> estimates;
+  for (const ParameterEstimate& one : calibration.parameters) estimates[one.name] = &one;
+  EarlierEstimate earlier;
+  std::vector<int> rows;
+  std::vector<double> mean, drift;
+  for (std::size_t row = 0; row < calibration.covariance_names.size(); ++row) {
+    const std::string& name = calibration.covariance_names[row];
+    const auto estimate = estimates.find(name);
+    const auto parameter = of_model.find(name);
+    if (estimate == estimates.end() || parameter == of_model.end()) continue;
+    const ParameterKind kind = parameter->second->kind;
+    if (IsExternal(kind) || kind == ParameterKind::kTorqueBias) continue;
+    earlier.names.push_back(name);
+    rows.push_back(static_cast<int>(row));
+    mean.push_back(estimate->second->value);
+    drift.push_back(options.drift * options.prior.Of(model.tree, *parameter->second));
+  }
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  earlier.mean = Eigen::Map<const Eigen::VectorXd>(mean.data(), count);
+  earlier.covariance = calibration.covariance(rows, rows);
+  earlier.covariance.diagonal() +=
+      days * Eigen::Map<const Eigen::VectorXd>(drift.data(), count).cwiseAbs2();
+  return earlier;
+}
+
+EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days,
+                           const Measurements& measured, std::optional<std::uint64_t> seed,
+                           const JointCheckOptions& options, Project& project) {
+  const CalibrationFiles files = FindCalibrationFiles(calibration);
+  EarlierFit fit{.stored = ReadCalibration(files.calibration),
+                 .earlier = {},
+                 .robot = {},
+                 .estimate = {},
+                 .check = {},
+                 .measured = measured};
+  const CalibrationEstimate estimate = ReadCalibrationFiles(files);
+  project.elasticity = ElasticityOf(fit.stored, project);
+  project.calibration.extra = {.automatic = false, .names = project.elasticity.extra};
+  const ErrorModel model = MakeProjectModel(project, measured.calibration.trials);
+  CheckApplies(fit.stored, project, model);
+  fit.earlier = MakeEarlierEstimate(estimate, model, project.calibration, days);
+
+  const Eigen::VectorXd sizes = SizeOfChanges(fit.earlier, model, project.calibration.prior);
+  Project open = project;
+  open.calibration.earlier = fit.earlier;
+  open.calibration.earlier.covariance.diagonal() += sizes.cwiseAbs2();
+  fit.robot = MakeRecordedModel(open, seed, fit.measured);
+  fit.estimate = Calibrate(fit.robot.model, fit.measured.calibration, fit.robot.base,
+                           ModelKinds(fit.robot.model).back(), open.calibration);
+  fit.check = FindMovedJoints(fit.estimate, fit.earlier, sizes, options);
+  return fit;
+}
+
+std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,
+                                          const Measurements& measured,
+                                          std::optional<std::uint64_t> seed, Project& project) {
+  const EarlierFit fit = FitAfterEarlier(calibration, days, measured, seed, {}, project);
+  std::vector<std::string> warnings;
+  if (fit.stored.recording == measured.calibration.source) {
+    warnings.push_back(fit.stored.source + ": made from the same recording, which counts twice");
+  }
+  std::vector<std::string> joints = fit.check.suspects;
+  for (const JointSuspect& joint : fit.check.moved) {
+    joints.push_back(joint.joint);
+    warnings.push_back(joint.joint + ": has moved since " + fit.stored.source +
+                       ", which counts for nothing there");
+  }
+  if (!fit.check.suspects.empty()) {
+    warnings.push_back(fmt::format("one of {} has moved since {}, which counts for nothing there",
+                                   fmt::join(fit.check.suspects, ", "), fit.stored.source));
+  }
+  EarlierEstimate earlier = fit.earlier;
+  const Eigen::VectorXd sizes = SizeOfChanges(earlier, fit.robot.model, project.calibration.prior);
+  for (std::size_t i = 0; i < earlier.names.size(); ++i) {
+    const std::string joint = OwnerName(earlier.names[i]);
+    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    earlier.covariance(at, at) += sizes[at] * sizes[at];
+  }
+  project.calibration.earlier = std::move(earlier);
+  return warnings;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/earlier.hpp"
+#include "elastocal/io/calibration_file.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/validation/common_parameters.hpp"
+#include "elastocal/validation/moved_joints.hpp"
+
+namespace elastocal {
+
+/// The joints that a calibration found elastic, and its causes, whatever the project leaves open.
+ElasticityChoice ElasticityOf(const StoredCalibration& calibration, const Project& project);
+
+/// Throws InputError for a calibration of another robot. `model`: of the recording that it is
+/// applied to.
+void CheckApplies(const StoredCalibration& calibration, const Project& project,
+                  const ErrorModel& model);
+
+/// What a stored calibration says of the robot `days` later: its estimates, and their covariance
+/// with the drift of each parameter since then added to it (a random walk: project key
+/// calibration.drift, a part of the prior's standard deviation in a day). Biases of torque sensors
+/// are of a day and not among them. Throws InputError for a calibration without covariance.csv.
+EarlierEstimate MakeEarlierEstimate(const CalibrationEstimate& calibration, const ErrorModel& model,
+                                    const CalibrationOptions& options, double days);
+
+/// A recording fitted with an earlier calibration as the prior.
+struct EarlierFit {
+  StoredCalibration stored;
+  EarlierEstimate earlier;
+  RecordedModel robot;
+  CalibrationResult estimate;  ///< every joint free to have moved
+  JointCheck check;
+  Measurements measured;  ///< with separate markers before and after knocks
+};
+
+/// Opens an earlier calibration (the folder that calibrate wrote to, or its calibration.yaml, made
+/// `days` ago), gives the project its choice of elasticity and causes, and finds the joints that
+/// have moved since (FindMovedJoints). Throws InputError: files that cannot be read, or without
+/// covariance; a calibration of another robot.
+EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days,
+                           const Measurements& measured, std::optional<std::uint64_t> seed,
+                           const JointCheckOptions& options, Project& project);
+
+/// Takes an earlier calibration as the prior of the project's estimates. What it says of joints
+/// that seem to have moved since counts as little as what is known of a new robot. What a user
+/// should know of it, a sentence each.
+std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,
+                                          const Measurements& measured,
+                                          std::optional<std::uint64_t> seed, Project& project);
+
+}  // namespace elastocal

@@ -1,0 +1,294 @@
+#include "elastocal/validation/moved_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "elastocal/math/decompositions.hpp"
+#include "elastocal/math/statistics.hpp"
+#include "elastocal/validation/common_parameters.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kTimesPrior = 2.0;  // a change may be larger than what a new robot has
+/// A combination of a joint's parameters counts as told if a change of one standard deviation of
+/// what is expected stands out of the noise by one.
+constexpr double kLeastTold = 1.0;
+constexpr double kKnownFreedom = 1e6;
+
+struct Quantity {
+  std::string name;
+  ParameterUnit unit;
+  bool offset = false;
+  int position = 0;   // among the unknowns
+  double size = 0.0;  // of a change, in units of the unknown
+};
+
+struct Candidate {
+  std::string joint;
+  std::vector<Quantity> quantities;
+};
+
+/// What some quantities would explain, if they may change.
+struct Explanation {
+  double squares = 0.0;  // chi-squared of the combinations that are told
+  int told = 0;
+  double evidence = 0.0;  // logarithm of p(s | changed) over p(s | nothing changed)
+  Eigen::VectorXd change;
+  Eigen::MatrixXd covariance;  // of it
+};
+
+/// What the data say of the unknowns, all in units of `unit_`.
+class Evidence {
+ public:
+  Evidence(const CalibrationResult& estimate, const EarlierEstimate& earlier,
+           const Eigen::VectorXd& size_of_changes) {
+    const ErrorModel& model = estimate.model;
+    std::vector<int> at;  // of the posterior's parameters, those that count
+    for (std::size_t i = 0; i < estimate.posterior.parameters.size(); ++i) {
+      const int index = estimate.posterior.parameters[i];
+      // What lies at its bound stays there.
+      const bool bound = IsCompliance(model.parameters[index].kind) && estimate.delta[index] <= 0.0;
+      if (bound) continue;
+      at.push_back(static_cast<int>(i));
+      parameters_.push_back(index);
+    }
+    const auto count = static_cast<Eigen::Index>(parameters_.size());
+    unit_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      unit_[i] = ParameterScale(model.parameters[parameters_[i]]);
+    }
+    const Eigen::VectorXd per_unit = unit_.cwiseInverse();
+    const double widening = std::max(1.0, estimate.posterior.cluster_factor);
+    information_ =
+        unit_.asDiagonal() * estimate.posterior.data_information(at, at) * unit_.asDiagonal();
+    prior_ =
+        estimate.prior_sd(parameters_).cwiseQuotient(unit_).array().square().matrix().asDiagonal();
+    const EarlierPart known = PartOf(earlier, model, parameters_);
+    const Eigen::VectorXd known_unit = per_unit(known.positions);
+    prior_(known.positions, known.positions) =
+        known_unit.asDiagonal() * known.covariance * known_unit.asDiagonal();
+    Eigen::VectorXd step = estimate.delta(parameters_).cwiseProduct(per_unit);
+    step(known.positions) -= known.mean.cwiseProduct(known_unit);
+    FindCandidates(model, earlier, size_of_changes);
+
+    Eigen::MatrixXd wide = prior_;
+    for (const Candidate& candidate : candidates_) Widen(candidate, wide);
+    score_ = (information_ * step + InverseOfInformation(wide) * step) / widening;
+    information_ /= widening;
+    Update();
+  }
+
+  const std::vector<Candidate>& candidates() const { return candidates_; }
+
+  /// From now on the candidate may have changed.
+  void Accept(const Candidate& candidate) {
+    Widen(candidate, prior_);
+    Update();
+  }
+
+  Explanation Explain(const std::vector<Quantity>& quantities) const {
+    std::vector<int> at;
+    Eigen::VectorXd size(static_cast<Eigen::Index>(quantities.size()));
+    for (std::size_t i = 0; i < quantities.size(); ++i) {
+      at.push_back(quantities[i].position);
+      size[static_cast<Eigen::Index>(i)] = quantities[i].size;
+    }
+    const Eigen::MatrixXd M = size.asDiagonal() * left_(at, at) * size.asDiagonal();
+    const Eigen::VectorXd t = size.cwiseProduct(left_score_(at));
+    const SymmetricDecomposition eigen = DecomposeSymmetric(M);
+    const Eigen::VectorXd z = eigen.vectors.transpose() * t;
+    Explanation result;
+    Eigen::VectorXd factor(z.size());
+    for (Eigen::Index i = 0; i < z.size(); ++i) {
+      const double told = std::max(0.0, eigen.values[i]);
+      factor[i] = 1.0 / (1.0 + told);
+      result.evidence += 0.5 * (z[i] * z[i] * factor[i] - std::log1p(told));
+      if (told < kLeastTold) continue;
+      ++result.told;
+      result.squares += z[i] * z[i] / told;
+    }
+    Eigen::VectorXd unit = size;
+    for (std::size_t i = 0; i < at.size(); ++i) unit[static_cast<Eigen::Index>(i)] *= unit_[at[i]];
+    const Eigen::MatrixXd back = unit.asDiagonal() * eigen.vectors;
+    result.change = back * factor.cwiseProduct(z);
+    result.covariance = back * factor.asDiagonal() * back.transpose();
+    return result;
+  }
+
+ private:
+  void FindCandidates(const ErrorModel& model, const EarlierEstimate& earlier,
+                      const Eigen::VectorXd& size_of_changes) {
+    std::map<std::string, double> sizes;
+    for (std::size_t i = 0; i < earlier.names.size(); ++i) {
+      sizes[earlier.names[i]] = size_of_changes[static_cast<Eigen::Index>(i)];
+    }
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+      const Parameter& parameter = model.parameters[parameters_[i]];
+      const auto size = sizes.find(parameter.name);
+      if (size == sizes.end() || size->second <= 0.0) continue;
+      const std::string joint = OwnerName(parameter.name);
+      auto candidate = std::find_if(candidates_.begin(), candidates_.end(),
+                                    [&](const Candidate& one) { return one.joint == joint; });
+      if (candidate == candidates_.end()) {
+        candidate = candidates_.insert(candidate, {.joint = joint, .quantities = {}});
+      }
+      candidate->quantities.push_back({parameter.name, parameter.unit,
+                                       parameter.kind == ParameterKind::kTheta, static_cast<int>(i),
+                                       size->second / unit_[static_cast<Eigen::Index>(i)]});
+    }
+  }
+
+  static void Widen(const Candidate& candidate, Eigen::MatrixXd& prior) {
+    for (const Quantity& one : candidate.quantities) {
+      prior(one.position, one.position) += one.size * one.size;
+    }
+  }
+
+  /// What the data say of changes beside all that the prior leaves open.
+  void Update() {
+    const Eigen::MatrixXd covariance =
+        InverseOfInformation(information_ + InverseOfInformation(prior_));
+    const Eigen::MatrixXd open = information_ * covariance;
+    left_ = information_ - open * information_;
+    left_score_ = score_ - open * score_;
+  }
+
+  std::vector<int> parameters_;  // of the model
+  Eigen::VectorXd unit_, score_, left_score_;
+  Eigen::MatrixXd information_, prior_, left_;
+  std::vector<Candidate> candidates_;
+};
+
+/// Logarithm of the mean of two numbers given by their logarithms.
+double LogMean(double a, double b) {
+  const double most = std::max(a, b);
+  return most + std::log(0.5 * std::exp(a - most) + 0.5 * std::exp(b - most));
+}
+
+DifferenceTest TestOf(const Explanation& explanation, double freedom) {
+  DifferenceTest test{.parameters = explanation.told, .degrees_of_freedom = freedom};
+  if (explanation.told == 0) return test;
+  test.statistic = explanation.squares / explanation.told;
+  test.p = FisherUpperTail(test.statistic, explanation.told, freedom);
+  return test;
+}
+
+/// Tries a change of the joint's zero alone and of all its parameters.
+JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double freedom,
+                   double& log_evidence) {
+  Candidate offset{.joint = candidate.joint, .quantities = {}};
+  std::copy_if(candidate.quantities.begin(), candidate.quantities.end(),
+               std::back_inserter(offset.quantities),
+               [](const Quantity& one) { return one.offset; });
+  JointSuspect suspect{.joint = candidate.joint, .test = {}, .changes = {}};
+  Explanation best = evidence.Explain(candidate.quantities);
+  suspect.test = TestOf(best, freedom);
+  log_evidence = best.evidence;
+  if (!offset.quantities.empty() && offset.quantities.size() < candidate.quantities.size()) {
+    const Explanation zero = evidence.Explain(offset.quantities);
+    const DifferenceTest test = TestOf(zero, freedom);
+    suspect.zero_told = zero.told > 0;
+    if (test.p < suspect.test.p) suspect.test = test;
+    suspect.test.p = std::min(1.0, 2.0 * suspect.test.p);  // the smaller one of two
+    log_evidence = LogMean(zero.evidence, best.evidence);
+    suspect.zero_alone = zero.evidence >= best.evidence;
+    if (suspect.zero_alone) best = zero;
+  }
+  const std::vector<Quantity>& changed =
+      suspect.zero_alone ? offset.quantities : candidate.quantities;
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    suspect.changes.push_back(
+        {changed[i].name, changed[i].unit, best.change[at], std::sqrt(best.covariance(at, at))});
+  }
+  return suspect;
+}
+
+/// All candidates that are not among those found, the most probable first.
+std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<JointSuspect>& moved,
+                                   double freedom) {
+  std::vector<JointSuspect> joints;
+  std::vector<double> logs;
+  for (const Candidate& candidate : evidence.candidates()) {
+    const bool known = std::any_of(moved.begin(), moved.end(), [&](const JointSuspect& one) {
+      return one.joint == candidate.joint;
+    });
+    if (known) continue;
+    logs.push_back(0.0);
+    joints.push_back(Judge(evidence, candidate, freedom, logs.back()));
+  }
+  std::vector<double> p;
+  for (const JointSuspect& joint : joints) {
+    if (joint.told()) p.push_back(joint.test.p);
+  }
+  const std::vector<double> adjusted = HolmAdjusted(p);
+  const double most = logs.empty() ? 0.0 : *std::max_element(logs.begin(), logs.end());
+  double total = 0.0;
+  for (double log : logs) total += std::exp(log - most);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    joints[i].probability = std::exp(logs[i] - most) / total;
+    if (joints[i].told()) joints[i].p_adjusted = adjusted[next++];
+  }
+  std::stable_sort(joints.begin(), joints.end(), [](const JointSuspect& a, const JointSuspect& b) {
+    return a.probability > b.probability;
+  });
+  return joints;
+}
+
+}  // namespace
+
+Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& model,
+                              const Prior& prior) {
+  std::map<std::string, double> sizes;
+  for (const Parameter& parameter : model.parameters) {
+    if (parameter.joint < 0 || IsElastic(parameter.kind)) continue;
+    sizes[parameter.name] = kTimesPrior * prior.Of(model.tree, parameter);
+  }
+  Eigen::VectorXd result(static_cast<Eigen::Index>(earlier.names.size()));
+  for (std::size_t i = 0; i < earlier.names.size(); ++i) {
+    const auto size = sizes.find(earlier.names[i]);
+    result[static_cast<Eigen::Index>(i)] = size == sizes.end() ? 0.0 : size->second;
+  }
+  return result;
+}
+
+JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& earlier,
+                           const Eigen::VectorXd& size_of_changes,
+                           const JointCheckOptions& options) {
+  const double t = std::max(1.96, estimate.interval_factor);
+  const double freedom = t < 1.9600001 ? kKnownFreedom : StudentDegreesOfFreedom(0.975, t);
+  Evidence evidence(estimate, earlier, size_of_changes);
+  JointCheck check;
+  check.joints = JudgeAll(evidence, check.moved, freedom);
+  for (const JointSuspect& joint : check.joints) {
+    if (!joint.zero_told) check.not_told.push_back(joint.joint);
+  }
+  const auto significant = [&] {
+    return std::any_of(check.joints.begin(), check.joints.end(), [&](const JointSuspect& joint) {
+      return joint.p_adjusted <= options.level;
+    });
+  };
+  while (!check.joints.empty() && significant()) {
+    const JointSuspect first = check.joints.front();
+    if (first.probability < options.certainty || first.p_adjusted > options.level) {
+      double sum = 0.0;
+      for (const JointSuspect& joint : check.joints) {
+        if (sum >= options.certainty) break;
+        check.suspects.push_back(joint.joint);
+        sum += joint.probability;
+      }
+      break;
+    }
+    check.moved.push_back(first);
+    for (const Candidate& candidate : evidence.candidates()) {
+      if (candidate.joint == first.joint) evidence.Accept(candidate);
+    }
+    check.joints = JudgeAll(evidence, check.moved, freedom);
+  }
+  return check;
+}
+
+}  // namespace elastocal

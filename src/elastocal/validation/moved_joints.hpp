@@ -1,0 +1,75 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/validation/significance.hpp"
+
+namespace elastocal {
+
+/// By how much a parameter of a joint has changed since the earlier calibration, if that joint
+/// alone has moved.
+struct ParameterChange {
+  std::string name;
+  ParameterUnit unit;
+  double value = 0.0, sd = 0.0;  ///< SI
+};
+
+struct JointSuspect {
+  std::string joint;
+  DifferenceTest test;      ///< of all its parameters at once; no parameters: the data cannot tell
+  double p_adjusted = 1.0;  ///< by Holm, over the joints that the data can tell
+  /// That this joint has moved, if exactly one has, each being as likely beforehand.
+  double probability = 0.0;
+  bool zero_told = false;                ///< whether the data tell a change of its zero
+  bool zero_alone = false;               ///< whether that alone explains it best
+  std::vector<ParameterChange> changes;  ///< of its zero alone, or of all its parameters
+
+  bool told() const { return test.parameters > 0; }
+};
+
+struct JointCheck {
+  /// As seen beside the joints that are found to have moved; the most probable first.
+  std::vector<JointSuspect> joints;
+  std::vector<JointSuspect> moved;  ///< in the order in which they were found
+  /// Where something has changed and no single joint can be named: those of which one may be it.
+  std::vector<std::string> suspects;
+  std::vector<std::string> not_told;  ///< joints of which a change of the zero cannot be seen
+
+  bool changed() const { return !moved.empty() || !suspects.empty(); }
+};
+
+struct JointCheckOptions {
+  double level = 0.05;      ///< chance that any joint of an unchanged robot is accused
+  double certainty = 0.95;  ///< probability from which on a single joint is named
+};
+
+/// Standard deviation of a change that a joint's parameters may have made at once: twice the prior
+/// of a new robot; 0 of parameters that do not jump (springs, legs, sensors). By the names of
+/// `earlier`.
+Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& model,
+                              const Prior& prior);
+
+/// Finds joints that have moved since an earlier calibration, from a recording too small to
+/// calibrate by.
+///
+/// `estimate` is fitted to that recording with the prior N(earlier.mean, earlier.covariance +
+/// diag(size^2)), so that a change does not end in its noise. Its linearisation gives what the data
+/// say whatever the prior: their information A and their score s = (A + prior^-1) (estimate -
+/// mean). Under the hypothesis that some joints moved, s ~ N(0, A + A P A) with P that of the
+/// earlier calibration, widened in the parameters of these joints.
+/// - A joint is **tested** by what its parameters would explain of s beside all that the earlier
+///   calibration leaves open (score test; Fisher's F with the degrees of freedom of the noise),
+///   adjusted for the number of joints by Holm.
+/// - Joints are **told apart** by their evidence p(s | joint moved), of its zero alone or of all
+///   its parameters.
+/// The most probable joint is accepted, and the search goes on beside it, until nothing is
+/// significant.
+JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& earlier,
+                           const Eigen::VectorXd& size_of_changes,
+                           const JointCheckOptions& options = {});
+
+}  // namespace elastocal

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""How often `check` is right about a robot from a few postures of another day.
+
+    check_days.py PROGRAM PROJECT [--robots 20] [--first 1] [--turn-deg 0.2] [--postures 8] [--work DIR]
+
+A robot with errors that the estimator does not model (`simulate`) is calibrated with the default
+settings. Another day, each of its chains takes a few other postures (on another place, by another
+clock, with other noise): nothing should be said to have moved. Then one joint is turned, as after its
+motor was remounted, and it should be named. The joint is drawn with the seed of the robot among those
+whose zero the postures tell. At last both days together and the second one updating the first
+(`calibrate --prior`) are compared on a third one. Everything follows from the seeds.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import random
+import shutil
+import tempfile
+
+from compare_pairs import DESIGN, run, turn
+
+
+def few(postures):
+    words = list(DESIGN)
+    for option, count in (("--head-postures", max(4, postures // 2)), ("--arm-postures", postures),
+                          ("--leg-postures", postures)):
+        words[words.index(option) + 1] = str(count)
+    return words
+
+
+def check(arguments, scratch, day):
+    file = scratch / "check.json"
+    file.unlink(missing_ok=True)
+    run(arguments.program, "check", arguments.project, "--calibration", scratch / "a_out",
+        "--recording", day, "--json", file, "--quiet", may_fail=True)
+    return json.loads(file.read_text())
+
+
+def error(arguments, scratch, calibration, day):
+    file = scratch / "validation.json"
+    file.unlink(missing_ok=True)
+    run(arguments.program, "validate", arguments.project, "--calibration", scratch / calibration,
+        "--recording", day, "--json", file, "--quiet", may_fail=True)
+    return json.loads(file.read_text())["rmse_3d_mm_all"]["calibrated"]
+
+
+def robot(arguments, seed, scratch):
+    program, project = arguments.program, arguments.project
+    for folder, day, words in (("a", 1, DESIGN), ("b", 2, few(arguments.postures)), ("c", 3, DESIGN)):
+        run(program, "simulate", project, "-o", scratch / folder, "--robot-seed", seed,
+            "--seed", 1000 * day + seed, *words)
+    run(program, "calibrate", project, "--recording", scratch / "a", "-o", scratch / "a_out",
+        may_fail=True)
+    run(program, "calibrate", project, "--recording", scratch / "b", "--prior", scratch / "a_out",
+        "-o", scratch / "updated", may_fail=True)
+    run(program, "calibrate", project, "--recording", scratch / "a", scratch / "b",
+        "-o", scratch / "together", may_fail=True)
+    errors = {name: error(arguments, scratch, name, scratch / "c")
+              for name in ("a_out", "updated", "together")}
+    same = check(arguments, scratch, scratch / "b")
+    joint = random.Random(seed).choice(
+        sorted(j["joint"] for j in same["joints"] if j["joint"] not in same["not_told"]))
+    turn(scratch / "b", joint, math.radians(arguments.turn_deg))
+    return same, joint, check(arguments, scratch, scratch / "b"), errors
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("program")
+    parser.add_argument("project")
+    parser.add_argument("--robots", type=int, default=20)
+    parser.add_argument("--first", type=int, default=1)
+    parser.add_argument("--turn-deg", type=float, default=0.2)
+    parser.add_argument("--postures", type=int, default=8, help="of each arm and leg")
+    parser.add_argument("--work", help="keep the files here")
+    arguments = parser.parse_args()
+    false_alarms = named = alone = seen = 0
+    for seed in range(arguments.first, arguments.first + arguments.robots):
+        scratch = pathlib.Path(tempfile.mkdtemp(prefix=f"robot_{seed}_", dir=arguments.work))
+        same, joint, changed, errors = robot(arguments, seed, scratch)
+        moved = [one["joint"] for one in changed["moved"]]
+        false_alarms += same["status"] != "unchanged"
+        named += joint in moved
+        alone += moved == [joint]
+        seen += changed["status"] != "unchanged"
+        print(f"{seed}: unchanged: {same['status']} {[one['joint'] for one in same['moved']]} "
+              f"{same['suspects']}; {joint} turned: moved {moved}, suspects {changed['suspects']}; "
+              "third day, mm: " + ", ".join(f"{name} {mm:.3f}" for name, mm in errors.items()),
+              flush=True)
+        if arguments.work is None:
+            shutil.rmtree(scratch)
+    print(f"{arguments.robots} robots: a false alarm in {false_alarms}; a change is seen in {seen}, "
+          f"the turned joint is named in {named}, alone in {alone}")
+
+
+if __name__ == "__main__":
+    main()
