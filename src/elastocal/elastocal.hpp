@@ -9,6 +9,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrate_experiment.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/check_calibration.hpp"
 #include "elastocal/pipeline/compare_calibrations.hpp"
 #include "elastocal/pipeline/inspect_robot.hpp"
 #include "elastocal/pipeline/result_folder.hpp"

@@ -9,6 +9,7 @@
 //   SimulateExperiment(project, {.motion = plan.whole.motion}, "recording");
 
 #include "elastocal/planning/assess_postures.hpp"
+#include "elastocal/planning/design_follow_up.hpp"
 #include "elastocal/planning/design_postures.hpp"
 #include "elastocal/planning/known_truth.hpp"
 #include "elastocal/planning/plan_motion.hpp"

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -11,8 +12,11 @@
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
+#include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/planning/design_follow_up.hpp"
 #include "elastocal/planning/design_postures.hpp"
 
 namespace elastocal::cli {
@@ -25,6 +29,10 @@ struct DesignCommand {
   int count = 0, max_count = PlateauRule().max_postures, block = 4;
   double plateau = PlateauRule().tolerance;
   bool elastic = false, no_certificate = false, curves = false;
+  std::string after;  ///< an earlier calibration; empty: none
+  bool check = false;
+  std::vector<std::string> joints;
+  double days = 1.0, marker_noise_mm = 0.3;
 };
 
 constexpr std::array kAlgorithms = {DesignAlgorithm::kNocp, DesignAlgorithm::kCocp,
@@ -54,7 +62,61 @@ PostureDesignOptions MakeOptions(const DesignCommand& command) {
   return options;
 }
 
+/// In units of people: what is seen nine times in ten, at a level of 5 %.
+std::string SmallestChange(const ZeroSensitivity& zero) {
+  constexpr double kSeen = 1.96 + 1.28;
+  if (!std::isfinite(zero.sd)) return "not told";
+  return zero.prismatic ? fmt::format("{:.2f} mm", 1e3 * kSeen * zero.sd)
+                        : fmt::format("{:.2f} deg", 180.0 / M_PI * kSeen * zero.sd);
+}
+
+std::string FollowUpTable(const FollowUpDesign& design) {
+  TextTable chains({"chain", "postures", "information nats"});
+  TextTable zeros({"zero of", "smallest change that is seen"});
+  for (const FollowUpChain& chain : design.chains) {
+    chains.Add({chain.postures.chain, std::to_string(chain.postures.q.size()),
+                fmt::format("{:.1f}", chain.information)});
+    for (const ZeroSensitivity& zero : chain.zeros) {
+      zeros.Add({zero.joint + " (" + chain.postures.chain + ")", SmallestChange(zero)});
+    }
+  }
+  return "Postures after a calibration\n" + chains.Render() + "\n" + zeros.Render();
+}
+
+/// Postures that follow a calibration: a posture file alone.
+int FollowUp(const DesignCommand& command) {
+  const Project project = ReadProject(command.project);
+  CheckHasMarkers(project);
+  const CalibrationFiles files = FindCalibrationFiles(command.after);
+  OutputSet outputs;
+  outputs.Protect({command.project, project.urdf, files.calibration, files.covariance});
+  outputs.Declare(command.output, "robot: ");
+  DeclareJson(command.common.json_file, outputs);
+  outputs.Prepare();
+  const bool quiet = command.common.Silent();
+  FollowUpOptions options{
+      .aim = command.check ? SequentialAim::kChanges : SequentialAim::kParameters,
+      .days = command.days,
+      .marker_sd = 1e-3 * command.marker_noise_mm,
+      .chains = command.chains,
+      .joints = command.joints,
+      .seed = command.common.seed.value_or(1)};
+  if (command.count > 0) options.postures = command.count;
+  const FollowUpDesign design =
+      DesignFollowUp(project, command.after, options, TerminalProgress("designed chain", quiet));
+  if (!design.infeasible.empty()) {
+    spdlog::error("{}", design.infeasible);
+    return kNotConverged;
+  }
+  outputs.Set(command.output, FormatPostureFile(project.tree, design.postures()));
+  outputs.Set(command.common.json_file, MakeFollowUpJson(design, options));
+  outputs.Publish();
+  Print(quiet, FollowUpTable(design) + fmt::format("\nWrote {}\n", command.output));
+  return kFine;
+}
+
 int Design(const DesignCommand& command) {
+  if (!command.after.empty()) return FollowUp(command);
   const Project project = ReadProject(command.project);
   const DesignFiles files(command.output);
   OutputSet outputs;
@@ -93,6 +155,38 @@ int Design(const DesignCommand& command) {
   PrintWarnings(report.warnings, command.common.verbose);
   PrintReportPlace(report.folder, report.why_none, quiet);
   return kFine;
+}
+
+void AddFollowUpOptions(CLI::App& command, DesignCommand& options) {
+  CLI::Option* after =
+      command
+          .add_option("--after", options.after,
+                      "A calibration of the robot (output folder of calibrate): --count postures "
+                      "(8) that add most to what it tells")
+          ->excludes("--algorithm")
+          ->excludes("--criterion")
+          ->excludes("--curves")
+          ->excludes("--elastic")
+          ->type_name("DIR");
+  CLI::Option* check =
+      command
+          .add_flag("--check", options.check,
+                    "Instead those that tell best whether a joint has moved since, see check")
+          ->needs(after);
+  command.add_option("--joints", options.joints, "Of which joints; default: all")
+      ->needs(check)
+      ->expected(-1)
+      ->type_name("NAME");
+  command.add_option("--days", options.days, "Days since that calibration")
+      ->needs(after)
+      ->check(InBounds("check --days"))
+      ->capture_default_str();
+  command
+      .add_option("--marker-noise-mm", options.marker_noise_mm,
+                  "Of a coordinate, errors of the model included")
+      ->needs(after)
+      ->check(InBounds("assess --marker-noise-mm"))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -141,8 +235,11 @@ void AddDesign(CLI::App& app, Action& action) {
                     "Also show what the other algorithms reach (takes several times as long)");
   command->add_flag("--no-certificate", options->no_certificate,
                     "Without the upper bound and the efficiency");
+  AddFollowUpOptions(*command, *options);
   AddCommonOptions(*command, options->common);
-  command->footer("Example: elastocal design models/talos/project.yaml -o postures.yaml");
+  command->footer(
+      "Examples: elastocal design models/talos/project.yaml -o postures.yaml\n"
+      "          elastocal design project.yaml --after out --check -o check.yaml");
   command->callback([&action, options] { action = [options] { return Design(*options); }; });
 }
 
