@@ -1,0 +1,37 @@
+#include "elastocal/posture/sequential.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace elastocal {
+namespace {
+
+// One parameter with variance p, told with information a; its change has the variance w2.
+TEST(Sequential, OneParameterByHand) {
+  const double p = 4e-6, a = 5e5, w2 = 9e-6;
+  const PriorKnowledge prior{.covariance = Eigen::MatrixXd::Constant(1, 1, p),
+                             .change_sd = Eigen::VectorXd::Constant(1, std::sqrt(w2))};
+  const Eigen::MatrixXd data = Eigen::MatrixXd::Constant(1, 1, a);
+  EXPECT_NEAR(ExpectedInformation(prior, data, SequentialAim::kParameters), std::log(1.0 + a * p),
+              1e-12);
+  // The change is seen beside the doubt about the parameter: variance 1/a + p.
+  EXPECT_NEAR(ExpectedInformation(prior, data, SequentialAim::kChanges),
+              std::log(1.0 + w2 / (1.0 / a + p)), 1e-12);
+  EXPECT_NEAR(ChangeDeviations(prior, data)[0], std::sqrt(1.0 / a + p), 1e-15);
+}
+
+// What is told of the sum of two parameters alone tells no change of the one that is not known.
+TEST(Sequential, TwoParametersByHand) {
+  const double p = 1e-6, unknown = 1.0, a = 1e8;
+  PriorKnowledge prior;
+  prior.covariance = Eigen::Vector2d(p, unknown).asDiagonal();
+  prior.change_sd = Eigen::Vector2d(0.01, 0.0);
+  const Eigen::Matrix2d data = Eigen::Matrix2d::Constant(a);
+  const Eigen::VectorXd sd = ChangeDeviations(prior, data);
+  EXPECT_NEAR(sd[0], std::sqrt(1.0 / a + p + unknown), 1e-6);
+  EXPECT_TRUE(std::isinf(sd[1]));  // it never changes
+}
+
+}  // namespace
+}  // namespace elastocal

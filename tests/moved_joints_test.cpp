@@ -1,0 +1,177 @@
+// A calibration as the prior of another one, and what a few postures of another day tell of it.
+
+#include "elastocal/validation/moved_joints.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/project/project.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+class EarlierCalibration : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+    model_ = MakeErrorModel(project.tree, project.markers, project.placement);
+    base_ = FindBaseParameters(model_, {});
+  }
+
+  Eigen::VectorXd Truth(int robot) const {
+    std::map<ParameterKind, double> sd;
+    for (const auto kind : {ParameterKind::kTheta, ParameterKind::kAlpha, ParameterKind::kBeta,
+                            ParameterKind::kGamma}) {
+      sd[kind] = 0.5 * kDegree;
+    }
+    for (const auto kind : {ParameterKind::kR, ParameterKind::kD, ParameterKind::kB}) {
+      sd[kind] = 1e-3;
+    }
+    return DrawErrors(model_, All(), sd, 100 + static_cast<std::uint64_t>(robot));
+  }
+
+  /// Markers are glued on anew each day.
+  Recording Record(Eigen::VectorXd truth, int postures, std::uint64_t seed) const {
+    truth += DrawErrors(model_, All(), {{ParameterKind::kMarker, 2e-3}}, seed);
+    return MakeSyntheticRecording(model_, truth, {.postures = postures, .seed = seed});
+  }
+
+  CalibrationResult Fit(const Recording& recording, const CalibrationOptions& options = {}) const {
+    return Calibrate(model_, recording, base_, ModelKind::kGeometric, options);
+  }
+
+  EarlierEstimate EstimateOf(const CalibrationResult& result) const {
+    EarlierEstimate earlier;
+    std::vector<int> rows, parameters;
+    for (std::size_t i = 0; i < result.posterior.parameters.size(); ++i) {
+      const int index = result.posterior.parameters[i];
+      if (IsExternal(model_.parameters[index].kind)) continue;
+      earlier.names.push_back(model_.parameters[index].name);
+      rows.push_back(static_cast<int>(i));
+      parameters.push_back(index);
+    }
+    earlier.mean = result.delta(parameters);
+    earlier.covariance = result.posterior.covariance(rows, rows);
+    return earlier;
+  }
+
+  JointCheck Check(const EarlierEstimate& earlier, const Recording& recording) const {
+    const Eigen::VectorXd sizes = SizeOfChanges(earlier, model_, Prior());
+    CalibrationOptions options;
+    options.earlier = earlier;
+    options.earlier.covariance.diagonal() += sizes.cwiseAbs2();
+    return FindMovedJoints(Fit(recording, options), earlier, sizes);
+  }
+
+  double RobotError(const CalibrationResult& result, const Eigen::VectorXd& truth) const {
+    // Of the base parameters, by what they do to the markers.
+    const Recording other =
+        MakeSyntheticRecording(model_, truth, {.postures = 40, .marker_sd = 0.0, .seed = 99});
+    std::map<std::string, double> errors;
+    for (int i = 0; i < model_.parameter_count(); ++i) {
+      if (!IsExternal(model_.parameters[i].kind)) {
+        errors[model_.parameters[i].name] = result.delta[i];
+      }
+    }
+    return RefitExternals(model_, other, base_, {}, errors).marker_sd;
+  }
+
+  std::vector<int> All() const {
+    std::vector<int> all(model_.parameters.size());
+    for (int i = 0; i < model_.parameter_count(); ++i) all[i] = i;
+    return all;
+  }
+
+  ErrorModel model_;
+  BaseParameters base_;
+};
+
+TEST_F(EarlierCalibration, OfNothingButThePriorChangesNothing) {
+  const Recording recording = Record(Truth(1), 30, 1);
+  CalibrationOptions options;
+  options.widen_prior = false;
+  const CalibrationResult plain = Fit(recording, options);
+  const CalibrationResult start = plain;
+  options.earlier = EstimateOf(start);
+  options.earlier.mean.setZero();
+  const Prior prior;
+  Eigen::VectorXd variance(options.earlier.mean.size());
+  for (Eigen::Index i = 0; i < variance.size(); ++i) {
+    const int index =
+        FindParameter(model_.parameters, options.earlier.names[static_cast<std::size_t>(i)]);
+    variance[i] = std::pow(prior.Of(model_.tree, model_.parameters[index]), 2);
+  }
+  options.earlier.covariance = variance.asDiagonal();
+  const CalibrationResult same = Fit(recording, options);
+  EXPECT_LT((same.delta - plain.delta).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LT(((same.sd - plain.sd).array() / plain.sd.array()).abs().maxCoeff(), 1e-6);
+  EXPECT_LT((same.posterior.data_information - plain.posterior.data_information).norm(),
+            1e-6 * plain.posterior.data_information.norm());
+}
+
+TEST_F(EarlierCalibration, OfWhichNothingIsInDoubtIsKept) {
+  CalibrationOptions options;
+  options.earlier = EstimateOf(Fit(Record(Truth(2), 30, 2)));
+  options.earlier.covariance *= 1e-8;
+  const CalibrationResult later = Fit(Record(Truth(3), 12, 3), options);
+  for (std::size_t i = 0; i < options.earlier.names.size(); ++i) {
+    const int index = FindParameter(model_.parameters, options.earlier.names[i]);
+    EXPECT_NEAR(later.delta[index], options.earlier.mean[static_cast<Eigen::Index>(i)], 1e-6)
+        << options.earlier.names[i];
+  }
+}
+
+// A hundred postures and ten of another day, by which the first calibration is updated.
+TEST_F(EarlierCalibration, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
+  double updated = 0.0, first = 0.0, few = 0.0;
+  for (int robot = 0; robot < 10; ++robot) {
+    const auto seed = static_cast<std::uint64_t>(10 * robot);
+    const Eigen::VectorXd truth = Truth(robot);
+    const CalibrationResult start = Fit(Record(truth, 100, seed + 1));
+    const Recording today = Record(truth, 10, seed + 2);
+    CalibrationOptions options;
+    options.earlier = EstimateOf(start);
+    first += RobotError(start, truth);
+    updated += RobotError(Fit(today, options), truth);
+    few += RobotError(Fit(today), truth);
+  }
+  EXPECT_LE(updated, 1.01 * first);
+  EXPECT_LT(updated, 0.9 * few);
+  RecordProperty("first_nm", static_cast<int>(1e8 * first));
+  RecordProperty("updated_nm", static_cast<int>(1e8 * updated));
+  RecordProperty("few_nm", static_cast<int>(1e8 * few));
+}
+
+TEST_F(EarlierCalibration, EightPosturesTellWhichJointHasMoved) {
+  constexpr int kRobots = 40;
+  int named = 0, others = 0, false_alarms = 0, covered = 0;
+  for (int robot = 0; robot < kRobots; ++robot) {
+    const auto seed = static_cast<std::uint64_t>(10 * robot);
+    const Eigen::VectorXd truth = Truth(robot);
+    const EarlierEstimate earlier = EstimateOf(Fit(Record(truth, 30, seed + 1)));
+    false_alarms += Check(earlier, Record(truth, 8, seed + 2)).changed() ? 1 : 0;
+    Eigen::VectorXd later = truth;
+    later[FindParameter(model_.parameters, "elbow_joint.theta")] += 0.2 * kDegree;
+    const JointCheck check = Check(earlier, Record(later, 8, seed + 2));
+    for (const JointSuspect& joint : check.moved) {
+      const bool is_it = joint.joint == "elbow_joint";
+      (is_it ? named : others) += 1;
+      if (!is_it) continue;
+      const ParameterChange& change = joint.changes.front();
+      EXPECT_EQ(change.name, "elbow_joint.theta");
+      covered += std::abs(change.value - 0.2 * kDegree) < 2.2 * change.sd ? 1 : 0;
+    }
+  }
+  EXPECT_GE(named, kRobots - 2);  // 19 of 20
+  EXPECT_GE(covered, named - 4);
+  EXPECT_LE(others, 2);
+  EXPECT_LE(false_alarms, 5);  // 5 % are 2; 6 or more would have a chance of 1 %
+  RecordProperty("named", named);
+  RecordProperty("false_alarms", false_alarms);
+}
+
+}  // namespace
+}  // namespace elastocal
