@@ -82,9 +82,19 @@ def calibrate(
     seed: Optional[int] = None,
     threads: int = 1,
     zero_offsets: str = "origin",
+    prior: _Path = "",
+    days: float = 1.0,
 ) -> Calibration: ...
 def validate(
     project: Project, calibration: _Path, recording: _Path, *, frozen: bool = False
+) -> dict[str, Any]: ...
+def check(
+    project: Project,
+    calibration: _Path,
+    recording: _Path,
+    *,
+    level: float = 0.05,
+    days: float = 1.0,
 ) -> dict[str, Any]: ...
 def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]: ...
 def read(file: _Path, *, unit: str = "", topic: str = "") -> Recording: ...

@@ -13,6 +13,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/check_calibration.hpp"
 #include "elastocal/pipeline/compare_calibrations.hpp"
 #include "elastocal/pipeline/recording_info.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
@@ -54,11 +55,13 @@ struct PyCalibration {
 
 PyCalibration CalibrateFiles(const Project& project, const Paths& recordings,
                              std::optional<int> folds, std::optional<std::uint64_t> seed,
-                             int threads, const std::string& zero_offsets) {
+                             int threads, const std::string& zero_offsets, const Path& prior,
+                             double days) {
   if (zero_offsets != "origin" && zero_offsets != "encoder") {
     throw InputError("zero_offsets: 'origin' or 'encoder' was expected");
   }
   if (threads < 1) throw InputError("threads: 1 or more were expected");
+  if (!(days >= 0.0 && days < 1e5)) throw InputError("days: 0 or more were expected");
   PyCalibration calibration{project, {}, {}};
   calibration.run = CalibrateExperiment(
       project, recordings,
@@ -66,6 +69,8 @@ PyCalibration CalibrateFiles(const Project& project, const Paths& recordings,
        .threads = threads,
        .zero_offsets = zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin,
        .seed = seed,
+       .prior = prior,
+       .days = days,
        .progress = StopOnSignals()});
   calibration.files = MakeCalibrationFiles(project, calibration.run);
   return calibration;
@@ -282,7 +287,7 @@ PYBIND11_MODULE(elastocal, module) {
 
   module.def("calibrate", CalibrateFiles, "project"_a, "recordings"_a, py::kw_only(),
              "folds"_a = std::nullopt, "seed"_a = std::nullopt, "threads"_a = 1,
-             "zero_offsets"_a = "origin", Unlocked(),
+             "zero_offsets"_a = "origin", "prior"_a = Path(), "days"_a = 1.0, Unlocked(),
              "Calibrates from posture tables or recording folders, like the command of that name.");
   module.def(
       "validate",
@@ -297,6 +302,23 @@ PYBIND11_MODULE(elastocal, module) {
       },
       "project"_a, "calibration"_a, "recording"_a, py::kw_only(), "frozen"_a = false,
       "Applies a saved calibration to another recording: what validation.json has, as a dict.");
+  module.def(
+      "check",
+      [](const Project& project, const Path& calibration, const Path& recording, double level,
+         double days) {
+        if (!(level > 0.0 && level < 1.0)) throw InputError("level: above 0, below 1 was expected");
+        if (!(days >= 0.0 && days < 1e5)) throw InputError("days: 0 or more were expected");
+        std::string json;
+        {
+          const py::gil_scoped_release unlocked;
+          json = MakeCheckJson(CheckCalibration(project, calibration, recording,
+                                                {.joints = {.level = level}, .days = days}));
+        }
+        return FromJson(json);
+      },
+      "project"_a, "calibration"_a, "recording"_a, py::kw_only(), "level"_a = 0.05, "days"_a = 1.0,
+      "Tells from a few postures whether a saved calibration still holds: what `elastocal check` "
+      "writes with --json, as a dict.");
   module.def("compare", Compare, "a"_a, "b"_a, py::kw_only(), "level"_a = 0.05,
              "Tells which joints moved between two saved calibrations.");
   module.def("read", Read, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",

@@ -158,6 +158,9 @@ def strange_places(tries, base):
         "calibration": lambda p: ["validate", base.project, "--recording", base.recording,
                                   "--calibration", p],
         "compare": lambda p: ["compare", base.out, p],
+        "check": lambda p: ["check", base.project, "--recording", base.table, "--calibration", p],
+        "prior": lambda p: calibrate(base.project, base.table, "--prior", p, *QUICK),
+        "after": lambda p: ["design", base.design, "--after", p, "-o", base.root / "after.yaml"],
         "report": lambda p: ["report", p],
         "earlier": lambda p: ["report", base.out, "-o", base.root / "page.html", "--earlier", p],
         "postures": lambda p: ["assess", base.design, "--postures", p],
@@ -202,6 +205,7 @@ def options(tries, base):
         "inspect": [base.project], "compare": [base.out, base.out], "report": [base.out],
         "calibrate": [base.project, "--recording", base.table, *QUICK],
         "validate": [base.project, "--recording", base.table, "--calibration", base.out],
+        "check": [base.project, "--recording", base.table, "--calibration", base.out],
         "assess": [base.design, "--postures", base.postures],
         "design": [base.design, "--count", "2", "-o", base.root / "p.yaml"],
         "plan": [base.design, "--postures", base.postures, "-o", base.root / "m.csv"],
@@ -262,7 +266,9 @@ def results(tries, base):
         "calibration.yaml": [
             lambda p: ["validate", base.project, "--recording", base.table, "--calibration", p],
             lambda p: ["compare", p, base.out], lambda p: ["report", p.parent]],
-        "covariance.csv": [lambda p: ["compare", p.parent, base.out], lambda p: ["report", p.parent]],
+        "covariance.csv": [
+            lambda p: ["compare", p.parent, base.out], lambda p: ["report", p.parent],
+            lambda p: ["check", base.project, "--recording", base.table, "--calibration", p.parent]],
     }
     for name in ["summary.json", "report_data.json", "validation.json", "runs.json",
                  "robot_data.json", "comparison.json", "x_summary.json", "m_margins.json"]:

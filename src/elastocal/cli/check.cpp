@@ -64,11 +64,11 @@ std::string JointTable(const JointCheck& check) {
   return table.Render();
 }
 
-std::string Conclusion(const CheckRun& run, double level) {
+std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
   if (!run.check.changed()) {
     return fmt::format(
         "Unchanged: the calibration explains these postures (chance of a false alarm {:.3g} %).\n",
-        100.0 * level);
+        100.0 * command.check.joints.level);
   }
   std::string text;
   for (const JointSuspect& joint : run.check.moved) {
@@ -76,15 +76,18 @@ std::string Conclusion(const CheckRun& run, double level) {
                         joint.p_adjusted);
   }
   if (!run.check.suspects.empty()) {
-    text += fmt::format("Changed: one of {}; more postures would tell which\n",
-                        fmt::join(run.check.suspects, ", "));
+    text += fmt::format(
+        "Changed: one of {}. Five postures of each limb that tell which:\n"
+        "  elastocal design {} --after {} --check --count 5 --joints {} -o next.yaml\n",
+        fmt::join(run.check.suspects, ", "), command.project, command.calibration,
+        fmt::join(run.check.suspects, " "));
   }
   return text;
 }
 
 std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
   const JointCheck& check = run.check;
-  std::string text = Conclusion(run, command.check.joints.level) + "\n";
+  std::string text = Conclusion(run, command) + "\n";
   text += fmt::format("{} postures, {} markers of {}\n", run.recording.posture_count(),
                       run.recording.marker_count(), run.recording.source);
   text += fmt::format(
@@ -96,8 +99,9 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
     text += "\n" + JointTable(check);
   }
   if (!check.not_told.empty()) {
-    text += fmt::format("These postures cannot tell whether the zeros of these joints have moved: {}\n",
-                        fmt::join(check.not_told, ", "));
+    text +=
+        fmt::format("These postures cannot tell whether the zeros of these joints have moved: {}\n",
+                    fmt::join(check.not_told, ", "));
   }
   return text;
 }

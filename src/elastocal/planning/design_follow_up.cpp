@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -99,7 +100,9 @@ FollowUpChain DesignOne(const Project& project, const ChainSetup& setup, const K
     const auto at = static_cast<Eigen::Index>(i);
     if (knowledge.change_sd[at] <= 0.0) continue;
     const Joint& joint = chain.model->tree.joints[chain.model->parameters[columns[i]].joint];
-    result.zeros.push_back({joint.name, joint.type == JointType::kPrismatic, sd[at]});
+    const bool told = sd[at] <= knowledge.change_sd[at];
+    result.zeros.push_back({joint.name, joint.type == JointType::kPrismatic,
+                            told ? sd[at] : std::numeric_limits<double>::infinity()});
   }
   return result;
 }

@@ -29,7 +29,7 @@ struct FollowUpOptions {
 struct ZeroSensitivity {
   std::string joint;
   bool prismatic = false;
-  double sd = 0.0;  ///< rad or m; infinite: they cannot tell it
+  double sd = 0.0;  ///< rad or m; infinite: they cannot tell one of the size that is expected
 };
 
 struct FollowUpChain {
