@@ -53,6 +53,7 @@ void AddInit(CLI::App& app, Action& action);
 void AddInspect(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);
 void AddValidate(CLI::App& app, Action& action);
+void AddBatch(CLI::App& app, Action& action);
 void AddCheck(CLI::App& app, Action& action);
 void AddDiagnose(CLI::App& app, Action& action);
 void AddCompare(CLI::App& app, Action& action);

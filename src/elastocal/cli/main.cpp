@@ -118,6 +118,7 @@ int Run(int argc, char** argv) {
   AddCalibrate(app, action);
   AddValidate(app, action);
   AddDiagnose(app, action);
+  AddBatch(app, action);
   AddCheck(app, action);
   AddCompare(app, action);
   AddDemo(app, action);

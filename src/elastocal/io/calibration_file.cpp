@@ -229,6 +229,30 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   return std::string(yaml.c_str()) + "\n";
 }
 
+std::string MakeCalibrationYaml(const CalibrationEstimate& estimate) {
+  YAML::Emitter yaml;
+  yaml << YAML::Comment("Written by elastocal: deviations from the nominal URDF, in SI units.");
+  yaml << YAML::BeginMap;
+  yaml << YAML::Key << "format" << YAML::Value << kFormat;
+  yaml << YAML::Key << "robot" << YAML::Value << estimate.robot;
+  yaml << YAML::Key << "nominal" << YAML::Value << YAML::DoubleQuoted << estimate.nominal;
+  yaml << YAML::Key << "recording" << YAML::Value << estimate.recording;
+  yaml << YAML::Key << "model" << YAML::Value << estimate.model;
+  yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(estimate.interval_factor);
+  yaml << YAML::Key << "parameter_count" << YAML::Value << estimate.parameters.size();
+  yaml << YAML::Key << "parameters" << YAML::Value << YAML::BeginSeq;
+  for (const ParameterEstimate& one : estimate.parameters) {
+    yaml << YAML::Flow << YAML::BeginMap;
+    yaml << YAML::Key << "name" << YAML::Value << one.name;
+    yaml << YAML::Key << "unit" << YAML::Value << one.unit;
+    yaml << YAML::Key << "value" << YAML::Value << FormatNumber(one.value);
+    if (std::isfinite(one.sd)) yaml << YAML::Key << "sd" << YAML::Value << FormatNumber(one.sd);
+    yaml << YAML::Key << "status" << YAML::Value << StatusName(one.status) << YAML::EndMap;
+  }
+  yaml << YAML::EndSeq << YAML::EndMap;
+  return std::string(yaml.c_str()) + "\n";
+}
+
 CalibrationEstimate ReadEstimate(const std::filesystem::path& file) {
   return ParseEstimate(ReadFile(file), file.string());
 }

@@ -26,6 +26,9 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
                                 ZeroOffsets zero_offsets,
                                 const CalibrationResult* uncalibrated = nullptr);
 
+/// The same of what is known of a robot without a recording of its own, such as a fleet's prior.
+std::string MakeCalibrationYaml(const CalibrationEstimate& estimate);
+
 /// Reads all of a calibration.yaml that a comparison needs; the covariance is in another file.
 /// Throws InputError naming file, line and key, also for a file that was cut, a unit that its
 /// parameter cannot have, and an angle beyond half a turn.

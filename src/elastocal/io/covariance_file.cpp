@@ -71,16 +71,20 @@ void CheckRow(const Table& table, double sd, const Eigen::MatrixXd& covariance, 
 }  // namespace
 
 std::string MakeCovarianceCsv(const CalibrationResult& result) {
-  const std::vector<int>& parameters = result.posterior.parameters;
+  std::vector<std::string> names;
+  for (int i : result.posterior.parameters) names.push_back(result.model.parameters[i].name);
+  return MakeCovarianceCsv(names, result.posterior.covariance);
+}
+
+std::string MakeCovarianceCsv(const std::vector<std::string>& names,
+                              const Eigen::MatrixXd& covariance) {
   TableWriter table;
   table.Add(kNameColumn);
-  for (int i : parameters) table.Add(result.model.parameters[i].name);
+  for (const std::string& name : names) table.Add(name);
   table.EndRow();
-  for (std::size_t row = 0; row < parameters.size(); ++row) {
-    table.Add(result.model.parameters[parameters[row]].name);
-    for (double entry : result.posterior.covariance.row(static_cast<Eigen::Index>(row))) {
-      table.Add(entry);
-    }
+  for (std::size_t row = 0; row < names.size(); ++row) {
+    table.Add(names[row]);
+    for (double entry : covariance.row(static_cast<Eigen::Index>(row))) table.Add(entry);
     table.EndRow();
   }
   return table.text();

@@ -11,6 +11,9 @@ namespace elastocal {
 /// covariance.csv: covariance of the estimated and unsupported parameters together, rad and m, with
 /// their names as header row and first column.
 std::string MakeCovarianceCsv(const CalibrationResult& result);
+/// The same of a covariance by its names.
+std::string MakeCovarianceCsv(const std::vector<std::string>& names,
+                              const Eigen::MatrixXd& covariance);
 
 /// Reads the covariance.csv that belongs to a calibration into it. Throws InputError naming file
 /// and line: names that the calibration does not have or that differ between header and rows,

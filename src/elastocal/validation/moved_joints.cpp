@@ -176,8 +176,7 @@ DifferenceTest TestOf(const Explanation& explanation, double freedom) {
 }
 
 /// Tries a change of the joint's zero alone and of all its parameters.
-JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double freedom,
-                   double& log_evidence) {
+JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double freedom) {
   Candidate offset{.joint = candidate.joint, .quantities = {}};
   std::copy_if(candidate.quantities.begin(), candidate.quantities.end(),
                std::back_inserter(offset.quantities),
@@ -185,14 +184,14 @@ JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double 
   JointSuspect suspect{.joint = candidate.joint, .test = {}, .changes = {}};
   Explanation best = evidence.Explain(candidate.quantities);
   suspect.test = TestOf(best, freedom);
-  log_evidence = best.evidence;
+  suspect.log_evidence = best.evidence;
   if (!offset.quantities.empty() && offset.quantities.size() < candidate.quantities.size()) {
     const Explanation zero = evidence.Explain(offset.quantities);
     const DifferenceTest test = TestOf(zero, freedom);
     suspect.zero_told = zero.told > 0;
     if (test.p < suspect.test.p) suspect.test = test;
     suspect.test.p = std::min(1.0, 2.0 * suspect.test.p);  // the smaller one of two
-    log_evidence = LogMean(zero.evidence, best.evidence);
+    suspect.log_evidence = LogMean(zero.evidence, best.evidence);
     suspect.zero_alone = zero.evidence >= best.evidence;
     if (suspect.zero_alone) best = zero;
   }
@@ -216,8 +215,8 @@ std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<J
       return one.joint == candidate.joint;
     });
     if (known) continue;
-    logs.push_back(0.0);
-    joints.push_back(Judge(evidence, candidate, freedom, logs.back()));
+    joints.push_back(Judge(evidence, candidate, freedom));
+    logs.push_back(joints.back().log_evidence);
   }
   std::vector<double> p;
   for (const JointSuspect& joint : joints) {
@@ -266,14 +265,12 @@ JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstim
   for (const JointSuspect& joint : check.joints) {
     if (!joint.zero_told) check.not_told.push_back(joint.joint);
   }
-  const auto significant = [&] {
-    return std::any_of(check.joints.begin(), check.joints.end(), [&](const JointSuspect& joint) {
-      return joint.p_adjusted <= options.level;
-    });
+  const auto significant = [&](const JointSuspect& joint) {
+    return joint.p_adjusted <= options.level && joint.log_evidence > 0.0;
   };
-  while (!check.joints.empty() && significant()) {
+  while (std::any_of(check.joints.begin(), check.joints.end(), significant)) {
     const JointSuspect first = check.joints.front();
-    if (first.probability < options.certainty || first.p_adjusted > options.level) {
+    if (first.probability < options.certainty || !significant(first)) {
       double sum = 0.0;
       for (const JointSuspect& joint : check.joints) {
         if (sum >= options.certainty) break;

@@ -22,6 +22,8 @@ struct JointSuspect {
   std::string joint;
   DifferenceTest test;      ///< of all its parameters at once; no parameters: the data cannot tell
   double p_adjusted = 1.0;  ///< by Holm, over the joints that the data can tell
+  /// Natural logarithm of p(data | it has moved) / p(data | nothing has).
+  double log_evidence = 0.0;
   /// That this joint has moved, if exactly one has, each being as likely beforehand.
   double probability = 0.0;
   bool zero_told = false;                ///< whether the data tell a change of its zero
@@ -66,8 +68,8 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
 ///   adjusted for the number of joints by Holm.
 /// - Joints are **told apart** by their evidence p(s | joint moved), of its zero alone or of all
 ///   its parameters.
-/// The most probable joint is accepted, and the search goes on beside it, until nothing is
-/// significant.
+/// The most probable joint is accepted, and the search goes on beside it, until no joint is
+/// significant with an evidence that speaks for its move.
 JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& earlier,
                            const Eigen::VectorXd& size_of_changes,
                            const JointCheckOptions& options = {});

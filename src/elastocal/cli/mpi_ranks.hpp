@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "elastocal/fleet/task_queue.hpp"
+
+namespace elastocal::cli {
+
+/// The processes that mpirun has started. Rank 0 has the queue; each rank does one task at a time.
+class MpiRanks {
+ public:
+  /// Nothing where mpirun has not started this process. Throws InputError where it has, but the
+  /// module for MPI was not built or cannot be loaded.
+  static std::unique_ptr<MpiRanks> Join();
+
+  ~MpiRanks();
+  MpiRanks(const MpiRanks&) = delete;
+  MpiRanks& operator=(const MpiRanks&) = delete;
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+
+  /// Of rank 0: a slot for each other rank, which must not outlive this.
+  std::vector<std::unique_ptr<TaskSlot>> OtherRanks();
+  /// Of rank 0: the others may go home.
+  void Dismiss();
+  /// Of another rank: does what rank 0 gives it, until it is dismissed.
+  void Serve(TaskSlot& slot);
+
+ private:
+  friend class RankSlot;
+  struct Functions {
+    void (*start)(int*, int*) = nullptr;
+    void (*send)(int, const double*) = nullptr;
+    int (*poll)(int, double*) = nullptr;
+    void (*finish)() = nullptr;
+  };
+  explicit MpiRanks(const Functions& functions);
+
+  Functions mpi_;
+  int rank_ = 0, size_ = 1;
+};
+
+}  // namespace elastocal::cli
