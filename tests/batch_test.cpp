@@ -1,0 +1,103 @@
+// The command `batch` as its users run it: once, again, after an interruption, and under mpirun.
+
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/files/output_files.hpp"
+#include "tests/run_program.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Batch : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    manifest_ = scratch_.Write("fleet.yaml",
+                               "project: " + SourceFile("tests/robots/arm6_project.yaml").string() +
+                                   R"(
+studies:
+  - name: arm
+    robots: 4
+    simulate: {arm-postures: 12, trials: calibration, repetitions: 1, move-s: 1, rest-s: 0.8}
+)");
+  }
+
+  std::string Folder(const std::string& name) { return (scratch_.path() / name).string(); }
+  ProgramResult Run(const std::string& folder, const std::string& more = "") {
+    return RunProgram("batch " + manifest_ + " -o " + Folder(folder) + " " + more);
+  }
+  std::string Read(const std::string& folder, const std::string& file) {
+    return ReadFile(fs::path(Folder(folder)) / file);
+  }
+
+  ScratchFolder scratch_;
+  std::string manifest_;
+};
+
+TEST_F(Batch, IsDoneOnceAndTheSameInWhateverOrder) {
+  const ProgramResult first = Run("two", "--workers 2");
+  ASSERT_EQ(first.exit_code, 0) << first.out << first.err;
+  EXPECT_TRUE(first.out.starts_with("4 tasks: 4 to be deployed")) << first.out;
+  EXPECT_FALSE(fs::exists(Folder("two") + "/arm_1_recording"));
+  ASSERT_EQ(Run("one", "--workers 1").exit_code, 0);
+  for (const char* file : {"prior/covariance.csv", "family.csv", "arm_3/covariance.csv"}) {
+    EXPECT_EQ(Read("one", file), Read("two", file)) << file;
+  }
+  const auto made = fs::last_write_time(Folder("two") + "/arm_2/calibration.yaml");
+  fs::remove(Folder("two") + "/arm_3.done.json");  // as after an interruption
+  ASSERT_EQ(Run("two").exit_code, 0);
+  EXPECT_EQ(fs::last_write_time(Folder("two") + "/arm_2/calibration.yaml"), made);
+  EXPECT_TRUE(fs::exists(Folder("two") + "/arm_3.done.json"));
+  EXPECT_EQ(Read("one", "prior/covariance.csv"), Read("two", "prior/covariance.csv"));
+}
+
+TEST_F(Batch, ThePriorOfAFleetServesTheNextRobot) {
+  ASSERT_EQ(Run("fleet").exit_code, 0);
+  const std::string project = SourceFile("tests/robots/arm6_project.yaml").string();
+  ASSERT_EQ(RunProgram("simulate " + project + " -o " + Folder("next") +
+                       " --seed 9 --arm-postures 6 --random-postures 4 --repetitions 1 -q")
+                .exit_code,
+            0);
+  const ProgramResult result =
+      RunProgram("calibrate " + project + " --recording " + Folder("next") + " --prior " +
+                 Folder("fleet") + "/prior --days 0 -o " + Folder("out"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST_F(Batch, TheSameUnderMpirun) {
+  if (std::system("mpirun --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "there is no mpirun";
+  ASSERT_EQ(Run("alone").exit_code, 0);
+  const std::string command =
+      "mpirun --allow-run-as-root --oversubscribe -n 2 " ELASTOCAL_PROGRAM " batch " + manifest_ +
+      " -o " + Folder("ranks") + " -q >" + Folder("mpirun.log") + " 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << ReadFile(Folder("mpirun.log"));
+  for (const char* file : {"prior/covariance.csv", "family.csv", "arm_4/covariance.csv"}) {
+    EXPECT_EQ(Read("alone", file), Read("ranks", file)) << file;
+  }
+}
+
+TEST_F(Batch, AFailedTaskIsNamedAndTheOthersAreDone) {
+  manifest_ = scratch_.Write("fleet.yaml",
+                             "project: " + SourceFile("tests/robots/arm6_project.yaml").string() +
+                                 R"(
+sessions: [{name: gone, recording: no_such_table.csv}]
+)");
+  const ProgramResult result = Run("out");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_NE(result.out.find("gone"), std::string::npos) << result.out;
+  EXPECT_NE(ReadFile(Folder("out") + "/gone.log").find("no_such_table.csv"), std::string::npos);
+  fs::create_directory(Folder("full"));
+  scratch_.Write("full/other.txt", "mine");
+  const ProgramResult refused = Run("full");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("holds other things"), std::string::npos) << refused.err;
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,86 @@
+// The commands `check`, `calibrate --prior` and `design --after` as their users run them.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "elastocal/files/output_files.hpp"
+#include "tests/program_fixture.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Eight postures of another day, with a parameter changed.
+std::string AnotherDay(const std::filesystem::path& table, const std::string& project_file,
+                       Eigen::VectorXd truth, const std::string& parameter, double change) {
+  const Project project = ReadProject(project_file);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  truth[FindParameter(model.parameters, parameter)] += change;
+  WritePostureTable(table, MakeSyntheticRecording(model, truth, {.postures = 8, .seed = 5}),
+                    project.tree);
+  return table.string();
+}
+
+TEST_F(Program, CheckNamesTheJointThatMovedAndEndsWithFour) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  constexpr double kChange = 4e-3;
+  const std::string same =
+      AnotherDay(scratch_.path() / "same.csv", project_, truth_, "elbow_joint.theta", 0.0);
+  const std::string moved =
+      AnotherDay(scratch_.path() / "moved.csv", project_, truth_, "elbow_joint.theta", kChange);
+  const std::string words = "check " + project_ + " --calibration " + out_ + " --recording ";
+
+  const ProgramResult fine = RunProgram(words + same);
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_TRUE(fine.out.starts_with("Unchanged")) << fine.out;
+
+  const std::string file = (scratch_.path() / "check.json").string();
+  const ProgramResult found = RunProgram(words + moved + " --json " + file);
+  EXPECT_EQ(found.exit_code, 4) << found.err;
+  EXPECT_TRUE(found.out.starts_with("Moved: elbow_joint (elbow_joint.theta by 0.2")) << found.out;
+  const nlohmann::json json = nlohmann::json::parse(ReadFile(file));
+  EXPECT_EQ(json["status"], "moved");
+  ASSERT_EQ(json["moved"].size(), 1u);
+  const nlohmann::json& change = json["moved"][0]["changes"][0];
+  EXPECT_NEAR(change["change"].get<double>(), kChange, 4.0 * change["sd"].get<double>());
+  EXPECT_LT(json["rmse_3d_mm"]["updated"], json["rmse_3d_mm"]["calibrated"]);
+}
+
+TEST_F(Program, APriorMakesAFewPosturesEnough) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const std::string today =
+      AnotherDay(scratch_.path() / "today.csv", project_, truth_, "elbow_joint.theta", 5e-3);
+  const std::string updated = (scratch_.path() / "updated").string();
+  const ProgramResult result = RunProgram("calibrate " + project_ + " --recording " + today +
+                                          " --prior " + out_ + " --days 2 -o " + updated);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("elbow_joint: has moved since"), std::string::npos) << result.err;
+  const auto offset = [](const std::string& folder) {
+    const nlohmann::json json = nlohmann::json::parse(ReadFile(folder + "/summary.json"));
+    for (const nlohmann::json& one : json["parameters"]) {
+      if (one["name"] == "elbow_joint.theta") return one["value"].get<double>();
+    }
+    return std::nan("");
+  };
+  EXPECT_NEAR(offset(updated) - offset(out_), 5e-3, 5e-4);
+  const ProgramResult alone =
+      RunProgram("calibrate " + project_ + " --recording " + today + " --days 2 -o " + updated);
+  EXPECT_EQ(alone.exit_code, 2) << "--days without --prior";
+}
+
+TEST_F(Program, FollowUpsAreDesignedAndWrongOnesRefused) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const std::string no_design = RunProgram("design " + project_ + " --after " + out_ + " -o " +
+                                           (scratch_.path() / "p.yaml").string())
+                                    .err;
+  EXPECT_NE(no_design.find("no section 'design'"), std::string::npos) << no_design;
+  std::filesystem::remove(out_ + "/covariance.csv");
+  const ProgramResult bare =
+      RunProgram("check " + project_ + " --calibration " + out_ + " --recording " + recording_);
+  EXPECT_EQ(bare.exit_code, 3);
+  EXPECT_NE(bare.err.find("covariance.csv"), std::string::npos) << bare.err;
+}
+
+}  // namespace
+}  // namespace elastocal
