@@ -124,6 +124,8 @@ CalibrationRun CalibrateExperiment(const Project& given,
 
   run.faults = FindFaults(project, options.seed, as_recorded, robot, recording, run.comparison);
 
+  run.common_scale = EstimateCommonScale(run.comparison.largest(), settings);
+
   // Eq. 12: how well the recorded postures tell the parameters apart.
   run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording, settings.earlier);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/calibration/knocks.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
@@ -51,7 +52,8 @@ struct CalibrationRun {
   Recording recording;         ///< that the parameters were estimated from
   BaseParameters base;         ///< which of them can be identified
   ModelComparison comparison;  ///< the estimates: `comparison.largest()` is the calibration
-  Excitation excitation;       ///< how well the recorded postures tell the parameters apart
+  std::optional<CommonScale> common_scale;  ///< of all lengths, where they tell it
+  Excitation excitation;  ///< how well the recorded postures tell the parameters apart
   /// Faults of the recording as a whole (RecordingFault), in words; objections of the verdict.
   std::vector<std::string> faults;
   std::vector<std::string> undone;          ///< mistakes that were undone on request, in words

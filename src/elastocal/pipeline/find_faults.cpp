@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/up_check.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
@@ -81,6 +82,9 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
   for (const RecordingMistake& mistake :
        FindRecordingMistakes(project, seed, as_recorded, recording, comparison.largest())) {
     faults.push_back(DescribeMistake(mistake));
+  }
+  if (const auto scale = FindWrongScale(comparison.largest(), project.calibration)) {
+    faults.push_back(Describe(*scale));
   }
   // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;

@@ -259,6 +259,9 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
     json["noise"].push_back(noise);
   }
   json["cluster_factor"] = result.posterior.cluster_factor;
+  if (run.common_scale) {
+    json["common_scale"] = {{"size", run.common_scale->size}, {"sd", run.common_scale->sd}};
+  }
   json["effective_parameters"] = result.posterior.effective_parameters;
   json["rmse_3d_mm"] =
       FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::rmse_3d);
