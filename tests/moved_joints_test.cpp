@@ -1,9 +1,11 @@
-// A calibration as the prior of another one, and what a few postures of another day tell of it.
+// A calibration as the prior of another one, what a few postures of another day tell of it, and the
+// pattern that a wrong scale of the cameras leaves in it.
 
 #include "elastocal/validation/moved_joints.hpp"
 
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/test_files.hpp"
@@ -13,7 +15,7 @@ namespace {
 
 constexpr double kDegree = 0.017453292519943295;
 
-class EarlierCalibration : public ::testing::Test {
+class InventedArm : public ::testing::Test {
  protected:
   void SetUp() override {
     const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
@@ -89,7 +91,7 @@ class EarlierCalibration : public ::testing::Test {
   BaseParameters base_;
 };
 
-TEST_F(EarlierCalibration, OfNothingButThePriorChangesNothing) {
+TEST_F(InventedArm, OfNothingButThePriorChangesNothing) {
   const Recording recording = Record(Truth(1), 30, 1);
   CalibrationOptions options;
   options.widen_prior = false;
@@ -112,7 +114,7 @@ TEST_F(EarlierCalibration, OfNothingButThePriorChangesNothing) {
             1e-6 * plain.posterior.data_information.norm());
 }
 
-TEST_F(EarlierCalibration, OfWhichNothingIsInDoubtIsKept) {
+TEST_F(InventedArm, OfWhichNothingIsInDoubtIsKept) {
   CalibrationOptions options;
   options.earlier = EstimateOf(Fit(Record(Truth(2), 30, 2)));
   options.earlier.covariance *= 1e-8;
@@ -125,7 +127,7 @@ TEST_F(EarlierCalibration, OfWhichNothingIsInDoubtIsKept) {
 }
 
 // A hundred postures and ten of another day, by which the first calibration is updated.
-TEST_F(EarlierCalibration, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
+TEST_F(InventedArm, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
   double updated = 0.0, first = 0.0, few = 0.0;
   for (int robot = 0; robot < 10; ++robot) {
     const auto seed = static_cast<std::uint64_t>(10 * robot);
@@ -145,7 +147,7 @@ TEST_F(EarlierCalibration, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
   RecordProperty("few_nm", static_cast<int>(1e8 * few));
 }
 
-TEST_F(EarlierCalibration, EightPosturesTellWhichJointHasMoved) {
+TEST_F(InventedArm, EightPosturesTellWhichJointHasMoved) {
   constexpr int kRobots = 40;
   int named = 0, others = 0, false_alarms = 0, covered = 0;
   for (int robot = 0; robot < kRobots; ++robot) {
@@ -171,6 +173,30 @@ TEST_F(EarlierCalibration, EightPosturesTellWhichJointHasMoved) {
   EXPECT_LE(false_alarms, 5);  // 5 % are 2; 6 or more would have a chance of 1 %
   RecordProperty("named", named);
   RecordProperty("false_alarms", false_alarms);
+}
+
+// Errors of single lengths have no common pattern; a wrong scale of the cameras has.
+TEST_F(InventedArm, AWrongScaleOfAllPositionsIsToldFromErrorsOfSingleLengths) {
+  constexpr int kRobots = 40;
+  double squares = 0.0;
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= kRobots; ++seed) {
+    const Eigen::VectorXd truth = Truth(static_cast<int>(seed));
+    Recording recording = Record(truth, 30, seed);
+    const auto clean = EstimateCommonScale(Fit(recording), {});
+    ASSERT_TRUE(clean);
+    squares += std::pow(clean->size / clean->sd, 2);
+    EXPECT_FALSE(FindWrongScale(Fit(recording), {})) << seed;
+    recording.markers *= 1.03;
+    const auto wrong = EstimateCommonScale(Fit(recording), {});
+    ASSERT_TRUE(wrong);
+    EXPECT_LT(std::abs(wrong->size - 0.03), 4.5 * wrong->sd) << seed;
+    found += FindWrongScale(Fit(recording), {}) ? 1 : 0;
+  }
+  EXPECT_GE(found, kRobots - 2);
+  // Deviations in standard deviations: of 40, chi-square with one in a thousand on either side.
+  EXPECT_GT(squares / kRobots, 0.45);
+  EXPECT_LT(squares / kRobots, 1.85);
 }
 
 }  // namespace
