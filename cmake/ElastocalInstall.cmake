@@ -5,6 +5,9 @@
 #   calibration  the layer `pipeline` and all that it uses: neither Assimp, MuJoCo nor Ipopt is needed
 #   planning     all other layers
 #
+# CMake's components of the installation are the Debian packages (ElastocalPackages.cmake): program,
+# libraries (runtime and calibration), planning_libraries, development, python.
+#
 # elastocal::elastocal stands for all layers, or for those of the components asked for.
 include(CMakePackageConfigHelpers)
 
@@ -35,17 +38,22 @@ foreach(component IN LISTS ELASTOCAL_COMPONENTS)
   list(TRANSFORM targets PREPEND elastocal:: OUTPUT_VARIABLE ${component}_targets)
   list(TRANSFORM targets PREPEND elastocal_)
   target_link_libraries(elastocal_all INTERFACE ${targets})
-  install(TARGETS ${targets} EXPORT elastocal_${component} ARCHIVE)
+  set(libraries libraries)
+  if(component STREQUAL planning)
+    set(libraries planning_libraries)
+  endif()
+  install(TARGETS ${targets} EXPORT elastocal_${component} ARCHIVE COMPONENT development
+    LIBRARY COMPONENT ${libraries} NAMELINK_COMPONENT development)
   install(EXPORT elastocal_${component} FILE elastocal_${component}.cmake NAMESPACE elastocal::
-    DESTINATION ${package_dir})
+    DESTINATION ${package_dir} COMPONENT development)
 endforeach()
 if(ELASTOCAL_PROGRAM)
-  install(TARGETS elastocal RUNTIME)
+  install(TARGETS elastocal RUNTIME COMPONENT program)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/elastocal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "cli" EXCLUDE)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/elastocal)
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "cli" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/elastocal
+  COMPONENT program)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/elastocalConfig.cmake.in
   ${PROJECT_BINARY_DIR}/elastocalConfig.cmake INSTALL_DESTINATION ${package_dir})
@@ -55,4 +63,5 @@ install(FILES ${PROJECT_BINARY_DIR}/elastocalConfig.cmake
   ${PROJECT_BINARY_DIR}/elastocalConfigVersion.cmake
   ${PROJECT_SOURCE_DIR}/cmake/ElastocalDependencies.cmake
   ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLibZip.cmake
-  ${PROJECT_SOURCE_DIR}/cmake/FindLz4Zstd.cmake DESTINATION ${package_dir})
+  ${PROJECT_SOURCE_DIR}/cmake/FindLz4Zstd.cmake
+  DESTINATION ${package_dir} COMPONENT development)

@@ -79,9 +79,10 @@ function(elastocal_layer name)
   set_property(GLOBAL APPEND_STRING PROPERTY ELASTOCAL_LAYER_RULES "${name}: ${uses}\n")
 
   elastocal_unity(joined ${name} ${sources})
-  add_library(elastocal_${name} STATIC ${joined})
+  add_library(elastocal_${name} ${joined})
   add_library(elastocal::${name} ALIAS elastocal_${name})
-  set_target_properties(elastocal_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(elastocal_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} DEFINE_SYMBOL "")
   target_compile_features(elastocal_${name} PUBLIC cxx_std_20)
   target_include_directories(elastocal_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

@@ -28,13 +28,10 @@ struct DemoOptions {
   bool quick = false;
 };
 
-/// The embedded models: where they are installed beside the program, or the source tree's.
+/// The embedded models, from where the program is.
 std::filesystem::path ModelsFolder() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const auto installed = program.parent_path() / ELASTOCAL_INSTALLED_MODELS;
-  if (!error && std::filesystem::exists(installed / "talos")) return installed;
-  return ELASTOCAL_SOURCE_MODELS;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe");
+  return std::filesystem::weakly_canonical(program.parent_path() / ELASTOCAL_MODELS);
 }
 
 using Words = std::vector<std::string>;
