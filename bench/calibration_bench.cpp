@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The calibration of examples/talos_left_arm: how long the estimate takes, and how much of that the
 // analytic Jacobian saves against differences.
 #include <filesystem>

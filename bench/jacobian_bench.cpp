@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The generalized Jacobian (eq. 4) against central differences and against MuJoCo. Seconds a
 // posture; every pair is measured in one run, in turns.
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From raw files to samples: what a recording of ten minutes costs, and half and a quarter of it.
 // Times are of the wall clock, as reading uses two threads.
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Planning of motions: time against the number of postures, with the seconds of motion beside it.
 #include <benchmark/benchmark.h>
 

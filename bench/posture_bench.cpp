@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration postures of a leg with all constraints: what NOCP costs and reaches (counter O1), and
 // what exchange from a pool of random postures does in the same run. One thread each.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot at run time: what a controller pays for a call, on whole TALOS.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The packages that each component needs, in one place for this build and for the installed
 # elastocalConfig.cmake: an entry is a name and, where it matters, the least version. A component
 # needs those of the ones before it as well.

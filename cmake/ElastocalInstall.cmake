@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs the program, the libraries with their headers, the embedded models, and the CMake package
 # that find_package(elastocal COMPONENTS ...) reads.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Warnings are errors in our code; headers of packages are SYSTEM and exempt. Not in Debug: with the
 # sanitizers GCC 12 takes Eigen's temporaries for uninitialised. -Wnull-dereference and
 # -Wrestrict are left out: GCC 12 finds both in the standard library's own vectors and strings.
@@ -61,7 +62,7 @@ set(ELASTOCAL_FUZZED_LAYERS math tables files robot measurement readers descript
 # elastocal_layer(NAME [LIGHT] [USES layer...] [LIBS public...] [PRIVATE_LIBS private...])
 #
 # LIGHT: what it computes takes less time than the optimiser.
-# One static library elastocal::NAME from src/elastocal/NAME/*.cpp, and one test program from the
+# One library elastocal::NAME from src/elastocal/NAME/*.cpp, and one test program from the
 # *_test.cpp beside them. What a layer may include is what it USES, transitively.
 #
 # No precompiled headers: they save little here, hide missing includes, and defeat ccache.
@@ -88,6 +89,9 @@ function(elastocal_layer name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   if(ELASTOCAL_FUZZ AND name IN_LIST ELASTOCAL_FUZZED_LAYERS)
     target_compile_options(elastocal_${name} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+  if(BUILD_SHARED_LIBS)  # a layer's own functions may be inlined into it
+    target_compile_options(elastocal_${name} PRIVATE -fno-semantic-interposition)
   endif()
   if(ARG_LIGHT)
     target_compile_options(elastocal_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -129,7 +133,8 @@ function(elastocal_test name)
   endif()
 endfunction()
 
-# The test `layers`: no layer includes what it does not USE. Call it after the last layer.
+# The tests `layers` (no layer includes what it does not USE) and `licences` (each source names its licence).
+# Call it after the last layer.
 function(elastocal_layer_test)
   get_property(rules GLOBAL PROPERTY ELASTOCAL_LAYER_RULES)
   file(WRITE ${PROJECT_BINARY_DIR}/layers.txt "${rules}")
@@ -143,4 +148,12 @@ function(elastocal_layer_test)
   file(READ ${PROJECT_SOURCE_DIR}/tests/bad_layers/expected.txt expected)
   string(STRIP "${expected}" expected)
   set_tests_properties(layers_finds_violations PROPERTIES PASS_REGULAR_EXPRESSION "${expected}")
+
+  set(check ${PROJECT_SOURCE_DIR}/cmake/check_licences.cmake)
+  add_test(NAME licences COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -P ${check})
+  set(bad ${PROJECT_BINARY_DIR}/without_licence)
+  file(WRITE ${bad}/nameless.cpp "int main() {}\n")
+  add_test(NAME licences_finds_violations COMMAND ${CMAKE_COMMAND} -DSOURCE=${bad} -P ${check})
+  set_tests_properties(licences_finds_violations PROPERTIES
+    PASS_REGULAR_EXPRESSION "nameless.cpp: no line 'SPDX")
 endfunction()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Builds the page of the report (web/) and makes a source of it, so that the program has it in itself.
 #
 #   ELASTOCAL_PAGE=AUTO  where Node.js 18 or newer and npm are found (default)
@@ -41,10 +42,10 @@ if(ELASTOCAL_HAS_PAGE)
       -DBUILD=${ELASTOCAL_WEB_BUILD} -P ${page_script}
     DEPENDS ${web}/package.json ${web}/package-lock.json ${web}/.npmrc ${page_script}
     COMMENT "Installing the packages of the report's page" VERBATIM)
-  add_custom_command(OUTPUT ${page_source} ${ELASTOCAL_WEB_BUILD}/dist/index.html
+  add_custom_command(OUTPUT ${page_source} ${ELASTOCAL_WEB_BUILD}/dist/index.html ${ELASTOCAL_WEB_BUILD}/dist/notices.txt
     COMMAND ${CMAKE_COMMAND} -DSTEP=build -DNODE=${ELASTOCAL_NODE} -DWEB=${web}
       -DBUILD=${ELASTOCAL_WEB_BUILD} -DSOURCE=${page_source} -P ${page_script}
-    DEPENDS ${ELASTOCAL_WEB_BUILD}/installed ${page_files} ${web}/index.html ${web}/vite.config.js
+    DEPENDS ${ELASTOCAL_WEB_BUILD}/installed ${page_files} ${web}/index.html ${web}/vite.config.js ${web}/notices.js
     COMMENT "Building the report's page" VERBATIM)
 else()
   add_custom_command(OUTPUT ${page_source}

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The target `api-reference`: the headers as HTML by Doxygen, where it is installed. A warning is an
 # error.
 find_package(Doxygen QUIET)

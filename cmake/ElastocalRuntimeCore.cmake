@@ -1,10 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
 # The run-time core as text, for the headers that `elastocal export` writes.
-set(core_text "")
+set(core_text "/* SPDX-License-Identifier: Apache-2.0 */\n")
 foreach(part poses statics correction)
   set(file ${PROJECT_SOURCE_DIR}/src/elastocal/runtime/core_${part}.h)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(READ ${file} text)
   string(REGEX REPLACE "#include \"elastocal/[^\n]*\n\n?" "" text "${text}")
+  string(REGEX REPLACE "^/\\* SPDX[^\n]*\n" "" text "${text}")
   string(APPEND core_text "${text}\n")
 endforeach()
 # A string literal has a length that every compiler takes: pieces, which the compiler joins.

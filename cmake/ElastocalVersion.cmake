@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The version with its commit, as a source of the layer report. It is written at each build, and only
 # it is compiled again when the commit changes.
 set(version_source ${PROJECT_BINARY_DIR}/program_version.cpp)

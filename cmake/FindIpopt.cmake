@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Ipopt's Debian package has neither a CMake package nor a pkg-config file. Defines Ipopt::Ipopt.
 find_path(Ipopt_INCLUDE_DIR IpIpoptApplication.hpp PATH_SUFFIXES coin coin-or)
 find_library(Ipopt_LIBRARY ipopt)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # libzip's own CMake package in Debian asks for its programs as well. Defines LibZip::LibZip.
 find_path(LibZip_INCLUDE_DIR zip.h)
 find_library(LibZip_LIBRARY zip)

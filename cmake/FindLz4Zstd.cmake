@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # LZ4 has no CMake package in Debian 12. Defines Lz4Zstd::Lz4Zstd, both compressors of ROS bags.
 find_path(Lz4Zstd_LZ4_INCLUDE_DIR lz4frame.h)
 find_library(Lz4Zstd_LZ4_LIBRARY lz4)

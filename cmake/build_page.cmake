@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The steps of ElastocalPage.cmake.
 #   STEP=install  WEB, BUILD, NPM: the packages of package-lock.json into BUILD/node_modules
 #   STEP=build    WEB, BUILD, NODE, SOURCE: the page, and a C++ source with it
@@ -41,7 +42,8 @@ if(STEP STREQUAL "install")
   file(TOUCH ${BUILD}/installed)
 elseif(STEP STREQUAL "build")
   file(REMOVE_RECURSE ${BUILD}/src ${BUILD}/test)
-  file(COPY ${WEB}/src ${WEB}/index.html ${WEB}/vite.config.js ${WEB}/test DESTINATION ${BUILD})
+  file(COPY ${WEB}/src ${WEB}/index.html ${WEB}/vite.config.js ${WEB}/notices.js ${WEB}/test ${WEB}/../LICENSE
+    DESTINATION ${BUILD})
   run(${NODE} node_modules/vite/bin/vite.js build --logLevel warn)
   file(READ ${BUILD}/dist/index.html page)
   write_source("${page}")

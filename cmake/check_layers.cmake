@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Fails on an #include that the layers do not allow, naming the file and what it includes.
 #   cmake -DRULES=FILE -DSOURCES=FOLDER -P check_layers.cmake
 # FILE has one line `layer: used layers` for each layer, every layer below those that use it;

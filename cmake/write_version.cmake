@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes the source OUTPUT, which defines elastocal::ProgramVersion() (report/version.hpp), from VERSION
 # and the commit of the repository SOURCE. The file is touched only when its text changes.
 set(commit unknown)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The library from C++: draw a robot with errors, record it, find the errors again.
 //
 //   simulate_and_calibrate models/talos/project.yaml LHAND

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Elasto-geometric calibration of robots. SI units and radians everywhere."""
 
 from os import PathLike

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The module against the command line, on the measured arm and on files of the repository."""
 import json
 import os

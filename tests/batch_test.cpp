@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `batch` as its users run it: once, again, after an interruption, and under mpirun.
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The exported MJCF, as MuJoCo plays it, against the calibrated URDF.
 #include "elastocal/description/calibrated_mjcf.hpp"
 

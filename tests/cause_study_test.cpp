@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Virtual robots with one cause of error that neither geometry nor springs describe: it is named.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bad input as users meet it: refused with exit code 3, the place named, and nothing written.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `calibrate` as its users run it: files, exit codes and messages.
 
 #include <cmath>

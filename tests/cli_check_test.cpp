@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The commands `check`, `calibrate --prior` and `design --after` as their users run them.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `compare` as its users run it.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How numbers with an uncertainty are printed, and how warnings are joined.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the readers of results make of damaged ones, and what the writers do not replace.
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program as its users run it: usage, and the commands with few tests of their own.
 
 #include <cmath>

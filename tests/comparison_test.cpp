@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two calibrations of a simulated robot, through their files: false alarms, detections, and whether
 // the joint that is named is the one that moved.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the stated 95 % intervals of a calibration of the whole body hold the truth that often.
 
 #include <array>

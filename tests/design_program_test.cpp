@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands `design` and `assess` as their users run them.
 #include <chrono>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration postures of the embedded humanoid: feasible as MuJoCo sees it, and as good as the
 // figures that are known of its leg.
 #include "elastocal/posture/design.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the table of cross-validation errors is shown: the program's own sources, without its main.
 
 #include "elastocal/cli/error_table_report.hpp"

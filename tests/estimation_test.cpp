@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Verdicts of the estimator: outliers, parameters without support, models side by side.
 
 #include <algorithm>

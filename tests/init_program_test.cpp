@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command init as its users run it.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A writing command that is killed at any moment leaves one run's files, all readable.
 //
 // Each command runs over a good folder of an earlier run and is killed after a random time. What it

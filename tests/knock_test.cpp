@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cluster of markers knocked during an experiment of the whole body: found, named, and without
 // consequence for the result.
 

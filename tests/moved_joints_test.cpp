@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A calibration as the prior of another one, what a few postures of another day tell of it, and the
 // pattern that a wrong scale of the cameras leaves in it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinematics, Jacobian and statics of the robot layer against MuJoCo, an independent
 // implementation.
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration through the library, as the header elastocal.hpp offers it.
 
 #include <set>

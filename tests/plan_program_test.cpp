@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `plan`, from posture file to a motion that `simulate` could play.
 
 #include <sstream>

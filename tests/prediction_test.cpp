@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a model says of a recording: where the waist is with respect to its foot, and where markers
 // are in a folder that the estimator's own model made.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The measured left arm of a TALOS (shared data, not part of this repository).
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recovery of a known truth by the whole estimator, on the embedded humanoid and on other robots.
 
 #include <cmath>

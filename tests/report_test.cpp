@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report as users get it: at the end of calibrate and validate, and by `elastocal report`.
 
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No call of the compensator allocates: malloc, through which operator new goes as well, counts.
 #include <cstdlib>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot at run time against the estimator's own model, statics and hand values.
 #include <cmath>
 #include <limits>

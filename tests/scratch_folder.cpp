@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/scratch_folder.hpp"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is made of the command line's definitions: version, manual page, completion of shells.
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `simulate`: a recording folder as a laboratory would fill it.
 
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The embedded humanoid (models/talos) against the published description of the robot.
 #include <filesystem>
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program on a terminal: standard output, messages and progress share one screen.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that runs on several threads: under the thread sanitizer (preset `threads`) this shows
 // that they share nothing unguarded; in every build, that their number does not change the result.
 

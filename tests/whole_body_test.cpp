@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole body at once, standing on its feet: recovery of truths from the estimator's own model.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Runs PROGRAM, the example calibrate_recording, with the project of this folder and the measured left
 # arm of a TALOS; fails where it does not print the error that the arm has after calibration. The recording is
 # in the folder that ELASTOCAL_SHARED_DATA names, or beside the repository (SOURCE) in shared/data.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// Everything that calibrating a robot from recordings takes: `find_package(elastocal COMPONENTS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // What a user does before a recording is made, as functions: choose calibration postures, judge

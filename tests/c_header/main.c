@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads postures and prints what the header makes of them, as write_header.cpp does. */
 #include <stdio.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The header that `elastocal export --format c99` writes: each C compiler here takes it without a
 # warning, and the program gives the bits of the library.
 #   cmake -DWRITER=... -DSOURCE=... -DWORK=... -P run.cmake

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a C99 header of a robot with errors, postures, and what the library makes of them:
 //   write_header FOLDER
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a recording of the robot of a project with errors: what the component planning can do.
 //   record PROJECT.yaml RECORDING.csv
 

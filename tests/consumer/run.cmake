@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs the build folder BUILD into the empty folder WORK and builds tests/consumer against it
 # there, with the generator, compiler and flags of BUILD: once with all of elastocal, which writes a
 # recording, and once with the component calibration, which calibrates from it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A controller with elastocal at run time: reads the model that `elastocal export --format runtime`
 // wrote, and prints the commands that put the robot where the nominal one stands at zero.
 #include <exception>

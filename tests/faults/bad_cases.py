@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bad inputs that bad_input.py tries: files damaged, keys, cells and attributes replaced, places
 that no file can be read from or written to, and options with values that they do not expect."""
 

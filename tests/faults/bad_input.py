@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Bad input of every kind, tried on the built program.
 
   bad_input.py PROGRAM SOURCE_DIR [--seed N] [--only KIND] [--table FILE]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Good inputs for a small arm, which bad_input.py then damages, and URDFs that are bad as a whole."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A laboratory's recording that can be changed, and the faults that laboratory_faults.py puts into it.
 
 A fault is (kind, description, words that name it, function that changes a Recording).

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Puts faults of a laboratory into a simulated recording and says what `calibrate` makes of them.
 
     laboratory_faults.py PROGRAM PROJECT RECORDING [--seed 1] [--only KIND...] [--judge FOLDER]

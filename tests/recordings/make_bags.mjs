@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes bag_*.mcap and messages.json with @mcap/core and @foxglove/rosmsg2-serialization, which
 // are other people's, for src/elastocal/readers/bags_test.cpp: node make_bags.mjs FOLDER, where
 // npm has installed these two, @foxglove/rosmsg and @foxglove/rosmsg-msgs-common, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes bag.db3 with the messages of make_bags.mjs (messages.json), in the tables of rosbag2."""
 import json
 import pathlib

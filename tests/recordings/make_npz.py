@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes joints_*.npz with NumPy, for src/elastocal/readers/npz_test.cpp. Run in this folder."""
 import numpy as np
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes bag1_*.bag with Debian's python3-rosbag, python3-sensor-msgs and python3-geometry-msgs: the
 messages of make_bags.mjs, for src/elastocal/readers/bags_test.cpp. Run in this folder."""
 import math

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The embedded humanoid in another size or with other legs, for studies and tests:
 
   vary_humanoid.py OUTPUT.urdf [--scale 0.5] [--legs 5|6|7] [--ankle-deg 30]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the reference of butterworth_test.cpp, by SciPy (made with SciPy 1.10.1):
 
     python3 tests/signals/sosfiltfilt.py > tests/signals/sosfiltfilt.csv

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The whole way from a robot description alone: init, inspect, design, plan, simulate, calibrate,
 validate, without an edit. Prints a table (Markdown) for docs/robots.md: how each step ended, and the
 error on held-out motions before and after calibration.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """How often `check` is right about a robot from a few postures of another day.
 
     check_days.py PROGRAM PROJECT [--robots 20] [--first 1] [--turn-deg 0.2] [--postures 8] [--work DIR]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """How often `compare` is right about two recordings of one virtual robot.
 
     compare_pairs.py PROGRAM PROJECT [--pairs 40] [--first 1] [--turn-deg 0.3] [--work DIR]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """How long `calibrate` takes on posture tables of many rows.
 
     long_table.py PROGRAM WORK [--robot ROBOT] [--rows 10000 30000 90000]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Calibrates virtual robots from nominal URDFs that are nearly, but not exactly, aligned.
 
 For each robot and each level, the origins of the nominal URDF are perturbed (or rounded), a true

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Kinematics of a URDF in plain Python, independent of the program: the true robots of the studies.
 
 Rotations are three rows, rigid transforms are pairs (R, t); metres and radians.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The robots of the studies: projects, URDFs and invented robots, nominal and with true errors."""
 
 import math

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import './style.css';
 import './print.css';
 
@@ -55,6 +56,12 @@ function contents(sections) {
   return h('nav', {'aria-label': 'Contents'}, h('ol', {}, ...items));
 }
 
+/** The licences of others' software that is in this page (notices.js puts them into the template). */
+function licences() {
+  const text = document.getElementById('notices').content.textContent;
+  return h('details', {id: 'licences'}, h('summary', {}, 'Software of others in this page, and its licences'), h('pre', {}, text));
+}
+
 function show(report) {
   const sections = (report.summary?.contact ? SECTIONS_OF_TOUCHES : SECTIONS).map((make) => build(make, report)).filter(Boolean);
   const title = report.summary?.robot ?? report.folder ?? '';
@@ -62,7 +69,8 @@ function show(report) {
   document.getElementById('app').append(
     h('a', {class: 'skip', href: '#main'}, 'Skip to the report'), header(report), contents(sections),
     h('main', {id: 'main'}, ...sections),
-    h('footer', {}, `Made by elastocal ${report.version ?? ''}. This file is complete: it needs no network and no other file.`));
+    h('footer', {}, h('p', {}, `Made by elastocal ${report.version ?? ''}. This file is complete: it needs no network and no other file.`),
+      licences()));
 }
 
 const report = JSON.parse(document.getElementById('report-data').textContent);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The top of a report as a PNG: node test/picture.mjs REPORT.html PICTURE.png
 import {resolve} from 'node:path';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the tests of one folder: node test/run.mjs unit | browser
 // Ends with 77 where a browser is needed and there is none: ctest calls that skipped.
 import {spawnSync} from 'node:child_process';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A report made by hand: every section has data, and some names are HTML.
 import {EVIL, joints, markerPositions, markers, stl, urdf, WAIST} from './sample_robot.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A little robot of five joints, as a URDF and as numbers, for reports made by hand.
 
 export const EVIL = '<script>alert(1)</script>';

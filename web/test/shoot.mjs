@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of a report for people to look at: node test/shoot.mjs REPORT.html FOLDER
 import {mkdirSync} from 'node:fs';
 import {resolve} from 'node:path';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "elastocal/calibration/closed_chains.hpp"
 
 #include <gtest/gtest.h>

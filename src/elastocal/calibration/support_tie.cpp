@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "elastocal/calibration/support_tie.hpp"
 
 #include "elastocal/math/rotation_vector.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Drafted projects: of the embedded humanoid against its hand-written project, of small robots
 // made up here.
 #include "elastocal/drafting/draft.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "elastocal/io/contact_file.hpp"
 
 #include <yaml-cpp/yaml.h>

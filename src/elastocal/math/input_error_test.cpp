@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "elastocal/math/input_error.hpp"
 
 #include <vector>

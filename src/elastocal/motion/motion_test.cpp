@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Balanced motions of a small biped, from the legs' kinematics to a whole set of postures.
 #include <cmath>
 

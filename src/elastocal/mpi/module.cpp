@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `batch` needs of MPI, as a module of its own: the program does not depend on an MPI library,
 // and loads this only when mpirun has started it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "elastocal/observation/seen_tag.hpp"
 
 #include "elastocal/observation/frame_view.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "elastocal/optim/normal_equations.hpp"
 
 #include <Eigen/Dense>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/contact_run.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "elastocal/report/json_reader.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinematics and Jacobian of joints and legs that give way under loads.
 #include <cmath>
 #include <set>

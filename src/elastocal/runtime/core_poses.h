@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The calibrated robot at run time, in C99 that is C++ as well: the one implementation that both
    the library (compensator.hpp) and the headers of `elastocal export --format c99` compile.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The calibrated robot at run time: kinematics, loads and deflections. See core_poses.h. */
 #ifndef ELASTOCAL_CORE_STATICS_H
 #define ELASTOCAL_CORE_STATICS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 function bytes(base64) {
   const text = atob(base64);
   const result = new Uint8Array(text.length);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Okabe and Ito's palette: told apart by people with any of the usual colour-vision deficiencies.
 export const OKABE_ITO = {
   black: '#000000', orange: '#e69f00', sky: '#56b4e9', green: '#009e73',

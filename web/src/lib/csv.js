@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** One cell; text that a spreadsheet would take for a formula is kept text. */
 function cell(value) {
   if (value === undefined || value === null || Number.isNaN(value)) return '';

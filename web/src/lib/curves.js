@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 const median = (values) => {
   const sorted = [...values].sort((a, b) => a - b);
   const middle = sorted.length >> 1;

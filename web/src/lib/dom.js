@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /**
  * Makes an element. Texts become text nodes: nothing that comes from a user's file is ever read as
  * HTML. `attributes`: `class`, `onclick`-like listeners, booleans, `style` as an object of CSS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {saveText} from './csv.js';
 import {h} from './dom.js';
 

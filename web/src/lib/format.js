@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** Numbers as a person reads them; '–' where there is none. */
 export function fixed(value, digits = 2) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';

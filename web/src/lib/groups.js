@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texts of warnings that say the same of several joints, markers, trials or times become one.
 import {list} from './format.js';
 

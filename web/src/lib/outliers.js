@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** {trial, posture} of an outlier; the summary counts the postures of all trials. A table has no trials, but lines. */
 export function placeOf(outlier, report) {
   if (outlier.line) return {trial: '', posture: `${outlier.posture + 1} (line ${outlier.line})`};

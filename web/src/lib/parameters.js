@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {userUnit} from './units.js';
 
 /** 'arm_left_1_joint' and 'theta' of 'arm_left_1_joint.theta'; the kind is behind the last dot. */

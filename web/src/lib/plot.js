@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {kindName} from './format.js';
 
 const CASES = {SW: 'sine', RP: 'random', RM: 'repeatability'};

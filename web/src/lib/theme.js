@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 const listeners = new Set();
 const darkWanted = matchMedia('(prefers-color-scheme: dark)');
 const paper = matchMedia('print');

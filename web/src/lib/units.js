@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 const DEGREE = Math.PI / 180;
 
 /** By the SI unit of summary.json: the unit that people use, and how much of it one SI unit is. */

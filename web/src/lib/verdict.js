@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {fixed, list} from './format.js';
 import {family} from './parameters.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {signedBytes, unpackTriangle} from '../lib/binary.js';
 import {css, diverging} from '../lib/colours.js';
 import {toCsv} from '../lib/csv.js';

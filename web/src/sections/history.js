@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {SERIES} from '../lib/colours.js';
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {correlationFigure} from './correlation.js';
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure, section} from '../lib/figure.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {columnsToCsv, toCsv} from '../lib/csv.js';
 import {MODEL_COLOURS} from '../lib/colours.js';
 import {h} from '../lib/dom.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {css, sequential} from '../lib/colours.js';
 import {h} from '../lib/dom.js';
 import {choice, section} from '../lib/figure.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {floats} from '../lib/binary.js';
 import {columnsToCsv} from '../lib/csv.js';
 import {OKABE_ITO} from '../lib/colours.js';

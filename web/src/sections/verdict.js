@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {h} from '../lib/dom.js';
 import {count, fixed, list, plural, significant} from '../lib/format.js';
 import {countByStatus} from '../lib/parameters.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {floats} from '../lib/binary.js';
 import {kindName} from '../lib/format.js';
 

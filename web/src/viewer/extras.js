@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 
 /** Collision spheres, carried by their links. `spheres`: [{link, centre_m, radius_m}]. */

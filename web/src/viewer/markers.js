@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 
 const UP = new THREE.Vector3(0, 1, 0);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** Stands for three's ColladaLoader, which urdf-loader imports; meshes come to us as STL only. */
 export class ColladaLoader {
   load() {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 

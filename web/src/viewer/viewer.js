@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 
 import {css, MODEL_COLOURS, OKABE_ITO, sequential} from '../lib/colours.js';

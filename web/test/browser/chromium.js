@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import {existsSync, mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';

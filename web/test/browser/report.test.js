@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page in a real browser, with a report made by hand and, where REPORT names one, with one that
 // the program made. TEMPLATE: the built page; default web/dist/index.html.
 import assert from 'node:assert/strict';
@@ -42,6 +43,13 @@ for (const [name, file] of Object.entries(files)) {
     assert.ok(jump < 0.01, `layout shift ${jump}`);
     assert.deepEqual(problems, []);
     assert.deepEqual(requests, [], 'nothing is loaded');
+    await page.close();
+  });
+
+  test(`${name}: has the licences of others' software`, async () => {
+    const {page} = await openPage(browser, file);
+    const text = await page.$eval('#licences pre', (pre) => pre.textContent);
+    for (const words of ['three 0', 'uplot 1', 'urdf-loader 0', 'MIT', 'Apache License']) assert.ok(text.includes(words), words);
     await page.close();
   });
 
