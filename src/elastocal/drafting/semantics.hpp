@@ -28,7 +28,7 @@ struct Semantics {
 
 /// Reads an SRDF (the semantic description that belongs to a URDF). Values of joints with several
 /// degrees of freedom are passed over. Throws InputError naming file and line: malformed XML, no
-/// <robot>, an element without its name or link, nothing of use.
+/// element `robot`, an element without its name or link, nothing of use.
 Semantics ParseSemantics(const std::string& text, const std::string& source);
 
 }  // namespace elastocal

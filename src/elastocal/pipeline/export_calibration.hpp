@@ -34,7 +34,7 @@ struct ExportOptions {
 /// - runtime: the file that Compensator reads (runtime/runtime_model.hpp), with elasticity,
 /// - urdf: the user's URDF with changed joint origins,
 /// - urdf_encoder: the same with the joints' zeros left to the encoders,
-/// - urdf_rising: that one, with the zeros added to the joints' <calibration rising>,
+/// - urdf_rising: that one, with the zeros added to the joints' element `calibration` (rising),
 /// - xacro: what is added to the origins of the URDF, as xacro properties,
 /// - pal: the seven numbers of each joint (xyz, rpy, zero of the encoder) as YAML,
 /// - ros2_control: the zeros of the encoders as offsets of SimpleTransmission,
