@@ -288,7 +288,7 @@ PYBIND11_MODULE(elastocal, module) {
 
   module.def("calibrate", CalibrateFiles, "project"_a, "recordings"_a, py::kw_only(),
              "folds"_a = std::nullopt, "seed"_a = std::nullopt, "threads"_a = 1,
-             "zero_offsets"_a = "origin", "prior"_a = Path(), "days"_a = 1.0, Unlocked(),
+             "zero_offsets"_a = "origin", "prior"_a = "", "days"_a = 1.0, Unlocked(),
              "Calibrates from posture tables or recording folders, like the command of that name.");
   module.def(
       "validate",

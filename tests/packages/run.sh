@@ -32,7 +32,7 @@ mv "$work"/first/*.deb "$work/given"
 cat >"$work/given/inside" <<'INSIDE'
 set -e
 cd /media
-apt-get -qq update && apt-get -qq --download-only --no-install-recommends install ./*.deb >/dev/null || exit 75
+apt-get -qq --download-only --no-install-recommends install ./*.deb >/dev/null || exit 75
 dpkg -l gcc cmake 2>/dev/null | grep ^ii && { echo "this Debian is not bare"; exit 1; }
 apt-get -qq --no-install-recommends install ./*.deb >/dev/null
 elastocal --version
