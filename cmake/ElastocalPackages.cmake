@@ -6,6 +6,7 @@
 #   libelastocal-planning0  planning_libraries  what needs MuJoCo, Ipopt and Assimp
 #   libelastocal-dev        development         headers, and the package for CMake
 #   python3-elastocal       python              the Python module
+#   elastocal-mpi           mpi                 what `elastocal batch` needs under mpirun, where MPI is installed
 #
 # Dependencies follow from the libraries that the files load (dpkg-shlibdeps). Packages need each other in the same
 # version: before 1.0 a minor version may break. The same commit gives the same bytes (finish_package.cmake).
@@ -60,4 +61,9 @@ set(python ${Python_VERSION_MAJOR}.)
 elastocal_package(python python3-elastocal python
   "libelastocal0 ${same}, python3 (>= ${python}${Python_VERSION_MINOR}~), python3 (<< ${python}${next}~), python3-numpy"
   "calibration of robots: Python module" "${what}\nThis package has the Python module elastocal.")
+if(TARGET elastocal_mpi)
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
+  elastocal_package(mpi elastocal-mpi science "elastocal ${same}, openmpi-bin" "calibration of robots: batches by MPI"
+    "${what}\nThis package has what elastocal batch needs under mpirun.")
+endif()
 include(CPack)

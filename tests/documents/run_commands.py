@@ -42,7 +42,6 @@ USER_FILES = {
         "project.yaml": "source:models/talos/project.yaml", "talos.urdf": "source:models/talos/talos.urdf",
         "experiment": "chain:recording", "other_day": "chain:recording_random", "experiment_autumn": "chain:recording",
     },
-    "docs/robots.md": {"robot.urdf": "source:tests/robots/arm6.urdf", "robot.srdf": "source:tests/documents/arm6.srdf"},
     "docs/diagnose.md": {"training.csv": f"shared:{ARM}"},
     "docs/python.md": {"talos_left_arm_02_10_contact.csv": f"shared:{ARM}"},
     "docs/howto/laser_tracker.md": {"arm.csv": f"shared:{ARM}", "arm_again.csv": f"shared:{ARM}"},

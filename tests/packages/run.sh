@@ -28,6 +28,7 @@ for package in "$work"/first/*.deb; do
   cmp "$package" "$work/second/${package##*/}" || { echo "the same files gave other bytes"; exit 1; }
 done
 mv "$work"/first/*.deb "$work/given"
+rm -f "$work"/given/elastocal-mpi_*.deb  # MPI brings a hundred packages
 
 cat >"$work/given/inside" <<'INSIDE'
 set -e
