@@ -14,8 +14,9 @@ namespace {
 
 TEST_F(Program, HelpHasAnExampleForEveryCommand) {
   EXPECT_EQ(RunProgram("--help").exit_code, 0);
-  for (const char* command : {"init", "inspect", "design", "assess", "plan", "simulate",
-                              "calibrate", "validate", "compare", "report", "demo"}) {
+  for (const char* command :
+       {"init", "inspect", "design", "assess", "plan", "simulate", "calibrate", "validate", "check",
+        "compare", "batch", "report", "demo"}) {
     const ProgramResult help = RunProgram(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Example: elastocal " + std::string(command)), std::string::npos);
@@ -23,7 +24,7 @@ TEST_F(Program, HelpHasAnExampleForEveryCommand) {
       EXPECT_NE(help.out.find(option), std::string::npos) << command << option;
     }
     const std::string name = command;
-    const bool draws = name != "compare" && name != "report" && name != "init";
+    const bool draws = name != "compare" && name != "batch" && name != "report" && name != "init";
     EXPECT_EQ(help.out.find("--seed") != std::string::npos, draws) << command;
   }
 }

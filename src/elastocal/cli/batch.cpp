@@ -228,8 +228,8 @@ void AddBatch(CLI::App& app, Action& action) {
   AddOutputOptions(*command, options->common);
   command->footer(
       "What is done is not done again: after an interruption give the same command.\n"
-      "Examples: elastocal batch fleet.yaml -o fleet\n"
-      "          mpirun -n 8 elastocal batch fleet.yaml -o fleet");
+      "Example: elastocal batch fleet.yaml -o fleet\n"
+      "Example: mpirun -n 8 elastocal batch fleet.yaml -o fleet");
   command->callback([&action, options] { action = [options] { return Batch(*options); }; });
 }
 

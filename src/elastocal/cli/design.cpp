@@ -239,8 +239,8 @@ void AddDesign(CLI::App& app, Action& action) {
   AddFollowUpOptions(*command, *options);
   AddCommonOptions(*command, options->common);
   command->footer(
-      "Examples: elastocal design models/talos/project.yaml -o postures.yaml\n"
-      "          elastocal design project.yaml --after out --check -o check.yaml");
+      "Example: elastocal design models/talos/project.yaml -o postures.yaml\n"
+      "Example: elastocal design project.yaml --after out --check -o check.yaml");
   command->callback([&action, options] { action = [options] { return Design(*options); }; });
 }
 
