@@ -12,6 +12,7 @@ skip() {
 }
 ((EUID == 0)) || skip "only root can make a Debian to install into."
 command -v mmdebstrap >/dev/null || skip "mmdebstrap is not installed (scripts/setup --dev)."
+unshare --mount true 2>/dev/null || skip "mounts are not allowed here."
 sources=(/etc/apt/sources.list.d/debian.sources)
 [[ -e "${sources[0]}" ]] || sources=(/etc/apt/sources.list)
 
@@ -61,11 +62,12 @@ HOOK
 
 # The hook runs in the finished root, with mounts of its own. What fails before it is the network, not the packages.
 status=0
-mmdebstrap --quiet --variant=minbase --mode=root --skip=cleanup --dpkgopt=force-unsafe-io \
+timeout 450 mmdebstrap --quiet --variant=minbase --mode=root --skip=cleanup --dpkgopt=force-unsafe-io \
   --customize-hook="unshare --mount bash -e '$work/hook' \"\$1\"" \
   bookworm /dev/null "${sources[@]}" 2>"$work/mmdebstrap.log" || status=$?
 cat "$work/mmdebstrap.log"
 ((status == 0)) && exit 0
+((status != 124)) || skip "the mirror took too long."
 [[ -e "$work/root_is_there" ]] || skip "no Debian can be made here: $(tail -n 1 "$work/mmdebstrap.log")"
 [[ "$(cat "$work/status" 2>/dev/null)" != 75 ]] || skip "Debian's packages cannot be downloaded."
 exit 1

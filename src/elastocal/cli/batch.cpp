@@ -151,8 +151,10 @@ std::string DescribeReport(const FleetReport& report, const fs::path& output) {
     text += fmt::format("Failed (see {}/NAME.log): {}\n", output.string(),
                         FirstOf(failed, kMostFindings));
   }
-  text += fmt::format("{} robots; half of their URDFs err by less than {} mm\n", report.robots,
-                      Millimetres(report.family.median_error, 3));
+  if (report.robots > 0) {
+    text += fmt::format("{} robots; half of their URDFs err by less than {} mm\n", report.robots,
+                        Millimetres(report.family.median_error, 3));
+  }
   text += DescribeFamily(report);
   if (!report.prior.parameters.empty()) {
     text += fmt::format("Prior for the next robot: calibrate --prior {} --days 0\n",

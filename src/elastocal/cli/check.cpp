@@ -109,6 +109,7 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
 
 int Check(const CheckCommand& command) {
   const Project project = ReadProject(command.project);
+  CheckHasMarkers(project);
   std::vector<std::filesystem::path> inputs = InputFiles(project, {command.recording});
   const CalibrationFiles files = FindCalibrationFiles(command.calibration);
   inputs.insert(inputs.end(), {files.calibration, files.covariance});
