@@ -170,8 +170,8 @@ def strange_places(tries, base):
     }
     for what, words in reads.items():
         for label, place in places.items():
-            tries.add("places of inputs", f"{what}: {label}", words(place),
-                      os.path.basename(str(place)) or "is empty")
+            named = [os.path.basename(str(place))] if str(place) else ["is empty", "is required"]
+            tries.add("places of inputs", f"{what}: {label}", words(place), *named)
     outputs = dict(places, full="/dev/full", processes="/proc/x/y", kernel="/sys")
     outputs.pop("device")
     for label in ("pipe", "terminal", "none", "not UTF-8"):

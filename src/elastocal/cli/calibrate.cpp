@@ -28,6 +28,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   OutputSet outputs;
   if (!options.prior.empty()) {
     const CalibrationFiles earlier = FindCalibrationFiles(options.prior);
+    ReadCalibrationFiles(earlier);  // refused before anything is read that takes long
     inputs.insert(inputs.end(), {earlier.calibration, earlier.covariance});
   }
   outputs.Protect(inputs);
