@@ -131,7 +131,7 @@ TEST_F(InventedArm, OfWhichNothingIsInDoubtIsKept) {
 TEST_F(InventedArm, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
   double updated = 0.0, first = 0.0, few = 0.0;
   for (int robot = 0; robot < 10; ++robot) {
-    const auto seed = static_cast<std::uint64_t>(10 * robot);
+    const auto seed = 10 * static_cast<std::uint64_t>(robot);
     const Eigen::VectorXd truth = Truth(robot);
     const CalibrationResult start = Fit(Record(truth, 100, seed + 1));
     const Recording today = Record(truth, 10, seed + 2);
@@ -152,7 +152,7 @@ TEST_F(InventedArm, EightPosturesTellWhichJointHasMoved) {
   constexpr int kRobots = 40;
   int named = 0, others = 0, false_alarms = 0, covered = 0;
   for (int robot = 0; robot < kRobots; ++robot) {
-    const auto seed = static_cast<std::uint64_t>(10 * robot);
+    const auto seed = 10 * static_cast<std::uint64_t>(robot);
     const Eigen::VectorXd truth = Truth(robot);
     const EarlierEstimate earlier = EstimateOf(Fit(Record(truth, 30, seed + 1)));
     false_alarms += Check(earlier, Record(truth, 8, seed + 2)).changed() ? 1 : 0;

@@ -85,12 +85,12 @@ std::vector<std::unique_ptr<TaskSlot>> MpiRanks::OtherRanks() {
   return slots;
 }
 
-void MpiRanks::Dismiss() {
+void MpiRanks::Dismiss() const {
   const double message[3] = {kDismissed, 0.0, 0.0};
   for (int rank = 1; rank < size_; ++rank) mpi_.send(rank, message);
 }
 
-void MpiRanks::Serve(TaskSlot& slot) {
+void MpiRanks::Serve(TaskSlot& slot) const {
   constexpr std::chrono::milliseconds kLook{2};
   for (;;) {
     double message[3];

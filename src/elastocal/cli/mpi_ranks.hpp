@@ -26,9 +26,9 @@ class MpiRanks {
   /// Of rank 0: a slot for each other rank, which must not outlive this.
   std::vector<std::unique_ptr<TaskSlot>> OtherRanks();
   /// Of rank 0: the others may go home.
-  void Dismiss();
+  void Dismiss() const;
   /// Of another rank: does what rank 0 gives it, until it is dismissed.
-  void Serve(TaskSlot& slot);
+  void Serve(TaskSlot& slot) const;
 
  private:
   friend class RankSlot;
