@@ -15,8 +15,6 @@
 
 #include "elastocal/math/input_error.hpp"
 
-extern char** environ;
-
 namespace elastocal {
 namespace {
 

@@ -10,6 +10,7 @@ constexpr int kTag = 1;
 
 }  // namespace
 
+// NOLINTBEGIN(readability-identifier-naming): names of C
 extern "C" {
 
 /// Gives the rank of this process and their number.
@@ -36,3 +37,4 @@ int elastocal_mpi_poll(int rank, double* numbers) {
 
 void elastocal_mpi_finish() { MPI_Finalize(); }
 }
+// NOLINTEND(readability-identifier-naming)
