@@ -9,24 +9,6 @@
 namespace elastocal {
 namespace {
 
-/// Draws `count` postures. If there are none, `result` gets the reason.
-std::vector<Eigen::VectorXd> DrawPool(PostureProblem& problem, int count, std::uint64_t seed,
-                                      DesignResult& result) {
-  FeasibleSampler sampler(problem.feasible, seed);
-  std::vector<Eigen::VectorXd> pool;
-  while (static_cast<int>(pool.size()) < count) {
-    const auto drawn = sampler.Draw();
-    if (!drawn) {
-      result.status = DesignResult::Status::kNoPosture;
-      result.blame = sampler.Blame();
-      break;
-    }
-    pool.push_back(*drawn);
-  }
-  result.sampling = sampler.count();
-  return pool;
-}
-
 /// Index of the candidate that raises log det of the information most.
 int FindMostInformative(const Eigen::MatrixXd& information,
                         const std::vector<Eigen::MatrixXd>& psi) {
@@ -44,6 +26,23 @@ int FindMostInformative(const Eigen::MatrixXd& information,
 }
 
 }  // namespace
+
+std::vector<Eigen::VectorXd> DrawPool(PostureProblem& problem, int count, std::uint64_t seed,
+                                      DesignResult& result) {
+  FeasibleSampler sampler(problem.feasible, seed);
+  std::vector<Eigen::VectorXd> pool;
+  while (static_cast<int>(pool.size()) < count) {
+    const auto drawn = sampler.Draw();
+    if (!drawn) {
+      result.status = DesignResult::Status::kNoPosture;
+      result.blame = sampler.Blame();
+      break;
+    }
+    pool.push_back(*drawn);
+  }
+  result.sampling = sampler.count();
+  return pool;
+}
 
 DesignResult ExchangeDesign(PostureProblem& problem, int postures, std::uint64_t seed,
                             const ExchangeOptions& options) {

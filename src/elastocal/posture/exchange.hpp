@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "elastocal/posture/nocp.hpp"
 
@@ -11,6 +12,10 @@ struct ExchangeOptions {
   int pool = 1000;  ///< random feasible postures to choose from
   int max_rounds = 100;
 };
+
+/// Draws `count` random feasible postures; of fewer, `result` gets the reason.
+std::vector<Eigen::VectorXd> DrawPool(PostureProblem& problem, int count, std::uint64_t seed,
+                                      DesignResult& result);
 
 /// A baseline, which most tools offer: chooses `postures` postures of a pool of random feasible
 /// ones by exchange (Mitchell's DETMAX). It adds the candidate that raises O1 most and drops the

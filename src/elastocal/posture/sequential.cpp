@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "elastocal/posture/random_posture.hpp"
+#include "elastocal/posture/exchange.hpp"
 
 namespace elastocal {
 namespace {
@@ -114,18 +114,7 @@ Eigen::VectorXd ChangeDeviations(const PriorKnowledge& prior, const Eigen::Matri
 DesignResult SequentialDesign(PostureProblem& problem, const PriorKnowledge& prior,
                               std::uint64_t seed, const SequentialOptions& options) {
   DesignResult result{PostureSet(problem.column_count())};
-  FeasibleSampler sampler(problem.feasible, seed);
-  std::vector<Eigen::VectorXd> pool;
-  while (static_cast<int>(pool.size()) < options.pool) {
-    const auto drawn = sampler.Draw();
-    if (!drawn) {
-      result.status = DesignResult::Status::kNoPosture;
-      result.blame = sampler.Blame();
-      break;
-    }
-    pool.push_back(*drawn);
-  }
-  result.sampling = sampler.count();
+  const std::vector<Eigen::VectorXd> pool = DrawPool(problem, options.pool, seed, result);
   if (pool.empty()) return result;
 
   Search search(problem, prior, options, pool);
