@@ -69,6 +69,12 @@ TEST_F(Batch, ThePriorOfAFleetServesTheNextRobot) {
       RunProgram("calibrate " + project + " --recording " + Folder("next") + " --prior " +
                  Folder("fleet") + "/prior --days 0 -o " + Folder("out"));
   EXPECT_EQ(result.exit_code, 0) << result.err;
+  // It counts: without it the estimates are others.
+  ASSERT_EQ(RunProgram("calibrate " + project + " --recording " + Folder("next") + " -o " +
+                       Folder("alone"))
+                .exit_code,
+            0);
+  EXPECT_NE(Read("out", "covariance.csv"), Read("alone", "covariance.csv"));
 }
 
 TEST_F(Batch, TheSameUnderMpirun) {

@@ -6,25 +6,16 @@
 
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
-#include "elastocal/project/project.hpp"
-#include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/calibration_comparison.hpp"
+#include "tests/invented_arm.hpp"
 #include "tests/scratch_folder.hpp"
-#include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
 
-class ComparisonOfCalibrations : public ::testing::Test {
+class ComparisonOfCalibrations : public InventedArm {
  protected:
   static constexpr int kPairs = 40;
-  static constexpr double kDegree = 0.017453292519943295;
-
-  void SetUp() override {
-    Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
-    model_ = MakeErrorModel(project.tree, project.markers, project.placement);
-    base_ = FindBaseParameters(model_, {});
-  }
 
   /// Each joint's range cut to this part of it: badly excited.
   void Narrow(double part) {
@@ -34,21 +25,6 @@ class ComparisonOfCalibrations : public ::testing::Test {
       joint.limits.lower = middle - half;
       joint.limits.upper = middle + half;
     }
-  }
-
-  Eigen::VectorXd Truth(int pair) const {
-    std::map<ParameterKind, double> sd;
-    for (const auto kind : {ParameterKind::kTheta, ParameterKind::kAlpha, ParameterKind::kBeta,
-                            ParameterKind::kGamma}) {
-      sd[kind] = 0.5 * kDegree;
-    }
-    for (const auto kind : {ParameterKind::kR, ParameterKind::kD, ParameterKind::kB}) {
-      sd[kind] = 1e-3;
-    }
-    sd[ParameterKind::kMarker] = 2e-3;
-    std::vector<int> all(model_.parameters.size());
-    for (int i = 0; i < model_.parameter_count(); ++i) all[i] = i;
-    return DrawErrors(model_, all, sd, 100 + pair);
   }
 
   CalibrationEstimate Calibrated(const Eigen::VectorXd& truth, int postures, int seed) const {
@@ -65,7 +41,7 @@ class ComparisonOfCalibrations : public ::testing::Test {
   /// Compares kPairs pairs between which the parameter (empty: none) changed by `change`.
   void CompareAll(int postures, const std::string& parameter, double change) {
     for (int pair = 0; pair < kPairs; ++pair) {
-      const Eigen::VectorXd truth = Truth(pair);
+      const Eigen::VectorXd truth = Truth(pair, 2e-3);
       Eigen::VectorXd later = truth;
       if (!parameter.empty()) later[FindParameter(model_.parameters, parameter)] += change;
       const CalibrationComparison comparison = CompareCalibrations(
@@ -88,8 +64,6 @@ class ComparisonOfCalibrations : public ::testing::Test {
     RecordProperty("covered_per_mille", 1000 * covered_ / intervals_);
   }
 
-  ErrorModel model_;
-  BaseParameters base_;
   ScratchFolder scratch_;
   int found_ = 0, false_alarms_ = 0, covered_ = 0, intervals_ = 0;
 };

@@ -7,35 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/camera_scale.hpp"
-#include "elastocal/project/project.hpp"
-#include "elastocal/simulation/synthetic_recording.hpp"
-#include "tests/test_files.hpp"
+#include "tests/invented_arm.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
-
-class InventedArm : public ::testing::Test {
+class KnownArm : public InventedArm {
  protected:
-  void SetUp() override {
-    const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
-    model_ = MakeErrorModel(project.tree, project.markers, project.placement);
-    base_ = FindBaseParameters(model_, {});
-  }
-
-  Eigen::VectorXd Truth(int robot) const {
-    std::map<ParameterKind, double> sd;
-    for (const auto kind : {ParameterKind::kTheta, ParameterKind::kAlpha, ParameterKind::kBeta,
-                            ParameterKind::kGamma}) {
-      sd[kind] = 0.5 * kDegree;
-    }
-    for (const auto kind : {ParameterKind::kR, ParameterKind::kD, ParameterKind::kB}) {
-      sd[kind] = 1e-3;
-    }
-    return DrawErrors(model_, All(), sd, 100 + static_cast<std::uint64_t>(robot));
-  }
-
   /// Markers are glued on anew each day.
   Recording Record(Eigen::VectorXd truth, int postures, std::uint64_t seed) const {
     truth += DrawErrors(model_, All(), {{ParameterKind::kMarker, 2e-3}}, seed);
@@ -81,18 +59,9 @@ class InventedArm : public ::testing::Test {
     }
     return RefitExternals(model_, other, base_, {}, errors).marker_sd;
   }
-
-  std::vector<int> All() const {
-    std::vector<int> all(model_.parameters.size());
-    for (int i = 0; i < model_.parameter_count(); ++i) all[i] = i;
-    return all;
-  }
-
-  ErrorModel model_;
-  BaseParameters base_;
 };
 
-TEST_F(InventedArm, OfNothingButThePriorChangesNothing) {
+TEST_F(KnownArm, OfNothingButThePriorChangesNothing) {
   const Recording recording = Record(Truth(1), 30, 1);
   CalibrationOptions options;
   options.widen_prior = false;
@@ -115,7 +84,7 @@ TEST_F(InventedArm, OfNothingButThePriorChangesNothing) {
             1e-6 * plain.posterior.data_information.norm());
 }
 
-TEST_F(InventedArm, OfWhichNothingIsInDoubtIsKept) {
+TEST_F(KnownArm, OfWhichNothingIsInDoubtIsKept) {
   CalibrationOptions options;
   options.earlier = EstimateOf(Fit(Record(Truth(2), 30, 2)));
   options.earlier.covariance *= 1e-8;
@@ -128,7 +97,7 @@ TEST_F(InventedArm, OfWhichNothingIsInDoubtIsKept) {
 }
 
 // A hundred postures and ten of another day, by which the first calibration is updated.
-TEST_F(InventedArm, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
+TEST_F(KnownArm, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
   double updated = 0.0, first = 0.0, few = 0.0;
   for (int robot = 0; robot < 10; ++robot) {
     const auto seed = 10 * static_cast<std::uint64_t>(robot);
@@ -148,7 +117,17 @@ TEST_F(InventedArm, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
   RecordProperty("few_nm", static_cast<int>(1e8 * few));
 }
 
-TEST_F(InventedArm, EightPosturesTellWhichJointHasMoved) {
+TEST_F(KnownArm, TheZeroOfASlidingJointIsALength) {
+  const auto is_zero = [&](const char* name) {
+    return IsZeroOffset(model_.parameters[FindParameter(model_.parameters, name)], model_.tree);
+  };
+  EXPECT_TRUE(is_zero("rail_joint.r"));
+  EXPECT_FALSE(is_zero("rail_joint.theta"));
+  EXPECT_TRUE(is_zero("elbow_joint.theta"));
+  EXPECT_FALSE(is_zero("elbow_joint.r"));
+}
+
+TEST_F(KnownArm, EightPosturesTellWhichJointHasMoved) {
   constexpr int kRobots = 40;
   int named = 0, others = 0, false_alarms = 0, covered = 0;
   for (int robot = 0; robot < kRobots; ++robot) {
@@ -177,7 +156,7 @@ TEST_F(InventedArm, EightPosturesTellWhichJointHasMoved) {
 }
 
 // Errors of single lengths have no common pattern; a wrong scale of the cameras has.
-TEST_F(InventedArm, AWrongScaleOfAllPositionsIsToldFromErrorsOfSingleLengths) {
+TEST_F(KnownArm, AWrongScaleOfAllPositionsIsToldFromErrorsOfSingleLengths) {
   constexpr int kRobots = 40;
   double squares = 0.0;
   int found = 0;

@@ -28,7 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFindings = 10;
-constexpr int kLost = 128;  // from this exit code on a task was killed
 
 struct BatchCommand {
   CommonOptions common;

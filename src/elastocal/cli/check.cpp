@@ -135,17 +135,7 @@ void AddCheck(CLI::App& app, Action& action) {
   auto options = std::make_shared<CheckCommand>();
   CLI::App* command = app.add_subcommand(
       "check", "Tell from a few postures whether a calibration still holds, and which joint moved");
-  command->add_option("project", options->project, "Project file (YAML)")->required();
-  command
-      ->add_option("--calibration", options->calibration,
-                   "Output folder of calibrate, or a calibration.yaml with its covariance.csv")
-      ->required()
-      ->type_name("DIR");
-  command
-      ->add_option("--recording", options->recording,
-                   "Table of static postures (CSV), or a folder with experiment.yaml")
-      ->required()
-      ->type_name("FILE");
+  AddAppliedCalibration(*command, options->project, options->calibration, options->recording);
   command
       ->add_option("--level", options->check.joints.level,
                    "Chance that any joint of an unchanged robot is called moved all the same")

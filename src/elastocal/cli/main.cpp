@@ -50,6 +50,20 @@ void AddOutputOptions(CLI::App& command, CommonOptions& options) {
                    "same together");
 }
 
+void AddAppliedCalibration(CLI::App& command, std::string& project, std::string& calibration,
+                           std::string& recording) {
+  command.add_option("project", project, "Project file (YAML)")->required();
+  command
+      .add_option("--calibration", calibration, "Output folder of calibrate, or a calibration.yaml")
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option("--recording", recording,
+                  "Table of static postures (CSV), or a folder with experiment.yaml")
+      ->required()
+      ->type_name("FILE");
+}
+
 void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string& project) {
   command
       .add_option("calibration", calibration, "Output folder of calibrate, or a calibration.yaml")

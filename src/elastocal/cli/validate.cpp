@@ -109,17 +109,7 @@ void AddValidate(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("validate",
                                          "Apply a calibration to another recording: waist and "
                                          "markers refitted (or nothing, --frozen)");
-  command->add_option("project", options->project, "Project file (YAML)")->required();
-  command
-      ->add_option("--calibration", options->calibration,
-                   "Output folder of calibrate, or a calibration.yaml")
-      ->required()
-      ->type_name("FILE");
-  command
-      ->add_option("--recording", options->recording,
-                   "Table of static postures (CSV), or a folder with experiment.yaml")
-      ->required()
-      ->type_name("FILE");
+  AddAppliedCalibration(*command, options->project, options->calibration, options->recording);
   command
       ->add_option("-o,--output", options->output,
                    "Folder for validation.json and a report with it: that of the calibration")

@@ -21,12 +21,6 @@ struct Known {
   CalibrationEstimate estimate;
 };
 
-bool IsZero(const Parameter& parameter, const RobotTree& tree) {
-  if (parameter.joint < 0) return false;
-  const bool prismatic = tree.joints[parameter.joint].type == JointType::kPrismatic;
-  return parameter.kind == (prismatic ? ParameterKind::kR : ParameterKind::kTheta);
-}
-
 /// All that the chain's postures may tell, identifiable or not: what is known settles the rest.
 std::vector<int> Columns(const DesignedChain& chain) {
   std::vector<int> columns;
@@ -66,7 +60,7 @@ PriorKnowledge KnowledgeOf(const DesignedChain& chain, const std::vector<int>& c
     });
     if (at == columns.end()) continue;
     const Parameter& parameter = model.parameters[*at];
-    if (!IsZero(parameter, model.tree)) continue;
+    if (!IsZeroOffset(parameter, model.tree)) continue;
     if (!Asked(model.tree.joints[parameter.joint].name, options.joints)) continue;
     knowledge.change_sd[at - columns.begin()] = sizes[static_cast<Eigen::Index>(n)];
   }

@@ -136,7 +136,7 @@ class Evidence {
         candidate = candidates_.insert(candidate, {.joint = joint, .quantities = {}});
       }
       candidate->quantities.push_back({parameter.name, parameter.unit,
-                                       parameter.kind == ParameterKind::kTheta, static_cast<int>(i),
+                                       IsZeroOffset(parameter, model.tree), static_cast<int>(i),
                                        size->second / unit_[static_cast<Eigen::Index>(i)]});
     }
   }
@@ -186,14 +186,16 @@ JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double 
   Explanation best = evidence.Explain(candidate.quantities);
   suspect.test = TestOf(best, freedom);
   suspect.log_evidence = best.evidence;
-  if (!offset.quantities.empty() && offset.quantities.size() < candidate.quantities.size()) {
+  if (!offset.quantities.empty()) {
     const Explanation zero = evidence.Explain(offset.quantities);
     const DifferenceTest test = TestOf(zero, freedom);
     suspect.zero_told = zero.told > 0;
-    if (test.p < suspect.test.p) suspect.test = test;
-    suspect.test.p = std::min(1.0, 2.0 * suspect.test.p);  // the smaller one of two
-    suspect.log_evidence = LogMean(zero.evidence, best.evidence);
     suspect.zero_alone = zero.evidence >= best.evidence;
+    if (offset.quantities.size() < candidate.quantities.size()) {
+      if (test.p < suspect.test.p) suspect.test = test;
+      suspect.test.p = std::min(1.0, 2.0 * suspect.test.p);  // the smaller one of two
+      suspect.log_evidence = LogMean(zero.evidence, best.evidence);
+    }
     if (suspect.zero_alone) best = zero;
   }
   const std::vector<Quantity>& changed =
@@ -239,6 +241,12 @@ std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<J
 }
 
 }  // namespace
+
+bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree) {
+  if (parameter.joint < 0) return false;
+  const bool prismatic = tree.joints[parameter.joint].type == JointType::kPrismatic;
+  return parameter.kind == (prismatic ? ParameterKind::kR : ParameterKind::kTheta);
+}
 
 Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& model,
                               const Prior& prior) {

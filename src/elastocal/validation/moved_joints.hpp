@@ -50,6 +50,9 @@ struct JointCheckOptions {
   double certainty = 0.95;  ///< probability from which on a single joint is named
 };
 
+/// Whether a parameter is what a turned encoder changes: theta, of a prismatic joint r.
+bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree);
+
 /// Standard deviation of a change that a joint's parameters may have made at once: twice the prior
 /// of a new robot; 0 of parameters that do not jump (springs, legs, sensors). By the names of
 /// `earlier`.
