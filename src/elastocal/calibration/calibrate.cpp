@@ -28,8 +28,8 @@ bool IsEstimated(ParameterKind parameter, ModelKind kind) {
 }
 
 /// What is estimated: all parameters but those held, also those that cannot be told from others:
-/// of these, the prior makes the smallest combination that explains the data. In trials the waist
-/// has a pose in each posture instead of T0.
+/// of these, the prior makes the smallest combination that explains the data. Where the waist
+/// moves, it has a pose in each posture instead of T0.
 std::vector<int> OfKind(const ErrorModel& model, const BaseParameters& base, ModelKind kind,
                         bool waist_moves) {
   std::vector<int> free;
@@ -246,7 +246,7 @@ void Estimate(const ErrorModel& model, const Recording& recording, const BasePar
               const CalibrationOptions& options, const Selection* fixed,
               const Eigen::VectorXd& delta, CalibrationResult& result) {
   result.model = model;
-  const bool waist_moves = !recording.trials.empty();
+  const bool waist_moves = HasPoseByPosture(recording);
   // T0 starts at zero.
   if (!waist_moves) result.model.T_ref_waist = RegisterWaist(model, recording);
   result.group = NoiseGroups(model, recording);

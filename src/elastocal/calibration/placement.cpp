@@ -97,7 +97,7 @@ std::vector<Footing> FindFootings(const ErrorModel& model, const Recording& reco
 
 Placement RegisterPlacement(const ErrorModel& model, const Recording& recording, double slip_m) {
   Placement placement;
-  if (recording.trials.empty()) return placement;
+  if (!HasPoseByPosture(recording)) return placement;
   std::vector<int> unseen;
   for (int i = 0; i < recording.posture_count(); ++i) {
     int seen = 0;

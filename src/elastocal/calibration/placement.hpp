@@ -24,8 +24,8 @@ struct Slip {
   double distance = 0.0;  ///< of its markers, m
 };
 
-/// Where the robot stood in a recording of trials: what belongs to the experiment, not to the
-/// robot. Empty for a table of postures, whose waist does not move.
+/// Where the robot stood in each posture: what belongs to the experiment, not to the robot. Empty
+/// for a table of postures whose waist does not move.
 struct Placement {
   std::vector<Footing> footings;
   std::vector<int> footing;              ///< by posture; -1: nothing ties the waist to the floor
@@ -45,7 +45,7 @@ std::vector<Footing> FindFootings(const ErrorModel& model, const Recording& reco
 
 /// A first guess of all poses, by the nominal kinematics and marker positions: the waist of each
 /// posture by its markers (least squares), each footing by the first of its waists. A posture with
-/// fewer than three markers gets the waist of its neighbour. Empty for a table of postures.
+/// fewer than three markers gets the waist of its neighbour. Empty where the waist does not move.
 Placement RegisterPlacement(const ErrorModel& model, const Recording& recording, double slip_m);
 
 }  // namespace elastocal

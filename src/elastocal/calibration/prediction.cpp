@@ -7,6 +7,7 @@
 
 #include "elastocal/calibration/loads.hpp"
 #include "elastocal/calibration/outliers.hpp"
+#include "elastocal/calibration/placing_markers.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/leg_load.hpp"
@@ -72,7 +73,7 @@ class Predictor {
     loads_ = ComputeLoads(model, recording, delta, placement_, options.load);
     for (std::size_t f = 0; f < placement_.footings.size(); ++f) PlaceFooting(f, known);
     for (int i = 0; i < recording.posture_count(); ++i) {
-      if (placement_.footing[i] < 0) PlaceByWaistMarkers(i);
+      if (placement_.footing[i] < 0) PlaceByMarkers(i);
     }
   }
 
@@ -123,7 +124,7 @@ class Predictor {
   }
 
   /// Markers that place a footing, see FootingBy.
-  std::vector<char> PlacingMarkers(const Footing& footing) const {
+  std::vector<char> MarkersThatPlace(const Footing& footing) const {
     std::vector<char> all(model_.marker_count(), 1);
     if (by_ == FootingBy::kAllMarkers || footing.leg < 0) return all;
     std::vector<char> on_foot(model_.marker_count(), 0);
@@ -140,7 +141,7 @@ class Predictor {
 
   void PlaceFooting(std::size_t f, const Placement* known) {
     const Footing& footing = placement_.footings[f];
-    const std::vector<char> placing = PlacingMarkers(footing);
+    const std::vector<char> placing = MarkersThatPlace(footing);
     std::vector<Transform> T_foot_waist;
     Registration registration;
     for (int i : footing.postures) {
@@ -159,12 +160,13 @@ class Predictor {
     }
   }
 
-  void PlaceByWaistMarkers(int posture) {
+  void PlaceByMarkers(int posture) {
     Registration registration;
-    const auto on_waist = [&](int m) {
-      return model_.tree.links[model_.markers[m].link].body == 0;
+    const std::vector<int> placing = PlacingMarkers(model_, recording_, posture);
+    const auto places = [&](int m) {
+      return std::binary_search(placing.begin(), placing.end(), m);
     };
-    AddMarkers(recording_, posture, MarkersInWaist(posture), on_waist, registration);
+    AddMarkers(recording_, posture, MarkersInWaist(posture), places, registration);
     const auto T = registration.Solve();
     if (T) {
       placement_.T_ref_waist[posture] = *T;
@@ -186,7 +188,7 @@ class Predictor {
 Prediction Predict(const ErrorModel& model, const Eigen::VectorXd& delta,
                    const Recording& recording, const CalibrationOptions& options,
                    const Placement* footings, FootingBy by) {
-  if (recording.trials.empty()) {
+  if (!HasPoseByPosture(recording)) {
     Prediction prediction;
     prediction.positions = PredictedPositions(model, recording, delta, options);
     prediction.distances = MarkerDistances(recording, prediction.positions);

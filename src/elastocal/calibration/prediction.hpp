@@ -17,7 +17,7 @@ struct Prediction {
   /// was not seen or the waist could not be placed.
   Eigen::MatrixXd distances;
   /// Where the model says that the robot stood: the waist of each posture as the leg on its foot
-  /// gives it. Empty for a table of postures.
+  /// gives it. Empty where the waist does not move.
   Placement placement;
 };
 
@@ -35,8 +35,8 @@ enum class FootingBy {
 /// Where the robot stands on one foot, or its root is held, the pose of that footing is constant
 /// (fitted to all its postures in closed form, or taken from `footings` where the same footing is
 /// there) and the elastic leg carries the waist, eq. 6. On two feet the waist is placed by its own
-/// markers alone (three or more), as in section 6 for head, arms and trunk. In a table of postures
-/// the waist is where T0 says.
+/// markers alone (three or more), as in section 6 for head, arms and trunk; a free root by
+/// PlacingMarkers. In a table of postures whose root is held, the waist is where T0 says.
 Prediction Predict(const ErrorModel& model, const Eigen::VectorXd& delta,
                    const Recording& recording, const CalibrationOptions& options,
                    const Placement* footings = nullptr, FootingBy by = FootingBy::kAllMarkers);

@@ -98,7 +98,11 @@ void PrintInspection(const Project& project, const RobotInspection& inspection,
             MdhTable(project.tree, inspection.placements));
   Print(quiet, "\nParallel consecutive axes (beta in use)\n" +
                    ParallelAxes(project.tree, inspection.placements));
-  Print(quiet, "\nIdentifiable parameters\n" + CountTable(inspection.chains));
+  Print(quiet, "\nIdentifiable parameters" +
+                   std::string(project.recording.free_root
+                                   ? " (root free: its markers with each chain's, 6 fewer)\n"
+                                   : "\n") +
+                   CountTable(inspection.chains));
   for (const ChainInspection& chain : inspection.chains) {
     Print(quiet, fmt::format("\n{}: not identifiable beside the others: {}\n", chain.name,
                              JoinNames(chain.model.parameters, chain.base.dropped)));

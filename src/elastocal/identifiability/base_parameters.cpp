@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 #include "elastocal/identifiability/regressor.hpp"
 #include "elastocal/math/priority_qr.hpp"
@@ -11,6 +11,8 @@
 
 namespace elastocal {
 namespace {
+
+constexpr int kMostFree = 300;  // postures with a free root
 
 /// Rank of a kind in the paper's order; lower comes first.
 int PriorityClass(ParameterKind kind, ExternalPriority external) {
@@ -32,17 +34,20 @@ int PriorityClass(ParameterKind kind, ExternalPriority external) {
   }
 }
 
-/// Counts the joints that move a marker. A leg that only supports the robot moves none.
-int TheoreticalCount(const ErrorModel& model) {
-  std::set<int> joints;
+/// Counts the joints that move a marker. A leg that only supports the robot moves none; a joint
+/// that moves all of them shows nothing where the root is free.
+int TheoreticalCount(const ErrorModel& model, RootPose root) {
+  const bool free = root == RootPose::kFree;
+  std::map<int, int> moved;  // by joint: markers
   for (const Marker& marker : model.markers) {
-    for (int k : JointsToBody(model.tree, model.tree.links[marker.link].body)) joints.insert(k);
+    for (int k : JointsToBody(model.tree, model.tree.links[marker.link].body)) ++moved[k];
   }
-  int count = 3 * model.marker_count();
-  for (int joint : joints) {
+  int count = 3 * model.marker_count() - (free ? kWaistParameterCount : 0);
+  for (const auto& [joint, markers] : moved) {
+    if (free && markers == model.marker_count()) continue;
     count += model.tree.joints[joint].type == JointType::kRevolute ? 4 : 2;
   }
-  return count;
+  return std::max(0, count);
 }
 
 std::vector<int> Sorted(std::vector<int> values) {
@@ -91,10 +96,13 @@ std::vector<Share> RegroupedInto(const BaseParameters& base, int dropped) {
 
 Eigen::MatrixXd NominalFactor(const ErrorModel& model, const IdentifiabilityOptions& options) {
   Random random(options.seed);
-  Eigen::MatrixXd q(options.postures, model.tree.coordinate_count());
-  for (int i = 0; i < options.postures; ++i) q.row(i) = RandomPosture(model.tree, random);
+  const bool free = options.root == RootPose::kFree;
+  const int postures = free ? std::min(options.postures, kMostFree) : options.postures;
+  Eigen::MatrixXd q(postures, model.tree.coordinate_count());
+  for (int i = 0; i < postures; ++i) q.row(i) = RandomPosture(model.tree, random);
   const Eigen::VectorXd nominal = Eigen::VectorXd::Zero(model.parameter_count());
-  return RegressorFactor(model, ApplyErrors(model, nominal), q, {});
+  const Geometry geometry = ApplyErrors(model, nominal);
+  return free ? FreeRootFactor(model, geometry, q) : RegressorFactor(model, geometry, q, {});
 }
 
 BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd& factor,
@@ -126,7 +134,7 @@ BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd
   base.dropped = Sorted(dropped);
   base.geometric_count = static_cast<int>(kept.size());
   KeepElastic(model, base);
-  base.theoretical_count = TheoreticalCount(model);
+  base.theoretical_count = TheoreticalCount(model, options.root);
   return base;
 }
 

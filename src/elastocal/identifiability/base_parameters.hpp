@@ -21,6 +21,12 @@ enum class ExternalPriority {
   kLast,
 };
 
+/// What is known of the root link's pose.
+enum class RootPose {
+  kConstant,  ///< it is the same in all postures: T0
+  kFree,      ///< it is another one in each posture, and T0 no parameter
+};
+
 struct IdentifiabilityOptions {
   int postures = 1000;  ///< drawn uniformly within the joint limits
   /// A column is dependent when less than this part of its norm is left after projection. At
@@ -28,6 +34,7 @@ struct IdentifiabilityOptions {
   double tolerance = 1e-6;
   std::uint64_t seed = 1;
   ExternalPriority external = ExternalPriority::kFirst;
+  RootPose root = RootPose::kConstant;  ///< kFree: at most 300 postures, each costs more
   /// Name patterns of parameters held at nominal; `*` stands for any run of characters.
   std::vector<std::string> hold = {};
 };
@@ -46,8 +53,10 @@ struct BaseParameters {
   double smallest_kept = 1.0;    ///< smallest relative remainder among the kept columns
   double largest_dropped = 0.0;  ///< largest among the dropped ones
   /// 4 R + 2 P + 3 N_M for R revolute and P prismatic joints that move one of the N_M markers (see
-  /// docs/algorithms.md). It holds if no parameter is held, and does not count elastic ones. A
-  /// lower count with no parameter held means special marker positions.
+  /// docs/algorithms.md). With a free root 4 R + 2 P + 3 N_M - 6, for joints that move some of the
+  /// markers but not all. It holds if no parameter is held, and does not count elastic ones. A
+  /// lower count with no parameter held means special marker positions, or (with a free root) too
+  /// few markers on a body.
   int theoretical_count = 0;
 };
 

@@ -7,6 +7,20 @@
 #include "elastocal/robot/jacobian.hpp"
 
 namespace elastocal {
+namespace {
+
+/// What is left of the columns of A once those of B are taken out. Those may be dependent: two
+/// markers do not show a rotation about their line.
+Eigen::MatrixXd WithoutSpan(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  constexpr double kDependent = 1e-9;
+  const SingularValueDecomposition svd = DecomposeSingular(B);
+  const Eigen::Index rank = (svd.values.array() > kDependent * svd.values[0]).count();
+  const auto basis = svd.U.leftCols(rank);
+  return A - basis * (basis.transpose() * A);
+}
+
+}  // namespace
+
 Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometry,
                                 const Eigen::MatrixXd& q,
                                 const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& seen) {
@@ -39,6 +53,28 @@ Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometr
     at += factors[m].rows();
   }
   return TriangularFactor(stacked);
+}
+
+Eigen::MatrixXd FreeRootFactor(const ErrorModel& model, const Geometry& geometry,
+                               const Eigen::MatrixXd& q) {
+  constexpr Eigen::Index kPosturesAtOnce = 20;
+  GeneralizedJacobian jacobian(model);
+  const Eigen::Index size = 3 * model.marker_count();
+  Eigen::MatrixXd factor(0, model.parameter_count());
+  for (Eigen::Index first = 0; first < q.rows(); first += kPosturesAtOnce) {
+    const Eigen::Index count = std::min(kPosturesAtOnce, q.rows() - first);
+    Eigen::MatrixXd rows(factor.rows() + count * size, factor.cols());
+    rows.topRows(factor.rows()) = factor;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      jacobian.Evaluate(geometry, q.row(first + i).transpose());
+      const Eigen::MatrixXd own = jacobian.Dense();
+      rows.middleRows(factor.rows() + i * size, size) =
+          WithoutSpan(own, own.leftCols<kWaistParameterCount>());
+    }
+    factor = TriangularFactor(rows);
+  }
+  factor.leftCols<kWaistParameterCount>().setZero();
+  return factor;
 }
 
 }  // namespace elastocal

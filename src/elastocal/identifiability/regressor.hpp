@@ -22,4 +22,9 @@ Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometr
                                 const Eigen::MatrixXd& q,
                                 const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& seen);
 
+/// The same where the root link has an unknown pose in each posture: of the rows of a posture, what
+/// no displacement of the whole robot explains. The columns of T0 are zero.
+Eigen::MatrixXd FreeRootFactor(const ErrorModel& model, const Geometry& geometry,
+                               const Eigen::MatrixXd& q);
+
 }  // namespace elastocal

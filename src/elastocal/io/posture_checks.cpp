@@ -197,7 +197,7 @@ bool BeyondLimits(const Joint& joint, double position) {
 void CheckPlausible(const Recording& recording, const RobotTree& tree) {
   const double size = RobotSize(tree);
   if (size > 0.0) {
-    CheckRanges(recording, size);
+    if (!HasPoseByPosture(recording)) CheckRanges(recording, size);
     CheckDistances(recording, size);
   }
   for (int c = 0; c < tree.coordinate_count(); ++c) {

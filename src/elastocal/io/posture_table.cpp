@@ -168,6 +168,7 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
   PostureTable result;
   Recording& recording = result.recording;
   recording.source = source;
+  recording.free_root = project.recording.free_root;
   ReadPostures(project, columns, table, recording);
   NameMarkers(columns, project, result);
   for (int c = 0; c < project.tree.coordinate_count(); ++c) {

@@ -20,6 +20,22 @@ Eigen::Vector3d MarkerPosition(const Recording& recording, int posture, int mark
   return recording.markers.block<1, 3>(posture, 3 * marker).transpose();
 }
 
+bool HasPoseByPosture(const Recording& recording) {
+  return recording.free_root || !recording.trials.empty();
+}
+
+bool HasFreeRoot(const Recording& recording, int posture) {
+  if (recording.trials.empty()) return recording.free_root;
+  return recording.trials[recording.trial[posture]].free_root;
+}
+
+bool HasFreeRoot(const Recording& recording) {
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (!HasFreeRoot(recording, i)) return false;
+  }
+  return recording.posture_count() > 0;
+}
+
 void NoteApproach(Recording& recording) {
   recording.approach.setZero(recording.q.rows(), recording.q.cols());
   for (Eigen::Index i = 1; i < recording.q.rows(); ++i) {
@@ -41,6 +57,7 @@ Recording SelectPostures(const Recording& recording, const std::vector<int>& pos
   selected.joints_not_recorded = recording.joints_not_recorded;
   selected.wrench_links = recording.wrench_links;
   selected.trials = recording.trials;
+  selected.free_root = recording.free_root;
   selected.gravity = recording.gravity;
   selected.q = recording.q(postures, Eigen::all);
   selected.markers = recording.markers(postures, Eigen::all);

@@ -24,9 +24,9 @@ struct Trial {
 };
 
 /// Static postures of one robot with the marker positions measured in each. Real and simulated
-/// measurements reach the estimator in this one type. It holds either a posture table, measured in
-/// a frame fixed to the waist (`trials` empty), or samples of trials, measured in the cameras'
-/// frame.
+/// measurements reach the estimator in this one type. It holds either a posture table (`trials`
+/// empty), measured in a frame fixed to the waist or, where the root is free, in that of cameras in
+/// the room; or samples of trials, measured in the cameras' frame.
 struct Recording {
   std::string source;                     ///< the file, for messages
   std::vector<std::string> marker_names;  ///< in the order of `markers`
@@ -46,6 +46,7 @@ struct Recording {
   std::vector<int> wrench_links;
   Eigen::MatrixXd wrenches;
   std::vector<Trial> trials;  ///< empty for a posture table
+  bool free_root = false;     ///< of a posture table: the root may stand elsewhere in each posture
   std::vector<int> trial;     ///< for each posture, index into `trials`; empty if that is
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the frame of `markers`, m/s^2
   /// postures x coordinates of q: direction of the last motion of each, -1 or 1; 0 where unknown.
@@ -64,6 +65,15 @@ bool Seen(const Recording& recording, int posture, int marker);
 
 /// Measured position of a marker, m.
 Eigen::Vector3d MarkerPosition(const Recording& recording, int posture, int marker);
+
+/// Whether the pose of the root link is an unknown of each posture, and not one of all (T0).
+bool HasPoseByPosture(const Recording& recording);
+
+/// Whether nothing ties the root link of a posture to the floor.
+bool HasFreeRoot(const Recording& recording, int posture);
+
+/// Whether this holds for all postures.
+bool HasFreeRoot(const Recording& recording);
 
 /// Fills `approach` from the order of the postures, of trials within each: a joint that did not
 /// move came to where it is as before.

@@ -73,6 +73,7 @@ std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
     const ErrorModel model = SelectMarkers(MakeProjectModel(project, {}), sample.marker_names);
     IdentifiabilityOptions identifiability = project.identifiability;
     if (seed) identifiability.seed = *seed;
+    if (HasFreeRoot(sample)) identifiability.root = RootPose::kFree;
     const BaseParameters base = FindBaseParameters(model, identifiability);
     const ModelKind kind = ModelKinds(model).back();
     ElasticityTrial trial;

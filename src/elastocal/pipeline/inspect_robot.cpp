@@ -41,6 +41,14 @@ std::vector<Marker> MarkersOf(const Project& project, const Chain& chain) {
   return markers;
 }
 
+/// With a free root, the markers on the body that the chain begins at are what the others are seen
+/// from.
+void AddMarkersOf(const Project& project, int body, std::vector<Marker>& markers) {
+  for (const Marker& marker : project.markers) {
+    if (project.tree.links[marker.link].body == body) markers.push_back(marker);
+  }
+}
+
 Json PlacementsJson(const RobotTree& tree, const std::vector<JointPlacement>& placements) {
   Json json = Json::array();
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
@@ -117,6 +125,8 @@ RobotInspection InspectRobot(const Project& project, const InspectionOptions& op
   if (options.seed) identifiability.seed = *options.seed;
   if (options.hold) identifiability.hold = *options.hold;
   identifiability.external = options.external;
+  const bool free_root = project.recording.free_root;
+  if (free_root) identifiability.root = RootPose::kFree;
   if (!identifiability.hold.empty()) {
     const ErrorModel all = MakeErrorModel(project.tree, project.markers, project.placement);
     CheckPatterns(all.parameters, identifiability.hold);
@@ -126,8 +136,9 @@ RobotInspection InspectRobot(const Project& project, const InspectionOptions& op
                              TotalMass(project.tree),
                              ProjectWarnings(project)};
   for (const Chain& chain : project.chains) {
-    const std::vector<Marker> markers = MarkersOf(project, chain);
+    std::vector<Marker> markers = MarkersOf(project, chain);
     if (markers.empty()) continue;
+    if (free_root) AddMarkersOf(project, project.tree.links[chain.from_link].body, markers);
     const RobotTree tree = Subtree(project.tree, chain.from_link);
     inspection.chains.push_back(InspectChain(
         chain.name, tree, SubtreeMarkers(project.tree, tree, markers), project, identifiability));

@@ -5,8 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/calibration/placing_markers.hpp"
 #include "elastocal/calibration/torque_check.hpp"
-#include "elastocal/math/decompositions.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/parameter_names.hpp"
 
@@ -14,7 +15,6 @@ namespace elastocal {
 namespace {
 
 constexpr std::size_t kManySensors = 4;
-constexpr double kLeastWidth = 0.01;  // m: of the markers about the line that fits them best
 
 /// Joints whose limits leave them no motion: nothing can be identified there.
 std::string StuckJoints(const ErrorModel& model) {
@@ -67,25 +67,34 @@ void CheckTorques(const ErrorModel& model, const CalibrationOptions& options,
 }
 
 /// On two feet, and in trials that no leg ties to the floor, the markers on the root link are all
-/// that locates the waist.
-void WarnOfFewWaistMarkers(const ErrorModel& model, std::vector<std::string>& warnings) {
-  std::vector<Eigen::Vector3d> positions;
+/// that locates the waist; where the root is free, those of another body do as well.
+void WarnOfFewWaistMarkers(const ErrorModel& model, bool free_root,
+                           std::vector<std::string>& warnings) {
+  if (TellPose(MarkersOnBody(model, 0))) return;
+  for (int body = 1; free_root && body < model.tree.body_count(); ++body) {
+    if (TellPose(MarkersOnBody(model, body))) return;
+  }
+  const auto count = MarkersOnBody(model, 0).cols();
+  warnings.push_back(
+      free_root ? "no link has three markers that do not lie on a line: held-out postures cannot "
+                  "be placed, so that nothing judges the estimate"
+                : fmt::format("{} markers on the root link{}; three or more that do not lie on a "
+                              "line were expected: else the pose of the waist leans on the "
+                              "markers of the chains",
+                              count, count < 3 ? "" : " lie on a line"));
+}
+
+/// Where the root is free, only what moves markers of one body against those of another shows.
+void CheckFreeRoot(const ErrorModel& model, const Recording& recording) {
   for (const Marker& marker : model.markers) {
-    const Link& link = model.tree.links[marker.link];
-    if (link.body == 0) positions.push_back(link.T_body_link * marker.p_link_marker);
+    const int first = model.tree.links[model.markers[0].link].body;
+    if (model.tree.links[marker.link].body != first) return;
   }
-  const auto count = static_cast<Eigen::Index>(positions.size());
-  const Eigen::Map<const Eigen::Matrix3Xd> all(positions.empty() ? nullptr : positions[0].data(), 3,
-                                               count);
-  std::string found = fmt::format("{} markers on the root link", count);
-  if (count >= 3) {
-    const Eigen::VectorXd spread = SingularValues(all.colwise() - all.rowwise().mean());
-    if (spread[1] > kLeastWidth) return;
-    found += " lie on a line";
-  }
-  warnings.push_back(found +
-                     "; three or more that do not lie on a line were expected: else the pose of "
-                     "the waist leans on the markers of the chains");
+  throw InputError(fmt::format(
+      "{}: the root is free, and all markers are on one body (that of link '{}'): nothing tells "
+      "motions of the joints from those of the root; markers on two bodies or more, joints between "
+      "them, were expected",
+      recording.source, model.tree.links[model.markers[0].link].name));
 }
 
 std::string DescribeKnock(const Knock& knock, const Recording& recording) {
@@ -117,8 +126,11 @@ RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint6
   IdentifiabilityOptions options = project.identifiability;
   if (seed) options.seed = *seed;
   Recording& recording = measured.calibration;
+  const bool free_root = HasFreeRoot(recording);
+  if (free_root) options.root = RootPose::kFree;
   RecordedModel result;
   result.model = SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
+  if (free_root) CheckFreeRoot(result.model, recording);
   CheckTorques(result.model, project.calibration, measured);
   result.base = FindBaseParameters(result.model, options);
   if (!recording.trials.empty() && search == KnockSearch::kAll) {
@@ -135,7 +147,9 @@ RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint6
     }
     result.base = FindBaseParameters(result.model, options);
   }
-  if (!recording.trials.empty()) WarnOfFewWaistMarkers(result.model, measured.warnings);
+  if (HasPoseByPosture(recording)) {
+    WarnOfFewWaistMarkers(result.model, free_root, measured.warnings);
+  }
   WarnOfLostRank(result.model, options, result.base, measured.warnings);
   return result;
 }

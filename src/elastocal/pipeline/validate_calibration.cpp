@@ -28,7 +28,7 @@ double ErrorOf(const TransferValidation& transfer) {
 }
 
 void CheckWaist(const ValidationRun& run, const Recording& recording) {
-  if (!run.frozen || !recording.trials.empty() || run.calibration.T_ref_waist) return;
+  if (!run.frozen || HasPoseByPosture(recording) || run.calibration.T_ref_waist) return;
   throw InputError(run.calibration_file +
                    ": no key 'waist': made from trials, it says nothing of the "
                    "waist in a table of postures; validate it without frozen");

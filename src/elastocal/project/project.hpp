@@ -39,6 +39,9 @@ struct RecordingColumns {
   std::map<std::string, std::string> joints;  ///< joint -> column; default: the joint's name
   std::map<std::string, std::array<std::string, 3>> markers;  ///< default NAME_x, NAME_y, NAME_z
   std::vector<std::string> ignore;                            ///< columns that are not read
+  /// Of a posture table: the root link may stand elsewhere in each posture. Not: markers are seen
+  /// from it.
+  bool free_root = false;
   /// Joint -> position [rad or m] where the file has none.
   std::map<std::string, double> not_recorded;
   /// Marker -> its label in files of cameras; default: the marker's name.

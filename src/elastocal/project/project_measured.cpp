@@ -156,7 +156,12 @@ void ReadForceTorqueSensors(const YamlValue& section, Project& project) {
 }
 
 void ReadRecordingColumns(const YamlValue& section, Project& project) {
-  section.ExpectKeys({"columns", "labels", "ignore", "not_recorded_deg", "not_recorded_mm"});
+  section.ExpectKeys(
+      {"columns", "labels", "ignore", "root", "not_recorded_deg", "not_recorded_mm"});
+  if (const auto root = section.Find("root")) {
+    root->Expect(root->Text() == "held" || root->Text() == "free", "held or free");
+    project.recording.free_root = root->Text() == "free";
+  }
   if (const auto labels = section.Find("labels")) ReadLabels(*labels, project);
   if (const auto columns = section.Find("columns")) ReadColumns(*columns, project);
   if (const auto ignore = section.Find("ignore")) {

@@ -51,11 +51,11 @@ std::vector<int> MarkersSeen(const Recording& recording, const std::vector<int>&
   return markers;
 }
 
-/// From the frame of the recording to one with z up: of trials by gravity, of a table of postures
-/// that of the waist.
+/// From the frame of the recording to one with z up: by gravity where the waist moves, else that of
+/// the waist.
 Transform ToView(const CalibrationView& view) {
   const CalibrationResult& best = view.comparison.largest();
-  if (view.recording.trials.empty()) {
+  if (!HasPoseByPosture(view.recording)) {
     return WaistPose(ApplyErrors(best.model, best.delta)).inverse();
   }
   Transform up = Transform::Identity();

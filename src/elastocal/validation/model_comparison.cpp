@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastocal/calibration/placing_markers.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/parallel.hpp"
@@ -114,15 +115,16 @@ FoldResult PredictFold(const std::vector<ModelKind>& kinds, const ErrorModel& mo
   return result;
 }
 
-/// Observations that a prediction can be judged by. On two feet the waist's own markers place it.
+/// Observations that a prediction can be judged by: on two feet, and where the root is free, not by
+/// the markers that place it.
 ObservationMask Judged(const ErrorModel& model, const Recording& recording) {
   ObservationMask judged = SeenMask(recording);
-  if (recording.trials.empty()) return judged;
-  for (int i = 0; i < judged.rows(); ++i) {
-    if (recording.trials[recording.trial[i]].support.size() < 2) continue;
-    for (int m = 0; m < judged.cols(); ++m) {
-      if (model.tree.links[model.markers[m].link].body == 0) judged(i, m) = false;
-    }
+  if (!HasPoseByPosture(recording)) return judged;
+  for (int i = 0; i < static_cast<int>(judged.rows()); ++i) {
+    const bool on_two_feet =
+        !recording.trials.empty() && recording.trials[recording.trial[i]].support.size() > 1;
+    if (!on_two_feet && !HasFreeRoot(recording, i)) continue;
+    for (int m : PlacingMarkers(model, recording, i)) judged(i, m) = false;
   }
   return judged;
 }

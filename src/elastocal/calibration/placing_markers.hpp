@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/robot/error_model.hpp"
+
+namespace elastocal {
+
+/// Whether three or more markers (3 x markers, m) tell a pose: they do not lie on a line, within
+/// 10 mm.
+bool TellPose(const Eigen::Matrix3Xd& positions);
+
+/// Nominal positions of a body's markers in its frame, 3 x markers, m.
+Eigen::Matrix3Xd MarkersOnBody(const ErrorModel& model, int body);
+
+/// The markers that place the waist of a posture which nothing ties to the floor, so that the
+/// others can be predicted: those seen on the root link. Where the root is free and these do not
+/// tell its pose, those on the body nearest to it (by joints) whose markers do. Empty: none.
+std::vector<int> PlacingMarkers(const ErrorModel& model, const Recording& recording, int posture);
+
+}  // namespace elastocal
