@@ -34,7 +34,7 @@ class LinearProblem : public LeastSquaresProblem {
     };
     nuisance_blocks = {2, 3, 4};
     for (int s = 2; s < 5; ++s) {
-      for (int i = 0; i < 5; ++i) add({0, s, 1}, 3);
+      for (int i = 0; i < 5; ++i) add({s, 0, 1}, 3);
     }
     add({1}, 1);
     add({0, 3}, 3);

@@ -33,7 +33,7 @@ class LeastSquaresProblem {
   std::vector<int> parameter_blocks;
   std::vector<ResidualBlock> residual_blocks;
   /// Blocks of x that are eliminated first (Schur complement). No two may meet in one residual
-  /// block; there must be others besides them.
+  /// block, which lists its own first or last; there must be others besides them.
   std::vector<int> nuisance_blocks;
   /// Entries of x that may not become negative, ascending; none in a nuisance block.
   std::vector<int> nonnegative;

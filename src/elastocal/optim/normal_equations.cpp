@@ -57,11 +57,10 @@ void NormalEquations::LayOut() {
         column += sizes[k];
         continue;
       }
-      for (int i = 0; i < sizes[k]; ++i) {
-        layout.columns.push_back(column++);
-        layout.unknowns.push_back(position_[first[k] + i]);
-      }
+      column += sizes[k];
+      for (int i = 0; i < sizes[k]; ++i) layout.unknowns.push_back(position_[first[k] + i]);
     }
+    layout.own = layout.nuisance == 0 ? layout.width : 0;
     if (layout.group >= 0) groups_[layout.group].blocks.push_back(static_cast<int>(block));
     layout_.push_back(std::move(layout));
   }
@@ -90,14 +89,13 @@ void NormalEquations::FindAlike() {
   }
 }
 
-Eigen::MatrixXd NormalEquations::OwnJacobian(int block) const {
+NormalEquations::Columns NormalEquations::OwnJacobian(int block) const {
   const Layout& layout = layout_[block];
   const auto& J = problem_.Jacobian(block);
-  if (layout.group < 0) return J;
-  return J(Eigen::all, layout.columns);
+  return J.middleCols(layout.own, J.cols() - layout.width);
 }
 
-Eigen::MatrixXd NormalEquations::NuisanceJacobian(int block) const {
+NormalEquations::Columns NormalEquations::NuisanceJacobian(int block) const {
   const Layout& layout = layout_[block];
   return problem_.Jacobian(block).middleCols(layout.nuisance, layout.width);
 }
@@ -108,12 +106,8 @@ Eigen::MatrixXd NormalEquations::OwnJacobians(const std::vector<int>& blocks) co
   Eigen::MatrixXd J(rows, static_cast<Eigen::Index>(layout_[blocks.front()].unknowns.size()));
   rows = 0;
   for (int block : blocks) {
-    const auto& own = problem_.Jacobian(block);
-    if (layout_[block].group < 0) {
-      J.middleRows(rows, own.rows()) = own;
-    } else {
-      J.middleRows(rows, own.rows()) = own(Eigen::all, layout_[block].columns);
-    }
+    const Columns own = OwnJacobian(block);
+    J.middleRows(rows, own.rows()) = own;
     rows += own.rows();
   }
   return J;
@@ -134,7 +128,9 @@ void NormalEquations::AddBlocks(const std::vector<int>& blocks) {
     residual.segment(row, of.size()) = of;
     row += of.size();
   }
-  const Eigen::MatrixXd part = J.transpose() * J;
+  Eigen::MatrixXd part = Eigen::MatrixXd::Zero(J.cols(), J.cols());
+  part.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
+  part.triangularView<Eigen::StrictlyUpper>() = part.transpose();
   const Eigen::VectorXd slope = J.transpose() * residual;
   for (std::size_t c = 0; c < to.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);
@@ -157,10 +153,12 @@ void NormalEquations::EliminateNuisance() {
       for (int block : group->blocks) {
         if (!problem_.residual_blocks[block].active) continue;
         const std::vector<int>& to = layout_[block].unknowns;
-        const Eigen::MatrixXd E = NuisanceJacobian(block);
-        const Eigen::MatrixXd part = E.transpose() * OwnJacobian(block);
-        for (std::size_t c = 0; c < to.size(); ++c) {
-          rows.col(to[c]) += part.col(static_cast<Eigen::Index>(c));
+        const Columns E = NuisanceJacobian(block);
+        const Rows part = E.transpose().lazyProduct(OwnJacobian(block));
+        for (Eigen::Index r = 0; r < part.rows(); ++r) {
+          for (std::size_t c = 0; c < to.size(); ++c) {
+            rows(r, to[c]) += part(r, static_cast<Eigen::Index>(c));
+          }
         }
         D.noalias() += E.transpose() * E;
         own_gradient.noalias() += E.transpose() * problem_.Residual(block);
@@ -212,7 +210,7 @@ Eigen::MatrixXd NormalEquations::Explained(int block, const Eigen::MatrixXd& cov
       J * Eigen::MatrixXd(covariance(layout.unknowns, layout.unknowns)) * J.transpose();
   if (layout.group < 0) return explained;
   const Group& group = groups_[layout.group];
-  const Eigen::MatrixXd E = NuisanceJacobian(block);
+  const Columns E = NuisanceJacobian(block);
   const Eigen::MatrixXd reach = covariance * (E * Gain(group)).transpose();
   const Eigen::MatrixXd both = J * reach(layout.unknowns, Eigen::all);
   const Eigen::MatrixXd by_gain = E * Gain(group) * reach;
@@ -248,7 +246,7 @@ std::vector<Eigen::VectorXd> NormalEquations::ExplainedVariances(
         own * Gain(group).transpose() +
         group.factor.solve(Eigen::MatrixXd::Identity(group.size, group.size));
     for (int block : group.blocks) {
-      const Eigen::MatrixXd E = NuisanceJacobian(block);
+      const Columns E = NuisanceJacobian(block);
       const Eigen::MatrixXd across =
           OwnJacobian(block) *
           Eigen::MatrixXd(own(Eigen::all, layout_[block].unknowns)).transpose();

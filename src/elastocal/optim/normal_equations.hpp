@@ -79,11 +79,12 @@ class NormalEquations {
   struct Layout {
     int group = -1;                        ///< -1: without nuisance
     Eigen::Index nuisance = 0, width = 0;  ///< its columns in the block's Jacobian
-    std::vector<int> columns;              ///< of the others, in the Jacobian ...
-    std::vector<int> unknowns;             ///< ... and among the unknowns
+    Eigen::Index own = 0;                  ///< first column of the others
+    std::vector<int> unknowns;             ///< where these stand among the unknowns
   };
 
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using Columns = Eigen::Block<const Rows, Eigen::Dynamic, Eigen::Dynamic>;
 
   void LayOut();
   void FindAlike();
@@ -91,9 +92,9 @@ class NormalEquations {
   void EliminateNuisance();
   std::vector<std::vector<Group*>> Batches();
   auto Gain(const Group& group) const { return gains_.middleRows(group.row, group.size); }
-  Eigen::MatrixXd OwnJacobian(int block) const;
+  Columns OwnJacobian(int block) const;
   Eigen::MatrixXd OwnJacobians(const std::vector<int>& blocks) const;
-  Eigen::MatrixXd NuisanceJacobian(int block) const;
+  Columns NuisanceJacobian(int block) const;
 
   const LeastSquaresProblem& problem_;
   std::vector<int> unknowns_, position_;  // position_: of an entry of x among the unknowns; -1
