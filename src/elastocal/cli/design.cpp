@@ -10,6 +10,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/design_report.hpp"
+#include "elastocal/cli/observation_commands.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
@@ -119,6 +120,9 @@ int FollowUp(const DesignCommand& command) {
 int Design(const DesignCommand& command) {
   if (!command.after.empty()) return FollowUp(command);
   const Project project = ReadProject(command.project);
+  if (project.contact) {
+    return RunObservationDesign({command.common, command.output, command.count}, project);
+  }
   const DesignFiles files(command.output);
   OutputSet outputs;
   outputs.Protect({command.project, project.urdf});
@@ -207,7 +211,8 @@ void AddDesign(CLI::App& app, Action& action) {
       ->type_name("NAME");
   command
       ->add_option("--count", options->count,
-                   "Exactly so many postures for each chain instead of as many as it takes")
+                   "Exactly so many postures for each chain instead of as many as it takes; with "
+                   "contact or instruments in the project, so many in all (30)")
       ->check(CLI::Range(1, 1000));
   command->add_option("--max-count", options->max_count, "At most so many postures for each chain")
       ->check(CLI::Range(1, 1000))

@@ -9,6 +9,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/execution_report.hpp"
+#include "elastocal/cli/observation_commands.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
@@ -31,7 +32,7 @@ struct SimulateCommand {
   std::string settings;
   std::string postures, motion, kind;  ///< of a motion that the user gives
   std::vector<std::string> chains;
-  int threads = 2;
+  int threads = 2, count = 0;
   std::string deploy;           ///< folder of a calibration that is put to use
   std::vector<std::string> as;  ///< how; empty: in all ways
   std::optional<std::uint64_t> robot_seed;
@@ -119,9 +120,32 @@ int Deploy(const SimulateCommand& command) {
   return kFine;
 }
 
+/// A project with contact or instruments: tables of observations instead of trials.
+int SimulateInstruments(const SimulateCommand& command, const Project& project) {
+  const bool of_trials = !command.motion.empty() || !command.kind.empty() ||
+                         !command.chains.empty() || command.trials != "all" || command.matched ||
+                         command.free;
+  if (of_trials) {
+    throw InputError(project.file.string() +
+                     ": with contact or instruments, the robot holds postures: --motion, --kind, "
+                     "--chains, --trials, --matched and --free are for projects without them");
+  }
+  SimulateObservationsCommand of;
+  of.common = command.common;
+  of.output = command.output;
+  of.postures = command.postures;
+  of.count = command.count;
+  of.force = command.force;
+  of.experiment = Settings(command);
+  of.experiment.seed = command.common.seed.value_or(1);
+  of.experiment.robot_seed = command.robot_seed;
+  return RunObservationSimulation(of, project);
+}
+
 int Simulate(const SimulateCommand& command) {
   if (!command.deploy.empty()) return Deploy(command);
   const Project project = ReadProject(command.project);
+  if (project.contact) return SimulateInstruments(command, project);
   const Simulation simulation = PrepareSimulation(project, MakeOptions(command, project));
   const SimulationFiles files = FilesOfSimulation(simulation, command.output, command.force);
   OutputSet outputs;
@@ -162,6 +186,12 @@ void AddSimulate(CLI::App& app, Action& action) {
               "--postures", options->postures,
               "Plays these postures instead, move_s + rest_s apart (CSV or a posture file, YAML)")
           ->type_name("FILE");
+  command
+      ->add_option("--count", options->count,
+                   "With contact or instruments and no --postures: so many random postures (30) "
+                   "for each plate, and for instruments")
+      ->check(CLI::Range(1, 1000))
+      ->excludes(postures);
   command
       ->add_option("--motion", options->motion,
                    "Plays this joint trajectory instead (CSV with time)")

@@ -38,6 +38,8 @@ std::vector<Bound> MakeBounds() {
       {"contact.feet[].position_mm[]", "mm", -1e4, 1e4, kBody},
       {"contact.plates[].point_mm[]", "mm", -1e4, 1e4, kBody},
       {"contact.plates[].normal[]", "", -1e6, 1e6, "a direction, of any length"},
+      {"contact.plates[].table.centre_mm[]", "mm", -1e4, 1e4, kBody},
+      {"contact.plates[].table.size_mm[]", "mm", 1, 1e4, kBody},
       {"contact.sessions.counts.quantum", "", 1e-15, 1e6, "one step of an encoder"},
       {"contact.sessions.counts.modulo", "", 2, 1e9, "steps of an encoder"},
       {"instruments.poses[].xyz_mm[]", "mm", -1e4, 1e4, kBody},

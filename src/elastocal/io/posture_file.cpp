@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/io/posture_file.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "elastocal/files/output_files.hpp"
@@ -38,6 +40,17 @@ Eigen::VectorXd ReadPosture(const YamlValue& value, const Project& project) {
   return q;
 }
 
+/// The name of a chain, of a plate, or kLooks.
+std::string NameOfSet(const YamlValue& value, const Project& project) {
+  if (!project.contact) return project.chains[ChainNamedBy(value, project)].name;
+  const std::string name = value.Text();
+  std::vector<std::string> known = {kLooks};
+  for (const ContactPlate& plate : project.contact->setup.plates) known.push_back(plate.name);
+  for (const Chain& chain : project.chains) known.push_back(chain.name);
+  if (std::find(known.begin(), known.end(), name) != known.end()) return name;
+  value.Fail("there is no plate or chain " + Quote(name) + DidYouMean(name.substr(0, 60), known));
+}
+
 }  // namespace
 
 std::string FormatPostureFile(const RobotTree& tree, const std::vector<ChainPostures>& chains) {
@@ -73,7 +86,7 @@ std::vector<ChainPostures> ParsePostureFile(const std::string& text, const std::
   for (const YamlValue& value : root.Get("chains").Items()) {
     value.ExpectKeys({"name", "support", "postures"});
     ChainPostures chain;
-    chain.chain = project.chains[ChainNamedBy(value.Get("name"), project)].name;
+    chain.chain = NameOfSet(value.Get("name"), project);
     if (const auto support = value.Find("support")) {
       chain.support = LinksNamedBy(*support, project.tree);
     }

@@ -10,7 +10,13 @@
 
 namespace elastocal {
 
-/// Calibration postures of one chain, with the feet that stand meanwhile.
+/// What postures of a posture file are for, where the project has `contact` or `instruments`: the
+/// name of the plate that touches its table in them, or this one, of postures in which instruments
+/// look at the robot.
+inline constexpr const char* kLooks = "instruments";
+
+/// Calibration postures of one chain (or of a plate, or kLooks), with the feet that stand
+/// meanwhile.
 struct ChainPostures {
   std::string chain;
   std::vector<int> support;        ///< links

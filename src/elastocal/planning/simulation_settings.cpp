@@ -91,6 +91,27 @@ void AddSensors(SensorOptions& sensors, Settings& list) {
        {l, "torque_noise_nm", &sensors.torque_noise_sd, 1, 0, 1000, "Noise of torque sensors"}});
 }
 
+void AddInstruments(InstrumentOptions& of, Settings& list) {
+  const std::string i = "Instruments and touches (projects with contact or instruments)";
+  list.insert(
+      list.end(),
+      {{i, "length_noise_mm", &of.length_sd, kMillimetre, 0, 1000,
+        "Noise of positions, heights and wires"},
+       {i, "rotation_noise_deg", &of.rotation_sd, kRadiansPerDegree, 0, 45,
+        "Of attitudes, about each axis"},
+       {i, "acceleration_noise", &of.acceleration_sd, 1, 0, 10, "Of accelerometers, m/s^2"},
+       {i, "pixel_noise", &of.pixel_sd, 1, 0, 100, "Of each corner in an image, px"},
+       {i, "pixel_blur", &of.blur_sd, 1, 0, 100, "Of all corners of an image together, px"},
+       {i, "touch_height_mm", &of.touch_height_sd, kMillimetre, 0, 100,
+        "Unevenness of table and plate: height of a touch"},
+       {i, "touch_tilt_deg", &of.touch_tilt_sd, kRadiansPerDegree, 0, 45,
+        "The same: tilts of a touch"},
+       {i, "table_height_mm", &of.table_height_sd, kMillimetre, 0, 1000,
+        "How far a table is from where the project has it"},
+       {i, "plate_edge_mm", &of.plate_edge, kMillimetre, 1, 1000, "Edge of square plates"},
+       {i, "touch_force_n", &of.touch.force, 1, 1, 1000, "With which a plate is pressed on"}});
+}
+
 void AddCauses(SensorOptions& sensors, Settings& list) {
   constexpr double kMilli = 1e-3;
   const std::string c = "Causes beyond geometry and springs (none by default)";
@@ -225,6 +246,7 @@ std::vector<SimulationSetting> SimulationSettings(VirtualExperimentOptions& opti
   Settings list;
   AddTruth(options.truth, list);
   AddSensors(options.sensors, list);
+  AddInstruments(options.instruments, list);
   AddCauses(options.sensors, list);
   AddPlay(options.physics, options.motion, list);
   AddFaults(options.faults, list);

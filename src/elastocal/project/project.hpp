@@ -78,12 +78,19 @@ struct TagInCamera {
   int instrument = 0;
 };
 
+/// The top of a table that a plate touches, level, its sides along x and y of the floor's frame.
+struct TableTop {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< m, on the floor
+  Eigen::Vector2d size = Eigen::Vector2d::Zero();    ///< m
+};
+
 /// A robot that is observed otherwise than by markers alone: it touches tables, or instruments
 /// measure it.
 struct ContactProject {
   ObservationSetup setup;         ///< as far as the project tells: see PlaceFeet
   std::vector<char> foot_placed;  ///< by foot: whether the project says where it stands
-  std::string plate_column;       ///< names the plate of each touch; empty: see FindTouchingPlates
+  std::vector<std::optional<TableTop>> tables;  ///< by plate, for postures to be designed
+  std::string plate_column;  ///< names the plate of each touch; empty: see FindTouchingPlates
   SessionRule sessions;
   /// Columns of a table by instrument of the setup; those of plates and of tags empty.
   std::vector<std::vector<std::string>> columns;

@@ -39,8 +39,18 @@ Eigen::Matrix3d FaceAxes(const YamlValue& value) {
   return RotationBetween(Eigen::Vector3d::UnitZ(), normal);
 }
 
+TableTop ReadTable(const YamlValue& value) {
+  value.ExpectKeys({"centre_mm", "size_mm"});
+  TableTop table{PointFromMm(value.Get("centre_mm")), {}};
+  const YamlValue size = value.Get("size_mm");
+  const std::vector<YamlValue> sides = size.Items();
+  size.Expect(sides.size() == 2, "two numbers, along x and y");
+  for (int i = 0; i < 2; ++i) table.size[i] = kOneMm * sides[i].Bounded();
+  return table;
+}
+
 void ReadPlate(const YamlValue& value, Project& project) {
-  value.ExpectKeys({"name", "link", "point_mm", "normal"});
+  value.ExpectKeys({"name", "link", "point_mm", "normal", "table"});
   ContactPlate plate;
   CheckFileName(value.Get("name"));
   plate.name = NewName(value.Get("name"), "plate", project.contact->setup.plates);
@@ -50,6 +60,8 @@ void ReadPlate(const YamlValue& value, Project& project) {
   }
   if (const auto point = value.Find("point_mm")) plate.face.p_link_face = PointFromMm(*point);
   if (const auto normal = value.Find("normal")) plate.face.R_link_face = FaceAxes(*normal);
+  const auto table = value.Find("table");
+  project.contact->tables.push_back(table ? std::optional(ReadTable(*table)) : std::nullopt);
   AddPlate(project.contact->setup, plate);
   project.contact->columns.emplace_back();
 }

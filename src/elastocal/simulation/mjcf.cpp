@@ -37,8 +37,9 @@ std::string PoseAttributes(const Transform& T) {
 /// Writes the bodies, walking over the tree from the body that is fixed or floats.
 class MjcfWriter {
  public:
-  MjcfWriter(const TrueRobot& robot, const std::vector<int>& support, const PhysicsOptions& options)
-      : robot_(robot), tree_(robot.tree), support_(support), options_(options) {}
+  MjcfWriter(const TrueRobot& robot, const std::vector<int>& support, const PhysicsOptions& options,
+             const std::vector<PhysicalPlate>& plates)
+      : robot_(robot), tree_(robot.tree), support_(support), options_(options), plates_(plates) {}
 
   std::string text;
 
@@ -55,6 +56,15 @@ class MjcfWriter {
     LinkSprings(FootSprings(sole), link.T_body_link.translation(), Transform::Identity());
     Contents(link.body, -1, sole);
     text += "</body>\n";
+  }
+
+  /// Writes the tables, far below.
+  void WriteTables() {
+    for (std::size_t i = 0; i < plates_.size(); ++i) {
+      text += "<body" + Attribute("name", "t" + std::to_string(i)) +
+              " mocap=\"true\" pos=\"0 0 -100\"><geom type=\"plane\" size=\"1 1 0.1\"" +
+              ContactOf(i, "contype") + "/></body>\n";
+    }
   }
 
   /// Writes the waist, which is fixed to the world or floats, and everything beyond it.
@@ -94,6 +104,7 @@ class MjcfWriter {
   /// `from_joint` or the sole `from_sole` from which the walk comes. Closes the body.
   void Contents(int body, int from_joint, int from_sole) {
     Inertial(body);
+    Plates(body);
     for (std::size_t s = 0; s < support_.size(); ++s) {
       if (FootLink(static_cast<int>(s)).body == body && static_cast<int>(s) != from_sole) {
         Sole(static_cast<int>(s));
@@ -159,6 +170,29 @@ class MjcfWriter {
               " mass=\"0\"" + Friction() + "/>\n";
     }
     text += "</body>\n";
+  }
+
+  /// A plate and its table share a bit, so that nothing else touches either.
+  static std::string ContactOf(std::size_t plate, const std::string& as) {
+    constexpr std::size_t kBits = 29;  // the first is for the floor
+    const std::string other = as == "contype" ? "conaffinity" : "contype";
+    return Attribute(as, std::to_string(2U << (plate % kBits))) + Attribute(other, "0") +
+           " condim=\"1\" solref=\"0.08 1\" solimp=\"0.5 0.5 0.001\"";
+  }
+
+  void Plates(int body) {
+    constexpr double kHalfThickness = 0.005;
+    for (std::size_t i = 0; i < plates_.size(); ++i) {
+      const PhysicalPlate& plate = plates_[i];
+      const Link& link = tree_.links[static_cast<std::size_t>(plate.link)];
+      if (link.body != body) continue;
+      const Transform T_box = link.T_body_link * plate.T_link_face * TrZ(kHalfThickness);
+      text += "<geom type=\"box\" mass=\"0\"" + Attribute("name", "p" + std::to_string(i)) +
+              PoseAttributes(T_box) +
+              Attribute("size",
+                        Numbers(std::array{0.5 * plate.edge, 0.5 * plate.edge, kHalfThickness})) +
+              ContactOf(i, "conaffinity") + "/>\n";
+    }
   }
 
   void Inertial(int body) {
@@ -246,6 +280,7 @@ class MjcfWriter {
   const RobotTree& tree_;
   const std::vector<int>& support_;
   const PhysicsOptions& options_;
+  const std::vector<PhysicalPlate>& plates_;
 };
 
 /// The leg that has this foot.
@@ -267,8 +302,7 @@ std::string Weld(std::size_t sole, const Transform& T_world_sole) {
          " solref=\"0.01 1\" solimp=\"0.999 0.9999 0.001\"/>\n";
 }
 
-std::string Header(const PhysicsOptions& options) {
-  const bool contact = options.standing == Standing::kFree;
+std::string Header(const PhysicsOptions& options, bool contact) {
   return std::string("<mujoco><compiler angle=\"radian\"/>\n<option") +
          Attribute("timestep", Number(options.time_step_s)) +
          Attribute("gravity", "0 0 " + Number(-options.gravity)) +
@@ -279,12 +313,13 @@ std::string Header(const PhysicsOptions& options) {
 }  // namespace
 
 MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
-                    const Eigen::VectorXd& encoders, const PhysicsOptions& options) {
+                    const Eigen::VectorXd& encoders, const PhysicsOptions& options,
+                    const std::vector<PhysicalPlate>& plates) {
   if (options.standing == Standing::kFree && support.empty()) {
     throw std::invalid_argument("a robot that stands freely needs feet");
   }
   MjcfModel model;
-  MjcfWriter writer(robot, support, options);
+  MjcfWriter writer(robot, support, options, plates);
   const std::vector<Transform> T_waist_link =
       TrueLinkTransforms(robot, TrueJointPositions(robot, encoders));
   for (int foot : support) {
@@ -307,7 +342,9 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
     writer.WriteFromSole(0, model.T_world_foot[0]);
     for (std::size_t s = 1; s < support.size(); ++s) constraints += Weld(s, model.T_world_foot[s]);
   }
-  model.xml = Header(options) + writer.text + "</worldbody>\n<equality>\n" + constraints +
+  writer.WriteTables();
+  const bool contact = options.standing == Standing::kFree || !plates.empty();
+  model.xml = Header(options, contact) + writer.text + "</worldbody>\n<equality>\n" + constraints +
               "</equality>\n</mujoco>\n";
   return model;
 }

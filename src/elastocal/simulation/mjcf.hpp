@@ -29,6 +29,15 @@ struct PhysicsOptions {
   double gravity = 9.81;  ///< m/s^2, downwards
 };
 
+/// A flat square plate of the robot, which a table can carry without friction. Both are a little
+/// soft: MuJoCo's contact gives way by tenths of a millimetre under some tens of newtons.
+struct PhysicalPlate {
+  int link = 0;
+  /// Of the middle of its face; z is the normal, out of the table.
+  Transform T_link_face = Transform::Identity();
+  double edge = 0.08;  ///< m
+};
+
 /// MuJoCo's description (MJCF) of the true robot, z up, floor at z = 0.
 ///
 /// - Each joint k of the tree has a motor hinge `m<k>`. Its passive spring is the servo: its rest
@@ -63,6 +72,7 @@ struct MjcfModel {
 /// root link is upright in the zero posture of the description. Throws std::invalid_argument for a
 /// support that is not the foot of a leg, and for kFree without support.
 MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
-                    const Eigen::VectorXd& encoders, const PhysicsOptions& options);
+                    const Eigen::VectorXd& encoders, const PhysicsOptions& options,
+                    const std::vector<PhysicalPlate>& plates = {});
 
 }  // namespace elastocal

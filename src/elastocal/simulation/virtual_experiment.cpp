@@ -42,6 +42,10 @@ void SwitchOffImperfections(VirtualExperimentOptions& options) {
   sensors.least_lag_s = sensors.largest_lag_s = sensors.drift_size_ppm = 0.0;
   sensors.encoder_bits = 0;
   sensors.torque_noise_sd = 0.0;
+  InstrumentOptions& instruments = options.instruments;
+  instruments.length_sd = instruments.rotation_sd = instruments.acceleration_sd = 0.0;
+  instruments.pixel_sd = instruments.blur_sd = 0.0;
+  instruments.touch_height_sd = instruments.touch_tilt_sd = instruments.table_height_sd = 0.0;
   options.faults = {};
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/simulation/instrument_options.hpp"
 #include "elastocal/simulation/sensors.hpp"
 #include "elastocal/simulation/waist_compliance.hpp"
 #include "elastocal/simulation/waist_give.hpp"
@@ -31,6 +32,7 @@ struct VirtualExperimentOptions {
   PhysicsOptions physics;
   MotionOptions motion;
   SensorOptions sensors;
+  InstrumentOptions instruments;
   Faults faults;
 };
 

@@ -77,12 +77,15 @@ struct VirtualRobot::Simulation {
   DataPointer data;
   std::vector<Address> motors, springs;  // by joint
   std::vector<int> bodies, soles;        // MuJoCo's, by body of the tree and by support
-  Eigen::VectorXd bristle;               // by joint, state of friction in [-1, 1]
+  std::vector<PhysicalPlate> plates;
+  Eigen::VectorXd bristle;  // by joint, state of friction in [-1, 1]
 
-  Simulation(const TrueRobot& true_robot, const MjcfModel& mjcf)
+  Simulation(const TrueRobot& true_robot, const MjcfModel& mjcf,
+             const std::vector<PhysicalPlate>& with_plates)
       : robot(true_robot),
         model(Compile(mjcf.xml, robot.tree)),
         data(mj_makeData(model.get()), &mj_deleteData),
+        plates(with_plates),
         bristle(Eigen::VectorXd::Zero(true_robot.offset.size())) {
     for (std::size_t k = 0; k < robot.tree.joints.size(); ++k) {
       motors.push_back(FindAddress(*model, "m" + std::to_string(k)));
@@ -118,6 +121,21 @@ struct VirtualRobot::Simulation {
     return {force, moment};
   }
 
+  /// The sum of what floor and tables exert on geometries, in the axes of a frame and about its
+  /// origin.
+  template <typename Chosen>
+  Vector6d WrenchAt(const Transform& T_world_frame, const Chosen& chosen) const {
+    const Eigen::Matrix3d R = T_world_frame.linear().transpose();
+    Vector6d wrench = Vector6d::Zero();
+    for (int i = 0; i < data->ncon; ++i) {
+      if (!chosen(data->contact[i].geom2)) continue;
+      const auto [force, moment] = ContactWrench(i);
+      wrench.head<3>() += R * force;
+      wrench.tail<3>() += R * (moment - T_world_frame.translation().cross(force));
+    }
+    return wrench;
+  }
+
   /// Applies Coulomb friction as that of a bristle that bends before it slips (Dahl). It holds at
   /// rest, and needs no constraint.
   void ApplyFriction() {
@@ -138,9 +156,10 @@ struct VirtualRobot::Simulation {
 };
 
 VirtualRobot::VirtualRobot(const TrueRobot& robot, const std::vector<int>& support,
-                           const Eigen::VectorXd& encoders, const PhysicsOptions& options)
-    : simulation_(
-          std::make_unique<Simulation>(robot, BuildMjcf(robot, support, encoders, options))) {
+                           const Eigen::VectorXd& encoders, const PhysicsOptions& options,
+                           const std::vector<PhysicalPlate>& plates)
+    : simulation_(std::make_unique<Simulation>(
+          robot, BuildMjcf(robot, support, encoders, options, plates), plates)) {
   Command(encoders);
   for (const Address& motor : simulation_->motors) {
     simulation_->data->qpos[motor.position] = simulation_->model->qpos_spring[motor.position];
@@ -253,18 +272,30 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> VirtualRobot::FloorWrench() const {
 
 Vector6d VirtualRobot::SoleWrench(int index) const {
   const int body = simulation_->soles[static_cast<std::size_t>(index)];
+  return simulation_->WrenchAt(simulation_->BodyPose(body), [&](int geometry) {
+    return simulation_->model->geom_bodyid[geometry] == body;
+  });
+}
+
+void VirtualRobot::PlaceTable(int plate, const Transform& T_world_table) {
   const mjModel& model = *simulation_->model;
-  const mjData& data = *simulation_->data;
-  const Transform T_world_sole = simulation_->BodyPose(body);
-  const Eigen::Matrix3d R = T_world_sole.linear().transpose();
-  Vector6d wrench = Vector6d::Zero();
-  for (int i = 0; i < data.ncon; ++i) {
-    if (model.geom_bodyid[data.contact[i].geom2] != body) continue;
-    const auto [force, moment] = simulation_->ContactWrench(i);
-    wrench.head<3>() += R * force;
-    wrench.tail<3>() += R * (moment - T_world_sole.translation().cross(force));
-  }
-  return wrench;
+  const int mocap = model.body_mocapid[FindBody(model, "t" + std::to_string(plate))];
+  const Eigen::Quaterniond q(T_world_table.linear());
+  const std::array pose{q.w(), q.x(), q.y(), q.z()};
+  std::copy(pose.begin(), pose.end(), simulation_->data->mocap_quat + 4 * mocap);
+  Eigen::Map<Eigen::Vector3d>(simulation_->data->mocap_pos + 3 * mocap) =
+      T_world_table.translation();
+}
+
+Transform VirtualRobot::PlatePose(int plate) const {
+  const PhysicalPlate& of = simulation_->plates[static_cast<std::size_t>(plate)];
+  return LinkPose(of.link) * of.T_link_face;
+}
+
+Vector6d VirtualRobot::PlateWrench(int plate) const {
+  const int box =
+      mj_name2id(simulation_->model.get(), mjOBJ_GEOM, ("p" + std::to_string(plate)).c_str());
+  return simulation_->WrenchAt(PlatePose(plate), [&](int geometry) { return geometry == box; });
 }
 
 int VirtualRobot::coordinate_count() const { return simulation_->model->nv; }

@@ -19,7 +19,8 @@ class VirtualRobot {
   /// posture `encoders` (by coordinate), with no load on its springs. Throws what BuildMjcf throws,
   /// and std::runtime_error with MuJoCo's message if it does not accept the model.
   VirtualRobot(const TrueRobot& robot, const std::vector<int>& support,
-               const Eigen::VectorXd& encoders, const PhysicsOptions& options = {});
+               const Eigen::VectorXd& encoders, const PhysicsOptions& options = {},
+               const std::vector<PhysicalPlate>& plates = {});
   ~VirtualRobot();
   VirtualRobot(VirtualRobot&&) noexcept;
 
@@ -54,6 +55,12 @@ class VirtualRobot {
   /// The same for one sole in `support` alone: force, and moment about its origin, in its axes, as
   /// a force sensor in the foot measures them.
   Vector6d SoleWrench(int index) const;
+  /// Puts the table of a plate there, its plane being z = 0 of its frame. It begins out of reach.
+  void PlaceTable(int plate, const Transform& T_world_table);
+  Transform PlatePose(int plate) const;  ///< of the middle of its face
+  /// Force of the table on a plate and its moment about the middle of its face, in the axes of the
+  /// face, N and N.m.
+  Vector6d PlateWrench(int plate) const;
   int coordinate_count() const;  ///< of the simulation
 
  private:

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "elastocal/cli/commands.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/simulation/virtual_experiment.hpp"
+
+namespace elastocal::cli {
+
+/// `design` for a project with contact or instruments.
+struct DesignObservationsCommand {
+  CommonOptions common;
+  std::string output;  ///< posture file
+  int count = 0;       ///< postures in all; 0: the usual number
+};
+int RunObservationDesign(const DesignObservationsCommand& command, const Project& project);
+
+/// `simulate` for such a project.
+struct SimulateObservationsCommand {
+  CommonOptions common;
+  std::string output;    ///< folder
+  std::string postures;  ///< posture file; empty: `count` random ones of each kind
+  int count = 0;         ///< 0: the usual number
+  bool force = false;    ///< replaces recordings that were not simulated
+  VirtualExperimentOptions experiment;
+};
+int RunObservationSimulation(const SimulateObservationsCommand& command, const Project& project);
+
+}  // namespace elastocal::cli

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/planning/design_observations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/observation/observation_fit.hpp"
+#include "elastocal/planning/posture_information.hpp"
+
+namespace elastocal {
+namespace {
+
+/// A posture that may be chosen.
+struct Candidate {
+  int plate = -1;  ///< that touches; -1: instruments look
+  Eigen::VectorXd q;
+};
+
+std::vector<Candidate> ListCandidates(const ObservationDesign& drawn, int plates) {
+  std::vector<Candidate> candidates;
+  for (std::size_t k = 0; k < drawn.postures.size(); ++k) {
+    const int plate = drawn.postures[k].chain == kLooks ? -1 : static_cast<int>(k);
+    for (const Eigen::VectorXd& q : drawn.postures[k].q) {
+      candidates.push_back({plate < plates ? plate : -1, q});
+    }
+  }
+  return candidates;
+}
+
+/// What the nominal robot shows in the candidates.
+Observations NominalObservations(const Project& project, const ObservationSetup& setup,
+                                 const ObservedRobot& model,
+                                 const std::vector<Candidate>& candidates) {
+  Observations all;
+  all.files = {"nominal"};
+  all.q.resize(static_cast<Eigen::Index>(candidates.size()), model.robot.tree.coordinate_count());
+  const int plates = static_cast<int>(setup.plates.size());
+  const bool mixed = !project.contact->plate_column.empty();
+  for (int i = 0; i < static_cast<int>(candidates.size()); ++i) {
+    const Candidate& of = candidates[Size(i)];
+    all.q.row(i) = of.q.transpose();
+    all.postures.push_back({0, i});
+    if (of.plate >= 0) all.all.push_back({i, of.plate, {}, {}});
+    for (int n = plates; n < static_cast<int>(setup.instruments.size()); ++n) {
+      if (of.plate < 0 || mixed) all.all.push_back({i, n, {}, {}});
+    }
+  }
+  ObservedValues nominal;
+  nominal.robot = Eigen::VectorXd::Zero(model.robot.parameter_count());
+  for (const Quantity& quantity : setup.quantities) {
+    nominal.quantities.push_back({quantity.origin, Eigen::VectorXd::Zero(quantity.size())});
+  }
+  const std::vector<Sight> sights = SightsOf(model, all, nominal, {});
+  std::vector<Observation> seen;
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const Instrument& instrument = model.instrument(all.all[i].instrument);
+    if (!instrument.Sees(sights[i])) continue;
+    seen.push_back(all.all[i]);
+    seen.back().measured = instrument.Predict(sights[i]);
+  }
+  all.all = std::move(seen);
+  return all;
+}
+
+PostureInformation InformationOf(const Project& project, const ObservationSetup& setup,
+                                 const std::vector<Candidate>& candidates) {
+  const RobotTree& tree = project.tree;
+  const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
+    return patterns ? MatchingJoints(tree, *patterns) : std::vector<int>();
+  };
+  ObservedRobot model =
+      MakeObservedRobot(tree, project.placement, setup, joints(project.elasticity.torsion),
+                        joints(project.elasticity.bending));
+  const Observations observations = NominalObservations(project, setup, model, candidates);
+  KeepObservedUnknowns(observations, model);
+  const ObservationFit fit = StartFit(model, observations);
+  ObservationResiduals residuals(model, observations, fit.loads, fit.spread, fit.weights, {},
+                                 fit.values);
+  residuals.Evaluate(residuals.Start(), true);
+  std::vector<int> posture;
+  for (const Observation& of : observations.all) posture.push_back(of.posture);
+  return {residuals, posture, static_cast<int>(candidates.size())};
+}
+
+double MeanOfRandomSets(const PostureInformation& information, int count, std::uint64_t seed) {
+  constexpr int kSets = 10;
+  Random random(seed);
+  double sum = 0.0;
+  for (int set = 0; set < kSets; ++set) {
+    std::vector<int> order(Size(information.count()));
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+    for (int i = 0; i < count; ++i) {
+      std::swap(order[Size(i)], order[Size(i + random.Index(information.count() - i))]);
+    }
+    order.resize(Size(count));
+    sum += information.Of(order);
+  }
+  return sum / kSets;
+}
+
+}  // namespace
+
+ObservationDesign DrawObservedPostures(const Project& project, int count, std::uint64_t seed,
+                                       const Progress& progress) {
+  ObservedPostureSampler sampler(project, seed);
+  const ObservationSetup& setup = sampler.setup();
+  const int plates = static_cast<int>(setup.plates.size());
+  const bool looks = setup.instruments.size() > setup.plates.size();
+  ObservationDesign design;
+  int done = 0;
+  const int total = count * (plates + (looks ? 1 : 0));
+  for (int kind = 0; kind < plates + (looks ? 1 : 0); ++kind) {
+    ChainPostures of{kind < plates ? setup.plates[Size(kind)].name : kLooks, sampler.support(), {}};
+    for (int i = 0; i < count; ++i) {
+      const auto q = kind < plates ? sampler.DrawTouch(kind) : sampler.DrawLook();
+      if (!q) {
+        design.infeasible = (kind < plates ? "plate '" + of.chain + "': no posture"
+                                           : std::string("no posture for instruments")) +
+                            " was found; what stands in the way most often: " + sampler.Blame();
+        return design;
+      }
+      of.q.push_back(*q);
+      ++done;
+      if (progress) progress(done, total);
+    }
+    design.postures.push_back(std::move(of));
+  }
+  design.candidates = done;
+  return design;
+}
+
+ObservationDesign DesignObservations(const Project& project,
+                                     const ObservationDesignOptions& options,
+                                     const Progress& progress) {
+  const int kinds =
+      static_cast<int>(project.contact ? project.contact->setup.plates.size() : 0) + 1;
+  const int each = std::max(options.count, options.count * options.candidates / kinds);
+  ObservationDesign design = DrawObservedPostures(project, each, options.seed, progress);
+  if (!design.infeasible.empty()) return design;
+  const ObservedPostureSampler sampler(project, options.seed);
+  const std::vector<Candidate> candidates =
+      ListCandidates(design, static_cast<int>(sampler.setup().plates.size()));
+  const PostureInformation information = InformationOf(project, sampler.setup(), candidates);
+  const std::vector<int> chosen = information.Choose(options.count);
+  design.information = information.Of(chosen);
+  design.information_at_random = MeanOfRandomSets(information, options.count, options.seed);
+  for (ChainPostures& of : design.postures) of.q.clear();
+  for (int index : chosen) {
+    const Candidate& of = candidates[Size(index)];
+    (of.plate >= 0 ? design.postures[Size(of.plate)] : design.postures.back()).q.push_back(of.q);
+  }
+  std::erase_if(design.postures, [](const ChainPostures& of) { return of.q.empty(); });
+  return design;
+}
+
+std::string FormatObservationDesign(const ObservationDesign& design) {
+  nlohmann::ordered_json json;
+  for (const ChainPostures& of : design.postures) {
+    json["postures"].push_back({{"name", of.chain}, {"postures", of.q.size()}});
+  }
+  json["candidates"] = design.candidates;
+  json["information_nats"] = design.information;
+  json["information_at_random_nats"] = design.information_at_random;
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocal/io/posture_file.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/motion/standing_robot.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/robot/moving_chain.hpp"
+#include "elastocal/simulation/mjcf.hpp"
+
+namespace elastocal {
+
+/// Draws postures in which a robot stands on the feet of `contact` (or its root link is held still)
+/// and touches a table or is seen by instruments. Nominally, the feet stand flat in their places,
+/// the centre of mass is over the middle of the support, joints keep the limits of the section
+/// `design`, the parts of its contacts are apart, and no part but the plate is lower than the table
+/// over it. Torques are not limited.
+class ObservedPostureSampler {
+ public:
+  /// Keeps a reference. Throws InputError without `contact` and `instruments`, for a foot that is
+  /// no sole of the section `standing`, and for a robot that cannot stand.
+  ObservedPostureSampler(const Project& project, std::uint64_t seed);
+
+  /// The plate lies flush on its table, anywhere on it. By coordinate; nothing if none was found.
+  /// Throws InputError if the project does not say where the table is.
+  std::optional<Eigen::VectorXd> DrawTouch(int plate);
+
+  /// Joints before anything that is observed are anywhere; with cameras in the project, one of them
+  /// sees a tag on the other side of a joint.
+  std::optional<Eigen::VectorXd> DrawLook();
+
+  /// After a draw that found nothing: what stood in the way most often.
+  std::string Blame() const;
+
+  /// The project's, with the feet in their places.
+  const ObservationSetup& setup() const { return setup_; }
+  std::vector<int> support() const;  ///< links of the feet, the first one first
+  const StandingRobot& robot() const { return *robot_; }
+
+ private:
+  PlacedPosture DrawStance();
+  bool Balance(PlacedPosture& pose);
+  bool Reach(const Transform& T_root_face, int plate, Eigen::VectorXd& q);
+  bool TryTouch(int plate, const TableTop& table, PlacedPosture& pose);
+  bool Feasible(const PlacedPosture& pose, int plate);
+  bool TableApart(const PlacedPosture& pose, int plate) const;
+  bool Blamed(const std::string& reason);
+
+  const Project& project_;
+  ObservationSetup setup_;
+  std::unique_ptr<StandingRobot> robot_;
+  Random random_;
+  std::vector<std::unique_ptr<MovingChain>> arms_;  // by plate
+  std::vector<int> moved_;                          // coordinates before what is observed
+  Eigen::Vector2d com_ = Eigen::Vector2d::Zero();   // of the stance that was drawn
+  std::map<std::string, int> blame_;
+};
+
+/// The plate as it is described; `edge`: m.
+PhysicalPlate DescribedPlate(const ContactPlate& plate, double edge = 0.08);
+
+/// The coordinates with which a hand moves its plate: of the joints before it that no foot and no
+/// other plate needs, or of all where these are fewer than three.
+std::vector<int> HandCoordinates(const RobotTree& tree, const ObservationSetup& setup, int plate);
+
+/// What each instrument depends on in a nominal posture, with the root link there on the floor.
+Sight NominalSight(const ObservationSetup& setup, const Instrument& instrument,
+                   const std::vector<Transform>& T_root_link, const Transform& T_floor_root);
+
+}  // namespace elastocal
