@@ -25,7 +25,8 @@ constexpr std::size_t kMostShown = 5;
 
 struct CheckCommand {
   CommonOptions common;
-  std::string project, calibration, recording;
+  std::string project, calibration;
+  std::vector<std::string> recording;  ///< one
   CheckOptions check;
 };
 
@@ -110,7 +111,7 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
 int Check(const CheckCommand& command) {
   const Project project = ReadProject(command.project);
   CheckHasMarkers(project);
-  std::vector<std::filesystem::path> inputs = InputFiles(project, {command.recording});
+  std::vector<std::filesystem::path> inputs = InputFiles(project, {command.recording.front()});
   const CalibrationFiles files = FindCalibrationFiles(command.calibration);
   inputs.insert(inputs.end(), {files.calibration, files.covariance});
   OutputSet outputs;
@@ -119,7 +120,8 @@ int Check(const CheckCommand& command) {
   outputs.Prepare();
   CheckOptions options = command.check;
   options.seed = command.common.seed;
-  const CheckRun run = CheckCalibration(project, command.calibration, command.recording, options);
+  const CheckRun run =
+      CheckCalibration(project, command.calibration, command.recording.front(), options);
   outputs.Set(command.common.json_file, MakeCheckJson(run));
   outputs.Publish();
 

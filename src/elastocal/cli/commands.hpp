@@ -40,9 +40,10 @@ void AddOutputOptions(CLI::App& command, CommonOptions& options);
 /// The calibration that a command puts to use, and the project it belongs to.
 void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string& project);
 
-/// A project, a calibration of its robot, and a recording that it is applied to.
+/// A project, a calibration of its robot, and the recording that it is applied to; for validate,
+/// several tables of observations are one recording.
 void AddAppliedCalibration(CLI::App& command, std::string& project, std::string& calibration,
-                           std::string& recording);
+                           std::vector<std::string>& recording, bool tables = false);
 
 /// Mistakes of a recording to be corrected, see AcceptMistakes.
 void AddAcceptOption(CLI::App& command, std::vector<std::string>& names);

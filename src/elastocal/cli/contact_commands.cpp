@@ -176,7 +176,9 @@ int RunContactCalibration(const CalibrateOptions& options, const Project& projec
 int RunContactValidation(const ContactValidateOptions& options, const Project& project) {
   const bool quiet = options.common.Silent();
   const std::filesystem::path folder = options.output;
-  std::vector<std::filesystem::path> inputs = InputFiles(project, {options.recording});
+  const std::vector<std::filesystem::path> recordings(options.recording.begin(),
+                                                      options.recording.end());
+  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
   OutputSet outputs;
   outputs.Protect(inputs);
@@ -185,7 +187,7 @@ int RunContactValidation(const ContactValidateOptions& options, const Project& p
   outputs.Prepare();
 
   const ContactValidation run =
-      ValidateContacts(project, options.calibration, options.recording, options.refit_table);
+      ValidateContacts(project, options.calibration, recordings, options.refit_table);
   const std::string json = MakeContactValidationJson(run);
   outputs.Set(options.common.json_file, json);
   std::string no_report;

@@ -11,8 +11,9 @@ int RunContactCalibration(const CalibrateOptions& options, const Project& projec
 
 struct ContactValidateOptions {
   CommonOptions common;
-  std::string calibration, recording;
-  std::string output;  ///< folder; empty: none
+  std::string calibration;
+  std::vector<std::string> recording;  ///< tables of observations and of corners
+  std::string output;                  ///< folder; empty: none
   bool refit_table = false;
 };
 

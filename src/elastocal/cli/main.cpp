@@ -51,7 +51,7 @@ void AddOutputOptions(CLI::App& command, CommonOptions& options) {
 }
 
 void AddAppliedCalibration(CLI::App& command, std::string& project, std::string& calibration,
-                           std::string& recording) {
+                           std::vector<std::string>& recording, bool tables) {
   command.add_option("project", project, "Project file (YAML)")->required();
   command
       .add_option("--calibration", calibration, "Output folder of calibrate, or a calibration.yaml")
@@ -59,8 +59,10 @@ void AddAppliedCalibration(CLI::App& command, std::string& project, std::string&
       ->type_name("FILE");
   command
       .add_option("--recording", recording,
-                  "Table of static postures (CSV), or a folder with experiment.yaml")
+                  std::string("Table of static postures (CSV), or a folder with experiment.yaml") +
+                      (tables ? "; with contact or instruments, one or several tables" : ""))
       ->required()
+      ->expected(tables ? -1 : 1)
       ->type_name("FILE");
 }
 

@@ -25,7 +25,8 @@ namespace {
 
 struct ValidateOptions {
   CommonOptions common;
-  std::string project, calibration, recording;
+  std::string project, calibration;
+  std::vector<std::string> recording;
   std::string output;  ///< folder; empty: none
   bool frozen = false;
   std::string refit;  ///< "table"; empty: nothing
@@ -76,7 +77,12 @@ int Validate(const ValidateOptions& options) {
                                 project);
   }
   if (!options.refit.empty()) throw InputError("--refit table is about touches of a table");
-  std::vector<std::filesystem::path> inputs = InputFiles(project, {options.recording});
+  if (options.recording.size() > 1) {
+    throw InputError("--recording: " + std::to_string(options.recording.size()) +
+                     " files; one recording was expected, because the project has neither contact "
+                     "nor instruments");
+  }
+  std::vector<std::filesystem::path> inputs = InputFiles(project, {options.recording.front()});
   inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
   OutputSet outputs;
   outputs.Protect(inputs);
@@ -85,7 +91,7 @@ int Validate(const ValidateOptions& options) {
   outputs.Prepare();
 
   const ValidationRun run = ValidateCalibration(
-      project, options.calibration, options.recording,
+      project, options.calibration, options.recording.front(),
       {.frozen = options.frozen, .seed = options.common.seed, .accept = options.accept});
   const std::string json = MakeValidationJson(run);
   outputs.Set(options.common.json_file, json);
@@ -109,7 +115,7 @@ void AddValidate(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("validate",
                                          "Apply a calibration to another recording: waist and "
                                          "markers refitted (or nothing, --frozen)");
-  AddAppliedCalibration(*command, options->project, options->calibration, options->recording);
+  AddAppliedCalibration(*command, options->project, options->calibration, options->recording, true);
   command
       ->add_option("-o,--output", options->output,
                    "Folder for validation.json and a report with it: that of the calibration")

@@ -63,14 +63,17 @@ std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
 }  // namespace
 
 ContactValidation ValidateContacts(const Project& project, const std::filesystem::path& calibration,
-                                   const std::filesystem::path& recording, bool refit_table) {
+                                   const std::vector<std::filesystem::path>& recordings,
+                                   bool refit_table) {
   const std::filesystem::path file = FindCalibrationFiles(calibration).calibration;
   const StoredCalibration stored = ReadCalibration(file);
   const StoredContacts contacts = ReadContacts(file, project);
-  ObservationTables tables = ReadObservationTables({recording}, project, &contacts.feet);
+  ObservationTables tables = ReadObservationTables(recordings, project, &contacts.feet);
   ContactValidation run;
   run.calibration_file = file.string();
-  run.recording = recording.string();
+  for (const std::filesystem::path& table : recordings) {
+    run.recording += (run.recording.empty() ? "" : ", ") + table.string();
+  }
   run.surroundings_refitted = refit_table;
   run.observations = std::move(tables.observations);
   run.warnings = std::move(tables.warnings);

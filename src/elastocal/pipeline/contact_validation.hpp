@@ -27,13 +27,14 @@ struct ContactValidation {
   bool better() const { return gain_in_sds > 0.0; }
 };
 
-/// Predicts the observations of `recording` by a stored calibration, with the surroundings where
-/// they were
+/// Predicts the observations of `recordings` (tables of observations and of corners) by a stored
+/// calibration, with the surroundings where they were
 /// (`refit_table` false) or registered anew (LeftAfterRegistration). Sessions of another day are
 /// unknown: they have no effect. Throws InputError: files that cannot be read; a calibration of
 /// another robot or without touches.
 ContactValidation ValidateContacts(const Project& project, const std::filesystem::path& calibration,
-                                   const std::filesystem::path& recording, bool refit_table);
+                                   const std::vector<std::filesystem::path>& recordings,
+                                   bool refit_table);
 
 /// validation.json: the figures for programs (docs/formats.md).
 std::string MakeContactValidationJson(const ContactValidation& run);
