@@ -16,6 +16,7 @@
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/check_calibration.hpp"
 #include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 
 namespace elastocal::cli {
 namespace {

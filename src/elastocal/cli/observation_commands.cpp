@@ -11,6 +11,7 @@
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/design_observations.hpp"
 #include "elastocal/planning/simulate_observations.hpp"
 
