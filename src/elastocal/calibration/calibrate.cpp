@@ -24,7 +24,8 @@ bool IsEstimated(ParameterKind parameter, ModelKind kind) {
   if (IsExternal(parameter)) return true;
   if (IsElastic(parameter)) return kind == ModelKind::kFull;
   return kind == ModelKind::kGeometric || kind == ModelKind::kFull ||
-         (kind == ModelKind::kOffsetsOnly && parameter == ParameterKind::kTheta);
+         (kind == ModelKind::kOffsetsOnly &&
+          (parameter == ParameterKind::kTheta || parameter == ParameterKind::kMotorZero));
 }
 
 /// What is estimated: all parameters but those held, also those that cannot be told from others:

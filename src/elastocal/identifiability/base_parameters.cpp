@@ -27,10 +27,13 @@ int PriorityClass(ParameterKind kind, ExternalPriority external) {
     case ParameterKind::kBeta:
     case ParameterKind::kGamma:
       return 2;
+    case ParameterKind::kRod:
+    case ParameterKind::kMotorZero:
+      return 3;  // beside the tree's
     case ParameterKind::kWaistPose:
-      return external == ExternalPriority::kFirst ? -2 : 3;
+      return external == ExternalPriority::kFirst ? -2 : 4;
     default:
-      return external == ExternalPriority::kFirst ? -1 : 4;
+      return external == ExternalPriority::kFirst ? -1 : 5;
   }
 }
 
@@ -134,12 +137,30 @@ BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd
   base.dropped = Sorted(dropped);
   base.geometric_count = static_cast<int>(kept.size());
   KeepElastic(model, base);
-  base.theoretical_count = TheoreticalCount(model, options.root);
+  base.theoretical_count =
+      TheoreticalCount(model, options.root) +
+      static_cast<int>(std::count_if(base.kept.begin(), base.kept.end(), [&](int i) {
+        return model.parameters[i].linkage >= 0;
+      }));
   return base;
 }
 
 BaseParameters FindBaseParameters(const ErrorModel& model, const IdentifiabilityOptions& options) {
   return FindBaseParameters(model, NominalFactor(model, options), options);
+}
+
+std::vector<int> HoldDroppedLinkages(const ErrorModel& model, BaseParameters& base) {
+  std::vector<int> dropped, held, columns;
+  for (std::size_t d = 0; d < base.dropped.size(); ++d) {
+    const bool of_linkage = model.parameters[base.dropped[d]].linkage >= 0;
+    (of_linkage ? held : dropped).push_back(base.dropped[d]);
+    if (!of_linkage) columns.push_back(static_cast<int>(d));
+  }
+  base.dropped = std::move(dropped);
+  base.regrouping = base.regrouping(Eigen::all, columns).eval();
+  base.held.insert(base.held.end(), held.begin(), held.end());
+  std::sort(base.held.begin(), base.held.end());
+  return held;
 }
 
 std::vector<int> LostBySpecialMarkers(const ErrorModel& model,

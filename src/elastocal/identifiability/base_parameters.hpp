@@ -56,7 +56,7 @@ struct BaseParameters {
   /// docs/algorithms.md). With a free root 4 R + 2 P + 3 N_M - 6, for joints that move some of the
   /// markers but not all. It holds if no parameter is held, and does not count elastic ones. A
   /// lower count with no parameter held means special marker positions, or (with a free root) too
-  /// few markers on a body.
+  /// few markers on a body. The kept ones of linkages are added: there is no theory of these.
   int theoretical_count = 0;
 };
 
@@ -80,6 +80,10 @@ BaseParameters FindBaseParameters(const ErrorModel& model, const Identifiability
 /// The same from a factor that was computed before: for other holds or another priority.
 BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd& factor,
                                   const IdentifiabilityOptions& options);
+
+/// Holds the parameters of linkages that are not identifiable beside the others: they would only
+/// share with the tree's what is told of these. Returns them.
+std::vector<int> HoldDroppedLinkages(const ErrorModel& model, BaseParameters& base);
 
 /// Parameters that would be identifiable with generic marker positions but are not with the given
 /// ones. They are found by a second choice with the markers moved. Empty if the count is the

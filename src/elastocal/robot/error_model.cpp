@@ -104,6 +104,22 @@ void AddLegParameters(const ErrorModel& model, int leg, std::set<int>& biased,
   }
 }
 
+void AddLinkageParameters(const ErrorModel& model, int index, std::vector<Parameter>& parameters) {
+  const Linkage& linkage = model.tree.linkages[index];
+  const auto is_active = [&](int k) { return Contains(model.active_joints, k); };
+  if (std::none_of(linkage.joints.begin(), linkage.joints.end(), is_active)) return;
+  for (const Rod& rod : linkage.rods) {
+    for (const RodQuantity quantity : rod.uncertain) {
+      const bool zero = quantity == RodQuantity::kZero;
+      Parameter parameter{rod.motor + "." + RodQuantityName(quantity),
+                          zero ? Kind::kMotorZero : Kind::kRod,
+                          zero ? ParameterUnit::kRadian : ParameterUnit::kMetre};
+      parameter.linkage = index;
+      parameters.push_back(std::move(parameter));
+    }
+  }
+}
+
 void AddMarkerParameters(const std::vector<Marker>& markers, std::vector<Parameter>& parameters) {
   for (std::size_t i = 0; i < markers.size(); ++i) {
     for (const char* coordinate : {"x", "y", "z"}) {
@@ -166,6 +182,9 @@ void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
   std::set<int> biased;
   for (int leg = 0; leg < model.leg_count() && model.elasticity.base; ++leg) {
     AddLegParameters(model, leg, biased, model.parameters);
+  }
+  for (int i = 0; i < static_cast<int>(model.tree.linkages.size()); ++i) {
+    AddLinkageParameters(model, i, model.parameters);
   }
   AddMarkerParameters(markers, model.parameters);
   model.markers = std::move(markers);

@@ -58,7 +58,7 @@ struct ErrorModel {
   std::vector<int> active_joints;                 ///< joints that have parameters, ascending
   /// In this order: T0 and corrections of the root link; joints from the waist outwards, each with
   /// its geometric parameters, then compliance_z, _x, _y, then corrections; legs, if `base`, each
-  /// with six compliances and then torque biases; markers.
+  /// with six compliances and then torque biases; linkages of active joints; markers.
   std::vector<Parameter> parameters;
 
   int parameter_count() const { return static_cast<int>(parameters.size()); }

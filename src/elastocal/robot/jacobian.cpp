@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/robot/jacobian.hpp"
 
+#include <algorithm>
+
+#include "elastocal/robot/linkage_errors.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -29,7 +33,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
   std::vector<int> parameter_count(model.tree.joints.size(), 0);
   for (int i = screw_count - 1; i >= kWaistParameterCount; --i) {
     const Parameter& parameter = model.parameters[i];
-    if (parameter.leg >= 0) continue;
+    if (parameter.leg >= 0 || parameter.linkage >= 0) continue;
     if (parameter.joint < 0) {
       ++root_corrections_;
       continue;
@@ -39,7 +43,7 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
     if (IsCompliance(parameter.kind)) ++compliances_[parameter.joint];
     if (parameter.kind == ParameterKind::kCorrection) ++corrections_[parameter.joint];
   }
-  screws_.setZero(screw_count, 6);
+  row_count_ = screw_count;
 
   Eigen::Index offset = 0;
   for (int m = 0; m < model.marker_count(); ++m) {
@@ -54,12 +58,32 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
     legs_.push_back(LayOut(model.tree.links[leg.link].body, parameter_count));
     leg_screws_.emplace_back(6, static_cast<Eigen::Index>(legs_.back().columns.size()));
   }
+  screws_.setZero(row_count_, 6);
+}
+
+GeneralizedJacobian::Segment GeneralizedJacobian::LinkageSegment(int linkage,
+                                                                 const std::vector<int>& path) {
+  const int parameter = FirstLinkageParameter(model_, linkage);
+  const Linkage& of = model_.tree.linkages[static_cast<std::size_t>(linkage)];
+  std::vector<int> moved;
+  for (std::size_t j = 0; j < of.joints.size(); ++j) {
+    const bool beyond = std::find(path.begin(), path.end(), of.joints[j]) != path.end();
+    if (beyond) moved.push_back(static_cast<int>(j));
+  }
+  if (moved.empty() || parameter < 0) return {0, 0, 0};
+  for (const LinkageRows& rows : linkage_rows_) {
+    if (rows.linkage == linkage && rows.moved == moved) return {rows.row, rows.count, parameter};
+  }
+  linkage_rows_.push_back({linkage, row_count_, of.error_count(), std::move(moved)});
+  row_count_ += of.error_count();
+  return {linkage_rows_.back().row, of.error_count(), parameter};
 }
 
 GeneralizedJacobian::BodyLayout GeneralizedJacobian::LayOut(
-    int body, const std::vector<int>& parameter_count) const {
+    int body, const std::vector<int>& parameter_count) {
   BodyLayout layout{body, {{0, kWaistParameterCount + root_corrections_}}, {}};
-  for (int joint : JointsToBody(model_.tree, body)) {
+  const std::vector<int> path = JointsToBody(model_.tree, body);
+  for (int joint : path) {
     Segment& last = layout.segments.back();
     if (last.begin + last.size == first_parameter_[joint]) {
       last.size += parameter_count[joint];
@@ -67,8 +91,13 @@ GeneralizedJacobian::BodyLayout GeneralizedJacobian::LayOut(
       layout.segments.push_back({first_parameter_[joint], parameter_count[joint]});
     }
   }
+  for (int i = 0; i < static_cast<int>(model_.tree.linkages.size()); ++i) {
+    const Segment segment = LinkageSegment(i, path);
+    if (segment.size > 0) layout.segments.push_back(segment);
+  }
   for (const Segment& segment : layout.segments) {
-    for (int i = 0; i < segment.size; ++i) layout.columns.push_back(segment.begin + i);
+    const int first = segment.parameter < 0 ? segment.begin : segment.parameter;
+    for (int i = 0; i < segment.size; ++i) layout.columns.push_back(first + i);
   }
   return layout;
 }
@@ -126,6 +155,24 @@ void GeneralizedJacobian::SetRootCorrections(const Geometry& geometry, const Joi
   }
 }
 
+/// An error of a linkage moves what is beyond its joints as their own motion does.
+void GeneralizedJacobian::SetLinkages(const Geometry& geometry, const Eigen::VectorXd& q) {
+  const LinkedPosture posture = PlaceLinkages(model_, geometry, q);
+  for (const LinkageRows& rows : linkage_rows_) {
+    const auto index = static_cast<std::size_t>(rows.linkage);
+    const Linkage& linkage = model_.tree.linkages[index];
+    auto screws = screws_.middleRows(rows.row, rows.count);
+    screws.setZero();
+    for (int j : rows.moved) {
+      const int joint = linkage.joints[static_cast<std::size_t>(j)];
+      const MdhFrame& frame = frames_[joint + 1];  // its z is the joint's axis
+      Eigen::Array<double, 1, 6> axis;
+      axis << frame.R.col(2).transpose().array(), frame.p.cross(frame.R.col(2)).transpose().array();
+      screws += (posture.by_errors[index].row(j).transpose() * axis.matrix()).array();
+    }
+  }
+}
+
 void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q,
                                          const JointLoads& loads) {
   // Sets the screws in the order of the parameters of one joint, or of the waist.
@@ -153,6 +200,7 @@ void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::
     SetCorrections(joint, row + compliances_[joint], deflected, loads);
   };
   EvaluateMdhFrames(model_, geometry, q, loads, frames_, visit);
+  if (!linkage_rows_.empty()) SetLinkages(geometry, q);
   if (root_corrections_ > 0) SetRootCorrections(geometry, loads);
 }
 

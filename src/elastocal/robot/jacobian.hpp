@@ -42,8 +42,8 @@ class GeneralizedJacobian {
     return {values_.data() + layout.offset, 3, static_cast<Eigen::Index>(layout.columns.size())};
   }
 
-  /// The screw [a; m] by which a parameter (other than a marker's) moves everything beyond it: its
-  /// column for a marker at p is a x p + m. See LegScrews.
+  /// The screw [a; m] by which a parameter (other than a marker's or a linkage's) moves everything
+  /// beyond it: its column for a marker at p is a x p + m. See LegScrews.
   Eigen::Matrix<double, 6, 1> Screw(int parameter) const {
     return screws_.row(parameter).matrix().transpose();
   }
@@ -74,7 +74,13 @@ class GeneralizedJacobian {
 
  private:
   struct Segment {
-    int begin, size;  // run of consecutive parameters
+    int begin, size;     // run of consecutive rows of screws_
+    int parameter = -1;  // of the first row; -1: `begin`
+  };
+  /// Rows of screws_ for what the errors of a linkage do to bodies beyond some of its joints.
+  struct LinkageRows {
+    int linkage, row, count;
+    std::vector<int> moved;  // of the linkage's joints, by their position in it
   };
   struct BodyLayout {
     int body;
@@ -85,11 +91,13 @@ class GeneralizedJacobian {
     Eigen::Index offset;              // of the block in values_
   };
 
-  BodyLayout LayOut(int body, const std::vector<int>& parameter_count) const;
+  BodyLayout LayOut(int body, const std::vector<int>& parameter_count);
   void EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q, const JointLoads& loads);
   void SetCompliances(int joint, int row, const Geometry::JointConstants& constants,
                       const MdhFrame& twisted, const JointLoads& loads);
   void SetCorrections(int joint, int row, const MdhFrame& deflected, const JointLoads& loads);
+  Segment LinkageSegment(int linkage, const std::vector<int>& path);
+  void SetLinkages(const Geometry& geometry, const Eigen::VectorXd& q);
   void SetRootCorrections(const Geometry& geometry, const JointLoads& loads);
   void EvaluateMarker(int marker);
   void EvaluateLeg(int leg);
@@ -99,6 +107,8 @@ class GeneralizedJacobian {
   std::vector<int> compliances_;                    // by joint: how many it has
   std::vector<int> corrections_;                    // likewise
   int root_corrections_ = 0;                        // of the root link, after T0
+  std::vector<LinkageRows> linkage_rows_;           // one for each set of joints that is needed
+  int row_count_ = 0;                               // of screws_
   std::vector<MarkerLayout> layout_;                // by marker
   std::vector<BodyLayout> legs_;                    // by leg
   std::vector<MdhFrame> frames_;                    // by body

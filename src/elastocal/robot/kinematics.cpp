@@ -107,6 +107,18 @@ void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& 
   }
 }
 
+/// The same of the linkages.
+void ApplyLinkageErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& i,
+                        Geometry& geometry) {
+  geometry.linkage_errors.resize(model.tree.linkages.size());
+  while (i < model.parameter_count() && model.parameters[i].linkage >= 0) {
+    const auto index = static_cast<std::size_t>(model.parameters[i].linkage);
+    const int count = model.tree.linkages[index].error_count();
+    geometry.linkage_errors[index] = delta.segment(i, count);
+    i += count;
+  }
+}
+
 }  // namespace
 
 Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
@@ -124,6 +136,7 @@ Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
     geometry.joints[k] = JointWithErrors(model, k, delta, i, geometry.corrections);
   }
   ApplyLegErrors(model, delta, i, geometry);
+  ApplyLinkageErrors(model, delta, i, geometry);
   geometry.p_joint_marker.reserve(model.markers.size());
   geometry.R_joint_link.reserve(model.markers.size());
   for (const Marker& marker : model.markers) {

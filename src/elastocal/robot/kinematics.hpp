@@ -50,6 +50,8 @@ struct Geometry {
   std::vector<Vector6d> leg_compliance;
   /// For each joint, measured minus true torque, N.m (N). Empty if the model has no legs.
   Eigen::VectorXd torque_bias;
+  /// By linkage of the tree, in the order of its uncertain quantities. Empty: none.
+  std::vector<Eigen::VectorXd> linkage_errors;
   /// By correction of the model's elasticity. Empty if it has none.
   Eigen::VectorXd corrections;
   std::vector<Eigen::Vector3d> p_joint_marker;  ///< by marker, in its body's MDH frame

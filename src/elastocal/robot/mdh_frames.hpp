@@ -8,6 +8,7 @@
 
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/robot/linkage_errors.hpp"
 
 namespace elastocal {
 
@@ -64,7 +65,8 @@ inline Vector6d RootCorrection(const ErrorModel& model, const Geometry& geometry
 /// where the twisted frame is the one after Trx(d) in eq. 1: its x is the axis of alpha and d, its
 /// z the joint's axis. The deflected frame is the same with the joint's elastic rotation under
 /// `loads`, which acts on the fixed side, before the joint's own rotation: its z is the axis of
-/// theta. Forward kinematics and the Jacobian are the same walk.
+/// theta. Forward kinematics and the Jacobian are the same walk. Linkages with errors put their
+/// joints elsewhere than `q` says (PlaceLinkages).
 template <typename Visit>
 inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
                               const Eigen::VectorXd& q, const JointLoads& loads,
@@ -99,12 +101,14 @@ inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
     frames[0].p += frames[0].R * step.head<3>();
     frames[0].R = frames[0].R * RotationFromVector(step.tail<3>());
   }
+  const bool linked = !model.tree.linkages.empty();
+  const Eigen::VectorXd closed = linked ? PlaceLinkages(model, geometry, q).q : Eigen::VectorXd();
   for (int k : model.active_joints) {
     const Joint& joint = model.tree.joints[k];
-    place(
-        k, geometry.joints[k], frames[joint.parent_body], joint.type == JointType::kRevolute,
-        JointPosition(joint, q) + (corrected ? PositionCorrection(model, geometry, loads, k) : 0.0),
-        frames[k + 1]);
+    place(k, geometry.joints[k], frames[joint.parent_body], joint.type == JointType::kRevolute,
+          JointPosition(joint, linked ? closed : q) +
+              (corrected ? PositionCorrection(model, geometry, loads, k) : 0.0),
+          frames[k + 1]);
   }
 }
 

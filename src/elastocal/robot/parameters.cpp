@@ -42,7 +42,8 @@ bool Matches(std::string_view pattern, std::string_view name) {
 const char* KindName(ParameterKind kind) {
   static constexpr std::array<const char*, kParameterKindCount> kNames = {
       "theta",  "r",       "d",       "b",          "alpha",       "beta",        "gamma",     "T0",
-      "marker", "torsion", "bending", "base_force", "base_moment", "torque_bias", "correction"};
+      "marker", "torsion", "bending", "base_force", "base_moment", "torque_bias", "correction",
+      "rod",    "motor_zero"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -54,7 +55,8 @@ const char* UnitName(ParameterUnit unit) {
 
 bool IsAngle(ParameterKind kind) {
   return kind == ParameterKind::kTheta || kind == ParameterKind::kAlpha ||
-         kind == ParameterKind::kBeta || kind == ParameterKind::kGamma;
+         kind == ParameterKind::kBeta || kind == ParameterKind::kGamma ||
+         kind == ParameterKind::kMotorZero;
 }
 
 bool IsExternal(ParameterKind kind) {

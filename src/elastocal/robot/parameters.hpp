@@ -11,7 +11,8 @@ namespace elastocal {
 /// placement.hpp). Elastic kinds (eq. 5 to 7) are compliances (inverse stiffnesses) of joints about
 /// their axes (`kTorsion`) and across them (`kBending`), compliances of a leg between its foot and
 /// the waist by a force (`kLegForce`) and by a moment (`kLegMoment`), and the bias of a joint's
-/// torque sensor. `kCorrection`: what neither describes (corrections.hpp).
+/// torque sensor. `kCorrection`: what neither describes (corrections.hpp). `kRod` and `kMotorZero`
+/// are those of linkages (linkage.hpp): lengths, and the zeros of motors.
 enum class ParameterKind {
   kTheta,
   kR,
@@ -27,9 +28,11 @@ enum class ParameterKind {
   kLegForce,
   kLegMoment,
   kTorqueBias,
-  kCorrection
+  kCorrection,
+  kRod,
+  kMotorZero
 };
-inline constexpr int kParameterKindCount = 15;
+inline constexpr int kParameterKindCount = 17;
 
 enum class ParameterUnit {
   kRadian,
@@ -49,7 +52,8 @@ struct Parameter {
   /// JOINT.theta|r|d|b|alpha|beta|gamma, waist.T0.gamma|b|alpha|d|theta|r or
   /// marker.MARKER.x|y|z (in the frame of the link that carries the marker); elastic ones
   /// JOINT.compliance_x|y|z (axes of its twisted frame, see mdh_frames.hpp: z is torsion),
-  /// LEG.compliance_x|y|z|rx|ry|rz (axes of its foot) and JOINT.torque_bias.
+  /// LEG.compliance_x|y|z|rx|ry|rz (axes of its foot) and JOINT.torque_bias; of a linkage
+  /// MOTOR.length|zero|radius|anchor_x ... centre_z (RodQuantity).
   std::string name;
   ParameterKind kind;
   ParameterUnit unit;
@@ -59,16 +63,17 @@ struct Parameter {
   int axis = -1;         ///< of a compliance: 0, 1, 2 for x, y, z (rx, ry, rz)
   int correction = -1;   ///< of the error model's elasticity, for corrections
   double typical = 0.0;  ///< of a correction: standard deviation of its prior
+  int linkage = -1;      ///< of the robot tree, for parameters of linkages; in their order
 };
 
 /// Name of a kind in parameter names and settings: theta, r, d, b, alpha, beta, gamma, T0, marker,
-/// torsion, bending, base_force, base_moment, torque_bias, correction.
+/// torsion, bending, base_force, base_moment, torque_bias, correction, rod, motor_zero.
 const char* KindName(ParameterKind kind);
 
 /// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N, 1, 1/N, m/h.
 const char* UnitName(ParameterUnit unit);
 
-/// Whether a kind of joint parameter is an angle: theta, alpha, beta, gamma.
+/// Whether a kind of joint parameter is an angle: theta, alpha, beta, gamma, motor_zero.
 bool IsAngle(ParameterKind kind);
 
 /// Whether the parameter belongs to the experiment (pose of the waist, marker positions) and not to

@@ -119,7 +119,9 @@ double RobotSize(const RobotTree& tree) {
   return 2.0 * longest;
 }
 
-Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random) {
+namespace {
+
+Eigen::VectorXd DrawPosture(const RobotTree& tree, Random& random) {
   Eigen::VectorXd q(tree.coordinate_count());
   for (int i = 0; i < q.size(); ++i) {
     const Joint& joint = tree.joints[tree.coordinate_joint[i]];
@@ -128,6 +130,15 @@ Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random) {
     const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : range;
     q[i] = random.Uniform(lower, upper);
   }
+  return q;
+}
+
+}  // namespace
+
+Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random) {
+  constexpr int kMostTries = 1000;
+  Eigen::VectorXd q = DrawPosture(tree, random);
+  for (int i = 0; i < kMostTries && !LinkagesClose(tree, q); ++i) q = DrawPosture(tree, random);
   return q;
 }
 

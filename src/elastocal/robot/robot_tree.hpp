@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "elastocal/math/transform.hpp"
+#include "elastocal/robot/linkage.hpp"
 
 namespace elastocal {
 
@@ -63,6 +64,7 @@ struct RobotTree {
   std::vector<Link> links;  ///< links[0] is the root link
   std::vector<Joint> joints;
   std::vector<int> coordinate_joint;  ///< for each entry of q, its joint
+  std::vector<Linkage> linkages;      ///< joints that motors move by rods: see AddLinkage
   /// What the description leaves open or says oddly, and how it was taken.
   std::vector<std::string> warnings;
 
@@ -110,7 +112,7 @@ std::vector<int> JointsToBody(const RobotTree& tree, int body);
 double RobotSize(const RobotTree& tree);
 
 /// A posture drawn uniformly within the position limits (infinite limits: half a turn or 0.5 m to
-/// either side). Size `coordinate_count()`.
+/// either side) in which the linkages close. Size `coordinate_count()`.
 Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random);
 
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/robot/subtree.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace elastocal {
@@ -44,6 +45,19 @@ RobotTree Subtree(const RobotTree& tree, int link) {
     for (Drive& drive : joint.more) drive.coordinate = renumber(drive.coordinate);
     if (!joint.mimic) subtree.coordinate_joint[joint.coordinate] = index;
     subtree.joints.push_back(joint);
+  }
+  const auto index_of = [&](int k) {
+    return static_cast<int>(std::find(joints.begin(), joints.end(), k) - joints.begin());
+  };
+  for (Linkage linkage : tree.linkages) {
+    const auto is_inside = [&](const Rod& rod) { return link_of.contains(rod.from_link); };
+    if (!std::all_of(linkage.rods.begin(), linkage.rods.end(), is_inside)) continue;
+    for (int& k : linkage.joints) k = index_of(k);
+    for (Rod& rod : linkage.rods) {
+      rod.from_link = link_of.at(rod.from_link);
+      rod.to_link = link_of.at(rod.to_link);
+    }
+    subtree.linkages.push_back(std::move(linkage));
   }
   return subtree;
 }

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/robot/kinematics.hpp"
+
+namespace elastocal {
+
+/// Where the joints of linkages are.
+struct LinkedPosture {
+  Eigen::VectorXd q;  ///< as given, but for the joints of linkages
+  /// By linkage: derivatives of its joints by its errors (see Linkage::error_count), rad/m and
+  /// rad/rad.
+  std::vector<Eigen::MatrixXd> by_errors;
+};
+
+/// In `q`, the joints of linkages are where the nominal rods put them. There is one position of the
+/// motors for that, and for this one the rods with their errors put the joints elsewhere. A linkage
+/// that does not close stays as it is, with derivatives of zero.
+LinkedPosture PlaceLinkages(const ErrorModel& model, const Geometry& geometry,
+                            const Eigen::VectorXd& q);
+
+/// Linkages of a model that have parameters, and the first of them; -1 where there are none.
+int FirstLinkageParameter(const ErrorModel& model, int linkage);
+
+}  // namespace elastocal
