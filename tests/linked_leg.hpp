@@ -28,7 +28,8 @@ inline RobotTree LinkedLeg(bool linked = true) {
   const int cross = add("ankle_pitch", "cross", shank, Offset(0.0, 0.0, -0.38), y, -0.7, 0.6);
   const int foot = add("ankle_roll", "foot", cross, Offset(0.0, 0.0, -0.01), x, -0.35, 0.35);
   if (!linked) return tree;
-  const std::vector<RodQuantity> usual = {RodQuantity::kLength, RodQuantity::kZero};
+  const std::vector<RodUncertainty> usual = {{RodQuantity::kLength, 1e-3},
+                                             {RodQuantity::kZero, 0.01}};
 
   Rod knee;
   knee.motor = "knee_actuator";
@@ -37,7 +38,7 @@ inline RobotTree LinkedLeg(bool linked = true) {
   knee.to_link = shank;
   knee.centre = {-0.06, 0.0, -0.08};
   knee.anchor = {-0.05, 0.0, -0.02};
-  knee.uncertain = {RodQuantity::kLength};
+  knee.uncertain = {{RodQuantity::kLength, 1e-3}};
   AddLinkage({"knee", {FindJoint(tree, "knee")}, {knee}, Eigen::VectorXd::Constant(1, 0.7)}, tree);
 
   Linkage ankle{"ankle",

@@ -104,6 +104,12 @@ def full_project(urdf):
                                   "positions_mm": [[48, 70, -10], [-20, 130, 21], [10, 200, -64]]}
     return {
         "robot": {"urdf": str(urdf)},
+        "linkages": [{"name": "elbow", "joints": ["elbow_joint"], "assembled_deg": [0], "rods": [
+            {"motor": "elbow_motor", "from": "upper_arm", "to": "forearm", "centre_mm": [0, -30, 100],
+             "axis": [0, 1, 0], "pin_mm": [60, -30, 100], "anchor_mm": [52.7, 28.8, 0],
+             "length_mm": 300,
+             "uncertain": {"length_mm": 1, "zero_deg": 0.5, "radius_mm": 1, "anchor_mm": 1,
+                           "centre_mm": [1, 1, 0]}}]}],
         "chains": [{"name": "arm", "from": "pedestal", "tip": "tool"}],
         "markers": {"reference": "PEDESTAL",
                     "clusters": [cluster("PEDESTAL", "pedestal"), cluster("FOREARM", "forearm"),

@@ -27,7 +27,7 @@ void BodyUnknowns::MakeParameterBlocks() {
   const Parameter* previous = nullptr;
   const auto same_block = [&](const Parameter& parameter) {
     if (previous == nullptr || previous->marker != parameter.marker ||
-        previous->leg != parameter.leg) {
+        previous->leg != parameter.leg || previous->linkage != parameter.linkage) {
       return false;
     }
     return parameter.leg >= 0 || previous->joint == parameter.joint;

@@ -70,8 +70,8 @@ Prior::Prior() {
 }
 
 double Prior::Of(const RobotTree& tree, const Parameter& parameter) const {
-  double own =
-      parameter.kind == ParameterKind::kCorrection ? parameter.typical : (*this)[parameter.kind];
+  // Corrections and linkages bring their own.
+  double own = parameter.typical > 0.0 ? parameter.typical : (*this)[parameter.kind];
   if (own == 0.0) {
     const Joint& joint = tree.joints[parameter.joint];
     const double effort = joint.limits.effort;

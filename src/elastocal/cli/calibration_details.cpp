@@ -58,10 +58,14 @@ std::string AllEstimates(const CalibrationRun& run) {
   std::vector<int> which = WithStatus(result, ParameterStatus::kEstimated);
   std::erase_if(which, [&](int i) {
     const Parameter& parameter = result.model.parameters[i];
-    return parameter.joint < 0 || IsCompliance(parameter.kind);
+    const bool of_robot = parameter.joint >= 0 || parameter.linkage >= 0;
+    return !of_robot || IsCompliance(parameter.kind);
   });
   return "\nEstimates\n" + EstimateTable(result, which) +
-         "  theta: zero offset; r, d, b: lengths; alpha, beta, gamma: tilts of the axis (eq. 1)\n"
+         "  theta: zero offset; r, d, b: lengths; alpha, beta, gamma: tilts of the axis (eq. 1)\n" +
+         (result.model.tree.linkages.empty()
+              ? ""
+              : "  length, zero, radius, anchor, centre: of a rod and the crank of its motor\n") +
          "  * differs from nominal at 95 %\n";
 }
 

@@ -59,6 +59,28 @@ std::string ParallelAxes(const RobotTree& tree, const std::vector<JointPlacement
   return text.empty() ? "  none\n" : text;
 }
 
+/// Which motor moves which joints by which rod; the motors' positions where the linkage is
+/// assembled.
+std::string LinkageTable(const RobotTree& tree) {
+  TextTable table(
+      {"linkage", "joints", "motor", "from", "to", "length mm", "assembled at", "errors"});
+  for (const Linkage& linkage : tree.linkages) {
+    std::string joints;
+    for (int k : linkage.joints) joints += (joints.empty() ? "" : ", ") + tree.joints[k].name;
+    const auto motors = MotorPositions(tree, linkage, linkage.assembled);
+    for (std::size_t i = 0; i < linkage.rods.size(); ++i) {
+      const Rod& rod = linkage.rods[i];
+      const double at = motors ? (*motors)[static_cast<Eigen::Index>(i)] : 0.0;
+      table.Add(
+          {i == 0 ? linkage.name : "", i == 0 ? joints : "", rod.motor,
+           tree.links[rod.from_link].name, tree.links[rod.to_link].name, Fixed(1e3 * rod.length, 3),
+           rod.actuator ? Fixed(1e3 * at, 3) + " mm" : Fixed(at * kDegreesPerRadian, 3) + " deg",
+           std::to_string(rod.uncertain.size())});
+    }
+  }
+  return table.Render();
+}
+
 std::string CountTable(const std::vector<ChainInspection>& chains) {
   TextTable table({"chain", "joints", "markers", "parameters", "held", "identifiable", "4R+2P+3N_M",
                    "smallest kept", "largest dropped"});
@@ -98,6 +120,10 @@ void PrintInspection(const Project& project, const RobotInspection& inspection,
             MdhTable(project.tree, inspection.placements));
   Print(quiet, "\nParallel consecutive axes (beta in use)\n" +
                    ParallelAxes(project.tree, inspection.placements));
+  if (!project.tree.linkages.empty()) {
+    Print(quiet, "\nLinkages (motors are recorded; joints follow by the rods)\n" +
+                     LinkageTable(project.tree));
+  }
   Print(quiet, "\nIdentifiable parameters" +
                    std::string(project.recording.free_root
                                    ? " (root free: its markers with each chain's, 6 fewer)\n"

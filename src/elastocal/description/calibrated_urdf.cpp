@@ -14,6 +14,7 @@
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/coupling.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/robot/linkage_errors.hpp"
 #include "elastocal/robot/special_geometry.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -111,12 +112,13 @@ UrdfOrigin ToOrigin(const Transform& T, const Eigen::Vector3d& nominal_rpy) {
 }
 
 /// Poses of all links in the waist: the calibrated model's and, where it has no errors because
-/// there are no markers, nominal motion.
+/// there are no markers, nominal motion. `placed`: q with linkages as their rods with errors put
+/// them.
 std::vector<Transform> CalibratedLinks(const ErrorModel& model, const Geometry& geometry,
-                                       const Eigen::VectorXd& q) {
+                                       const Eigen::VectorXd& q, const Eigen::VectorXd& placed) {
   const RobotTree& tree = model.tree;
   const std::vector<Transform> T_ref_body = BodyTransforms(model, geometry, q);
-  const std::vector<Transform> T_root_nominal = LinkTransforms(tree, q);
+  const std::vector<Transform> T_root_nominal = LinkTransforms(tree, placed);
   std::vector<Transform> T_waist_body(tree.body_count(), Transform::Identity());
   for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
     const Joint& joint = tree.joints[k];
@@ -134,7 +136,7 @@ std::vector<Transform> CalibratedLinks(const ErrorModel& model, const Geometry& 
 }
 
 /// Largest difference between the written URDF at positions q + q_offset and the calibrated model
-/// at q, waist to links.
+/// at q, waist to links. Positions of linkages are those that the calibrated rods give.
 double LargestDifference(const CalibrationResult& calibration, const RobotTree& written,
                          const Eigen::VectorXd& q_offset) {
   const ErrorModel& model = calibration.model;
@@ -143,8 +145,9 @@ double LargestDifference(const CalibrationResult& calibration, const RobotTree& 
   double largest = 0.0;
   for (int i = 0; i < kGatePostures; ++i) {
     const Eigen::VectorXd q = RandomPosture(model.tree, random);
-    const std::vector<Transform> expected = CalibratedLinks(model, geometry, q);
-    const std::vector<Transform> found = LinkTransforms(written, q + q_offset);
+    const Eigen::VectorXd placed = PlaceLinkages(model.tree, geometry.linkage_errors, q).q;
+    const std::vector<Transform> expected = CalibratedLinks(model, geometry, q, placed);
+    const std::vector<Transform> found = LinkTransforms(written, placed + q_offset);
     for (std::size_t link = 0; link < expected.size(); ++link) {
       const Transform T = expected[link].inverse() * found[link];
       largest = std::max({largest, T.translation().norm(), RotationAngle(T.linear())});

@@ -139,28 +139,13 @@ BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd
   KeepElastic(model, base);
   base.theoretical_count =
       TheoreticalCount(model, options.root) +
-      static_cast<int>(std::count_if(base.kept.begin(), base.kept.end(), [&](int i) {
-        return model.parameters[i].linkage >= 0;
-      }));
+      static_cast<int>(std::count_if(base.kept.begin(), base.kept.end(),
+                                     [&](int i) { return model.parameters[i].linkage >= 0; }));
   return base;
 }
 
 BaseParameters FindBaseParameters(const ErrorModel& model, const IdentifiabilityOptions& options) {
   return FindBaseParameters(model, NominalFactor(model, options), options);
-}
-
-std::vector<int> HoldDroppedLinkages(const ErrorModel& model, BaseParameters& base) {
-  std::vector<int> dropped, held, columns;
-  for (std::size_t d = 0; d < base.dropped.size(); ++d) {
-    const bool of_linkage = model.parameters[base.dropped[d]].linkage >= 0;
-    (of_linkage ? held : dropped).push_back(base.dropped[d]);
-    if (!of_linkage) columns.push_back(static_cast<int>(d));
-  }
-  base.dropped = std::move(dropped);
-  base.regrouping = base.regrouping(Eigen::all, columns).eval();
-  base.held.insert(base.held.end(), held.begin(), held.end());
-  std::sort(base.held.begin(), base.held.end());
-  return held;
 }
 
 std::vector<int> LostBySpecialMarkers(const ErrorModel& model,

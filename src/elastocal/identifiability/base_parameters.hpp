@@ -81,10 +81,6 @@ BaseParameters FindBaseParameters(const ErrorModel& model, const Identifiability
 BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd& factor,
                                   const IdentifiabilityOptions& options);
 
-/// Holds the parameters of linkages that are not identifiable beside the others: they would only
-/// share with the tree's what is told of these. Returns them.
-std::vector<int> HoldDroppedLinkages(const ErrorModel& model, BaseParameters& base);
-
 /// Parameters that would be identifiable with generic marker positions but are not with the given
 /// ones. They are found by a second choice with the markers moved. Empty if the count is the
 /// theoretical one.

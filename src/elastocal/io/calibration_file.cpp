@@ -14,6 +14,7 @@
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/files/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -41,6 +42,21 @@ class RoundedText {
   std::string text_;
 };
 
+void AddLinkage(const RobotTree& tree, const Linkage& linkage, RoundedText& text) {
+  for (const int k : linkage.joints) text.Add(tree.joints[Size(k)].name);
+  for (const Rod& rod : linkage.rods) {
+    text.Add(rod.motor);
+    text.Add(rod.actuator ? "actuator" : "crank");
+    text.Add(tree.links[Size(rod.from_link)].name);
+    text.Add(tree.links[Size(rod.to_link)].name);
+    for (const Eigen::Vector3d& at : {rod.centre, rod.axis, rod.pin, rod.anchor}) {
+      for (const double number : at) text.Add(number);
+    }
+    text.Add(rod.length);
+    text.Add(rod.branch);
+  }
+}
+
 std::uint64_t Fnv1a(const std::string& text) {
   std::uint64_t hash = 14695981039346656037u;
   for (const unsigned char byte : text) hash = (hash ^ byte) * 1099511628211u;
@@ -56,7 +72,7 @@ struct NamedUnits {
 
 NamedUnits UnitsOf(const std::string& parameter) {
   const std::string suffix = parameter.substr(parameter.rfind('.') + 1);
-  for (const char* angle : {"theta", "alpha", "beta", "gamma"}) {
+  for (const char* angle : {"theta", "alpha", "beta", "gamma", "zero"}) {
     if (suffix == angle) return {{"rad", "rad"}, M_PI};
   }
   if (suffix == "torque_bias") return {{"N.m", "N"}};
@@ -191,6 +207,7 @@ std::string NominalFingerprint(const ErrorModel& model) {
     }
     text.Add(placement.T_joint_body);
   }
+  for (const Linkage& linkage : tree.linkages) AddLinkage(tree, linkage, text);
   return fmt::format("{:016x}", Fnv1a(text.text()));
 }
 
@@ -323,6 +340,9 @@ void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
   std::set<std::string> owners(chains.begin(), chains.end());
   owners.insert("waist");  // of corrections of the root link
   for (const Joint& joint : model.tree.joints) owners.insert(joint.name);
+  for (const Linkage& linkage : model.tree.linkages) {
+    for (const Rod& rod : linkage.rods) owners.insert(rod.motor);
+  }
   std::set<std::string> calibrated;
   for (const auto& [name, value] : stored.joint_errors) {
     const std::string owner = OwnerOf(name);

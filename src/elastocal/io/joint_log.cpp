@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -153,8 +154,9 @@ JointLog ReadJointLog(const std::filesystem::path& file, const Project& project)
   return ReadJointLog(stream, file.string(), project);
 }
 
-JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& project) {
+JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& of_joints) {
   Table table(stream, source);
+  const Project project = WithMotors(of_joints, table.header(), source);
   const JointColumns columns = FindJointColumns(table, project);
   JointLog log;
   log.source = source;
@@ -171,6 +173,7 @@ JointLog ReadJointLog(std::istream& stream, const std::string& source, const Pro
     if (columns.torques[i] < 0) continue;
     CheckTorques(log.torques.col(column), table.header()[columns.torques[i]], source);
   }
+  MotorsToJoints(of_joints.tree, log);
   return log;
 }
 

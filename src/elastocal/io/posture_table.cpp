@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -130,6 +131,19 @@ void ReadPostures(const Project& project, const PostureColumns& columns, Table& 
   if (!time.empty()) recording.time_s = StackRows(time, rows);
 }
 
+/// The positions of motors as those of the joints; `columns` are of a project WithMotors.
+void CloseLinkages(const Project& with_motors, const RobotTree& tree, Recording& recording) {
+  for (const Linkage& linkage : tree.linkages) {
+    const auto first = static_cast<std::size_t>(linkage.joints[0]);
+    if (with_motors.tree.joints[first].name == tree.joints[first].name) continue;
+    const std::vector<int> columns = CoordinatesOf(tree, linkage);
+    const Eigen::Index failed = MotorsToJoints(tree, linkage, columns, recording.q);
+    if (failed < 0) continue;
+    throw InputError(Place(recording.source, recording.line[static_cast<std::size_t>(failed)]) +
+                     CannotClose(linkage, recording.q(failed, columns).transpose()));
+  }
+}
+
 /// Names what was recorded. A marker that was never seen counts as not recorded.
 void NameMarkers(const PostureColumns& columns, const Project& project, PostureTable& table) {
   Recording& recording = table.recording;
@@ -164,12 +178,14 @@ PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& 
 PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
                               const Project& project) {
   Table table(stream, source);
-  const PostureColumns columns = FindPostureColumns(table, project);
+  const Project with_motors = WithMotors(project, table.header(), source);
+  const PostureColumns columns = FindPostureColumns(table, with_motors);
   PostureTable result;
   Recording& recording = result.recording;
   recording.source = source;
   recording.free_root = project.recording.free_root;
-  ReadPostures(project, columns, table, recording);
+  ReadPostures(with_motors, columns, table, recording);
+  CloseLinkages(with_motors, project.tree, recording);
   NameMarkers(columns, project, result);
   for (int c = 0; c < project.tree.coordinate_count(); ++c) {
     if (columns.coordinates[c] >= 0) continue;
@@ -185,7 +201,9 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
 }
 
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
-                       const RobotTree& tree) {
+                       const RobotTree& of_joints) {
+  Eigen::MatrixXd q = recording.q;
+  const RobotTree tree = JointsToMotors(of_joints, recording.joints_not_recorded, q);
   const bool timed = recording.time_s.size() > 0;
   const auto& absent = recording.joints_not_recorded;
   std::vector<int> coordinates;  // that the recording holds
@@ -204,7 +222,7 @@ void WritePostureTable(const std::filesystem::path& file, const Recording& recor
   for (int i = 0; i < recording.posture_count(); ++i) {
     if (timed) table.Add(recording.time_s[i]);
     for (double position : recording.markers.row(i)) table.Add(position);
-    for (int c : coordinates) table.Add(recording.q(i, c));
+    for (int c : coordinates) table.Add(q(i, c));
     table.EndRow();
   }
   WriteFile(file, table.text());

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "elastocal/io/joint_log.hpp"
+#include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_columns.hpp"
@@ -205,7 +206,8 @@ RecordingFile ReadAnyRecording(const fs::path& path, const ReaderOptions& option
   return file;
 }
 
-JointLog TakeJoints(const JointLog& from, const Project& project) {
+JointLog TakeJoints(const JointLog& from, const Project& of_joints) {
+  const Project project = WithMotors(of_joints, from.names, from.source);
   const std::vector<Joint>& joints = project.tree.joints;
   std::map<std::string, int> joint_of;
   std::vector<std::string> known;
@@ -239,6 +241,7 @@ JointLog TakeJoints(const JointLog& from, const Project& project) {
   }
   if (log.names.empty()) throw InputError(log.source + ": it has no joint of the robot");
   if (log.sample_count() == 0) throw InputError(log.source + ": it has no sample");
+  MotorsToJoints(of_joints.tree, log);
   return log;
 }
 

@@ -4,6 +4,7 @@
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
+#include "elastocal/io/linkage_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/checksums.hpp"
 #include "elastocal/pipeline/robot_views.hpp"
@@ -32,8 +33,10 @@ std::string MakeReportData(const Project& project, CalibrationRun& run) {
 }  // namespace
 
 std::vector<std::string> CalibrationFileNames(const Project& project) {
-  return {UrdfName(project), "calibration.yaml", "offsets.xacro",
-          "covariance.csv",  "summary.json",     "report_data.json"};
+  std::vector<std::string> names = {UrdfName(project), "calibration.yaml", "offsets.xacro",
+                                    "covariance.csv",  "summary.json",     "report_data.json"};
+  if (!project.tree.linkages.empty()) names.emplace_back("linkages.yaml");
+  return names;
 }
 
 std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
@@ -47,6 +50,7 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
                             &run.comparison.results[static_cast<int>(ModelKind::kUncalibrated)]);
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
+    if (!project.tree.linkages.empty()) files["linkages.yaml"] = MakeLinkagesYaml(result);
   }
   files["report_data.json"] = MakeReportData(project, run);
   files["summary.json"] = MakeSummaryJson(run);

@@ -12,6 +12,7 @@
 #include "elastocal/description/calibrated_urdf.hpp"
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/description/urdf_writer.hpp"
+#include "elastocal/io/linkage_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/runtime/c_header.hpp"
@@ -144,6 +145,7 @@ std::vector<ExportFormat> ExportFormats() {
           {"urdf", "the URDF with calibrated joint origins"},
           {"urdf_encoder", "the same with the joints' zeros left to the encoders (see pal)"},
           {"urdf_rising", "that one, the zeros added to <calibration rising>"},
+          {"linkages", "the calibrated rods of a robot with linkages, as a section of a project"},
           {"xacro", "what is added to the joint origins, as xacro properties"},
           {"pal", "seven numbers a joint: xyz, rpy and the zero of the encoder (YAML)"},
           {"ros2_control", "the zeros of the encoders as offsets of transmissions"},
@@ -173,6 +175,12 @@ std::string ExportCalibration(const CalibratedRobot& robot, const ExportOptions&
     std::ostringstream out;
     WriteRuntimeModel(MakeRuntimeModel(robot.project, calibration), out);
     return out.str();
+  }
+  if (format == "linkages") {
+    if (robot.project.tree.linkages.empty()) {
+      throw InputError("format linkages: the robot has no linkages");
+    }
+    return MakeLinkagesYaml(ResultOf(RestoreRobot(robot.project, calibration)));
   }
   if (format == "urdf") return UrdfOf(robot, calibration, ZeroOffsets::kOrigin).text;
   const CalibratedUrdf apart = UrdfOf(robot, calibration, ZeroOffsets::kEncoder);

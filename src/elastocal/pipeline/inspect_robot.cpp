@@ -95,6 +95,26 @@ Json ChainJson(const ChainInspection& chain) {
           {"lost_by_special_markers", names(chain.lost)}};
 }
 
+Json LinkagesJson(const RobotTree& tree) {
+  Json linkages = Json::array();
+  for (const Linkage& linkage : tree.linkages) {
+    Json joints = Json::array();
+    for (int k : linkage.joints) joints.push_back(tree.joints[k].name);
+    Json rods = Json::array();
+    for (const Rod& rod : linkage.rods) {
+      Json errors = Json::array();
+      for (const auto& [quantity, sd] : rod.uncertain) errors.push_back(RodQuantityName(quantity));
+      rods.push_back({{"motor", rod.motor},
+                      {"from", tree.links[rod.from_link].name},
+                      {"to", tree.links[rod.to_link].name},
+                      {"length", rod.length},
+                      {"errors", errors}});
+    }
+    linkages.push_back({{"name", linkage.name}, {"joints", joints}, {"rods", rods}});
+  }
+  return linkages;
+}
+
 /// What it means for the user that axes are nearly special.
 std::string DescribeNearly(const RobotTree& tree, const SpecialGeometry& group) {
   std::string names;
@@ -164,6 +184,7 @@ std::string MakeInspectionJson(const Project& project, const RobotInspection& in
                      {"joints", project.tree.joints.size()},
                      {"mass_kg", inspection.mass},
                      {"mdh", PlacementsJson(project.tree, inspection.placements)},
+                     {"linkages", LinkagesJson(project.tree)},
                      {"chains", chains},
                      {"warnings", inspection.warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -217,6 +217,7 @@ StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibr
 
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,
                               RuntimeContent content) {
+  CheckHasNoLinkages(project, "the robot at run time");
   const StoredRobot robot = RestoreRobot(project, calibration);
   RuntimeModel model;
   model.robot = project.tree.name;

@@ -166,6 +166,7 @@ std::vector<LimitUse> MotionPlan::broken() const {
 MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& postures,
                       const MotionPlanOptions& options, const Progress& progress) {
   CheckOptions(options);
+  CheckHasNoLinkages(project, "the command plan");
   const auto robot = StandProjectRobot(project, options.limits);
   return PlanSets(project, *robot, PostureTours(*robot, postures), options, progress);
 }
@@ -173,6 +174,7 @@ MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& 
 MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std::uint64_t seed,
                                 const MotionPlanOptions& options, const Progress& progress) {
   CheckOptions(options);
+  CheckHasNoLinkages(project, "the command plan");
   const auto robot = StandProjectRobot(project, options.limits);
   Random random(seed);
   std::vector<PostureTour> tours = ValidationTours(

@@ -8,6 +8,7 @@
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/motion_file.hpp"
+#include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/posture_file.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/waist_truth.hpp"
@@ -154,7 +155,8 @@ SimulationRun PlaySimulation(const Project& project, const Simulation& simulatio
   const auto play = [&](std::size_t i) {
     const std::size_t index = simulation.chosen[i];
     const PlannedTrial& planned = simulation.experiment.trials[index];
-    const SimulatedTrial trial = Play(simulation, index);
+    SimulatedTrial trial = Play(simulation, index);
+    trial.raw.joints = JointsToMotors(project.tree, std::move(trial.raw.joints));
     WriteSimulatedTrial(staged[i], trial);
     run.trials[i] = {planned.name,     planned.kind,
                      planned.postures, trial.motion.frame_count(),

@@ -67,6 +67,28 @@ void WriteJoints(const VirtualExperiment& experiment, const RobotTree& described
   writer.yaml << YAML::EndMap;
 }
 
+/// Errors of rods, by the names of their parameters.
+void WriteRods(const TrueRobot& robot, TruthWriter& writer) {
+  if (robot.linked.linkages.empty()) return;
+  writer.Key("rods");
+  writer.yaml << YAML::BeginMap;
+  for (std::size_t i = 0; i < robot.linked.linkages.size(); ++i) {
+    Eigen::Index at = 0;
+    for (const Rod& rod : robot.linked.linkages[i].rods) {
+      for (const auto& [quantity, sd] : rod.uncertain) {
+        writer.Key(rod.motor + "." + RodQuantityName(quantity));
+        writer.yaml << YAML::Flow << YAML::BeginMap;
+        writer.Value("value", robot.linkage_errors[i][at++]);
+        writer.Key("unit");
+        writer.yaml << UnitName(quantity == RodQuantity::kZero ? ParameterUnit::kRadian
+                                                               : ParameterUnit::kMetre)
+                    << YAML::EndMap;
+      }
+    }
+  }
+  writer.yaml << YAML::EndMap;
+}
+
 void WriteLinks(const TrueRobot& robot, TruthWriter& writer) {
   writer.Key("links");
   writer.yaml << YAML::BeginMap;
@@ -144,6 +166,7 @@ std::string FormatTruth(const VirtualExperiment& experiment, const std::vector<s
   WriteLegs(experiment, writer);
   WriteTrials(experiment, trials, sensors, writer);
   WriteJoints(experiment, experiment.described_tree, writer);
+  WriteRods(experiment.robot, writer);
   WriteLinks(experiment.robot, writer);
   writer.Key("markers_mm");
   writer.yaml << YAML::BeginMap;

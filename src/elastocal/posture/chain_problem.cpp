@@ -154,6 +154,8 @@ FeasibleSet MakeFeasibleSet(const RobotTree& tree, const MotionSetup& motion,
 BaseParameters FindChainParameters(const ErrorModel& model, const MotionSetup& motion,
                                    const ChainSetup& chain, IdentifiabilityOptions options) {
   for (const Parameter& parameter : model.parameters) {
+    // Rods are not weighed: what moves markers by them is not differentiated by the posture.
+    if (parameter.linkage >= 0) options.hold.push_back(parameter.name);
     if (parameter.joint < 0) continue;
     if (!IsMovedBy(model.tree.joints[parameter.joint], chain.coordinates)) {
       options.hold.push_back(parameter.name);

@@ -157,7 +157,7 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
     throw InputError(Place(file.string(), 1) + "this is XML; a project file (YAML) was expected");
   }
   const YamlValue root = YamlValue::Parse(text, file.string());
-  root.ExpectKeys({"robot", "couplings", "chains", "markers", "torque_sensors",
+  root.ExpectKeys({"robot", "couplings", "linkages", "chains", "markers", "torque_sensors",
                    "force_torque_sensors", "recording", "placement", "measurement",
                    "identifiability", "calibration", "elasticity", "collision", "design",
                    "standing", "contact", "instruments"});
@@ -165,9 +165,17 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
   project.file = file;
   ReadRobot(root.Get("robot"), project);
   if (const auto section = root.Find("couplings")) ReadCouplings(*section, project);
-  if (const auto section = root.Find("chains")) ReadChains(*section, project);
   const auto contact = root.Find("contact");
   const auto instruments = root.Find("instruments");
+  if (const auto section = root.Find("linkages")) {
+    if (contact || instruments) {
+      section->Fail("linkages are not known together with " +
+                    std::string(contact ? "contact" : "instruments") +
+                    "; markers were expected alone");
+    }
+    ReadLinkages(*section, project);
+  }
+  if (const auto section = root.Find("chains")) ReadChains(*section, project);
   if (const auto section = root.Find("markers")) {
     ReadMarkers(*section, project);
   } else if (!contact && !instruments) {

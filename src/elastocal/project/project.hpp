@@ -137,6 +137,9 @@ std::vector<int> MatchingJoints(const RobotTree& tree, const std::vector<std::st
 /// `calibrate`, `validate`, `compare` and `report` can do anything with.
 void CheckHasMarkers(const Project& project);
 
+/// Throws InputError for a project with linkages, which `what` ("the command plan") does not know.
+void CheckHasNoLinkages(const Project& project, const std::string& what);
+
 /// Index of a chain of the project. Throws InputError with the nearest known name where there is
 /// none.
 int FindChain(const Project& project, const std::string& name);

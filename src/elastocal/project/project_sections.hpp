@@ -14,6 +14,7 @@ namespace elastocal {
 /// Parts of a project file, in the order in which they are read: each reads the section of its name
 /// into `project` and needs those before it. All throw InputError naming file, line and key.
 void ReadCouplings(const YamlValue& section, Project& project);
+void ReadLinkages(const YamlValue& section, Project& project);
 void ReadMarkers(const YamlValue& section, Project& project);
 void ReadTorqueSensors(const YamlValue& section, Project& project);
 void ReadForceTorqueSensors(const YamlValue& section, Project& project);

@@ -143,6 +143,43 @@ TEST(Project, ReadsCouplings) {
          {"shoulder_joint", "from -1000 to 1000"});
 }
 
+/// A crank in the upper arm of the invented arm, whose rod bends the elbow.
+std::string ElbowLinkage(const std::string& rod, const std::string& joints = "elbow_joint") {
+  return "linkages: [{name: elbow, joints: [" + joints +
+         "], rods: [{motor: m, from: upper_arm, to: forearm, axis: [0, 2, 0], centre_mm: [0, -30, "
+         "100], pin_mm: [60, -30, 100], anchor_mm: [52.7, 28.8, 0]" +
+         rod + "}]}]";
+}
+
+TEST(Project, ReadsLinkages) {
+  const Project project = Parse(ElbowLinkage("") + "\n");
+  ASSERT_EQ(project.tree.linkages.size(), 1u);
+  const Rod& rod = project.tree.linkages[0].rods[0];
+  EXPECT_EQ(rod.axis, Eigen::Vector3d::UnitY());
+  EXPECT_NEAR(rod.length, 0.3, 1e-3);  // the axes are 0.3 m apart
+  EXPECT_EQ(rod.uncertain.size(), 5u);
+  const Rod given =
+      Parse(ElbowLinkage(", length_mm: 290, uncertain: {zero_deg: 1, centre_mm: [2, 0, 3]}") + "\n")
+          .tree.linkages[0]
+          .rods[0];
+  EXPECT_DOUBLE_EQ(given.length, 0.29);
+  ASSERT_EQ(given.uncertain.size(), 3u);
+  EXPECT_EQ(given.uncertain[2].quantity, RodQuantity::kCentreZ);
+  EXPECT_DOUBLE_EQ(given.uncertain[2].sd, 3e-3);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  EXPECT_EQ(MatchParameters(model.parameters, {"m.*"}).size(), 5u);
+
+  ExpectError(ElbowLinkage(", length_mm: 900"), {"p.yaml:3: ", "linkages[0]", "cannot reach"});
+  ExpectError(ElbowLinkage("", "elbow_jont"), {"did you mean 'elbow_joint'"});
+  ExpectError(ElbowLinkage(", actuator: true"), {"'axis'"});
+  ExpectError(ElbowLinkage(", uncertain: {length_mm: 0}"), {"uncertain.length_mm", "from 1e-06"});
+  ExpectError(ElbowLinkage(", uncertain: {lenght_mm: 1}"), {"did you mean 'length_mm'"});
+  std::string named = ElbowLinkage("");
+  named.replace(named.find("motor: m"), 8, "motor: turret_joint");
+  ExpectError(named, {"rods[0].motor", "there is a joint of the name 'turret_joint'"});
+  ExpectError(ElbowLinkage("") + "\ncontact: {plates: []}", {"linkages", "contact"});
+}
+
 TEST(Project, LeavesDefaultsWhereTheFileSaysNothing) {
   const Project project = Parse();
   const CalibrationOptions calibration;

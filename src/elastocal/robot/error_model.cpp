@@ -109,12 +109,13 @@ void AddLinkageParameters(const ErrorModel& model, int index, std::vector<Parame
   const auto is_active = [&](int k) { return Contains(model.active_joints, k); };
   if (std::none_of(linkage.joints.begin(), linkage.joints.end(), is_active)) return;
   for (const Rod& rod : linkage.rods) {
-    for (const RodQuantity quantity : rod.uncertain) {
+    for (const auto& [quantity, sd] : rod.uncertain) {
       const bool zero = quantity == RodQuantity::kZero;
       Parameter parameter{rod.motor + "." + RodQuantityName(quantity),
                           zero ? Kind::kMotorZero : Kind::kRod,
                           zero ? ParameterUnit::kRadian : ParameterUnit::kMetre};
       parameter.linkage = index;
+      parameter.typical = sd;
       parameters.push_back(std::move(parameter));
     }
   }

@@ -157,7 +157,7 @@ void GeneralizedJacobian::SetRootCorrections(const Geometry& geometry, const Joi
 
 /// An error of a linkage moves what is beyond its joints as their own motion does.
 void GeneralizedJacobian::SetLinkages(const Geometry& geometry, const Eigen::VectorXd& q) {
-  const LinkedPosture posture = PlaceLinkages(model_, geometry, q);
+  const LinkedPosture posture = PlaceLinkages(model_.tree, geometry.linkage_errors, q);
   for (const LinkageRows& rows : linkage_rows_) {
     const auto index = static_cast<std::size_t>(rows.linkage);
     const Linkage& linkage = model_.tree.linkages[index];

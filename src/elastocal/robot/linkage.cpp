@@ -66,7 +66,7 @@ Crank CrankOf(const Rod& rod) {
 }
 
 Rod WithErrorsOfRod(Rod rod, const double* errors) {
-  for (const RodQuantity quantity : rod.uncertain) {
+  for (const auto& [quantity, sd] : rod.uncertain) {
     const double error = *errors++;
     switch (quantity) {
       case RodQuantity::kLength:
@@ -148,7 +148,7 @@ Loop EvaluateLoop(const RobotTree& tree, const Linkage& linkage, const Rod& rod,
   loop.by_errors.resize(static_cast<Eigen::Index>(rod.uncertain.size()));
   for (std::size_t e = 0; e < rod.uncertain.size(); ++e) {
     loop.by_errors[static_cast<Eigen::Index>(e)] =
-        DerivativeOf(rod.uncertain[e], u, radial, loop.by_motor, links);
+        DerivativeOf(rod.uncertain[e].quantity, u, radial, loop.by_motor, links);
   }
   return loop;
 }

@@ -28,6 +28,12 @@ enum class RodQuantity {
 /// length, zero, radius, anchor_x ... centre_z
 const char* RodQuantityName(RodQuantity quantity);
 
+/// A quantity of a rod that is a parameter, and the standard deviation of its prior, m or rad.
+struct RodUncertainty {
+  RodQuantity quantity = RodQuantity::kLength;
+  double sd = 1e-3;
+};
+
 /// A rod with a ball joint at either end, and the motor that drives it. The motor turns a crank, to
 /// whose pin the rod goes; or the rod itself is a linear actuator, which the motor lengthens.
 struct Rod {
@@ -40,7 +46,7 @@ struct Rod {
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< in `to_link`
   double length = 0.0;                               ///< of an actuator: with the motor at 0
   double branch = 1.0;                               ///< of the two positions of the crank
-  std::vector<RodQuantity> uncertain = {};           ///< each is a parameter
+  std::vector<RodUncertainty> uncertain = {};        ///< each is a parameter
 };
 
 /// Joints that are moved by rods, one rod for each joint: two rods of an ankle, or one of a knee

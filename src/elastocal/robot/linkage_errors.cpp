@@ -3,23 +3,38 @@
 
 namespace elastocal {
 
-LinkedPosture PlaceLinkages(const ErrorModel& model, const Geometry& geometry,
+LinkedPosture PlaceLinkages(const RobotTree& tree, const std::vector<Eigen::VectorXd>& errors,
                             const Eigen::VectorXd& q) {
   LinkedPosture posture{q, {}};
-  for (std::size_t i = 0; i < model.tree.linkages.size(); ++i) {
-    const Linkage& linkage = model.tree.linkages[i];
-    const std::vector<int> coordinates = CoordinatesOf(model.tree, linkage);
+  for (std::size_t i = 0; i < tree.linkages.size(); ++i) {
+    const Linkage& linkage = tree.linkages[i];
+    const std::vector<int> coordinates = CoordinatesOf(tree, linkage);
     const Eigen::VectorXd positions = q(coordinates);
     posture.by_errors.push_back(Eigen::MatrixXd::Zero(positions.size(), linkage.error_count()));
-    const auto motors = MotorPositions(model.tree, linkage, positions);
+    const auto motors = MotorPositions(tree, linkage, positions);
     if (!motors) continue;
-    const auto closure =
-        CloseLinkage(model.tree, linkage, *motors, geometry.linkage_errors[i], positions);
+    const auto closure = CloseLinkage(tree, linkage, *motors, errors[i], positions);
     if (!closure) continue;
     posture.q(coordinates) = closure->positions;
     posture.by_errors.back() = closure->by_errors;
   }
   return posture;
+}
+
+Eigen::VectorXd NominalPositions(const RobotTree& tree, const std::vector<Eigen::VectorXd>& errors,
+                                 const Eigen::VectorXd& q) {
+  Eigen::VectorXd nominal = q;
+  for (std::size_t i = 0; i < tree.linkages.size(); ++i) {
+    const Linkage& linkage = tree.linkages[i];
+    const std::vector<int> coordinates = CoordinatesOf(tree, linkage);
+    const Eigen::VectorXd positions = q(coordinates);
+    const auto motors = MotorPositions(tree, WithErrors(linkage, errors[i]), positions);
+    if (!motors) continue;
+    if (const auto closure = CloseLinkage(tree, linkage, *motors, {}, positions)) {
+      nominal(coordinates) = closure->positions;
+    }
+  }
+  return nominal;
 }
 
 int FirstLinkageParameter(const ErrorModel& model, int linkage) {

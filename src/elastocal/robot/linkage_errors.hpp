@@ -19,11 +19,16 @@ struct LinkedPosture {
 
 /// In `q`, the joints of linkages are where the nominal rods put them. There is one position of the
 /// motors for that, and for this one the rods with their errors put the joints elsewhere. A linkage
-/// that does not close stays as it is, with derivatives of zero.
-LinkedPosture PlaceLinkages(const ErrorModel& model, const Geometry& geometry,
+/// that does not close stays as it is, with derivatives of zero. `errors`: by linkage.
+LinkedPosture PlaceLinkages(const RobotTree& tree, const std::vector<Eigen::VectorXd>& errors,
                             const Eigen::VectorXd& q);
 
-/// Linkages of a model that have parameters, and the first of them; -1 where there are none.
+/// The other way: where the nominal rods would have the joints of linkages that rods with `errors`
+/// have put where they are in `q`. What does not close stays as it is.
+Eigen::VectorXd NominalPositions(const RobotTree& tree, const std::vector<Eigen::VectorXd>& errors,
+                                 const Eigen::VectorXd& q);
+
+/// The first parameter of a linkage of the model; -1 where it has none.
 int FirstLinkageParameter(const ErrorModel& model, int linkage);
 
 }  // namespace elastocal

@@ -102,7 +102,8 @@ inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
     frames[0].R = frames[0].R * RotationFromVector(step.tail<3>());
   }
   const bool linked = !model.tree.linkages.empty();
-  const Eigen::VectorXd closed = linked ? PlaceLinkages(model, geometry, q).q : Eigen::VectorXd();
+  const Eigen::VectorXd closed =
+      linked ? PlaceLinkages(model.tree, geometry.linkage_errors, q).q : Eigen::VectorXd();
   for (int k : model.active_joints) {
     const Joint& joint = model.tree.joints[k];
     place(k, geometry.joints[k], frames[joint.parent_body], joint.type == JointType::kRevolute,

@@ -41,9 +41,9 @@ bool Matches(std::string_view pattern, std::string_view name) {
 
 const char* KindName(ParameterKind kind) {
   static constexpr std::array<const char*, kParameterKindCount> kNames = {
-      "theta",  "r",       "d",       "b",          "alpha",       "beta",        "gamma",     "T0",
-      "marker", "torsion", "bending", "base_force", "base_moment", "torque_bias", "correction",
-      "rod",    "motor_zero"};
+      "theta",       "r",           "d",          "b",       "alpha",     "beta",
+      "gamma",       "T0",          "marker",     "torsion", "bending",   "base_force",
+      "base_moment", "torque_bias", "correction", "rod",     "motor_zero"};
   return kNames[static_cast<int>(kind)];
 }
 

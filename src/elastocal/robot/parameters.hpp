@@ -62,7 +62,7 @@ struct Parameter {
   int leg = -1;          ///< of the error model, for compliances of a leg and torque biases
   int axis = -1;         ///< of a compliance: 0, 1, 2 for x, y, z (rx, ry, rz)
   int correction = -1;   ///< of the error model's elasticity, for corrections
-  double typical = 0.0;  ///< of a correction: standard deviation of its prior
+  double typical = 0.0;  ///< of a correction or linkage: standard deviation of its prior
   int linkage = -1;      ///< of the robot tree, for parameters of linkages; in their order
 };
 

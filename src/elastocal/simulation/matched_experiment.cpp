@@ -69,6 +69,9 @@ double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions&
     case ParameterKind::kTheta:
       if (parameter.unit == ParameterUnit::kMetre) break;
       return scale * random.Normal(leg_joint ? options.leg_offset_sd : options.upper_offset_sd);
+    case ParameterKind::kRod:
+    case ParameterKind::kMotorZero:
+      return scale * random.Normal(parameter.typical);
     default:
       break;
   }
@@ -84,7 +87,9 @@ Eigen::VectorXd DrawMatchedTruth(const ErrorModel& model, const std::vector<int>
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
   for (int i : identifiable) {
     const Parameter& parameter = model.parameters[i];
-    const bool leg_joint = parameter.joint >= 0 && InLeg(legs, parameter.joint);
+    const int joint =
+        parameter.linkage < 0 ? parameter.joint : model.tree.linkages[parameter.linkage].joints[0];
+    const bool leg_joint = joint >= 0 && InLeg(legs, joint);
     truth[i] = DrawValue(parameter, leg_joint, options, random);
   }
   return truth;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "elastocal/math/random.hpp"
+#include "elastocal/robot/linkage_errors.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
 namespace elastocal {
@@ -37,6 +38,21 @@ class Drawing {
                         : IsLeg(k) ? options_.leg_offset_sd
                                    : options_.upper_offset_sd;
       robot_.offset[Index(k)] = GeometryScale(k) * random.Normal(1.0) * sd;
+    }
+  }
+
+  void Linkages() {
+    Random random(StreamSeed(options_.seed, "linkages"));
+    for (std::size_t i = 0; i < robot_.linked.linkages.size(); ++i) {
+      const Linkage& linkage = robot_.linked.linkages[i];
+      Eigen::VectorXd& errors = robot_.linkage_errors[i];
+      Eigen::Index at = 0;
+      for (const Rod& rod : linkage.rods) {
+        for (const auto& [quantity, sd] : rod.uncertain) {
+          const auto joint = static_cast<std::size_t>(linkage.joints[0]);
+          errors[at++] = GeometryScale(joint) * random.Normal(1.0) * sd;
+        }
+      }
     }
   }
 
@@ -127,6 +143,10 @@ TrueRobot NominalRobot(RobotTree tree, std::vector<Marker> markers, std::vector<
                        const std::vector<int>& torque_sensors) {
   TrueRobot robot;
   const auto joints = static_cast<Eigen::Index>(tree.joints.size());
+  if (!tree.linkages.empty()) robot.linked = tree;
+  for (const Linkage& linkage : tree.linkages) {
+    robot.linkage_errors.emplace_back(Eigen::VectorXd::Zero(linkage.error_count()));
+  }
   robot.tree = std::move(tree);
   robot.legs = std::move(legs);
   robot.markers = std::move(markers);
@@ -151,6 +171,7 @@ TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options) {
   Drawing drawing(scaled, robot);
   drawing.Placements();
   drawing.Offsets();
+  drawing.Linkages();
   drawing.JointSprings();
   drawing.LinkSprings();
   drawing.Inertias();
@@ -162,10 +183,20 @@ TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options) {
 
 Eigen::VectorXd TrueJointPositions(const TrueRobot& robot, const Eigen::VectorXd& encoders) {
   Eigen::VectorXd positions = robot.offset;
+  const Eigen::VectorXd placed = PlaceLinkages(robot.linked, robot.linkage_errors, encoders).q;
   for (std::size_t k = 0; k < robot.tree.joints.size(); ++k) {
-    positions[static_cast<Eigen::Index>(k)] += JointPosition(robot.tree.joints[k], encoders);
+    positions[static_cast<Eigen::Index>(k)] += JointPosition(robot.tree.joints[k], placed);
   }
   return positions;
+}
+
+Eigen::VectorXd EncoderPositions(const TrueRobot& robot, const Eigen::VectorXd& positions) {
+  Eigen::VectorXd encoders = positions - robot.offset;
+  if (robot.linked.linkages.empty()) return encoders;
+  const std::vector<int>& drivers = robot.linked.coordinate_joint;
+  encoders(drivers) =
+      NominalPositions(robot.linked, robot.linkage_errors, encoders(drivers)).eval();
+  return encoders;
 }
 
 std::vector<Transform> TrueLinkTransforms(const TrueRobot& robot,

@@ -33,6 +33,7 @@ struct TruthOptions {
   double upper_geometry_scale = 0.7;  ///< factor on all of the above for head, arms and trunk
   double leg_geometry_scale = 1.6;    ///< the same for the legs
   double marker_sd = 3e-3;            ///< of a marker's coordinate on its link, m
+  // Errors of linkages have the standard deviations of their priors, times the same factors.
 
   // Elasticity. Joint springs about the joints' axes: stiffness log-uniform between two values,
   // N.m/rad (N/m for sliding joints).
@@ -74,6 +75,8 @@ struct TrueRobot {
   Eigen::VectorXd friction;               ///< by joint, N.m or N
   std::vector<bool> torque_sensor;        ///< by joint: whether it has one
   Eigen::VectorXd torque_gain, torque_bias;  ///< by joint: reading = gain * torque + bias
+  RobotTree linked;  ///< as described, where it has linkages: their loops close on it
+  std::vector<Eigen::VectorXd> linkage_errors;  ///< of the rods, by its linkages: WithErrors
 };
 
 /// The robot exactly as described: rigid, without friction, perfect sensors on the given joints.
@@ -85,8 +88,12 @@ TrueRobot NominalRobot(RobotTree tree, std::vector<Marker> markers, std::vector<
 TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options);
 
 /// True joint positions, by joint, without deflection, for encoder positions by coordinate of the
-/// tree; rad or m.
+/// tree; rad or m. Encoders of linkages are on the motors; their joints' encoder positions are
+/// those that the described rods give.
 Eigen::VectorXd TrueJointPositions(const TrueRobot& robot, const Eigen::VectorXd& encoders);
+
+/// The other way, by joint for true positions by joint.
+Eigen::VectorXd EncoderPositions(const TrueRobot& robot, const Eigen::VectorXd& positions);
 
 /// Poses of all links in the root link's frame, like LinkTransforms, for true positions by joint.
 std::vector<Transform> TrueLinkTransforms(const TrueRobot& robot, const Eigen::VectorXd& positions);

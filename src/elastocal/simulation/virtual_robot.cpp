@@ -213,12 +213,12 @@ void VirtualRobot::PushWaist(const Vector6d& wrench) {
 }
 
 Eigen::VectorXd VirtualRobot::Encoders() const {
-  Eigen::VectorXd encoders = -simulation_->robot.offset;
+  Eigen::VectorXd positions(simulation_->robot.offset.size());
   for (std::size_t k = 0; k < simulation_->motors.size(); ++k) {
-    encoders[static_cast<Eigen::Index>(k)] +=
+    positions[static_cast<Eigen::Index>(k)] =
         simulation_->data->qpos[simulation_->motors[k].position];
   }
-  return encoders;
+  return EncoderPositions(simulation_->robot, positions);
 }
 
 Eigen::VectorXd VirtualRobot::Torques() const {

@@ -53,7 +53,8 @@ double ExpectedError(const ErrorModel& model, const Recording& recording, const 
     Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
     for (int k = 0; k < delta.size(); ++k) {
       const Parameter& parameter = model.parameters[k];
-      if (parameter.joint < 0 || IsElastic(parameter.kind)) continue;
+      const bool of_robot = parameter.joint >= 0 || parameter.linkage >= 0;
+      if (!of_robot || IsElastic(parameter.kind)) continue;
       delta[k] = random.Normal(prior.Of(model.tree, parameter));
     }
     const Geometry drawn = ApplyErrors(model, delta);

@@ -60,7 +60,8 @@ void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& v
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[i];
     const double deviation = std::abs(result.delta[i]) / prior.Of(result.model.tree, parameter);
-    if (parameter.joint < 0 || IsElastic(parameter.kind) || !(deviation > furthest)) continue;
+    const bool of_robot = parameter.joint >= 0 || parameter.linkage >= 0;
+    if (!of_robot || IsElastic(parameter.kind) || !(deviation > furthest)) continue;
     furthest = deviation;
     largest = i;
   }

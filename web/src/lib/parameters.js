@@ -31,6 +31,15 @@ export const KINDS = [
   {kind: 'compliance_x', symbol: 'c_x', what: 'compliance across the axis, x'},
   {kind: 'compliance_y', symbol: 'c_y', what: 'compliance across the axis, y'},
   {kind: 'torque_bias', symbol: 'τ₀', what: 'bias of the torque sensor'},
+  {kind: 'length', symbol: 'l', what: 'length of a rod'},
+  {kind: 'zero', symbol: 'm₀', what: 'zero of a motor with a rod'},
+  {kind: 'radius', symbol: 'ρ', what: 'radius of its crank'},
+  {kind: 'anchor_x', symbol: 'a_x', what: 'anchor of the rod, x'},
+  {kind: 'anchor_y', symbol: 'a_y', what: 'anchor of the rod, y'},
+  {kind: 'anchor_z', symbol: 'a_z', what: 'anchor of the rod, z'},
+  {kind: 'centre_x', symbol: 'o_x', what: 'centre of the crank, x'},
+  {kind: 'centre_y', symbol: 'o_y', what: 'centre of the crank, y'},
+  {kind: 'centre_z', symbol: 'o_z', what: 'centre of the crank, z'},
 ];
 
 /** Joints with their parameters by kind, in the order of the file. */

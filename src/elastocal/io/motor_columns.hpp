@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/measurement/trial.hpp"
+#include "elastocal/project/project.hpp"
+
+namespace elastocal {
+
+/// Tables and logs of a robot with linkages hold the columns of the motors. Everywhere else the
+/// joints are where the nominal rods put them for these (see Linkage).
+
+/// The project as a file sees it that has these columns: joints of linkages have the names of their
+/// motors where the file has columns of these, and the joints' own columns are passed over. A file
+/// without any motor of a linkage holds the positions of its joints, which the robot's controller
+/// has from the nominal rods. Throws InputError naming `source` where some motors of a linkage have
+/// columns and others have none.
+Project WithMotors(const Project& project, const std::vector<std::string>& columns,
+                   const std::string& source);
+
+/// Replaces positions of motors [rad; actuators m] by those of the joints: `columns[i]` is that of
+/// the linkage's motor i in `table`, one posture a row. `by_motors`, where given, gets the
+/// derivatives of each row (Closure). Returns the first row in which the loops do not close, which
+/// stays as it is, or -1.
+Eigen::Index MotorsToJoints(const RobotTree& tree, const Linkage& linkage,
+                            const std::vector<int>& columns, Eigen::MatrixXd& table,
+                            std::vector<Eigen::MatrixXd>* by_motors = nullptr);
+
+/// "the motors a (0.1 rad) and b (3 rad) cannot be there together ...", about one row.
+std::string CannotClose(const Linkage& linkage, const Eigen::VectorXd& motors);
+
+/// The log of motors as that of the joints; torques by the virtual work: those of the joints have
+/// the power of those of the motors. A joint has no torque where one of its motors has none. Throws
+/// InputError where loops do not close.
+void MotorsToJoints(const RobotTree& tree, JointLog& log);
+
+/// The other way, for files that are written. Throws InputError where a rod does not reach.
+JointLog JointsToMotors(const RobotTree& tree, JointLog log);
+
+/// The same of postures `q`, one a row, of which the joints `absent` are not written. Returns the
+/// tree with motors in the place of joints.
+RobotTree JointsToMotors(const RobotTree& tree, const std::vector<std::string>& absent,
+                         Eigen::MatrixXd& q);
+
+}  // namespace elastocal
