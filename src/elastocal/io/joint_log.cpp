@@ -147,16 +147,9 @@ void ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
   log.wrenches = StackRows(wrenches, rows);
 }
 
-}  // namespace
-
-JointLog ReadJointLog(const std::filesystem::path& file, const Project& project) {
-  std::istringstream stream = OpenTable(file);
-  return ReadJointLog(stream, file.string(), project);
-}
-
-JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& of_joints) {
-  Table table(stream, source);
-  const Project project = WithMotors(of_joints, table.header(), source);
+/// The log of joints, or of motors where the project names these.
+JointLog ReadColumns(Table& table, const Project& project) {
+  const std::string& source = table.source();
   const JointColumns columns = FindJointColumns(table, project);
   JointLog log;
   log.source = source;
@@ -173,7 +166,20 @@ JointLog ReadJointLog(std::istream& stream, const std::string& source, const Pro
     if (columns.torques[i] < 0) continue;
     CheckTorques(log.torques.col(column), table.header()[columns.torques[i]], source);
   }
-  MotorsToJoints(of_joints.tree, log);
+  return log;
+}
+
+}  // namespace
+
+JointLog ReadJointLog(const std::filesystem::path& file, const Project& project) {
+  std::istringstream stream = OpenTable(file);
+  return ReadJointLog(stream, file.string(), project);
+}
+
+JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& project) {
+  Table table(stream, source);
+  JointLog log = ReadColumns(table, WithMotors(project, table.header(), source));
+  MotorsToJoints(project.tree, log);
   return log;
 }
 

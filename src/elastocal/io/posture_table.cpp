@@ -201,15 +201,15 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
 }
 
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
-                       const RobotTree& of_joints) {
+                       const RobotTree& tree) {
   Eigen::MatrixXd q = recording.q;
-  const RobotTree tree = JointsToMotors(of_joints, recording.joints_not_recorded, q);
+  const RobotTree named = JointsToMotors(tree, recording.joints_not_recorded, q);
   const bool timed = recording.time_s.size() > 0;
   const auto& absent = recording.joints_not_recorded;
   std::vector<int> coordinates;  // that the recording holds
   for (int c = 0; c < tree.coordinate_count(); ++c) {
     const bool recorded =
-        std::find(absent.begin(), absent.end(), CoordinateName(tree, c)) == absent.end();
+        std::find(absent.begin(), absent.end(), CoordinateName(named, c)) == absent.end();
     if (recorded) coordinates.push_back(c);
   }
   TableWriter table;
@@ -217,7 +217,7 @@ void WritePostureTable(const std::filesystem::path& file, const Recording& recor
   for (const std::string& marker : recording.marker_names) {
     for (const std::string& column : DefaultMarkerColumns(marker)) table.Add(column);
   }
-  for (int c : coordinates) table.Add(CoordinateName(tree, c));
+  for (int c : coordinates) table.Add(CoordinateName(named, c));
   table.EndRow();
   for (int i = 0; i < recording.posture_count(); ++i) {
     if (timed) table.Add(recording.time_s[i]);

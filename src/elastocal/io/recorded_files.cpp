@@ -189,25 +189,27 @@ JointLog ReadPlainLog(const ByteSource& source) {
 
 }  // namespace
 
-RecordingFile ReadAnyRecording(const fs::path& path, const ReaderOptions& options) {
-  const ByteSource source = ByteSource::Open(path);
+RecordingFile ReadAnyRecording(const fs::path& file, const ReaderOptions& options) {
+  const ByteSource source = ByteSource::Open(file);
   if (RecogniseRecording(source)) return ReadRecordingFile(source, options);
-  RecordingFile file;
+  RecordingFile read;
   if (BeginsLikeQtm(source)) {
-    file.format = "Qualisys TSV";
-    file.markers = ReadQtmTsv(path);
-    file.up = "z";
-    file.why_no_joints = "a Qualisys TSV has no joint positions";
+    read.format = "Qualisys TSV";
+    read.markers = ReadQtmTsv(file);
+    read.up = "z";
+    read.why_no_joints = "a Qualisys TSV has no joint positions";
   } else {
-    file.format = "joint log (CSV)";
-    file.joints = ReadPlainLog(source);
-    file.why_no_markers = "a joint log has joint positions only";
+    read.format = "joint log (CSV)";
+    read.joints = ReadPlainLog(source);
+    read.why_no_markers = "a joint log has joint positions only";
   }
-  return file;
+  return read;
 }
 
-JointLog TakeJoints(const JointLog& from, const Project& of_joints) {
-  const Project project = WithMotors(of_joints, from.names, from.source);
+namespace {
+
+/// What a log has of joints, or of motors where the project names these.
+JointLog TakeColumns(const JointLog& from, const Project& project) {
   const std::vector<Joint>& joints = project.tree.joints;
   std::map<std::string, int> joint_of;
   std::vector<std::string> known;
@@ -241,8 +243,15 @@ JointLog TakeJoints(const JointLog& from, const Project& of_joints) {
   }
   if (log.names.empty()) throw InputError(log.source + ": it has no joint of the robot");
   if (log.sample_count() == 0) throw InputError(log.source + ": it has no sample");
-  MotorsToJoints(of_joints.tree, log);
   return log;
+}
+
+}  // namespace
+
+JointLog TakeJoints(const JointLog& log, const Project& project) {
+  JointLog joints = TakeColumns(log, WithMotors(project, log.names, log.source));
+  MotorsToJoints(project.tree, joints);
+  return joints;
 }
 
 bool IsAxis(const std::string& text) {

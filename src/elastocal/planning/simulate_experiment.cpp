@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/io/joint_log.hpp"
@@ -115,7 +116,7 @@ std::vector<std::string> SimulationWarnings(const Project& project, const Simula
   const bool held = std::all_of(trials.begin(), trials.end(),
                                 [](const PlannedTrial& trial) { return trial.support.empty(); });
   if (held && !simulation.experiment.legs.empty()) {
-    warnings.push_back(
+    warnings.emplace_back(
         "the robot cannot stand on one or two flat feet: its root link is held still in all "
         "trials");
   }

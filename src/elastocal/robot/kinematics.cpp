@@ -145,7 +145,7 @@ Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
         link.body == 0 ? link.T_body_link
                        : model.placements[link.body - 1].T_joint_body * link.T_body_link;
     geometry.p_joint_marker.push_back(T_joint_link * (marker.p_link_marker + delta.segment<3>(i)));
-    geometry.R_joint_link.push_back(T_joint_link.linear());
+    geometry.R_joint_link.emplace_back(T_joint_link.linear());
     i += 3;
   }
   return geometry;

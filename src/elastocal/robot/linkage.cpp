@@ -41,8 +41,8 @@ RodLinks PlaceLinks(const RobotTree& tree, const Linkage& linkage, const Rod& ro
     links.joints.push_back(static_cast<int>(found - linkage.joints.begin()));
     T = T * tree.links[joint.parent_link].T_body_link * joint.T_parent_child;
     T = T * RotAxis(joint.axis, positions[links.joints.back()]);
-    links.axes.push_back(T.linear() * joint.axis);
-    links.points.push_back(T.translation());
+    links.axes.emplace_back(T.linear() * joint.axis);
+    links.points.emplace_back(T.translation());
   }
   links.T_from_to = T * to.T_body_link;
   return links;

@@ -10,7 +10,7 @@ LinkedPosture PlaceLinkages(const RobotTree& tree, const std::vector<Eigen::Vect
     const Linkage& linkage = tree.linkages[i];
     const std::vector<int> coordinates = CoordinatesOf(tree, linkage);
     const Eigen::VectorXd positions = q(coordinates);
-    posture.by_errors.push_back(Eigen::MatrixXd::Zero(positions.size(), linkage.error_count()));
+    posture.by_errors.emplace_back(Eigen::MatrixXd::Zero(positions.size(), linkage.error_count()));
     const auto motors = MotorPositions(tree, linkage, positions);
     if (!motors) continue;
     const auto closure = CloseLinkage(tree, linkage, *motors, errors[i], positions);
