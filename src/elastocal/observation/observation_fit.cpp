@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "elastocal/calibration/posterior.hpp"
 #include "elastocal/math/statistics.hpp"
@@ -48,10 +49,40 @@ std::vector<SourceSum> SumBySource(const ObservationResiduals& residuals,
   return sums;
 }
 
+/// Numbers from which a standard deviation is found.
+double FreedomOf(const SourceSum& sum) {
+  return std::max(kLeastRows * sum.rows, sum.rows - sum.explained) + kOwnWeight;
+}
+
+std::vector<double> FreedomBySource(const std::vector<SourceSum>& sums,
+                                    const std::vector<Source>& sources) {
+  std::vector<double> freedom(sums.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t s = 0; s < sums.size(); ++s) {
+    if (sources[s].role != Source::Role::kFixed) freedom[s] = FreedomOf(sums[s]);
+  }
+  return freedom;
+}
+
+/// The first guess of a source's variance. The zero offsets of legs, trunk and limbs have one
+/// guess: what all of them show together, for one maker sets all encoders.
+double FirstGuess(const std::vector<SourceSum>& sums, const std::vector<Source>& sources,
+                  const Spread& spread, std::size_t source) {
+  const double own = sources[source].sd * sources[source].sd;
+  if (source < kLegOffset || source > kLimbOffset) return own;
+  double squares = kOwnWeight * own, freedom = kOwnWeight;
+  for (int s = kLegOffset; s <= kLimbOffset; ++s) {
+    const SourceSum& sum = sums[static_cast<std::size_t>(s)];
+    squares += spread[s] * spread[s] * sum.squares;
+    freedom += FreedomOf(sum) - kOwnWeight;
+  }
+  return squares / freedom;
+}
+
 /// The largest relative change.
 double UpdateSpread(const std::vector<SourceSum>& sums, const std::vector<Source>& sources,
                     bool robust, Spread& spread) {
   double change = 0.0;
+  const Spread was = spread;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const SourceSum& sum = sums[s];
     if (sum.rows <= 0.0 || sources[s].role == Source::Role::kFixed) continue;
@@ -62,11 +93,10 @@ double UpdateSpread(const std::vector<SourceSum>& sums, const std::vector<Source
           sum.of_observations.data(), static_cast<Eigen::Index>(sum.of_observations.size()));
       squares = sum.rows * Median(all) / ChiSquareQuantile(0.5, 1.0);
     }
-    const double left = std::max(kLeastRows * sum.rows, sum.rows - sum.explained);
     const double before = spread[static_cast<int>(s)];
     const double variance =
-        (before * before * squares + kOwnWeight * sources[s].sd * sources[s].sd) /
-        (left + kOwnWeight);
+        (before * before * squares + kOwnWeight * FirstGuess(sums, sources, was, s)) /
+        FreedomOf(sum);
     spread[static_cast<int>(s)] = std::max(kLeastNoise, std::sqrt(variance));
     change = std::max(change, std::abs(std::log(spread[static_cast<int>(s)] / before)));
   }
@@ -121,6 +151,44 @@ void TakeCounts(const std::vector<Eigen::VectorXd>& explained, ObservationFit& f
   fit.degrees_of_freedom = std::max(1.0, rows - fit.effective_parameters);
 }
 
+/// Degrees of freedom of the variance of each entry of x (Satterthwaite 1946). Each source adds a
+/// part to that variance, and is known as well as the numbers say that told of it: priors by their
+/// own rows, each of one entry; what is left comes from the noise.
+Eigen::VectorXd FreedomOfEntries(const ObservationResiduals& residuals, int observations,
+                                 const Eigen::MatrixXd& covariance, const ObservationFit& fit) {
+  std::vector<Eigen::Index> first = {0};
+  for (int size : residuals.parameter_blocks) first.push_back(first.back() + size);
+  Eigen::MatrixXd parts = Eigen::MatrixXd::Zero(
+      covariance.rows(), static_cast<Eigen::Index>(fit.spread_freedom.size()));
+  const int blocks = static_cast<int>(residuals.residual_blocks.size());
+  for (int block = observations; block < blocks; ++block) {
+    const std::vector<int>& sources = residuals.Sources(block);
+    const int of = residuals.residual_blocks[block].parameter_blocks.front();
+    for (std::size_t row = 0; row < sources.size(); ++row) {
+      const auto r = static_cast<Eigen::Index>(row);
+      parts.col(sources[row]) +=
+          (covariance.col(first[of] + r) * residuals.Jacobian(block)(r, r)).cwiseAbs2();
+    }
+  }
+  const Eigen::VectorXd variances = covariance.diagonal();
+  const Eigen::VectorXd noise = (variances - parts.rowwise().sum()).cwiseMax(0.0);
+  Eigen::VectorXd doubt = noise.cwiseAbs2() / fit.degrees_of_freedom;
+  for (Eigen::Index s = 0; s < parts.cols(); ++s) {
+    doubt += parts.col(s).cwiseAbs2() / fit.spread_freedom[static_cast<std::size_t>(s)];
+  }
+  return variances.cwiseAbs2().cwiseQuotient(doubt);
+}
+
+/// Widens standard deviations where the variance that they come from is not well known.
+void WidenByDoubt(const Eigen::VectorXd& freedom, double usual, Eigen::MatrixXd& covariance) {
+  constexpr double kInterval = 0.975;
+  const double least = StudentQuantile(kInterval, usual);
+  const Eigen::VectorXd factors = freedom.unaryExpr([&](double own) {
+    return std::max(1.0, StudentQuantile(kInterval, std::max(1.0, std::min(own, usual))) / least);
+  });
+  covariance = (factors.asDiagonal() * covariance * factors.asDiagonal()).eval();
+}
+
 /// One step with all that follows from its linearisation; whether all came to rest.
 bool UpdateFit(const ObservedRobot& model, const Observations& observations,
                const ObservationFitOptions& options, ObservationFit& fit) {
@@ -131,7 +199,7 @@ bool UpdateFit(const ObservedRobot& model, const Observations& observations,
   residuals.Evaluate(x, true);
   const double cost = CostOf(residuals);
   const NormalEquations equations(residuals);
-  const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
+  Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
   const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
   const Eigen::VectorXd step =
       BoundedStep(equations.information(), equations.gradient(), x, residuals.nonnegative);
@@ -144,13 +212,16 @@ bool UpdateFit(const ObservedRobot& model, const Observations& observations,
     residuals.Evaluate(next, false);
   }
   fit.values = residuals.ToValues(next);
-  TakeCovariance(model, residuals, covariance, fit);
   TakeCounts(explained, fit);
   double change = 0.0;
   if (options.estimate_spread) {
-    change = UpdateSpread(SumBySource(residuals, model, observations, explained),
-                          model.setup.sources, options.robust, fit.spread);
+    const std::vector<SourceSum> sums = SumBySource(residuals, model, observations, explained);
+    fit.spread_freedom = FreedomBySource(sums, model.setup.sources);
+    WidenByDoubt(FreedomOfEntries(residuals, observations.count(), covariance, fit),
+                 fit.degrees_of_freedom, covariance);
+    change = UpdateSpread(sums, model.setup.sources, options.robust, fit.spread);
   }
+  TakeCovariance(model, residuals, covariance, fit);
   change = std::max(change, UpdateWeights(residuals, model, observations, fit.spread, fit.weights));
   return options.robust ? change < kRoughlySettled : change < kSettled && small;
 }

@@ -17,8 +17,14 @@ struct ObservationFit {
   std::vector<double> weights;  ///< by observation: 1, less where it is further off than the noise
                                 ///< explains, 0 for one that is left out
   std::vector<JointLoads> loads;  ///< by posture
+  /// Numbers that told how large each standard deviation of `spread` is, that of its first guess
+  /// included; infinite where it is fixed.
+  std::vector<double> spread_freedom;
   /// Posterior covariance of the unknowns, SI, and where they stand in it (-1: not estimated): each
-  /// unknown of the robot, the first number of each quantity.
+  /// unknown of the robot, the first number of each quantity. Where the spread is estimated,
+  /// standard deviations are those whose multiple by Student's t with `degrees_of_freedom` is the
+  /// half width of the interval. An unknown that hangs on a source of which few numbers tell has a
+  /// t of its own, by Satterthwaite (docs/algorithms.md).
   Eigen::MatrixXd covariance;
   std::vector<int> entry_of_unknown, entry_of_quantity;
   double effective_parameters = 0.0;  ///< numbers that the observations determine
@@ -31,8 +37,9 @@ struct ObservationFit {
 /// Fits what is free, from nominal or from `start`, to the observations whose weight is not 0. The
 /// standard deviations of all sources that are not fixed follow from the residuals (restricted
 /// maximum likelihood by Harville's fixed point, as VarianceComponent has it); each keeps
-/// the weight of one number at the standard deviation that it started from, so that a source of
-/// which few numbers tell anything neither vanishes nor explodes.
+/// the weight of one number at the standard deviation that it started from (zero offsets of legs,
+/// trunk and limbs: at that of all zero offsets together), so that a source of which few numbers
+/// tell anything neither vanishes nor explodes.
 struct ObservationFitOptions {
   ObservationFreedom freedom = {};
   bool estimate_spread = true;

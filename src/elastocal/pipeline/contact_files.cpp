@@ -45,11 +45,21 @@ std::string ShownName(const std::string& name, SourceUnit unit) {
 }
 
 Json SpreadJson(const ObservedRobot& model, const Spread& spread) {
-  Json json;
+  Json json = Json::object();
   for (std::size_t s = 0; s < model.setup.sources.size(); ++s) {
     const Source& source = model.setup.sources[s];
     if (source.role == Source::Role::kFixed) continue;
     json[ShownName(source.name, source.unit)] = ShownUnitOf(source.unit).factor * spread.sd[s];
+  }
+  return json;
+}
+
+/// How many numbers told each standard deviation of the spread.
+Json SpreadNumbersJson(const ObservedRobot& model, const ObservationFit& fit) {
+  Json json = Json::object();
+  for (std::size_t s = 0; s < fit.spread_freedom.size(); ++s) {
+    const Source& source = model.setup.sources[s];
+    if (source.role != Source::Role::kFixed) json[source.name] = fit.spread_freedom[s];
   }
   return json;
 }
@@ -170,6 +180,7 @@ Json ContactJson(const ContactRun& run) {
   json["plates"] = PlatesJson(run);
   if (!run.touches_only()) json["quantities"] = QuantitiesJson(run);
   json["spread"] = SpreadJson(run.model, fit.spread);
+  json["spread_numbers"] = SpreadNumbersJson(run.model, fit);
   json["closure"] = {{"exact", run.closure.exact},
                      {"postures", run.closure.postures},
                      {"median_mm", 1e3 * run.closure.median},

@@ -60,13 +60,24 @@ std::optional<ObservedRobot> WithoutCompliances(const ObservedRobot& model,
   return rigid;
 }
 
-/// Standard deviations of the priors, by parameter; NaN for those that are not estimated.
-Eigen::VectorXd PriorSds(const ObservedRobot& model, const Spread& spread) {
+/// Half width of a 95 % interval in standard deviations.
+double IntervalFactor(double degrees_of_freedom) {
+  return std::clamp(StudentQuantile(0.975, std::max(1.0, degrees_of_freedom)), 1.959964, 12.7);
+}
+
+/// Standard deviations of the priors, by parameter, as those of the posterior widened where few
+/// numbers tell of them; NaN for parameters that are not estimated.
+Eigen::VectorXd PriorSds(const ObservedRobot& model, const ObservationFit& fit) {
+  const double usual = IntervalFactor(fit.degrees_of_freedom);
   const std::vector<SourceOfParameter> sources = SourcesOfParameters(model);
   Eigen::VectorXd sds = Eigen::VectorXd::Constant(model.robot.parameter_count(),
                                                   std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < model.robot.parameter_count(); ++i) {
-    if (model.unknown[i] >= 0) sds[i] = spread[sources[i].source] * sources[i].unit;
+    if (model.unknown[i] < 0) continue;
+    const auto source = static_cast<std::size_t>(sources[i].source);
+    const double own =
+        fit.spread_freedom.empty() ? usual : IntervalFactor(fit.spread_freedom[source]);
+    sds[i] = fit.spread.sd[source] * sources[i].unit * std::max(1.0, own / usual);
   }
   return sds;
 }
@@ -94,7 +105,7 @@ CalibrationResult ResultOf(const ObservedRobot& model, const ObservationFit& fit
                     : ModelKind::kGeometric;
   result.model = model.robot;
   result.delta = fit.values.robot;
-  result.prior_sd = PriorSds(model, fit.spread);
+  result.prior_sd = PriorSds(model, fit);
   result.sd = result.prior_sd;
   TakePosterior(model, fit, result);
   const Eigen::VectorXd sds = result.posterior.StandardDeviations();
@@ -107,8 +118,7 @@ CalibrationResult ResultOf(const ObservedRobot& model, const ObservationFit& fit
                            ? ParameterStatus::kEstimated
                            : ParameterStatus::kUnsupported;
   }
-  result.interval_factor =
-      std::clamp(StudentQuantile(0.975, fit.degrees_of_freedom), 1.959964, 12.7);
+  result.interval_factor = IntervalFactor(fit.degrees_of_freedom);
   result.equations = equations;
   result.termination = fit.termination;
   result.settled = fit.settled;
