@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Legs whose knees and ankles are moved by rods: tables and logs of their motors, MuJoCo's closed
-// loops, recovery of the truth, and a virtual experiment from files to the calibrated rods.
+// Legs whose knees and ankles are moved by rods: tables and logs of their motors, recovery of the
+// truth, and a robot of MuJoCo from files to the calibrated rods.
 
-#include <array>
-#include <cstring>
-#include <map>
+#include "tests/linked_biped.hpp"
+
 #include <numeric>
+#include <sstream>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <mujoco/mujoco.h>
 
 #include "elastocal/elastocal.hpp"
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/linkage_file.hpp"
 #include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/posture_table.hpp"
+#include "elastocal/io/recorded_files.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage_errors.hpp"
@@ -23,45 +23,11 @@
 #include "elastocal/simulation/true_robot.hpp"
 #include "elastocal/simulation/virtual_robot.hpp"
 #include "elastocal/tables/read_file.hpp"
+#include "elastocal/validation/moved_joints.hpp"
 #include "tests/expect_input_error.hpp"
-#include "tests/scratch_folder.hpp"
-#include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
-
-class LinkedBiped : public testing::Test {
- protected:
-  std::filesystem::path File(const std::string& name) const { return scratch_.path() / name; }
-
-  /// A table in whose columns the joints have the names and values that `tree` and the recording
-  /// have.
-  PostureTable ReadBack(const Recording& recording, const RobotTree& tree) const {
-    WritePostureTable(File("table.csv"), recording, tree);
-    return ReadPostureTable(File("table.csv"), project_);
-  }
-
-  Eigen::VectorXd Truth(std::uint64_t seed) const {
-    Random random(seed);
-    Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
-    const Prior prior;
-    for (int i = kWaistParameterCount; i < truth.size(); ++i) {
-      const Parameter& parameter = model_.parameters[i];
-      const double sd = IsExternal(parameter.kind) ? 2e-3 : prior.Of(model_.tree, parameter);
-      truth[i] = random.Normal(sd);
-    }
-    return truth;
-  }
-
-  ScratchFolder scratch_;
-  Project project_ = ReadProject(SourceFile("tests/robots/linked_biped_project.yaml"));
-  ErrorModel model_ = MakeErrorModel(project_.tree, project_.markers, project_.placement);
-  RobotTree unlinked_ = [this] {
-    RobotTree tree = project_.tree;
-    tree.linkages.clear();
-    return tree;
-  }();
-};
 
 TEST_F(LinkedBiped, ItsTablesHoldTheMotors) {
   EXPECT_TRUE(project_.tree.warnings.empty()) << project_.tree.warnings[0];
@@ -72,6 +38,14 @@ TEST_F(LinkedBiped, ItsTablesHoldTheMotors) {
   EXPECT_NE(text.find(",left_ankle_outer,"), std::string::npos);
   EXPECT_EQ(text.find("left_ankle_pitch"), std::string::npos);
   EXPECT_LT((by_motors.recording.q - recording.q).cwiseAbs().maxCoeff(), 1e-11);
+  // Beside the motors, columns of the joints are not read.
+  std::string both;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    both += line + (both.empty() ? ",left_ankle_pitch\n" : ",0.5\n");
+  }
+  std::istringstream stream(both);
+  EXPECT_EQ(ReadPostureTable(stream, "both", project_).recording.q, by_motors.recording.q);
   // A controller that logs the joints has them from the nominal rods.
   EXPECT_EQ(ReadBack(recording, unlinked_).recording.q, recording.q);
 
@@ -114,147 +88,38 @@ TEST_F(LinkedBiped, ItsLogsHoldTheTorquesOfTheMotors) {
   EXPECT_EQ(read.names, log.names);
   EXPECT_LT((read.positions - log.positions).cwiseAbs().maxCoeff(), 1e-11);
   EXPECT_LT((read.torques - log.torques).cwiseAbs().maxCoeff(), 1e-7);
-}
 
-std::string Numbers(const Eigen::VectorXd& v) {
-  std::string text;
-  for (const double number : v) text += fmt::format("{:.17g} ", number);
-  return text;
-}
-
-/// Thigh, shank, cross and foot of one leg by MuJoCo, its rods as bodies: on a crank's pin by a
-/// ball joint, or sliding out of a ball joint where there is an actuator, and their ends on the
-/// links by `connect`. An equality constraint holds each motor.
-std::string LoopsXml(const RobotTree& tree, const std::string& side, const Linkage& knee,
-                     const Linkage& ankle) {
-  const std::string mass = R"(<inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/>)";
-  std::string equality;
-  // The rod lies along x of its body while the model is built; `connect` brings it where it ends.
-  const auto rod_body = [&](const Rod& rod, const Transform& T_here_anchor) {
-    const std::string& name = rod.motor;
-    equality +=
-        fmt::format(R"(<joint name="{0}" joint1="{0}"/>)"
-                    R"(<connect name="end_{0}" body1="end_{0}" body2="{1}" anchor="0 0 0"/>)",
-                    name, tree.links[static_cast<std::size_t>(rod.to_link)].name);
-    const Eigen::Vector3d start = rod.actuator ? rod.centre : rod.pin;
-    const Eigen::Vector3d along = T_here_anchor * rod.anchor - start;
-    const Eigen::Quaterniond turn =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), along);
-    const Eigen::Vector4d wxyz(turn.w(), turn.x(), turn.y(), turn.z());
-    const Eigen::Vector3d end = rod.length * Eigen::Vector3d::UnitX();
-    const std::string slide =
-        rod.actuator ? fmt::format(R"(<joint name="{}" type="slide" axis="1 0 0"/>)", name) : "";
-    const std::string rest = fmt::format(
-        R"(<body name="rod_{0}" pos="{1}" quat="{2}"><joint type="ball"/>{3}<body name="end_{0}" pos="{4}">{5}{3}</body></body>)",
-        name, Numbers(rod.actuator ? rod.centre : Eigen::Vector3d(rod.pin - rod.centre)),
-        Numbers(wxyz), mass, Numbers(end), slide);
-    if (rod.actuator) return rest;
-    return fmt::format(R"(<body pos="{}"><joint name="{}" type="hinge" axis="{}"/>{}{}</body>)",
-                       Numbers(rod.centre), name, Numbers(rod.axis), mass, rest);
-  };
-  const auto joint = [&](const std::string& name) -> const Joint& {
-    return tree.joints[static_cast<std::size_t>(FindJoint(tree, side + name))];
-  };
-  const auto link = [&](const std::string& name, const std::string& moved_by,
-                        const std::string& content) {
-    const Joint& by = joint(moved_by);
-    return fmt::format(
-        R"(<body name="{0}" pos="{1}"><joint name="{2}" type="hinge" axis="{3}"/>{4}{5}</body>)",
-        side + name, Numbers(by.T_parent_child.translation()), side + moved_by, Numbers(by.axis),
-        mass, content);
-  };
-  const Transform T_shank_foot =
-      joint("ankle_pitch").T_parent_child * joint("ankle_roll").T_parent_child;
-  std::string rods;
-  for (const Rod& rod : ankle.rods) rods += rod_body(rod, T_shank_foot);
-  const std::string foot = link("foot", "ankle_roll", "");
-  const std::string shank = link("shank", "knee", rods + link("ankle", "ankle_pitch", foot));
-  const std::string actuator = rod_body(knee.rods[0], joint("knee").T_parent_child);
-  return fmt::format(
-      R"(<mujoco><option timestep="0.0005" gravity="0 0 0"><flag contact="disable"/></option>)"
-      R"(<default><joint damping="2"/><equality solref="0.002 1"/></default>)"
-      R"(<worldbody><body name="{}thigh">{}{}</body></worldbody><equality>{}</equality></mujoco>)",
-      side, actuator, shank, equality);
-}
-
-using Model = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
-
-Model Compile(const std::string& xml) {
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  mj_makeEmptyFileVFS(files.get(), "loops.xml", static_cast<int>(xml.size()) + 1);
-  std::memcpy(files->filedata[0], xml.c_str(), xml.size() + 1);
-  std::array<char, 1000> error{};
-  Model model(mj_loadXML("loops.xml", files.get(), error.data(), error.size()), &mj_deleteModel);
-  mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error(std::string("MuJoCo: ") + error.data());
-  return model;
-}
-
-double* EqualityData(mjModel& model, const std::string& name) {
-  return model.eq_data + mjNEQDATA * mj_name2id(&model, mjOBJ_EQUALITY, name.c_str());
-}
-
-/// MuJoCo takes the ends of a rod as where they are at first; they are the anchors.
-void ConnectRods(const Linkage& linkage, mjModel& model) {
-  for (const Rod& rod : linkage.rods) {
-    Eigen::Map<Eigen::Vector3d>(EqualityData(model, "end_" + rod.motor) + 3) = rod.anchor;
+  // The same of a log of another format, whose columns are in the order of their names.
+  const JointLog taken = TakeJoints(motors, project_);
+  for (std::size_t i = 0; i < taken.names.size(); ++i) {
+    const auto found = std::find(log.names.begin(), log.names.end(), taken.names[i]);
+    ASSERT_NE(found, log.names.end()) << taken.names[i];
+    const auto column = static_cast<Eigen::Index>(i);
+    const Eigen::VectorXd difference =
+        taken.positions.col(column) - log.positions.col(found - log.names.begin());
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-11) << taken.names[i];
+  }
+  // A joint has a torque where all motors have one.
+  JointLog some = motors;
+  const auto outer = std::find(some.names.begin(), some.names.end(), "left_ankle_outer");
+  some.torques.col(outer - some.names.begin()).setConstant(kNaN);
+  MotorsToJoints(project_.tree, some);
+  for (std::size_t i = 0; i < some.names.size(); ++i) {
+    const bool of_ankle = some.names[i].starts_with("left_ankle");
+    EXPECT_EQ(some.torques.col(static_cast<Eigen::Index>(i)).array().isNaN().all(), of_ankle);
   }
 }
 
-/// Moves the motors to where they are to be, and lets the loops come to rest; positions of the
-/// joints of the names.
-std::vector<double> SettledPositions(mjModel& model, const std::map<std::string, double>& motors,
-                                     const std::vector<std::string>& names) {
-  const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(&model), &mj_deleteData);
-  constexpr int kMostSteps = 20000, kMoving = 4000;
-  for (int i = 0; i < kMostSteps; ++i) {
-    const double share = std::min(1.0, static_cast<double>(i) / kMoving);
-    for (const auto& [motor, at] : motors) EqualityData(model, motor)[0] = share * at;
-    mj_step(&model, data.get());
-    const Eigen::Map<const Eigen::VectorXd> speeds(data->qvel, model.nv);
-    if (i > 2 * kMoving && speeds.cwiseAbs().maxCoeff() < 1e-11) break;
-  }
-  std::vector<double> positions;
-  for (const std::string& name : names) {
-    const int id = mj_name2id(&model, mjOBJ_JOINT, name.c_str());
-    positions.push_back(data->qpos[model.jnt_qposadr[id]]);
-  }
-  return positions;
-}
-
-// MuJoCo's constraints are springs, which have no force at rest where there is no weight.
-TEST_F(LinkedBiped, ClosesItsLoopsAsMujocoDoes) {
-  Random random(11);
-  const std::array<int, 2> which = {0, 1};  // left_knee, left_ankle
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::VectorXd q = RandomPosture(project_.tree, random);
-    std::vector<Eigen::VectorXd> errors;
-    for (const Linkage& linkage : project_.tree.linkages) {
-      errors.push_back(random.NormalVector(linkage.error_count(), 1.5e-3));
+TEST_F(LinkedBiped, KnowsTheZerosOfItsMotors) {
+  std::vector<std::string> zeros;
+  for (const Parameter& parameter : model_.parameters) {
+    if (parameter.linkage >= 0 && IsZeroOffset(parameter, model_.tree)) {
+      zeros.push_back(parameter.name);
     }
-    std::vector<Linkage> rods;
-    std::map<std::string, double> motors;
-    for (int l : which) {
-      const Linkage& linkage = project_.tree.linkages[l];
-      rods.push_back(WithErrors(linkage, errors[l]));
-      const Eigen::VectorXd at =
-          *MotorPositions(project_.tree, linkage, q(CoordinatesOf(project_.tree, linkage)));
-      for (std::size_t m = 0; m < linkage.rods.size(); ++m) {
-        motors[linkage.rods[m].motor] = at[static_cast<Eigen::Index>(m)];
-      }
-    }
-    const Model mujoco = Compile(LoopsXml(project_.tree, "left_", rods[0], rods[1]));
-    for (const Linkage& linkage : rods) ConnectRods(linkage, *mujoco);
-    const Eigen::VectorXd placed = PlaceLinkages(project_.tree, errors, q).q;
-    const std::vector<std::string> names = {"left_knee", "left_ankle_pitch", "left_ankle_roll"};
-    const std::vector<double> found = SettledPositions(*mujoco, motors, names);
-    for (std::size_t j = 0; j < names.size(); ++j) {
-      const int k = FindJoint(project_.tree, names[j]);
-      EXPECT_NEAR(JointPosition(project_.tree.joints[k], placed), found[j], 1e-8) << names[j];
-    }
-    EXPECT_GT((placed - q).norm(), 1e-3);
   }
+  EXPECT_EQ(zeros, (std::vector<std::string>{"left_knee_actuator.length", "left_ankle_outer.zero",
+                                             "left_ankle_inner.zero", "right_knee_actuator.length",
+                                             "right_ankle_outer.zero", "right_ankle_inner.zero"}));
 }
 
 TEST_F(LinkedBiped, NoiseFreeTableGivesBackTheTruth) {

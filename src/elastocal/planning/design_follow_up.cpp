@@ -60,7 +60,7 @@ PriorKnowledge KnowledgeOf(const DesignedChain& chain, const std::vector<int>& c
     });
     if (at == columns.end()) continue;
     const Parameter& parameter = model.parameters[*at];
-    if (!IsZeroOffset(parameter, model.tree)) continue;
+    if (parameter.joint < 0 || !IsZeroOffset(parameter, model.tree)) continue;
     if (!Asked(model.tree.joints[parameter.joint].name, options.joints)) continue;
     knowledge.change_sd[at - columns.begin()] = sizes[static_cast<Eigen::Index>(n)];
   }

@@ -117,19 +117,20 @@ Linkage ReadLinkage(const YamlValue& value, const RobotTree& tree) {
   return linkage;
 }
 
-/// Positions of the linkage's joints at all combinations of a few within their limits.
+/// Positions of the linkage's joints at all combinations of a few within their limits; of many
+/// joints at the corners.
 std::vector<Eigen::VectorXd> GridWithinLimits(const RobotTree& tree, const Linkage& linkage) {
-  constexpr int kSteps = 4;
+  const int steps = linkage.joints.size() <= 2 ? 4 : 1;
   std::vector<Eigen::VectorXd> grid = {linkage.assembled};
   for (std::size_t j = 0; j < linkage.joints.size(); ++j) {
     const JointLimits& limits = tree.joints[static_cast<std::size_t>(linkage.joints[j])].limits;
     if (!std::isfinite(limits.lower) || !std::isfinite(limits.upper)) continue;
     std::vector<Eigen::VectorXd> finer;
     for (const Eigen::VectorXd& positions : grid) {
-      for (int i = 0; i <= kSteps; ++i) {
+      for (int i = 0; i <= steps; ++i) {
         finer.push_back(positions);
         finer.back()[static_cast<Eigen::Index>(j)] =
-            limits.lower + (limits.upper - limits.lower) * i / kSteps;
+            limits.lower + (limits.upper - limits.lower) * i / steps;
       }
     }
     grid = std::move(finer);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "elastocal/math/decompositions.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 
@@ -243,6 +244,13 @@ std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<J
 }  // namespace
 
 bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree) {
+  if (parameter.kind == ParameterKind::kMotorZero) return true;
+  if (parameter.linkage >= 0) {
+    const std::vector<Rod>& rods = tree.linkages[Size(parameter.linkage)].rods;
+    return std::any_of(rods.begin(), rods.end(), [&](const Rod& rod) {
+      return rod.actuator && parameter.name == rod.motor + ".length";
+    });
+  }
   if (parameter.joint < 0) return false;
   const bool prismatic = tree.joints[parameter.joint].type == JointType::kPrismatic;
   return parameter.kind == (prismatic ? ParameterKind::kR : ParameterKind::kTheta);
@@ -252,7 +260,8 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
                               const Prior& prior) {
   std::map<std::string, double> sizes;
   for (const Parameter& parameter : model.parameters) {
-    if (parameter.joint < 0 || IsElastic(parameter.kind)) continue;
+    const bool of_robot = parameter.joint >= 0 || parameter.linkage >= 0;
+    if (!of_robot || IsElastic(parameter.kind)) continue;
     sizes[parameter.name] = kTimesPrior * prior.Of(model.tree, parameter);
   }
   Eigen::VectorXd result(static_cast<Eigen::Index>(earlier.names.size()));

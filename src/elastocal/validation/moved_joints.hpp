@@ -50,7 +50,8 @@ struct JointCheckOptions {
   double certainty = 0.95;  ///< probability from which on a single joint is named
 };
 
-/// Whether a parameter is what a turned encoder changes: theta, of a prismatic joint r.
+/// Whether a parameter is what a turned encoder changes: theta, of a prismatic joint r; of a motor
+/// with a rod its zero, of a linear actuator its length.
 bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree);
 
 /// Standard deviation of a change that a joint's parameters may have made at once: twice the prior
