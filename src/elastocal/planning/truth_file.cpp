@@ -69,12 +69,12 @@ void WriteJoints(const VirtualExperiment& experiment, const RobotTree& described
 
 /// Errors of rods, by the names of their parameters.
 void WriteRods(const TrueRobot& robot, TruthWriter& writer) {
-  if (robot.linked.linkages.empty()) return;
+  if (robot.described.linkages.empty()) return;
   writer.Key("rods");
   writer.yaml << YAML::BeginMap;
-  for (std::size_t i = 0; i < robot.linked.linkages.size(); ++i) {
+  for (std::size_t i = 0; i < robot.described.linkages.size(); ++i) {
     Eigen::Index at = 0;
-    for (const Rod& rod : robot.linked.linkages[i].rods) {
+    for (const Rod& rod : robot.described.linkages[i].rods) {
       for (const auto& [quantity, sd] : rod.uncertain) {
         writer.Key(rod.motor + "." + RodQuantityName(quantity));
         writer.yaml << YAML::Flow << YAML::BeginMap;

@@ -21,22 +21,6 @@ LinkedPosture PlaceLinkages(const RobotTree& tree, const std::vector<Eigen::Vect
   return posture;
 }
 
-Eigen::VectorXd NominalPositions(const RobotTree& tree, const std::vector<Eigen::VectorXd>& errors,
-                                 const Eigen::VectorXd& q) {
-  Eigen::VectorXd nominal = q;
-  for (std::size_t i = 0; i < tree.linkages.size(); ++i) {
-    const Linkage& linkage = tree.linkages[i];
-    const std::vector<int> coordinates = CoordinatesOf(tree, linkage);
-    const Eigen::VectorXd positions = q(coordinates);
-    const auto motors = MotorPositions(tree, WithErrors(linkage, errors[i]), positions);
-    if (!motors) continue;
-    if (const auto closure = CloseLinkage(tree, linkage, *motors, {}, positions)) {
-      nominal(coordinates) = closure->positions;
-    }
-  }
-  return nominal;
-}
-
 int FirstLinkageParameter(const ErrorModel& model, int linkage) {
   for (int i = 0; i < model.parameter_count(); ++i) {
     if (model.parameters[i].linkage == linkage) return i;

@@ -23,11 +23,6 @@ struct LinkedPosture {
 LinkedPosture PlaceLinkages(const RobotTree& tree, const std::vector<Eigen::VectorXd>& errors,
                             const Eigen::VectorXd& q);
 
-/// The other way: where the nominal rods would have the joints of linkages that rods with `errors`
-/// have put where they are in `q`. What does not close stays as it is.
-Eigen::VectorXd NominalPositions(const RobotTree& tree, const std::vector<Eigen::VectorXd>& errors,
-                                 const Eigen::VectorXd& q);
-
 /// The first parameter of a linkage of the model; -1 where it has none.
 int FirstLinkageParameter(const ErrorModel& model, int linkage);
 

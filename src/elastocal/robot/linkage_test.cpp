@@ -5,7 +5,6 @@
 
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/jacobian.hpp"
-#include "elastocal/robot/linkage_errors.hpp"
 #include "elastocal/robot/subtree.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/linked_leg.hpp"
@@ -130,19 +129,6 @@ TEST(Linkage, MarkersMoveByItsErrors) {
     of_linkages += model.parameters[i].linkage >= 0 ? 1 : 0;
   }
   EXPECT_EQ(of_linkages, 9 + 9 + 3);
-}
-
-TEST(Linkage, NominalPositionsUndoItsErrors) {
-  const RobotTree tree = UncertainLeg();
-  std::vector<Eigen::VectorXd> errors;
-  for (const Linkage& linkage : tree.linkages) errors.push_back(SomeErrors(linkage, 5));
-  Random random(6);
-  for (int i = 0; i < 50; ++i) {
-    const Eigen::VectorXd q = RandomPosture(tree, random);
-    const Eigen::VectorXd placed = PlaceLinkages(tree, errors, q).q;
-    EXPECT_GT((placed - q).norm(), 1e-4);
-    EXPECT_LT((NominalPositions(tree, errors, placed) - q).norm(), 1e-10);
-  }
 }
 
 TEST(Linkage, StaysWithItsPartOfTheTree) {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "elastocal/math/random.hpp"
-#include "elastocal/robot/linkage_errors.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
 namespace elastocal {
@@ -43,8 +42,8 @@ class Drawing {
 
   void Linkages() {
     Random random(StreamSeed(options_.seed, "linkages"));
-    for (std::size_t i = 0; i < robot_.linked.linkages.size(); ++i) {
-      const Linkage& linkage = robot_.linked.linkages[i];
+    for (std::size_t i = 0; i < robot_.described.linkages.size(); ++i) {
+      const Linkage& linkage = robot_.described.linkages[i];
       Eigen::VectorXd& errors = robot_.linkage_errors[i];
       Eigen::Index at = 0;
       for (const Rod& rod : linkage.rods) {
@@ -53,6 +52,8 @@ class Drawing {
           errors[at++] = GeometryScale(joint) * random.Normal(1.0) * sd;
         }
       }
+      robot_.tree.linkages[i] = WithErrors(linkage, errors);
+      for (const int k : linkage.joints) robot_.offset[k] = 0.0;
     }
   }
 
@@ -137,13 +138,24 @@ class Drawing {
   TrueRobot& robot_;
 };
 
+/// Where the rods of linkage `i` of one tree have its joints for the motors that those of the other
+/// tree have at `q`; out of reach they stay.
+void MoveBetween(const RobotTree& from, const RobotTree& to, std::size_t i, Eigen::VectorXd& q) {
+  const std::vector<int> coordinates = CoordinatesOf(from, from.linkages[i]);
+  const Eigen::VectorXd positions = q(coordinates);
+  const auto motors = MotorPositions(from, from.linkages[i], positions);
+  if (!motors) return;
+  const auto closure = CloseLinkage(to, to.linkages[i], *motors, {}, positions);
+  if (closure) q(coordinates) = closure->positions;
+}
+
 }  // namespace
 
 TrueRobot NominalRobot(RobotTree tree, std::vector<Marker> markers, std::vector<Leg> legs,
                        const std::vector<int>& torque_sensors) {
   TrueRobot robot;
   const auto joints = static_cast<Eigen::Index>(tree.joints.size());
-  if (!tree.linkages.empty()) robot.linked = tree;
+  if (!tree.linkages.empty()) robot.described = tree;
   for (const Linkage& linkage : tree.linkages) {
     robot.linkage_errors.emplace_back(Eigen::VectorXd::Zero(linkage.error_count()));
   }
@@ -182,8 +194,11 @@ TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options) {
 }
 
 Eigen::VectorXd TrueJointPositions(const TrueRobot& robot, const Eigen::VectorXd& encoders) {
+  Eigen::VectorXd placed = encoders;
+  for (std::size_t i = 0; i < robot.described.linkages.size(); ++i) {
+    MoveBetween(robot.described, robot.tree, i, placed);
+  }
   Eigen::VectorXd positions = robot.offset;
-  const Eigen::VectorXd placed = PlaceLinkages(robot.linked, robot.linkage_errors, encoders).q;
   for (std::size_t k = 0; k < robot.tree.joints.size(); ++k) {
     positions[static_cast<Eigen::Index>(k)] += JointPosition(robot.tree.joints[k], placed);
   }
@@ -192,10 +207,13 @@ Eigen::VectorXd TrueJointPositions(const TrueRobot& robot, const Eigen::VectorXd
 
 Eigen::VectorXd EncoderPositions(const TrueRobot& robot, const Eigen::VectorXd& positions) {
   Eigen::VectorXd encoders = positions - robot.offset;
-  if (robot.linked.linkages.empty()) return encoders;
-  const std::vector<int>& drivers = robot.linked.coordinate_joint;
-  encoders(drivers) =
-      NominalPositions(robot.linked, robot.linkage_errors, encoders(drivers)).eval();
+  if (robot.described.linkages.empty()) return encoders;
+  const std::vector<int>& drivers = robot.described.coordinate_joint;
+  Eigen::VectorXd q = encoders(drivers);
+  for (std::size_t i = 0; i < robot.described.linkages.size(); ++i) {
+    MoveBetween(robot.tree, robot.described, i, q);
+  }
+  encoders(drivers) = q;
   return encoders;
 }
 

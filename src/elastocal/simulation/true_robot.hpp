@@ -75,8 +75,10 @@ struct TrueRobot {
   Eigen::VectorXd friction;               ///< by joint, N.m or N
   std::vector<bool> torque_sensor;        ///< by joint: whether it has one
   Eigen::VectorXd torque_gain, torque_bias;  ///< by joint: reading = gain * torque + bias
-  RobotTree linked;  ///< as described, where it has linkages: their loops close on it
-  std::vector<Eigen::VectorXd> linkage_errors;  ///< of the rods, by its linkages: WithErrors
+  /// As described, where it has linkages. `tree` has the true rods, whose loops close on the true
+  /// tree: their joints have no offset.
+  RobotTree described;
+  std::vector<Eigen::VectorXd> linkage_errors;  ///< of the true rods, by linkage: WithErrors
 };
 
 /// The robot exactly as described: rigid, without friction, perfect sensors on the given joints.
