@@ -243,8 +243,8 @@ TEST_F(OfMujoco, RodsAreFoundFromMotors) {
   EXPECT_GT(uncalibrated, 1e-2);
 }
 
-// The loops close on the true tree, whose axes are displaced by a millimetre and 0.3 degrees each.
-// What the model leaves of that is of second order: 0.03 mm.
+// The loops close on the true tree, whose axes are displaced by 0.8 mm and 0.2 degrees each. What
+// the model leaves of that is of second order: 0.03 mm.
 TEST_F(OfMujoco, DisplacedAxesAreFoundAsDisplacedAnchors) {
   const auto [calibrated, exact_rods, uncalibrated] = HeldOut();
   EXPECT_LT(calibrated, 6e-5);
