@@ -52,14 +52,20 @@ struct WindowSystem {
   double motion = 0.0;         // sum of p'^2
   double motion_moment = 0.0;  // ... times the time
 
+  /// `taken`: by frame of the window; frames that are unknown at this lag are struck from it.
   WindowSystem(const UniformSpeed& measured, const UniformSpeed& predicted,
-               const FrameInterval& frames, double lag_s) {
+               const FrameInterval& frames, double lag_s, std::vector<char>& taken) {
     for (int frame = frames.begin; frame < frames.end; ++frame) {
+      char& take = taken[static_cast<std::size_t>(frame - frames.begin)];
+      if (take == 0) continue;
       const double value = measured.values[frame];
-      if (std::isnan(value)) continue;
       const double time = frame / measured.rate_hz;
-      const std::optional<Interpolated> p = Interpolate(predicted, time - lag_s);
-      if (!p) continue;
+      const std::optional<Interpolated> p =
+          std::isnan(value) ? std::nullopt : Interpolate(predicted, time - lag_s);
+      if (!p) {
+        take = 0;
+        continue;
+      }
       const Eigen::Vector3d row(p->value, 1.0, -p->derivative);
       ++count;
       normal += row * row.transpose();
@@ -172,8 +178,10 @@ double LagLine::Sd(double time_s) const {
 std::optional<WindowLag> FitWindowLag(const UniformSpeed& measured, const UniformSpeed& predicted,
                                       const FrameInterval& frames, double coarse_lag_s) {
   double lag = coarse_lag_s;
+  const std::vector<char> all(static_cast<std::size_t>(std::max(0, frames.size())), 1);
+  std::vector<char> taken = all;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const WindowSystem system(measured, predicted, frames, lag);
+    const WindowSystem system(measured, predicted, frames, lag, taken);
     if (system.count < 10 || system.count < kLeastKnownShare * frames.size()) return std::nullopt;
     const Eigen::FullPivLU<Eigen::Matrix3d> lu(system.normal);
     if (!lu.isInvertible()) return std::nullopt;  // nothing moves
@@ -181,6 +189,9 @@ std::optional<WindowLag> FitWindowLag(const UniformSpeed& measured, const Unifor
     const double step = fit[2] / fit[0];
     lag += step;
     if (!(fit[0] > 0.0 && std::abs(lag - coarse_lag_s) < kFarthest_s)) return std::nullopt;
+    // Near the solution a frame at the rim that was lost once stays lost: coming and going, it
+    // would keep the steps from ever becoming small.
+    if (std::abs(step) * measured.rate_hz > 1.0) taken = all;
     if (std::abs(step) > kConverged_s) continue;
 
     const double residual = std::max(0.0, system.measured_square - fit.dot(system.right));

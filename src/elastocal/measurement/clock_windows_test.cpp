@@ -39,6 +39,28 @@ TEST(FitWindowLag, RefusesRestAndOtherMotion) {
   EXPECT_FALSE(FitWindowLag(measured, Waves(15.0, 500, 0.0, 1.0, 0.0), {0, 2000}, 0.0).has_value());
 }
 
+TEST(FitWindowLag, SettlesWhereAFrameAtTheRimComesAndGoes) {
+  // With the frame the best lag is beyond what the frame is known at, without it the best lag is
+  // one that it is known at.
+  constexpr int kRim = 500;
+  UniformSpeed measured = Waves(0.0, 2000, 0.2, 1.0, 0.0);
+  const double at_rim = measured.values[kRim];
+  double start = 4.79;
+  for (int i = 0; i < 3; ++i) {
+    measured.values[kRim] = std::nan("");
+    const auto without =
+        FitWindowLag(measured, Waves(start, 2000, 0.0, 1.0, 0.0), {kRim, 2000}, 0.2);
+    ASSERT_TRUE(without.has_value());
+    start = 0.01 * (kRim - 1) - (without->lag_s + 1e-6);
+  }
+  for (const double error : {-0.02, 0.02}) {
+    measured.values[kRim] = at_rim + error;
+    const auto lag = FitWindowLag(measured, Waves(start, 2000, 0.0, 1.0, 0.0), {kRim, 2000}, 0.2);
+    ASSERT_TRUE(lag.has_value()) << error;
+    EXPECT_NEAR(lag->lag_s, 0.2, 1e-4);
+  }
+}
+
 TEST(FitLine, IsNotMovedByOutliers) {
   Random random(6);
   std::vector<WindowLag> windows;

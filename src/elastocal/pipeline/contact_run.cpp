@@ -52,7 +52,7 @@ std::optional<ObservedRobot> WithoutCompliances(const ObservedRobot& model,
   const std::vector<Parameter>& parameters = model.robot.parameters;
   if (std::none_of(parameters.begin(), parameters.end(), elastic)) return std::nullopt;
   ObservationSetup setup = model.setup;
-  setup.hold.push_back("*.compliance_*");
+  setup.hold.emplace_back("*.compliance_*");
   const Elasticity& elasticity = model.robot.elasticity;
   ObservedRobot rigid = MakeObservedRobot(project.tree, project.placement, setup,
                                           elasticity.torsion, elasticity.bending);
@@ -145,7 +145,7 @@ void JudgeContacts(ContactRun& run) {
   const std::string on =
       held_out ? "on " + what + " that were left out" : "on the " + what + " of the fit";
   if (run.calibrated.estimate.fit.termination != Termination::kConverged) {
-    verdict.objections.push_back("the estimate has not converged: variances did not come to rest");
+    verdict.objections.emplace_back("the estimate has not converged: variances did not come to rest");
   }
   const auto left_out = static_cast<double>(run.calibrated.estimate.outliers.size());
   if (left_out > kMostLeftOut * run.observations.count()) {
