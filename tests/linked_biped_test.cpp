@@ -61,6 +61,12 @@ TEST_F(LinkedBiped, ItsTablesHoldTheMotors) {
   named.joints[outer].name = "left_ankle_pitch";
   ExpectInputError([&] { ReadBack(recording, named); },
                    {"table.csv: ", "'left_ankle_inner'", "none of 'left_ankle_outer'"});
+  Recording without = recording;
+  without.joints_not_recorded = {"left_ankle_pitch", "left_ankle_roll"};
+  ExpectInputError([&] { ReadBack(without, project_.tree); },
+                   {"'left_ankle_pitch'",
+                    "is missing (or those of its motors 'left_ankle_outer', "
+                    "'left_ankle_inner')"});
 }
 
 // What the motors do is what the joints do: their powers are the same.

@@ -109,6 +109,17 @@ Project WithMotors(const Project& project, const std::vector<std::string>& colum
   return with;
 }
 
+std::string OrItsMotors(const RobotTree& tree, int joint) {
+  for (const Linkage& linkage : tree.linkages) {
+    const auto& joints = linkage.joints;
+    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) continue;
+    std::string names;
+    for (const Rod& rod : linkage.rods) names += (names.empty() ? "" : ", ") + Quote(rod.motor);
+    return " (or those of its motors " + names + ")";
+  }
+  return "";
+}
+
 Eigen::Index MotorsToJoints(const RobotTree& tree, const Linkage& linkage,
                             const std::vector<int>& columns, Eigen::MatrixXd& table,
                             std::vector<Eigen::MatrixXd>* by_motors) {

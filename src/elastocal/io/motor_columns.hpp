@@ -22,6 +22,10 @@ namespace elastocal {
 Project WithMotors(const Project& project, const std::vector<std::string>& columns,
                    const std::string& source);
 
+/// " (or those of its motors 'a', 'b')" for a joint of a linkage, about columns that are missing;
+/// empty for others.
+std::string OrItsMotors(const RobotTree& tree, int joint);
+
 /// Replaces positions of motors [rad; actuators m] by those of the joints: `columns[i]` is that of
 /// the linkage's motor i in `table`, one posture a row. `by_motors`, where given, gets the
 /// derivatives of each row (Closure). Returns the first row in which the loops do not close, which

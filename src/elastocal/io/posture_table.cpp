@@ -43,8 +43,9 @@ void CheckMovingJoints(const Table& table, const Project& project, const Posture
       if (columns.coordinates[coordinate] >= 0) continue;
       if (project.recording.not_recorded.contains(joint.name)) continue;
       table.Fail("the column " + Quote(JointColumn(project, joint.name)) + " of joint " +
-                 Quote(joint.name) + ", which moves marker " + Quote(marker.name) +
-                 ", is missing; a joint that stood still is given in recording." +
+                 Quote(joint.name) + ", which moves marker " + Quote(marker.name) + ", is missing" +
+                 OrItsMotors(tree, tree.coordinate_joint[coordinate]) +
+                 "; a joint that stood still is given in recording." +
                  (joint.type == JointType::kRevolute ? "not_recorded_deg" : "not_recorded_mm") +
                  " of " + project.file.string());
     }

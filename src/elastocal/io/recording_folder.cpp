@@ -5,6 +5,7 @@
 #include <future>
 #include <set>
 
+#include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
@@ -30,7 +31,8 @@ void CheckJoints(const JointLog& log, const std::vector<int>& markers, const Tri
       const bool revolute = tree.joints[driver].type == JointType::kRevolute;
       throw InputError(
           log.source + ": there is no column of joint " + Quote(name) + ", which moves " + what +
-          " of trial " + Quote(trial.name) + "; a joint that stood still is given in recording." +
+          " of trial " + Quote(trial.name) + OrItsMotors(tree, driver) +
+          "; a joint that stood still is given in recording." +
           (revolute ? "not_recorded_deg" : "not_recorded_mm") + " of " + project.file.string());
     }
   };
