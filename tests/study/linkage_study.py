@@ -30,6 +30,8 @@ def project_with(exact, work):
     """The project, with exact rods if asked for."""
     document = yaml.safe_load(ROBOT.read_text())
     document["robot"]["urdf"] = str(ROBOT.parent / document["robot"]["urdf"])
+    # The simulated lags are 2 to 4 s; repetitions of one motion look alike at their period.
+    document["measurement"] = {"longest_lag_s": 4.5}
     for linkage in document["linkages"]:
         for rod in linkage["rods"]:
             if exact:
@@ -79,7 +81,7 @@ def main():
         truth = yaml.safe_load((matched / "truth.yaml").read_text())["parameters"]
         intervals(out, truth, motors(project), counts)
         physical = work / f"mujoco_{seed}"
-        run(program, "simulate", project, "--seed", seed, "-o", physical)
+        run(program, "simulate", project, "--random-postures", 12, "--seed", seed, "-o", physical)
         for name, with_rods in (("rods", project), ("exact rods", exact)):
             folder = work / f"{name.replace(' ', '_')}_{seed}"
             run(program, "calibrate", with_rods, "--recording", physical, "-o", folder)
