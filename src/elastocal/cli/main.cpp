@@ -81,7 +81,8 @@ void AddAcceptOption(CLI::App& command, std::vector<std::string>& names) {
       .add_option("--accept", names,
                   "Mistakes of the recording that are corrected before the fit, by the names that "
                   "calibrate or validate gave them: sign:JOINT, exchange:JOINT,JOINT, "
-                  "frozen:JOINT, labels:NAME,NAME")
+                  "frozen:JOINT, labels:NAME,NAME, gain:JOINT=FACTOR, offset:JOINT@TRIAL=DEGREES, "
+                  "scale:TRIAL=FACTOR")
       ->type_name("NAME");
 }
 

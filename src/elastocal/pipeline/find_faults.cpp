@@ -10,10 +10,19 @@
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/up_check.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/pipeline/stated_corrections.hpp"
 #include "elastocal/validation/held_out.hpp"
 
 namespace elastocal {
 namespace {
+
+/// "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME corrects it)"
+std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
+                           const Recording& recording) {
+  const std::string text = DescribeFault(fault, tree, recording);
+  const std::optional<std::string> name = NameOfCorrection(fault, tree, recording);
+  return name ? text + " (--accept " + *name + " corrects it)" : text;
+}
 
 constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
 constexpr double kContradicted = 10.0;
@@ -38,7 +47,7 @@ std::vector<std::string> FindGeneralFault(const Project& project, std::optional<
     }
   }
   if (faults.empty()) return {};
-  return {DescribeFault(faults.front(), project.tree, *of)};
+  return {FaultAndRemedy(faults.front(), project.tree, *of)};
 }
 
 /// A group of chains whose held-out trials the largest model predicts worse than it fits those of
@@ -106,7 +115,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
       FindRecordingFaults(together, all, project.calibration);
   if (!faults.empty()) {
     return {"trials for calibration and for validation contradict each other: " +
-            DescribeFault(faults.front(), project.tree, all)};
+            FaultAndRemedy(faults.front(), project.tree, all)};
   }
   if (!(contrast.ratio() > kContradicted)) return {};
   char text[200];

@@ -15,6 +15,7 @@
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/pipeline/stated_corrections.hpp"
 
 namespace elastocal {
 namespace {
@@ -203,9 +204,17 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
 }
 
 std::vector<std::string> AcceptMistakes(const Project& project,
-                                        const std::vector<std::string>& names,
+                                        const std::vector<std::string>& accepted,
                                         Measurements& measured) {
   std::vector<std::string> undone;
+  std::vector<std::string> names;  // of mistakes that the recording must show
+  for (const std::string& name : accepted) {
+    if (const auto stated = ParseStatedCorrection(name, project.tree)) {
+      undone.push_back(ApplyCorrection(*stated, project.tree, measured));
+    } else {
+      names.push_back(name);
+    }
+  }
   if (names.empty()) return undone;
   std::set<std::string> shown;
   Accept(project, names, measured.calibration, measured.calibration_truth, shown, undone);

@@ -41,9 +41,10 @@ std::vector<RecordingMistake> FindMistakesBy(
 /// Undoes the mistakes of these names wherever the trials for calibration and for validation seem
 /// to have them, and says what was undone, in words: `sign:JOINT`, `exchange:JOINT,JOINT`,
 /// `frozen:JOINT` (its postures are left out), `labels:NAME,NAME` of two clusters or markers.
+/// Names with a size (ParseStatedCorrection: `gain:JOINT=1.05` ...) are done as they say.
 /// Throws InputError for a name of which the recording shows nothing, with those that it does show.
 std::vector<std::string> AcceptMistakes(const Project& project,
-                                        const std::vector<std::string>& names,
+                                        const std::vector<std::string>& accepted,
                                         Measurements& measured);
 
 /// What AcceptMistakes undid, as a warning: "corrected on request: ...".

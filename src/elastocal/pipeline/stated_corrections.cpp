@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/stated_corrections.hpp"
+
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeastFactor = 0.5, kLargestFactor = 2.0;
+constexpr double kLargestOffsetDeg = 60.0, kLargestOffsetMm = 200.0;
+
+const Joint* JointOfCoordinate(const RobotTree& tree, int coordinate) {
+  for (const Joint& joint : tree.joints) {
+    if (joint.coordinate == coordinate) return &joint;
+  }
+  return nullptr;
+}
+
+/// Of an offset in files.
+double UnitOf(const Joint& joint) {
+  return joint.type == JointType::kPrismatic ? 1e-3 : M_PI / 180.0;
+}
+
+[[noreturn]] void Refuse(const std::string& name, const std::string& why) {
+  throw InputError("--accept " + name + ": " + why);
+}
+
+const Joint& FindJoint(const std::string& name, const std::string& joint, const RobotTree& tree) {
+  for (const Joint& candidate : tree.joints) {
+    if (candidate.name == joint && candidate.coordinate >= 0) return candidate;
+  }
+  Refuse(name, "the robot has no moving joint '" + joint + "'");
+}
+
+void CheckSize(const std::string& name, double size, double least, double largest,
+               const char* unit) {
+  if (size >= least && size <= largest) return;
+  Refuse(name, fmt::format("a size from {:g} to {:g}{} was expected", least, largest, unit));
+}
+
+/// Undoes it in one recording; whether the recording has the trial.
+bool ApplyTo(const StatedCorrection& correction, Recording& recording) {
+  bool found = correction.trial.empty();
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const bool here =
+        correction.trial.empty() ||
+        (!recording.trial.empty() &&
+         recording.trials[static_cast<std::size_t>(recording.trial[static_cast<std::size_t>(i)])]
+                 .name == correction.trial);
+    if (!here) continue;
+    found = true;
+    switch (correction.kind) {
+      case FaultKind::kJointGain:
+        recording.q(i, correction.coordinate) /= correction.size;
+        break;
+      case FaultKind::kJointOffset:
+        recording.q(i, correction.coordinate) -= correction.size;
+        break;
+      case FaultKind::kCameraScale:
+        recording.markers.row(i) /= correction.size;
+        break;
+    }
+  }
+  return found;
+}
+
+std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
+  const std::string where = correction.trial.empty() ? "" : " in trial " + correction.trial;
+  if (correction.kind == FaultKind::kCameraScale) {
+    return fmt::format("the cameras' positions{} were divided by {:g}", where, correction.size);
+  }
+  if (correction.kind == FaultKind::kJointGain) {
+    return fmt::format("the positions of {}{} were divided by {:g}", correction.joint, where,
+                       correction.size);
+  }
+  const Joint& joint = *JointOfCoordinate(tree, correction.coordinate);
+  return fmt::format("{:g} {} were taken from the positions of {}{}",
+                     correction.size / UnitOf(joint),
+                     joint.type == JointType::kPrismatic ? "mm" : "deg", joint.name, where);
+}
+
+}  // namespace
+
+std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
+                                                      const RobotTree& tree) {
+  const std::size_t colon = name.find(':');
+  const std::string word = name.substr(0, colon);
+  StatedCorrection correction;
+  if (word == "offset") {
+    correction.kind = FaultKind::kJointOffset;
+  } else if (word == "scale") {
+    correction.kind = FaultKind::kCameraScale;
+  } else if (word != "gain") {
+    return std::nullopt;
+  }
+  const std::size_t equals = name.rfind('=');
+  if (colon == std::string::npos || equals == std::string::npos || equals < colon) {
+    Refuse(name,
+           "gain:JOINT=FACTOR, gain:JOINT@TRIAL=FACTOR, offset:JOINT@TRIAL=SIZE or "
+           "scale:TRIAL=FACTOR was expected");
+  }
+  const std::optional<double> size = ParseNumber(name.substr(equals + 1));
+  if (!size) Refuse(name, "'" + name.substr(equals + 1) + "' is not a number");
+  std::string of = name.substr(colon + 1, equals - colon - 1);
+  if (correction.kind == FaultKind::kCameraScale) {
+    CheckSize(name, *size, kLeastFactor, kLargestFactor, "");
+    correction.trial = of;
+    correction.size = *size;
+    return correction;
+  }
+  const std::size_t at = of.rfind('@');
+  if (at != std::string::npos) {
+    correction.trial = of.substr(at + 1);
+    of.resize(at);
+  }
+  const Joint& joint = FindJoint(name, of, tree);
+  correction.joint = joint.name;
+  correction.coordinate = joint.coordinate;
+  if (correction.kind == FaultKind::kJointGain) {
+    CheckSize(name, *size, kLeastFactor, kLargestFactor, "");
+    correction.size = *size;
+    return correction;
+  }
+  if (correction.trial.empty()) {
+    Refuse(name,
+           "an offset in all trials is an error of the robot; offset:JOINT@TRIAL=SIZE was "
+           "expected");
+  }
+  const bool slides = joint.type == JointType::kPrismatic;
+  const double largest = slides ? kLargestOffsetMm : kLargestOffsetDeg;
+  CheckSize(name, *size, -largest, largest, slides ? " mm" : " deg");
+  correction.size = *size * UnitOf(joint);
+  return correction;
+}
+
+std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const RobotTree& tree,
+                                            const Recording& recording) {
+  const std::string trial =
+      fault.trial < 0 ? "" : recording.trials[static_cast<std::size_t>(fault.trial)].name;
+  if (fault.kind == FaultKind::kCameraScale) {
+    if (trial.empty()) return std::nullopt;
+    return fmt::format("scale:{}={:.5f}", trial, 1.0 + fault.size);
+  }
+  const Joint* joint = JointOfCoordinate(tree, fault.coordinate);
+  if (joint == nullptr) return std::nullopt;
+  const std::string where = trial.empty() ? "" : "@" + trial;
+  if (fault.kind == FaultKind::kJointGain) {
+    return fmt::format("gain:{}{}={:.5f}", joint->name, where, 1.0 + fault.size);
+  }
+  if (trial.empty()) return std::nullopt;
+  return fmt::format("offset:{}{}={:.4f}", joint->name, where, fault.size / UnitOf(*joint));
+}
+
+std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree& tree,
+                            Measurements& measured) {
+  const bool first = ApplyTo(correction, measured.calibration);
+  const bool second = ApplyTo(correction, measured.validation);
+  if (!first && !second) {
+    std::set<std::string> known;
+    for (const Recording* of : {&measured.calibration, &measured.validation}) {
+      for (const Trial& trial : of->trials) known.insert(trial.name);
+    }
+    throw InputError(fmt::format("--accept: no trial '{}' is used; trials: {}", correction.trial,
+                                 fmt::join(known, ", ")));
+  }
+  return InWords(correction, tree);
+}
+
+}  // namespace elastocal

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+
+namespace elastocal {
+
+/// A correction of a recording that says its own size, for `--accept`:
+///
+///     gain:JOINT=1.05          the joint's positions are 1.05 times the true ones, in all trials
+///     gain:JOINT@TRIAL=1.05    in this trial alone
+///     offset:JOINT@TRIAL=2.1   they are 2.1 deg (of a sliding joint: mm) too large in this trial
+///     scale:TRIAL=1.005        the cameras' positions are 1.005 times the true ones in this trial
+struct StatedCorrection {
+  FaultKind kind = FaultKind::kJointGain;
+  int coordinate = -1;     ///< of the robot tree; of a scale: -1
+  std::string joint = {};  ///< of a scale: empty
+  std::string trial = {};  ///< empty: all
+  double size = 1.0;       ///< gain or scale; offset in rad or m
+};
+
+/// Reads such a name; nothing where it begins with another word. Throws InputError where joint or
+/// size are missing, unknown, or beyond what can be a fault (gain and scale from 0.5 to 2; offset
+/// 60 deg, 200 mm).
+std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
+                                                      const RobotTree& tree);
+
+/// The name that corrects a fault; nothing for an offset from a posture on, of which a recording
+/// for validation does not know on which side it stands.
+std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const RobotTree& tree,
+                                            const Recording& recording);
+
+/// Undoes it in the trials for calibration and for validation; what was undone, in words. Throws
+/// InputError for a trial that is in neither.
+std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree& tree,
+                            Measurements& measured);
+
+}  // namespace elastocal
