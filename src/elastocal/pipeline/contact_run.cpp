@@ -145,7 +145,8 @@ void JudgeContacts(ContactRun& run) {
   const std::string on =
       held_out ? "on " + what + " that were left out" : "on the " + what + " of the fit";
   if (run.calibrated.estimate.fit.termination != Termination::kConverged) {
-    verdict.objections.emplace_back("the estimate has not converged: variances did not come to rest");
+    verdict.objections.emplace_back(
+        "the estimate has not converged: variances did not come to rest");
   }
   const auto left_out = static_cast<double>(run.calibrated.estimate.outliers.size());
   if (left_out > kMostLeftOut * run.observations.count()) {
