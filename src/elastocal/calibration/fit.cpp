@@ -4,18 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/SparseCore>
+
 #include "elastocal/calibration/variances.hpp"
 #include "elastocal/math/statistics.hpp"
 
 namespace elastocal {
 namespace {
 
-// When noise, prior and weights have come to rest. Standard deviations are never known to a
-// hundredth, and a fit that only looks for gross errors needs less.
-constexpr double kSlightDecrease = 1e-5;     // of the cost by a step
+// When a fit has come to rest. Standard deviations are never known to a hundredth, and a fit that
+// only looks for gross errors needs less.
+constexpr double kStepTolerance = 1e-2;      // of an unknown's standard deviation, on average
 constexpr double kVarianceTolerance = 1e-2;  // relative, of a standard deviation, by its share
 constexpr double kWeightTolerance = 1e-2;
-constexpr double kRoughly = 5.0;     // times these
+constexpr double kRoughly = 10.0;    // times these
+constexpr double kStale = 0.5;       // relative change of noise, prior and weights in all
 constexpr int kRoughIterations = 5;  // of a solve whose weights will change anyway
 constexpr double kLeastLeft = 0.05;  // of the variance of a row
 constexpr int kMaxPolishing = 6;
@@ -94,18 +97,30 @@ double WeightChange(const RobustWeights& before, const RobustWeights& after) {
   return change;
 }
 
+/// What a fit explains of each row, by residual block. It takes most of an update's time and
+/// changes slowly, so it is computed anew only where noise, prior and weights have changed much
+/// since.
+struct ExplainedRows {
+  std::vector<Eigen::VectorXd> variances = {};
+  double age = 0.0;  ///< sum of those changes; 0: of the fit as it stands
+};
+
 /// One Gauss-Newton step and, from the same linearisation, noise, weights and prior scale: they
 /// converge together, instead of the one waiting for the other. Whether they have.
 bool UpdateByStep(const FitProblem& problem, const Selection& selection,
-                  const std::vector<int>& free, Robustness robustness, Fit& fit) {
+                  const std::vector<int>& free, Robustness robustness, ExplainedRows& explained,
+                  Fit& fit) {
   FitResiduals residuals(problem, selection, free, fit);
   BodyResiduals& body = residuals.body;
   const Eigen::VectorXd x = body.Start();
   body.Evaluate(x, true);
   const double cost = CostOf(body);
   const NormalEquations equations(body);
-  const Eigen::MatrixXd covariance = TakeCovariance(problem, free, equations, fit);
-  const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
+  if (explained.variances.empty() || explained.age > kStale) {
+    explained.variances =
+        equations.ExplainedVariances(TakeCovariance(problem, free, equations, fit));
+    explained.age = 0.0;
+  }
   const Eigen::VectorXd step =
       BoundedStep(equations.information(), equations.gradient(), x(equations.unknowns()),
                   equations.Positions(body.nonnegative));
@@ -113,7 +128,9 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   ++fit.iterations;
   body.Evaluate(next, false);
   const double tolerance = robustness == Robustness::kMedians ? kRoughly : 1.0;
-  const bool small = -equations.gradient().dot(step) < tolerance * kSlightDecrease * (1.0 + cost);
+  const double mean_square =  // of the step, in standard deviations
+      -equations.gradient().dot(step) / static_cast<double>(step.size());
+  const bool small = mean_square < std::pow(tolerance * kStepTolerance, 2);
   if (!small && !(CostOf(body) <= cost)) {  // far from the solution: damped steps
     SolveOnce(problem, selection, free,
               {.max_iterations = kRoughIterations, .function_tolerance = 1e-8}, fit);
@@ -123,19 +140,23 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   }
   Take(body, next, fit);
   const VarianceComponents components =
-      CollectComponents(problem, selection, fit.noise, body, explained);
+      CollectComponents(problem, selection, fit.noise, body, explained.variances);
   fit.degrees_of_freedom = DegreesOfFreedom(problem.options, components);
   const Noise noise = EstimateNoise(problem.options, fit.noise, components, robustness);
   const RobustWeights weights = EstimateWeights(problem, selection, noise, body, robustness);
   const PriorScale scale =
       problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
-  const bool settled = NoiseChange(fit.noise, noise, components) < tolerance * kVarianceTolerance &&
-                       ScaleChange(fit.prior_scale, scale) < tolerance * kVarianceTolerance &&
-                       WeightChange(fit.weights, weights) < tolerance * kWeightTolerance;
+  const double variance_change =
+      std::max(NoiseChange(fit.noise, noise, components), ScaleChange(fit.prior_scale, scale));
+  const double weight_change = WeightChange(fit.weights, weights);
+  const bool settled = small && variance_change < tolerance * kVarianceTolerance &&
+                       weight_change < tolerance * kWeightTolerance;
+  const bool fresh = explained.age == 0.0;
+  explained.age = settled ? 2.0 * kStale : explained.age + variance_change + weight_change;
   fit.noise = noise;
   fit.weights = weights;
   fit.prior_scale = scale;
-  return settled && small;
+  return settled && (fresh || robustness == Robustness::kMedians);
 }
 
 /// The posture of each residual block; -1 of priors.
@@ -149,8 +170,9 @@ std::vector<int> PostureOfBlocks(const Selection& selection, const BodyResiduals
 
 /// Information of the prior on the unknowns in the units of the solver: of the parameters, then of
 /// what else is unknown.
-Eigen::MatrixXd PriorInformation(const FitProblem& problem, const Prior& prior,
-                                 const std::vector<int>& parameters, Eigen::Index unknowns) {
+Eigen::SparseMatrix<double> PriorInformation(const FitProblem& problem, const Prior& prior,
+                                             const std::vector<int>& parameters,
+                                             Eigen::Index unknowns) {
   Eigen::VectorXd own =
       Eigen::VectorXd::Constant(unknowns, BodyResiduals::kPoseScale * BodyResiduals::kPoseScale);
   Eigen::VectorXd unit(static_cast<Eigen::Index>(parameters.size()));
@@ -160,13 +182,13 @@ Eigen::MatrixXd PriorInformation(const FitProblem& problem, const Prior& prior,
     unit[at] = ParameterScale(parameter);
     own[at] = std::pow(unit[at] / prior.Of(problem.model.tree, parameter), 2);
   }
-  Eigen::MatrixXd information = own.asDiagonal();
   const EarlierPart earlier = PartOf(problem.options.earlier, problem.model, parameters);
-  if (earlier.positions.empty()) return information;
+  if (earlier.positions.empty()) return Eigen::SparseMatrix<double>(own.asDiagonal());
+  Eigen::MatrixXd information = own.asDiagonal();
   const Eigen::VectorXd scale = unit(earlier.positions);
   information(earlier.positions, earlier.positions) =
       scale.asDiagonal() * earlier.Information() * scale.asDiagonal();
-  return information;
+  return information.sparseView();
 }
 
 /// Compares the covariance with that of the cluster-robust (sandwich) estimator, whose clusters are
@@ -187,9 +209,11 @@ void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
       equations.Scores(raised, PostureOfBlocks(selection, body), problem.recording.posture_count());
   const std::vector<int>& parameters = fit.posterior.parameters;
   const auto count = static_cast<Eigen::Index>(parameters.size());
-  const Eigen::MatrixXd prior =
-      PriorInformation(problem, residuals.prior, parameters, covariance.rows());
-  const Eigen::MatrixXd by_data = covariance - covariance * prior * covariance;
+  const Eigen::MatrixXd by_prior =
+      PriorInformation(problem, residuals.prior, parameters, covariance.rows()) *
+      covariance.leftCols(count);
+  const Eigen::MatrixXd by_data =
+      covariance.topLeftCorner(count, count) - covariance.topRows(count) * by_prior;
   const Eigen::VectorXd by_clusters = (covariance * scores).rowwise().squaredNorm();
   double expected = 0.0;
   double found = 0.0;
@@ -283,10 +307,11 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const Fit& start, Robustness robustness,
                   int updates) {
   Fit fit = start;
+  ExplainedRows explained;
   bool settled = false;
   const int most = std::min(updates, problem.options.max_iterations);
   for (int update = 0; update < most && !settled; ++update) {
-    settled = UpdateByStep(problem, selection, free, robustness, fit);
+    settled = UpdateByStep(problem, selection, free, robustness, explained, fit);
   }
   if (!settled) fit.settled = fit.settled && updates < kMaxUpdates;
   return fit;
