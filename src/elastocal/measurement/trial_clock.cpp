@@ -20,6 +20,7 @@ constexpr double kJumpReach_s = 0.1;  // what is left out to either side of a ju
 constexpr int kMostPasses = 3;
 constexpr double kSettled_s =
     5e-3;  // change of the lag that counts as none; well within a jump's reach
+constexpr double kMostUnexplained = 0.25;  // of the markers
 constexpr double kLeastSeen =
     0.5;  // least share of the trial in which a marker must be seen to count
 
@@ -119,6 +120,58 @@ MeansOfSeen TakeMeansOfSeen(const Eigen::MatrixXd& measured, const Eigen::Vector
   return means;
 }
 
+// First by the markers that are seen most of the time, then by all that are seen at each moment.
+ClockFit FitSeen(const Eigen::MatrixXd& measured, double rate_hz, const LoggedSpeeds& logged,
+                 const ClockOptions& options) {
+  std::vector<bool> mostly_seen;
+  for (const auto& speed : measured.colwise()) {
+    const auto known = speed.size() - speed.array().isNaN().count();
+    mostly_seen.push_back(static_cast<double>(known) >=
+                          kLeastSeen * static_cast<double>(speed.size()));
+  }
+  const auto markers =
+      static_cast<double>(std::count(mostly_seen.begin(), mostly_seen.end(), true));
+  if (markers == 0.0) return {};
+  const Eigen::VectorXd all = MeanKnown(logged.speeds, mostly_seen, 1.0);
+  const MeasuredSpeed seen{rate_hz, MeanKnown(measured, mostly_seen, 0.5 * markers)};
+  const ClockFit first = EstimateClock(seen, {logged.time_s, all}, options);
+  if (first.state == ClockState::kNoOverlap || first.state == ClockState::kWeak) return first;
+  const std::vector<bool> every(mostly_seen.size(), true);
+  const Eigen::VectorXd mean = MeanKnown(measured, every, 0.5 * markers);
+  ClockFit fit = first;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const ClockFit last = fit;
+    const MeansOfSeen means = TakeMeansOfSeen(measured, mean, rate_hz, logged, last);
+    fit = EstimateClock({rate_hz, means.measured}, {logged.time_s, means.logged}, options);
+    if (std::abs(fit.lag_s - last.lag_s) < kSettled_s) break;
+  }
+  return first.state == ClockState::kAmbiguous ? first : fit;
+}
+
+// Markers of which the log explains nothing, though they move as much as the others: for a while
+// their labels were with another marker. None where they are many: then it is the log that is
+// wrong.
+std::vector<int> FindUnexplained(const Eigen::MatrixXd& measured, double rate_hz,
+                                 const LoggedSpeeds& logged, const ClockFit& clock) {
+  Eigen::ArrayXd unexplained = Eigen::ArrayXd::Zero(measured.cols());
+  for (Eigen::Index i = 0; i < logged.time_s.size(); ++i) {
+    const Eigen::Index frame = std::llround(clock.CameraTime(logged.time_s[i]) * rate_hz);
+    if (frame < 0 || frame >= measured.rows()) continue;
+    const Eigen::ArrayXd difference = (measured.row(frame) - logged.speeds.row(i)).transpose();
+    unexplained += difference.isNaN().select(0.0, difference.square());
+  }
+  const Eigen::ArrayXd motion =
+      (logged.speeds.rowwise() - logged.speeds.colwise().mean()).colwise().squaredNorm();
+  std::vector<int> found;
+  for (Eigen::Index m = 0; m < measured.cols(); ++m) {
+    if (unexplained[m] > std::max(motion[m], motion.mean())) found.push_back(static_cast<int>(m));
+  }
+  if (static_cast<double>(found.size()) > kMostUnexplained * static_cast<double>(measured.cols())) {
+    found.clear();
+  }
+  return found;
+}
+
 void ChooseRange(double camera_s, const Eigen::VectorXd& log_time_s, ClockOptions& options) {
   const double together = -log_time_s[0];
   const double ending = camera_s - log_time_s[log_time_s.size() - 1];
@@ -186,29 +239,13 @@ ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, Log
   if (std::isfinite(resting)) {
     logged.speeds = (logged.speeds.array().square() + resting * resting).sqrt();
   }
-  std::vector<bool> mostly_seen;
-  for (const auto& speed : measured.colwise()) {
-    const auto known = speed.size() - speed.array().isNaN().count();
-    mostly_seen.push_back(static_cast<double>(known) >=
-                          kLeastSeen * static_cast<double>(speed.size()));
-  }
-  const auto markers =
-      static_cast<double>(std::count(mostly_seen.begin(), mostly_seen.end(), true));
-  if (markers == 0.0) return {};
-  const Eigen::VectorXd all = MeanKnown(logged.speeds, mostly_seen, 1.0);
-  const MeasuredSpeed seen{rate_hz, MeanKnown(measured, mostly_seen, 0.5 * markers)};
-  const ClockFit first = EstimateClock(seen, {logged.time_s, all}, options);
-  if (first.state == ClockState::kNoOverlap || first.state == ClockState::kWeak) return first;
-  const std::vector<bool> every(mostly_seen.size(), true);
-  const Eigen::VectorXd mean = MeanKnown(measured, every, 0.5 * markers);
-  ClockFit fit = first;
-  for (int pass = 0; pass < kMostPasses; ++pass) {
-    const ClockFit last = fit;
-    const MeansOfSeen means = TakeMeansOfSeen(measured, mean, rate_hz, logged, last);
-    fit = EstimateClock({rate_hz, means.measured}, {logged.time_s, means.logged}, options);
-    if (std::abs(fit.lag_s - last.lag_s) < kSettled_s) break;
-  }
-  return first.state == ClockState::kAmbiguous ? first : fit;
+  const ClockFit fit = FitSeen(measured, rate_hz, logged, options);
+  if (fit.state == ClockState::kReliable || fit.state == ClockState::kNoOverlap) return fit;
+  const std::vector<int> unexplained = FindUnexplained(measured, rate_hz, logged, fit);
+  if (unexplained.empty()) return fit;
+  Eigen::MatrixXd others = measured;
+  for (const int marker : unexplained) others.col(marker).setConstant(kNaN);
+  return FitSeen(others, rate_hz, logged, options);
 }
 
 }  // namespace elastocal

@@ -71,6 +71,21 @@ TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {
   }
 }
 
+TEST(EstimateTrialClock, IsNotMisledByLabelsThatWereExchangedForAWhile) {
+  const MarkedRobot robot = Leg();
+  ScriptedTrial played = Play(robot, {.postures = 5, .lag_s = 3.0});
+  // Two markers far apart, so that each jumps; the rest of the trial is short and slow.
+  Eigen::MatrixXd& positions = played.markers.positions;
+  const Eigen::MatrixXd first = positions.block(900, 3 * 0, 140, 3);
+  positions.block(900, 3 * 0, 140, 3) = positions.block(900, 3 * 8, 140, 3);
+  positions.block(900, 3 * 8, 140, 3) = first;
+  SmoothTrajectories({}, played.markers);
+  const ClockFit clock = EstimateTrialClock(MarkerSpeeds(played.markers), 100.0,
+                                            Predict(robot, played.log, 0), std::nullopt, {});
+  EXPECT_EQ(clock.state, ClockState::kReliable) << Describe(clock);
+  EXPECT_NEAR(clock.lag_s, 3.0, 2e-3);
+}
+
 TEST(EstimateTrialClock, SearchesAllWaysInWhichCamerasAndLogCanHaveRunTogether) {
   const MarkedRobot robot = Leg();
   ScriptedTrial played = Play(robot, {.postures = 40, .lag_s = 1e6});
