@@ -17,6 +17,9 @@ inline StoredCalibration RandomCalibration(const Project& project, std::uint64_t
     elasticity.torsion.push_back(static_cast<int>(k));
     if (project.tree.joints[k].type == JointType::kRevolute) {
       elasticity.bending.push_back(static_cast<int>(k));
+      if (project.tree.joints[k].parent_body == 0) {
+        elasticity.root_bending.push_back(static_cast<int>(k));
+      }
     }
   }
   for (const Chain& chain : project.chains) {

@@ -19,12 +19,14 @@ ElasticityChoice ElasticityOf(const StoredCalibration& calibration, const Projec
   choice.extra = StoredCauses(project.tree, calibration.joint_errors);
   choice.torsion.emplace();
   choice.bending.emplace();
+  choice.root_bending = false;
   for (const Joint& joint : project.tree.joints) {
     const auto has = [&](const char* axis) {
       return calibration.joint_errors.contains(joint.name + ".compliance_" + axis);
     };
     if (has("z")) choice.torsion->push_back(joint.name);
     if (has("x")) choice.bending->push_back(joint.name);
+    choice.root_bending = choice.root_bending || has("root_x");
   }
   return choice;
 }

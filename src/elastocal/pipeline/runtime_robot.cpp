@@ -51,6 +51,7 @@ ec_joint CalibratedJoint(const ErrorModel& model, const Geometry& geometry, int 
   result.centre = constants.centre;
   for (int axis = 0; axis < 3; ++axis) {
     result.compliance[axis] = elastic ? constants.compliance[axis] : 0.0;
+    result.root_compliance[axis] = elastic ? constants.root_compliance[axis] : 0.0;
   }
   result.body = ToPose(model.placements[index].T_joint_body);
   return result;
@@ -190,6 +191,7 @@ StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibr
     const std::string& name = project.tree.joints[k].name;
     if (has(name + ".compliance_z")) elasticity.torsion.push_back(static_cast<int>(k));
     if (has(name + ".compliance_x")) elasticity.bending.push_back(static_cast<int>(k));
+    if (has(name + ".compliance_root_x")) elasticity.root_bending.push_back(static_cast<int>(k));
   }
   for (const Chain& chain : project.chains) {
     if (has(chain.name + ".compliance_x")) elasticity.legs.push_back({chain.name, chain.tip_link});

@@ -54,6 +54,8 @@ struct RecordingColumns {
 struct ElasticityChoice {
   std::optional<std::vector<std::string>> torsion = {};  ///< joints that give way about their axis
   std::optional<std::vector<std::string>> bending = {};  ///< ... and across it
+  /// Where joints on the root link bend in trials, so does this link up to them.
+  bool root_bending = true;
   bool base = true;          ///< legs that stand alone in a trial: lumped compliance, eq. 6
   bool torque_bias = false;  ///< of the torque sensors of these legs
   /// Causes beyond springs that the model has, as chosen (`calibration.extra` says how); and the

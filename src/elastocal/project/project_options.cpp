@@ -209,8 +209,12 @@ ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& tr
   std::vector<int> bending(on_floor.begin(), on_floor.end());
   if (choice.bending) bending = MatchingJoints(project.tree, *choice.bending);
   for (int joint : bending) {
-    if (project.tree.joints[joint].type == JointType::kRevolute)
-      elasticity.bending.push_back(joint);
+    const Joint& bent = project.tree.joints[joint];
+    if (bent.type != JointType::kRevolute) continue;
+    elasticity.bending.push_back(joint);
+    if (trials_given && choice.root_bending && bent.parent_body == 0) {
+      elasticity.root_bending.push_back(joint);
+    }
   }
   return MakeErrorModel(project.tree, project.markers, project.placement, elasticity);
 }

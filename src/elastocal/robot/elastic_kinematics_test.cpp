@@ -52,6 +52,22 @@ TEST(ElasticKinematics, BendingByHandTurnsAboutThePhysicalCentre) {
   EXPECT_LT((p.col(1) - Vector3d(0.5, 0, 0.2)).norm(), 1e-15);
 }
 
+TEST(ElasticKinematics, TheRootLinkTurnsByHandAboutItsOriginAndForOneLimbAlone) {
+  RobotTree tree = MakeRoot();
+  const int left = AddJoint(tree, "left", 0, Offset(0, 0.1, -0.2), {0, 0, 1});
+  const int right = AddJoint(tree, "right", 0, Offset(0, -0.1, -0.2), {0, 0, 1});
+  const ErrorModel model = MakeErrorModel(tree, {{"L", left, {0, 0, 0}}, {"R", right, {0, 0, 0}}},
+                                          {}, {.root_bending = {0, 1}});
+  const Geometry geometry = ApplyErrors(
+      model, Errors(model, {{"left.compliance_root_x", 0.25}, {"right.compliance_root_y", 0.25}}));
+  JointLoads loads = JointLoads::Zero(3, 2);
+  loads.about_root.setZero(3, 2);
+  loads.about_root(0, 0) = 2.0 * M_PI;  // a quarter of a turn about x: y goes to z, z to -y
+  const Eigen::Matrix3Xd p = MarkerPositions(model, geometry, Eigen::Vector2d::Zero(), loads);
+  EXPECT_LT((p.col(0) - Vector3d(0, 0.2, 0.1)).norm(), 1e-15);
+  EXPECT_LT((p.col(1) - Vector3d(0, -0.1, -0.2)).norm(), 1e-15);
+}
+
 TEST(ElasticKinematics, ASlidingJointGivesWayAlongItsAxis) {
   RobotTree tree = MakeRoot();
   AddJoint(tree, "lift", 0, Transform::Identity(), {0, 0, 1}, JointType::kPrismatic);
@@ -73,6 +89,12 @@ struct ElasticRobot {
       const bool revolute = tree.joints[k].type == JointType::kRevolute;
       if (revolute && random.Index(4) > 0) elasticity.bending.push_back(k);
     }
+    for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
+      const bool on_root = tree.joints[k].parent_body == 0;
+      if (on_root && tree.joints[k].type == JointType::kRevolute) {
+        elasticity.root_bending.push_back(k);
+      }
+    }
     for (const char* name : {"left", "right"}) {
       int link = 0;
       while (tree.links[link].body == 0) link = random.Index(static_cast<int>(tree.links.size()));
@@ -82,6 +104,7 @@ struct ElasticRobot {
     model.T_ref_waist = RandomTransform(random);
     loads = random.NormalVector(3 * static_cast<int>(tree.joints.size()), 50.0)
                 .reshaped(3, tree.joints.size());
+    loads.about_root = -2.0 * Eigen::Matrix3Xd(loads.colwise().reverse());
     delta = random.NormalVector(model.parameter_count(), 0.05);
     for (int i = 0; i < delta.size(); ++i) {
       if (IsCompliance(model.parameters[i].kind)) delta[i] = random.Uniform(0.0, 1e-4);
@@ -102,15 +125,18 @@ Transform BodyByTheFormula(const ElasticRobot& robot, const std::vector<Transfor
   const int k = body - 1;
   const Joint& joint = robot.model.tree.joints[k];
   const Transform T_parent_body = rigid[joint.parent_body].inverse() * rigid[body];
-  const Transform T_ref_rigid = BodyByTheFormula(robot, rigid, joint.parent_body) * T_parent_body;
+  Transform T_ref_parent = BodyByTheFormula(robot, rigid, joint.parent_body);
   Vector3d c = Vector3d::Zero();
+  Vector3d c_root = Vector3d::Zero();
   double theta = robot.model.placements[k].theta;
   for (int i = 0; i < robot.delta.size(); ++i) {
     const Parameter& p = robot.model.parameters[i];
     if (p.joint != k) continue;
-    if (IsCompliance(p.kind)) c[p.axis] = robot.delta[i];
+    if (IsCompliance(p.kind)) (p.axis < kRootAxis ? c : c_root)[p.axis % 3] = robot.delta[i];
     if (p.kind == ParameterKind::kTheta) theta += robot.delta[i];
   }
+  T_ref_parent.rotate(RotationFromVector(c_root.cwiseProduct(robot.loads.about_root.col(k))));
+  const Transform T_ref_rigid = T_ref_parent * T_parent_body;
   const double position = JointPosition(joint, robot.q);
   const bool revolute = joint.type == JointType::kRevolute;
   const Eigen::Matrix3d R_ref_joint =
@@ -146,7 +172,8 @@ TEST_P(ElasticRandomRobots, BodiesAreWhereTheFormulaPutsThem) {
 TEST_P(ElasticRandomRobots, WithoutLoadsOrComplianceTheyAreRigid) {
   ElasticRobot robot(GetParam());
   const Geometry geometry = ApplyErrors(robot.model, robot.delta);
-  const JointLoads none = JointLoads::Zero(3, robot.loads.cols());
+  JointLoads none = JointLoads::Zero(3, robot.loads.cols());
+  none.about_root.setZero(3, robot.loads.cols());
   const Eigen::Matrix3Xd rigid = MarkerPositions(robot.model, geometry, robot.q);
   EXPECT_LT((MarkerPositions(robot.model, geometry, robot.q, none) - rigid).norm(), 1e-14);
   for (int i = 0; i < robot.delta.size(); ++i) {

@@ -68,6 +68,11 @@ void AddJointCompliances(const ErrorModel& model, int k, std::vector<Parameter>&
     add(".compliance_x", Kind::kBending, 0);
     add(".compliance_y", Kind::kBending, 1);
   }
+  if (Contains(model.elasticity.root_bending, k)) {
+    add(".compliance_root_x", Kind::kBending, kRootAxis);
+    add(".compliance_root_y", Kind::kBending, kRootAxis + 1);
+    add(".compliance_root_z", Kind::kBending, kRootAxis + 2);
+  }
 }
 
 /// Those of a joint; -1: of the root link.
@@ -143,7 +148,7 @@ void CheckMarkers(const RobotTree& tree, const std::vector<Marker>& markers) {
 }
 
 void CheckElasticity(const RobotTree& tree, const Elasticity& elasticity) {
-  for (const auto* joints : {&elasticity.torsion, &elasticity.bending}) {
+  for (const auto* joints : {&elasticity.torsion, &elasticity.bending, &elasticity.root_bending}) {
     for (int k : *joints) {
       if (k < 0 || k >= static_cast<int>(tree.joints.size())) {
         throw std::invalid_argument("a joint that does not exist is elastic");
@@ -154,6 +159,11 @@ void CheckElasticity(const RobotTree& tree, const Elasticity& elasticity) {
     if (tree.joints[k].type == JointType::kPrismatic) {
       throw std::invalid_argument("prismatic joint '" + tree.joints[k].name + "' cannot bend");
     }
+  }
+  for (int k : elasticity.root_bending) {
+    if (tree.joints[k].parent_body == 0 && tree.joints[k].type == JointType::kRevolute) continue;
+    throw std::invalid_argument("'" + tree.joints[k].name +
+                                "' is no revolute joint on the root link");
   }
   std::set<std::string> names;
   for (const Elasticity::Leg& leg : elasticity.legs) {

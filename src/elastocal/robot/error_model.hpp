@@ -38,7 +38,10 @@ struct Elasticity {
   std::vector<int> torsion =
       {};  ///< joints that are elastic about (prismatic: along) their axis, eq. 5
   std::vector<int> bending = {};  ///< revolute joints that are elastic across their axis too
-  std::vector<Leg> legs = {};     ///< that the robot stands on alone, be they elastic or not
+  /// Joints on the root link up to which this link bends. It turns about its origin by what the
+  /// joint carries, and the joint besides: so does a beam between the two, whose ends turn.
+  std::vector<int> root_bending = {};
+  std::vector<Leg> legs = {};  ///< that the robot stands on alone, be they elastic or not
   bool base = true;          ///< these legs have a lumped compliance from foot to waist, eq. 6 ...
   bool torque_bias = false;  ///< ... and their torque sensors unknown biases
   /// What is not elastic either; each is a parameter where its joint moves a marker.
@@ -57,7 +60,8 @@ struct ErrorModel {
   std::vector<SupportLeg> legs;                   ///< those of `elasticity`, with their joints
   std::vector<int> active_joints;                 ///< joints that have parameters, ascending
   /// In this order: T0 and corrections of the root link; joints from the waist outwards, each with
-  /// its geometric parameters, then compliance_z, _x, _y, then corrections; legs, if `base`, each
+  /// its geometric parameters, then compliance_z, _x, _y, _root_x, _root_y, _root_z, then
+  /// corrections; legs, if `base`, each
   /// with six compliances and then torque biases; linkages of active joints; markers.
   std::vector<Parameter> parameters;
 

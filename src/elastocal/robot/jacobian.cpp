@@ -113,12 +113,27 @@ void GeneralizedJacobian::SetCompliances(int joint, int row,
   const Vector3d centre = twisted.p + constants.centre * twisted.R.col(2);
   for (const int end = row + compliances_[joint]; row < end; ++row) {
     const int axis = model_.parameters[row].axis;
-    if (revolute) {
+    if (axis >= kRootAxis) {
+      SetRootCompliance(row, axis - kRootAxis, constants, loads.about_root, joint);
+    } else if (revolute) {
       SetRotation(screws_, row, load[axis] * axes.col(axis), centre);
     } else {
       SetTranslation(screws_, row, load[axis] * axes.col(axis));
     }
   }
+}
+
+void GeneralizedJacobian::SetRootCompliance(int row, int axis,
+                                            const Geometry::JointConstants& constants,
+                                            const Eigen::Matrix3Xd& about_root, int joint) {
+  if (about_root.cols() == 0) {
+    screws_.row(row).setZero();
+    return;
+  }
+  const Vector3d moment = about_root.col(joint);
+  const Eigen::Matrix3d axes =
+      frames_[0].R * LeftJacobian(constants.root_compliance.cwiseProduct(moment));
+  SetRotation(screws_, row, moment[axis] * axes.col(axis), frames_[0].p);
 }
 
 void GeneralizedJacobian::SetCorrections(int joint, int row, const MdhFrame& deflected,

@@ -93,6 +93,8 @@ class GeneralizedJacobian {
 
   BodyLayout LayOut(int body, const std::vector<int>& parameter_count);
   void EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q, const JointLoads& loads);
+  void SetRootCompliance(int row, int axis, const Geometry::JointConstants& constants,
+                         const Eigen::Matrix3Xd& about_root, int joint);
   void SetCompliances(int joint, int row, const Geometry::JointConstants& constants,
                       const MdhFrame& twisted, const JointLoads& loads);
   void SetCorrections(int joint, int row, const MdhFrame& deflected, const JointLoads& loads);

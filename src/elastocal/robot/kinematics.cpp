@@ -75,10 +75,12 @@ Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
                                          Eigen::VectorXd& corrections) {
   JointPlacement placement = model.placements[joint];
   Vector3d compliance = Vector3d::Zero();
+  Vector3d root_compliance = Vector3d::Zero();
   for (; i < model.parameter_count() && model.parameters[i].joint == joint; ++i) {
     const Parameter& parameter = model.parameters[i];
     if (IsCompliance(parameter.kind)) {
-      compliance[parameter.axis] = delta[i];
+      const bool root = parameter.axis >= kRootAxis;
+      (root ? root_compliance : compliance)[parameter.axis % kRootAxis] = delta[i];
     } else if (parameter.kind == Kind::kCorrection) {
       corrections[parameter.correction] = delta[i];
     } else {
@@ -87,6 +89,7 @@ Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
   }
   Geometry::JointConstants constants = MakeConstants(placement);
   constants.compliance = compliance;
+  constants.root_compliance = root_compliance;
   return constants;
 }
 

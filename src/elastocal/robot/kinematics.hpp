@@ -20,6 +20,9 @@ struct JointLoads : Eigen::Matrix3Xd {
   using Eigen::Matrix3Xd::Matrix;
   using Eigen::Matrix3Xd::operator=;
 
+  /// Of joints on the root link: moment of the load about the root link's origin, in its axes, by
+  /// which the joint and what is beyond it turns; 3 x joints of the tree, N.m. Empty: none.
+  Eigen::Matrix3Xd about_root;
   /// What the model's corrections multiply in this posture (EvaluateShapes); empty: nothing.
   Eigen::VectorXd shapes;
 };
@@ -41,6 +44,8 @@ struct Geometry {
     /// Compliance about x, y, z of the twisted frame, rad/(N.m); of a prismatic joint, along z
     /// only, m/N.
     Eigen::Vector3d compliance;
+    /// Of a joint on the root link: compliance of this link about its origin and axes, rad/(N.m).
+    Eigen::Vector3d root_compliance = Eigen::Vector3d::Zero();
   };
   std::vector<JointConstants>
       joints;               ///< one for each joint of the tree; only active ones are filled

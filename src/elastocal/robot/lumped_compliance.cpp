@@ -35,6 +35,10 @@ Matrix6d LumpedCompliance(const ErrorModel& model, const Geometry& geometry,
       }
       compliance += constants.compliance[axis] * motion * motion.transpose();
     }
+    // The root link's own turn is about the waist's origin.
+    const Eigen::Matrix3d root_axes = T_foot_ref.linear() * frames[0].R;
+    compliance.bottomRightCorner<3, 3>() +=
+        root_axes * constants.root_compliance.asDiagonal() * root_axes.transpose();
   };
   EvaluateMdhFrames(model, geometry, q, JointLoads(), frames, visit);
   return compliance;

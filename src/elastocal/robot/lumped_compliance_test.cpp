@@ -16,7 +16,8 @@ ErrorModel Pendulum() {
   RobotTree tree = MakeRoot();
   AddJoint(tree, "hip", 0, Offset(0, 0, 0), {0, 1, 0});
   AddFixedLink(tree, "foot", 1, Offset(0, 0, -0.4));
-  return MakeErrorModel(tree, {}, {}, {.torsion = {0}, .bending = {0}, .legs = {{"leg", 2}}});
+  return MakeErrorModel(
+      tree, {}, {}, {.torsion = {0}, .bending = {0}, .root_bending = {0}, .legs = {{"leg", 2}}});
 }
 
 // The hip is in the waist's origin: a force there does not bend it, a moment about y turns it.
@@ -24,11 +25,13 @@ TEST(LumpedCompliance, OfALegByHand) {
   const ErrorModel model = Pendulum();
   Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
   delta[FindParameter(model.parameters, "hip.compliance_z")] = kTorsion;
+  delta[FindParameter(model.parameters, "hip.compliance_root_x")] = 7e-6;
   delta[FindParameter(model.parameters, "leg.compliance_z")] = 3e-6;
   const Matrix6d compliance =
       LumpedCompliance(model, ApplyErrors(model, delta), Eigen::VectorXd::Zero(1), 0);
   Matrix6d expected = Matrix6d::Zero();
   expected(2, 2) = 3e-6;
+  expected(3, 3) = 7e-6;
   expected(4, 4) = kTorsion;
   EXPECT_LT((compliance - expected).norm(), 1e-18);
 }

@@ -32,6 +32,12 @@ inline MdhFrame Deflected(const Geometry::JointConstants& constants, bool revolu
   return deflected;
 }
 
+/// The root link as a joint on it sees it: turned about its origin by the joint's load.
+inline MdhFrame BentRoot(const Geometry::JointConstants& constants, const Eigen::Vector3d& moment,
+                         const MdhFrame& root) {
+  return {root.R * RotationFromVector(constants.root_compliance.cwiseProduct(moment)), root.p};
+}
+
 /// What corrections add to the position of a joint, rad or m.
 inline double PositionCorrection(const ErrorModel& model, const Geometry& geometry,
                                  const JointLoads& loads, int joint) {
@@ -106,7 +112,14 @@ inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
       linked ? PlaceLinkages(model.tree, geometry.linkage_errors, q).q : Eigen::VectorXd();
   for (int k : model.active_joints) {
     const Joint& joint = model.tree.joints[k];
-    place(k, geometry.joints[k], frames[joint.parent_body], joint.type == JointType::kRevolute,
+    const Geometry::JointConstants& constants = geometry.joints[k];
+    MdhFrame bent_root;
+    const MdhFrame* parent = &frames[joint.parent_body];
+    if (loads.about_root.cols() > 0 && !constants.root_compliance.isZero(0.0)) {
+      bent_root = BentRoot(constants, loads.about_root.col(k), *parent);
+      parent = &bent_root;
+    }
+    place(k, constants, *parent, joint.type == JointType::kRevolute,
           JointPosition(joint, linked ? closed : q) +
               (corrected ? PositionCorrection(model, geometry, loads, k) : 0.0),
           frames[k + 1]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/robot/statics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "elastocal/robot/mdh_frames.hpp"
@@ -68,9 +69,16 @@ JointLoads GravityLoads(const ErrorModel& model, const Geometry& geometry, const
   const std::vector<CarriedLoad> carried = CarriedLoads(
       model.tree, CalibratedLinkTransforms(model, geometry, q, deflected_by), fixed_link);
   JointLoads loads = JointLoads::Zero(3, static_cast<Eigen::Index>(model.tree.joints.size()));
+  std::vector<MdhFrame> frames(model.tree.body_count());
+  const std::vector<int>& bent = model.elasticity.root_bending;
+  if (!bent.empty()) loads.about_root.setZero(3, loads.cols());
   const auto visit = [&](int k, const Geometry::JointConstants& constants, const MdhFrame&,
                          const MdhFrame& twisted, const MdhFrame&) {
     if (k == kWaist) return;
+    if (std::find(bent.begin(), bent.end(), k) != bent.end()) {
+      loads.about_root.col(k) =
+          frames[0].R.transpose() * TurningMoment(carried[k], frames[0].p, gravity_ref);
+    }
     if (model.tree.joints[k].type == JointType::kRevolute) {
       const Vector3d centre = twisted.p + constants.centre * twisted.R.col(2);
       loads.col(k) = twisted.R.transpose() * TurningMoment(carried[k], centre, gravity_ref);
@@ -78,7 +86,6 @@ JointLoads GravityLoads(const ErrorModel& model, const Geometry& geometry, const
       loads(2, k) = carried[k].side * carried[k].mass * twisted.R.col(2).dot(gravity_ref);
     }
   };
-  std::vector<MdhFrame> frames(model.tree.body_count());
   EvaluateMdhFrames(model, geometry, q, deflected_by, frames, visit);
   return loads;
 }

@@ -50,8 +50,8 @@ std::string JointText(const ec_joint& joint) {
   out << "{" << joint.parent << ", " << joint.coordinate << ", " << joint.prismatic << ", "
       << CNumber(joint.multiplier) << ", " << CNumber(joint.offset) << ",\n     "
       << PoseText(joint.twisted) << ",\n     " << CNumber(joint.theta) << ", " << CNumber(joint.r)
-      << ", " << CNumber(joint.centre) << ", " << NumberList(joint.compliance) << ",\n     "
-      << PoseText(joint.body) << "}";
+      << ", " << CNumber(joint.centre) << ", " << NumberList(joint.compliance) << ", "
+      << NumberList(joint.root_compliance) << ",\n     " << PoseText(joint.body) << "}";
   return out.str();
 }
 
@@ -217,6 +217,7 @@ class CHeaderWriter {
     array("double", "axis", 3 * robot_.joints);
     array("double", "beyond", 4 * (robot_.joints + 1));
     array("double", "load", 3 * robot_.joints);
+    array("double", "root_load", 3 * robot_.joints);
     array("double", "normal", largest * largest);
     array("double", "gradient", largest);
     array("double", "column", 6 * 64);
@@ -229,8 +230,8 @@ class CHeaderWriter {
     out_ << "/* To be called once before anything else. */\nstatic inline void " << name_
          << "_init(" << name_ << "_state* s) {\n  ec_memory* m = &s->memory;\n";
     for (const char* name :
-         {"body", "twisted", "target", "sole", "motion", "axis", "beyond", "load", "normal",
-          "gradient", "column", "good_q", "good_torque", "work_q", "centre", "share"}) {
+         {"body", "twisted", "target", "sole", "motion", "axis", "beyond", "load", "root_load",
+          "normal", "gradient", "column", "good_q", "good_torque", "work_q", "centre", "share"}) {
       out_ << "  m->" << name << " = s->" << name << ";\n";
     }
     out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";

@@ -103,13 +103,19 @@ void Compensator::Allocate() {
   const int joints = robot_.joints, coordinates = robot_.coordinates, feet = robot_.feet;
   int largest = 1;
   for (int size : branches_.branch_size) largest = std::max(largest, size);
-  const std::pair<double**, int> doubles[] = {
-      {&memory_.axis, 3 * joints},    {&memory_.beyond, 4 * (joints + 1)},
-      {&memory_.load, 3 * joints},    {&memory_.normal, largest * largest},
-      {&memory_.gradient, largest},   {&memory_.column, 6 * 64},
-      {&memory_.good_q, coordinates}, {&memory_.good_torque, joints},
-      {&memory_.work_q, coordinates}, {&memory_.centre, 3 * feet},
-      {&memory_.share, feet},         {&memory_.motion, 3 * joints}};
+  const std::pair<double**, int> doubles[] = {{&memory_.axis, 3 * joints},
+                                              {&memory_.beyond, 4 * (joints + 1)},
+                                              {&memory_.load, 3 * joints},
+                                              {&memory_.root_load, 3 * joints},
+                                              {&memory_.normal, largest * largest},
+                                              {&memory_.gradient, largest},
+                                              {&memory_.column, 6 * 64},
+                                              {&memory_.good_q, coordinates},
+                                              {&memory_.good_torque, joints},
+                                              {&memory_.work_q, coordinates},
+                                              {&memory_.centre, 3 * feet},
+                                              {&memory_.share, feet},
+                                              {&memory_.motion, 3 * joints}};
   const std::pair<ec_pose**, int> poses[] = {
       {&memory_.body, joints + 1}, {&memory_.twisted, joints}, {&memory_.target, robot_.tips},
       {&memory_.sole, feet},       {&links_, robot_.links},    {&wanted_, robot_.tips}};

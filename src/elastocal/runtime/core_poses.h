@@ -35,6 +35,7 @@ typedef struct {
   ec_pose twisted;
   double theta, r, centre; /* centre: z of the joint's physical centre in the twisted frame */
   double compliance[3];    /* rad/(N.m); of a prismatic joint along z, m/N */
+  double root_compliance[3]; /* of a joint on the root link: of this link about its origin, rad/(N.m) */
   ec_pose body;
 } ec_joint;
 
@@ -86,6 +87,7 @@ typedef struct {
   double* axis;        /* 3 x joints: of the last walk, after the elastic turn */
   double* beyond;      /* 4 x (joints + 1): mass and first moment of each body and all beyond it */
   double* load;        /* 3 x joints, in the twisted frames */
+  double* root_load;   /* 3 x joints: of those on the root link, about its origin */
   double* normal;      /* square of the largest branch */
   double* gradient;    /* largest branch */
   double* column;      /* 6 x largest branch: of one tip */

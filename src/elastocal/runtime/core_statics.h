@@ -31,6 +31,19 @@ static inline void ec_deflect(const ec_robot* robot, const ec_joint* joint, cons
   for (i = 0; i < 9; ++i) frame->R[i] = turned[i];
 }
 
+/* The root link as a joint on it sees it: turned about its origin by the joint's load. */
+static inline void ec_bend_root(const ec_robot* robot, const ec_joint* joint, const double* load,
+                                ec_pose* root, unsigned* status) {
+  double phi[3];
+  int i;
+  for (i = 0; i < 3; ++i) {
+    phi[i] =
+        ec_cut(joint->root_compliance[i] * load[i], robot->largest_turn, EC_DEFLECTION_CUT, status);
+    root->p[i] = 0.0;
+  }
+  ec_exp(phi, root->R);
+}
+
 /* The joints' own motion at the positions q, for the walks that follow. */
 static inline void ec_move(const ec_robot* robot, const ec_joint* joints, const double* q,
                            ec_memory* memory) {
@@ -54,7 +67,13 @@ static inline void ec_walk(const ec_robot* robot, const ec_joint* joints, int lo
     const ec_joint* joint = &joints[k];
     const double c = memory->motion[3 * k], s = memory->motion[3 * k + 1];
     ec_pose frame, moved;
-    ec_compose(&memory->body[joint->parent], &joint->twisted, &frame);
+    if (loaded && joint->parent == 0) {
+      ec_pose root;
+      ec_bend_root(robot, joint, &memory->root_load[3 * k], &root, status);
+      ec_compose(&root, &joint->twisted, &frame);
+    } else {
+      ec_compose(&memory->body[joint->parent], &joint->twisted, &frame);
+    }
     memory->twisted[k] = frame;
     if (loaded) ec_deflect(robot, joint, &memory->load[3 * k], &frame, status);
     for (i = 0; i < 3; ++i) {
@@ -221,6 +240,7 @@ static inline void ec_loads(const ec_robot* robot, const ec_joint* joints, unsig
     const double* beyond = &memory->beyond[4 * (k + 1)];
     double* load = &memory->load[3 * k];
     double moment[3];
+    if (joints[k].parent == 0) ec_cross(&beyond[1], gravity, &memory->root_load[3 * k]);
     if (joints[k].prismatic) {
       load[0] = load[1] = 0.0;
       load[2] = beyond[0] * (twisted->R[2] * gravity[0] + twisted->R[5] * gravity[1] +

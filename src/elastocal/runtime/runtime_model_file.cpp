@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-constexpr const char* kHeading = "elastocal-runtime-model 1";
+constexpr const char* kHeading = "elastocal-runtime-model 2";
 constexpr int kMost = 10000;  // entries of a list: a robot has some dozens
 
 // One description of the file serves both directions: `archive(name, value)` writes a line, or
@@ -149,6 +149,7 @@ void Items(Archive& archive, ec_joint& joint) {
   archive.Value(joint.r);
   archive.Value(joint.centre);
   for (double& value : joint.compliance) archive.Value(value);
+  for (double& value : joint.root_compliance) archive.Value(value);
   Items(archive, joint.body);
 }
 
