@@ -18,7 +18,6 @@ constexpr double kStepTolerance = 1e-2;      // of an unknown's standard deviati
 constexpr double kVarianceTolerance = 1e-2;  // relative, of a standard deviation, by its share
 constexpr double kWeightTolerance = 1e-2;
 constexpr double kRoughly = 10.0;    // times these
-constexpr double kStale = 0.5;       // relative change of noise, prior and weights in all
 constexpr int kRoughIterations = 5;  // of a solve whose weights will change anyway
 constexpr double kLeastLeft = 0.05;  // of the variance of a row
 constexpr int kMaxPolishing = 6;
@@ -97,29 +96,21 @@ double WeightChange(const RobustWeights& before, const RobustWeights& after) {
   return change;
 }
 
-/// What a fit explains of each row, by residual block. It takes most of an update's time and
-/// changes slowly, so it is computed anew only where noise, prior and weights have changed much
-/// since.
-struct ExplainedRows {
-  std::vector<Eigen::VectorXd> variances = {};
-  double age = 0.0;  ///< sum of those changes; 0: of the fit as it stands
-};
-
 /// One Gauss-Newton step and, from the same linearisation, noise, weights and prior scale: they
-/// converge together, instead of the one waiting for the other. Whether they have.
+/// converge together, instead of the one waiting for the other. Whether they have. What the fit
+/// explains of each row, by residual block, takes most of the time: where it is not empty, it is
+/// taken as it is from the update before.
 bool UpdateByStep(const FitProblem& problem, const Selection& selection,
-                  const std::vector<int>& free, Robustness robustness, ExplainedRows& explained,
-                  Fit& fit) {
+                  const std::vector<int>& free, Robustness robustness,
+                  std::vector<Eigen::VectorXd>& explained, Fit& fit) {
   FitResiduals residuals(problem, selection, free, fit);
   BodyResiduals& body = residuals.body;
   const Eigen::VectorXd x = body.Start();
   body.Evaluate(x, true);
   const double cost = CostOf(body);
   const NormalEquations equations(body);
-  if (explained.variances.empty() || explained.age > kStale) {
-    explained.variances =
-        equations.ExplainedVariances(TakeCovariance(problem, free, equations, fit));
-    explained.age = 0.0;
+  if (explained.empty()) {
+    explained = equations.ExplainedVariances(TakeCovariance(problem, free, equations, fit));
   }
   const Eigen::VectorXd step =
       BoundedStep(equations.information(), equations.gradient(), x(equations.unknowns()),
@@ -140,23 +131,20 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   }
   Take(body, next, fit);
   const VarianceComponents components =
-      CollectComponents(problem, selection, fit.noise, body, explained.variances);
+      CollectComponents(problem, selection, fit.noise, body, explained);
   fit.degrees_of_freedom = DegreesOfFreedom(problem.options, components);
   const Noise noise = EstimateNoise(problem.options, fit.noise, components, robustness);
   const RobustWeights weights = EstimateWeights(problem, selection, noise, body, robustness);
   const PriorScale scale =
       problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
-  const double variance_change =
-      std::max(NoiseChange(fit.noise, noise, components), ScaleChange(fit.prior_scale, scale));
-  const double weight_change = WeightChange(fit.weights, weights);
-  const bool settled = small && variance_change < tolerance * kVarianceTolerance &&
-                       weight_change < tolerance * kWeightTolerance;
-  const bool fresh = explained.age == 0.0;
-  explained.age = settled ? 2.0 * kStale : explained.age + variance_change + weight_change;
+  const bool settled = small &&
+                       NoiseChange(fit.noise, noise, components) < tolerance * kVarianceTolerance &&
+                       ScaleChange(fit.prior_scale, scale) < tolerance * kVarianceTolerance &&
+                       WeightChange(fit.weights, weights) < tolerance * kWeightTolerance;
   fit.noise = noise;
   fit.weights = weights;
   fit.prior_scale = scale;
-  return settled && (fresh || robustness == Robustness::kMedians);
+  return settled;
 }
 
 /// The posture of each residual block; -1 of priors.
@@ -307,11 +295,14 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const Fit& start, Robustness robustness,
                   int updates) {
   Fit fit = start;
-  ExplainedRows explained;
+  std::vector<Eigen::VectorXd> explained;
   bool settled = false;
   const int most = std::min(updates, problem.options.max_iterations);
   for (int update = 0; update < most && !settled; ++update) {
-    settled = UpdateByStep(problem, selection, free, robustness, explained, fit);
+    const bool anew = update % 2 == 0;  // with the same for longer, the noise would swing
+    if (anew) explained.clear();
+    settled = UpdateByStep(problem, selection, free, robustness, explained, fit) &&
+              (anew || robustness == Robustness::kMedians);
   }
   if (!settled) fit.settled = fit.settled && updates < kMaxUpdates;
   return fit;
