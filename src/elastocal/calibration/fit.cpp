@@ -109,7 +109,8 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   body.Evaluate(x, true);
   const double cost = CostOf(body);
   const NormalEquations equations(body);
-  if (explained.empty()) {
+  const bool anew = explained.empty();
+  if (anew) {
     explained = equations.ExplainedVariances(TakeCovariance(problem, free, equations, fit));
   }
   const Eigen::VectorXd step =
@@ -135,8 +136,8 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   fit.degrees_of_freedom = DegreesOfFreedom(problem.options, components);
   const Noise noise = EstimateNoise(problem.options, fit.noise, components, robustness);
   const RobustWeights weights = EstimateWeights(problem, selection, noise, body, robustness);
-  const PriorScale scale =
-      problem.options.widen_prior ? EstimatePriorScale(problem, fit) : PriorScale();
+  PriorScale scale = fit.prior_scale;
+  if (anew && problem.options.widen_prior) scale = EstimatePriorScale(problem, fit);
   const bool settled = small &&
                        NoiseChange(fit.noise, noise, components) < tolerance * kVarianceTolerance &&
                        ScaleChange(fit.prior_scale, scale) < tolerance * kVarianceTolerance &&

@@ -26,6 +26,9 @@ std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
 
 constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
 constexpr double kContradicted = 10.0;
+/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
+/// be as good in motion, which statics does not describe.
+constexpr double kBestExpected = 0.03;
 
 /// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
 /// for without the knocks, too.
@@ -54,19 +57,20 @@ std::vector<std::string> FindGeneralFault(const Project& project, std::optional<
 /// the estimate.
 struct Contrast {
   std::string group;
-  double fitted = 0.0, held_out = 0.0;  // m
-  double ratio() const { return held_out / fitted; }
+  double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;  // m
+  double ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
 };
 
 Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
-  const auto rmse_of = [kind](const ErrorTableRow& row) {
-    const auto metrics = row.metrics.find(kind);
+  const auto rmse_of = [](const ErrorTableRow& row, ModelKind of) {
+    const auto metrics = row.metrics.find(of);
     return metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d;
   };
-  Contrast largest{"", 1.0, 0.0};
+  Contrast largest{"", 1.0, 0.0, 0.0};
   for (const ErrorTableRow& row : held_out.groups) {
     for (const ErrorTableRow& own : fitted.groups) {
-      const Contrast contrast{row.group, rmse_of(own), rmse_of(row)};
+      const Contrast contrast{row.group, rmse_of(own, kind), rmse_of(own, ModelKind::kUncalibrated),
+                              rmse_of(row, kind)};
       if (own.group != row.group || !(contrast.fitted > 0.0)) continue;
       if (contrast.ratio() > largest.ratio()) largest = contrast;
     }

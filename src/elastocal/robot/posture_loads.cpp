@@ -61,8 +61,12 @@ PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
   loads.joints = gravity;
   if (measured.torques.size() > 0) UseMeasuredTorques(measured.torques, loads.joints);
   if (leg < 0) return loads;
-  LoadWaist(model, PlaceLeg(model, geometry, q, leg, loads.joints), measured, gravity, gravity_ref,
-            options, loads);
+  const LegPosture posture = PlaceLeg(model, geometry, q, leg, loads.joints);
+  LoadWaist(model, posture, measured, gravity, gravity_ref, options, loads);
+  if (loads.joints.about_root.cols() > 0) {  // the waist turns the leg by the opposite
+    loads.joints.about_root.col(model.legs[leg].joints.front()) =
+        -(posture.T_foot_waist.linear().transpose() * loads.waist.tail<3>());
+  }
   return loads;
 }
 
