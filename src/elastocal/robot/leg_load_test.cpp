@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/posture_loads.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "tests/random_robot.hpp"
 #include "tests/test_robots.hpp"
@@ -214,6 +215,30 @@ TEST(LegLoad, AForceSensorCarriesTheLinksAboveIt) {
     EXPECT_LT((load - LoadFromStatics(model, posture, gravity)).norm(), 1e-10) << sensor;
   }
   EXPECT_THROW(LoadFromWrench(model, posture, 7, Vector6d::Zero(), gravity), std::invalid_argument);
+}
+
+TEST(LegLoad, BendsTheRootLinkAsStaticsSays) {
+  ErrorModel model = Humanoid(3.0);
+  model = MakeErrorModel(model.tree, {}, {},
+                         {.torsion = {0}, .root_bending = {0, 6}, .legs = {{"leg", 8}}});
+  const Geometry geometry = Nominal(model);
+  const Vector3d gravity(0.3, -0.2, -9.8);
+  const JointLoads statics = GravityLoads(model, geometry, BentKnee(), gravity, 8);
+  EXPECT_GT(statics.about_root.col(0).norm(), 10.0);
+  MeasuredLoads measured;
+  measured.torques = Eigen::VectorXd::Constant(7, NAN);
+  measured.torques.head<6>() =
+      StandingTorques(model, PlaceLeg(model, geometry, BentKnee(), 0), gravity);
+  for (LoadSource source : {LoadSource::kStatics, LoadSource::kTorques}) {
+    const PostureLoads loads =
+        LoadPosture(model, geometry, BentKnee(), 0, measured, gravity, {.source = source});
+    EXPECT_LT((loads.joints.about_root - statics.about_root).norm(), 1e-10);
+  }
+  // A motion asks more of the standing leg than its weight does, and bends the root link more.
+  measured.torques *= 1.5;
+  const PostureLoads more = LoadPosture(model, geometry, BentKnee(), 0, measured, gravity, {});
+  EXPECT_GT((more.joints.about_root.col(0) - statics.about_root.col(0)).norm(), 1.0);
+  EXPECT_EQ(more.joints.about_root.col(6), statics.about_root.col(6));
 }
 
 TEST(LegLoad, AStraightLegIsFlagged) {
