@@ -62,14 +62,22 @@ function stiffnessCell(parameter) {
   return h('span', {title: `95 % interval: ${interval(...stiffnessInterval(parameter))} ${k.unit}`}, withSd(k.value, k.sd).value);
 }
 
-function elasticTable(joints, shown) {
-  const kinds = kindsOf(joints).filter(({kind}) => kind.startsWith('compliance'));
+/** Of the joints, or of the root link up to those on it. */
+function elasticTable(joints, shown, {root}) {
+  const kinds = kindsOf(joints).filter(({kind}) => kind.startsWith('compliance') && kind.startsWith('compliance_root') === root);
   const columns = [{text: 'Joint'}, ...kinds.flatMap(({symbol, what}) => [
     {text: h('abbr', {title: what}, symbol), unit: 'µrad/(N·m)', number: true},
     {text: h('abbr', {title: `stiffness: inverse of the ${what}`}, symbol.replace('c', 'K')), unit: 'N·m/rad', number: true}])];
-  const rows = [...joints].filter(([joint]) => shown(joint)).map(([joint, parameters]) =>
+  const has = (parameters) => !root || kinds.some(({kind}) => parameters.has(kind));
+  const rows = [...joints].filter(([joint, parameters]) => shown(joint) && has(parameters)).map(([joint, parameters]) =>
     [h('span', {title: joint}, pretty(joint)), ...kinds.flatMap(({kind}) => [valueCell(parameters.get(kind)), stiffnessCell(parameters.get(kind))])]);
-  return table({caption: 'Compliance and stiffness of the joints', columns, rows, className: 'table1'});
+  if (rows.length === 0) return null;
+  const caption = root ? 'Compliance and stiffness of the root link up to joints on it' : 'Compliance and stiffness of the joints';
+  return table({caption, columns, rows, className: 'table1'});
+}
+
+function elasticTables(joints, shown) {
+  return h('div', {}, ...[false, true].map((root) => elasticTable(joints, shown, {root})).filter(Boolean));
 }
 
 /** Chains of which Table 1 can show one at a time; without them, the joints’ first words. */
@@ -132,7 +140,7 @@ export function table1Section(report) {
   if (joints.size === 0) return null;
   const chains = chainsOf(report, [...joints.keys()]);
   const elastic = summary.parameters.some((p) => /\.compliance_[xyz]$/.test(p.name) && family(p, legNames) === 'joint');
-  const holders = [geometryTable, elastic && elasticTable].filter(Boolean).map((make) => ({make, at: h('div', {}, make(joints, () => true))}));
+  const holders = [geometryTable, elastic && elasticTables].filter(Boolean).map((make) => ({make, at: h('div', {}, make(joints, () => true))}));
   const choose = (name) => {
     const chain = chains.find((c) => c.name === name);
     for (const {make, at} of holders) at.replaceChildren(make(joints, (joint) => !chain || chain.joints.has(joint)));
@@ -147,7 +155,7 @@ export function table1Section(report) {
       body: holders[0].at, data: {name: 'parameters.csv', text: () => csv(summary.parameters)},
     }), elastic && figure({
       title: 'Elasticity',
-      note: 'The compliance c says how far a joint gives way under load: c_z about its axis, c_x and c_y across it. Its inverse K is the stiffness; it is shown where the 95 % interval of the compliance excludes a rigid joint.',
+      note: 'The compliance c says how far a joint gives way under load: c_z about its axis, c_x and c_y across it; c₀ how far the root link gives way up to a joint on it, about its own origin and axes. The inverse K of a compliance is the stiffness; it is shown where the 95 % interval of the compliance excludes a rigid joint.',
       body: holders[1].at, data: {name: 'elasticity.csv', text: () => csv(summary.parameters.filter((p) => /\.compliance_/.test(p.name)))},
     }), legs.length > 0 && legsTable(summary.parameters, legs), externals(summary.parameters, legNames));
 }
