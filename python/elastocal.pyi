@@ -57,22 +57,22 @@ class Calibration:
     def files(self) -> dict[str, str]: ...
     def save(self, folder: _Path) -> None: ...
 
-class Markers(TypedDict):
+class _Markers(TypedDict):
     names: list[str]
     rate_hz: float
     positions: _Array
     up: Optional[str]
 
-class Joints(TypedDict):
+class _Joints(TypedDict):
     names: list[str]
     time_s: _Array
     positions: _Array
     torques: _Array
 
-class Recording(TypedDict):
+class _Recording(TypedDict):
     format: str
-    markers: Optional[Markers]
-    joints: Optional[Joints]
+    markers: Optional[_Markers]
+    joints: Optional[_Joints]
     notes: list[str]
 
 def calibrate(
@@ -98,7 +98,7 @@ def check(
     days: float = 1.0,
 ) -> dict[str, Any]: ...
 def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]: ...
-def read(file: _Path, *, unit: str = "", topic: str = "") -> Recording: ...
+def read(file: _Path, *, unit: str = "", topic: str = "") -> _Recording: ...
 def info(file: _Path, *, unit: str = "", topic: str = "") -> dict[str, Any]: ...
 
 class Runtime:

@@ -11,6 +11,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/report/json_reader.hpp"
 #include "elastocal/tables/read_file.hpp"
 
@@ -157,16 +158,9 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
       RecordedRecordings(file.has_parent_path() ? file.parent_path() : fs::path("."));
   Project& project = robot.project;
   const Measurements measured = ReadMeasurements(project, recordings);
-  ElasticityChoice& elasticity = project.elasticity;
-  elasticity.torsion.emplace();
-  elasticity.bending.emplace();
-  for (const Joint& joint : project.tree.joints) {
-    const auto has = [&](const char* axis) {
-      return robot.calibration.joint_errors.contains(joint.name + ".compliance_" + axis);
-    };
-    if (has("z")) elasticity.torsion->push_back(joint.name);
-    if (has("x")) elasticity.bending->push_back(joint.name);
-  }
+  const std::vector<std::string> extra = project.elasticity.extra;
+  project.elasticity = ElasticityOf(robot.calibration, project);
+  project.elasticity.extra = extra;
   Diagnosis diagnosis;
   diagnosis.report = StudyCauses(project, measured, seed);
   diagnosis.recording = measured.calibration.source;
