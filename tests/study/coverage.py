@@ -9,10 +9,12 @@ sensors and imperfect cameras, which the estimator models in part; its axes are 
 them, and its zero offsets are not. So the truth of every parameter of a joint is known: offsets from
 truth.yaml, all lengths and other angles zero. The recording is calibrated with the default settings.
 Prints, for each robot and in all, the share of intervals with the truth in them and the root mean
-square of errors in standard deviations. Everything follows from the seeds. PyYAML is needed.
+square of errors in standard deviations; then how many intervals of the legs' stiffness hold the
+simulator's own (a known wrench on the waist), by axis. Everything follows from the seeds. PyYAML is needed.
 """
 
 import argparse
+import collections
 import json
 import math
 import pathlib
@@ -33,7 +35,19 @@ def kind_of(name):
     return f"{'lengths' if parameter in ('a', 'b', 'd', 'r') else 'other angles'}, {limb}"
 
 
-def errors(arguments, seed, work):
+def stiffness_of_legs(summary, truth):
+    """Axis and 'inside', 'outside' or 'unknown' of each stiffness; files have N/mm and N/m."""
+    found = []
+    for leg in summary["legs"]:
+        for i, axis in enumerate(("x", "y", "z", "rx", "ry", "rz")):
+            true = truth[leg["name"]]["stiffness"][i] * (1e-3 if i < 3 else 1.0)
+            least, most = (math.nan if end is None else end for end in leg["interval_95"][i])
+            outside = true < least or true > most
+            found.append((axis, "outside" if outside else "inside" if leg["known"][i] else "unknown"))
+    return found
+
+
+def errors(arguments, seed, work, stiffness):
     """Kind, error in sds and interval factor of each parameter of geometry; None: refused."""
     folder = work / f"robot_{seed}"
     run(arguments.program, "simulate", arguments.project, "-o", folder, "--threads", 1, "--seed", seed,
@@ -45,7 +59,9 @@ def errors(arguments, seed, work):
     summary = json.loads((work / "out" / "summary.json").read_text())
     calibration = yaml.safe_load((work / "out" / "calibration.yaml").read_text())
     factor = float(calibration["interval_95_in_sd"])
-    truth = yaml.safe_load((folder / "truth.yaml").read_text())["joints"]
+    truth = yaml.safe_load((folder / "truth.yaml").read_text())
+    stiffness.update(stiffness_of_legs(summary, truth["legs"]))
+    truth = truth["joints"]
     found = []
     for parameter in summary["parameters"]:
         joint, _, name = parameter["name"].rpartition(".")
@@ -73,14 +89,16 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         work = arguments.work or pathlib.Path(scratch)
         work.mkdir(parents=True, exist_ok=True)
-        found = []
+        found, stiffness = [], collections.Counter()
         for seed in range(arguments.first, arguments.first + arguments.robots):
-            here = errors(arguments, seed, work)
+            here = errors(arguments, seed, work, stiffness)
             found += here or []
             print(line(f"robot {seed}", here) if here else f"robot {seed}: REFUSED", flush=True)
     for kind in sorted({kind for kind, _, _ in found}):
         print(line(kind, [entry for entry in found if entry[0] == kind]))
     print(line("all", found))
+    for (axis, state), count in sorted(stiffness.items()):
+        print(f"stiffness of legs, {axis:2} {state:8} {count:4}")
 
 
 if __name__ == "__main__":
