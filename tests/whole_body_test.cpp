@@ -224,6 +224,19 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   EXPECT_TRUE(FindContradictoryTorques(robot_.model, recording, 1e-3).empty());
 }
 
+// What is not known of a leg's load: sensors that all show a quarter too much are off by a fifth of
+// it.
+TEST_F(StandingTest, TheDisagreementOfSensorsAndStaticsIsAShareOfTheTorques) {
+  Recording recording = Record();
+  const Placement placement = RegisterPlacement(robot_.model, recording, 1e-3);
+  const double clean = TorqueDisagreement(robot_.model, recording, placement, 0);
+  EXPECT_LT(clean, 0.06);  // statics is that of nominal geometry
+  recording.torques *= 1.25;
+  EXPECT_NEAR(TorqueDisagreement(robot_.model, recording, placement, 0), 0.2, clean);
+  recording.torques.setConstant(std::nan(""));
+  EXPECT_TRUE(std::isinf(TorqueDisagreement(robot_.model, recording, placement, 0)));
+}
+
 TEST_F(StandingTest, ATorqueSensorLeftOutIsReplacedByStatics) {
   const Recording clean = Record();
   Recording without_knee = clean;

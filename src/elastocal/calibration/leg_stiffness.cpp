@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/calibration/leg_stiffness.hpp"
 
+#include <cmath>
 #include <limits>
 
+#include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/robot/lumped_compliance.hpp"
 
 namespace elastocal {
@@ -14,27 +16,33 @@ Vector6d Compliances(const CalibrationResult& result, const Eigen::VectorXd& del
   return LumpedCompliance(result.model, ApplyErrors(result.model, delta), q, leg).diagonal();
 }
 
-/// Standard deviations of the compliances, by those of the parameters that they are made of. They
-/// are linear in them, so that one difference each is exact.
-Vector6d CompliancesSd(const CalibrationResult& result, const Eigen::VectorXd& q, int leg) {
+/// Loads by statics alone are as uncertain as the masses of a robot description: some 5 % a link.
+constexpr double kMassShare = 0.05;
+
+/// Standard deviations of the compliances: by those of the parameters that they are made of, and by
+/// the share to which the loads are uncertain that deflected each of them (a compliance is what the
+/// cameras saw over that load). They are linear in the parameters, so that one difference each is
+/// exact.
+Vector6d CompliancesSd(const CalibrationResult& result, const Eigen::VectorXd& q, int leg,
+                       double load_share) {
   const std::vector<int>& parameters = result.posterior.parameters;
   const Vector6d at = Compliances(result, result.delta, q, leg);
   Eigen::MatrixXd by_parameter =
       Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(parameters.size()));
+  Vector6d variance = Vector6d::Zero();
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const Parameter& parameter = result.model.parameters[parameters[k]];
     if (!IsCompliance(parameter.kind)) continue;
     Eigen::VectorXd beside = result.delta;
     const double step = ParameterScale(parameter);
     beside[parameters[k]] += step;
-    by_parameter.col(static_cast<Eigen::Index>(k)) =
-        (Compliances(result, beside, q, leg) - at) / step;
+    const Vector6d slope = (Compliances(result, beside, q, leg) - at) / step;
+    by_parameter.col(static_cast<Eigen::Index>(k)) = slope;
+    variance += (load_share * result.delta[parameters[k]] * slope).cwiseAbs2();
   }
-  return (by_parameter * result.posterior.covariance)
-      .cwiseProduct(by_parameter)
-      .rowwise()
-      .sum()
-      .cwiseSqrt();
+  variance +=
+      (by_parameter * result.posterior.covariance).cwiseProduct(by_parameter).rowwise().sum();
+  return variance.cwiseSqrt();
 }
 
 }  // namespace
@@ -54,8 +62,15 @@ std::vector<LegStiffness> AssessLegs(const CalibrationResult& result, const Reco
     }
     if (postures == 0) continue;
     entry.q /= postures;
+    for (int k : result.model.legs[leg].joints) {
+      const Joint& joint = result.model.tree.joints[k];
+      entry.posture.emplace_back(joint.name, JointPosition(joint, entry.q));
+    }
     const Vector6d compliance = Compliances(result, result.delta, entry.q, leg);
-    const Vector6d half = result.interval_factor * CompliancesSd(result, entry.q, leg);
+    const double disagreement = TorqueDisagreement(result.model, recording, result.placement, leg);
+    entry.load_share = std::isfinite(disagreement) ? disagreement : kMassShare;
+    const Vector6d half =
+        result.interval_factor * CompliancesSd(result, entry.q, leg, entry.load_share);
     entry.stiffness = compliance.cwiseInverse();
     entry.low = (compliance + half).cwiseInverse();
     for (int axis = 0; axis < 6; ++axis) {

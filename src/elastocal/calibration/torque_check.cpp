@@ -113,14 +113,9 @@ bool Carries(const RobotTree& tree, int joint, const std::vector<int>& links) {
   return false;
 }
 
-}  // namespace
-
-std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& model,
-                                                          const Recording& recording,
-                                                          double slip_m) {
-  if (recording.trials.empty() || recording.torques.rows() == 0) return {};
-  if (!(TotalMass(model.tree) > 0.0)) return {};
-  const Placement placement = RegisterPlacement(model, recording, slip_m);
+/// By joint: static and measured torques in the postures in which statics tells them.
+std::vector<Pairs> PairTorques(const ErrorModel& model, const Recording& recording,
+                               const Placement& placement) {
   const std::size_t joints = model.tree.joints.size();
   std::vector<Pairs> pairs(joints);
   for (int i = 0; i < recording.posture_count(); ++i) {
@@ -144,6 +139,19 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
       pairs[k].weight = std::max(pairs[k].weight, recording.gravity.norm() * carried[k].mass);
     }
   }
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& model,
+                                                          const Recording& recording,
+                                                          double slip_m) {
+  if (recording.trials.empty() || recording.torques.rows() == 0) return {};
+  if (!(TotalMass(model.tree) > 0.0)) return {};
+  const std::vector<Pairs> pairs =
+      PairTorques(model, recording, RegisterPlacement(model, recording, slip_m));
+  const std::size_t joints = pairs.size();
   std::vector<ContradictoryTorque> found;
   std::vector<char> exchanged(joints, 0);
   for (std::size_t a = 0; a < joints; ++a) {
@@ -162,6 +170,27 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
     if (const auto one = Judge(static_cast<int>(k), pairs[k])) found.push_back(*one);
   }
   return found;
+}
+
+double TorqueDisagreement(const ErrorModel& model, const Recording& recording,
+                          const Placement& placement, int leg) {
+  double squares = 0.0, all = 0.0;
+  if (recording.torques.rows() > 0 && TotalMass(model.tree) > 0.0) {
+    const std::vector<Pairs> pairs = PairTorques(model, recording, placement);
+    const auto on_this_leg = [&](int posture) {
+      return recording.trials[recording.trial[posture]].support ==
+             std::vector{model.legs[leg].link};
+    };
+    for (int joint : model.legs[leg].joints) {
+      const Pairs& of = pairs[joint];
+      for (std::size_t j = 0; j < of.posture.size(); ++j) {
+        if (!on_this_leg(of.posture[j])) continue;
+        squares += std::pow(of.measured[j] - of.expected[j], 2);
+        all += std::pow(of.measured[j], 2);
+      }
+    }
+  }
+  return all > 0.0 ? std::sqrt(squares / all) : std::numeric_limits<double>::infinity();
 }
 
 std::string Describe(const ContradictoryTorque& found, const RobotTree& tree) {

@@ -149,8 +149,14 @@ void AddTrials(const CalibrationRun& run, Json& json) {
       interval.push_back({Finite(unit * leg.low[axis]), Finite(unit * leg.high[axis])});
       known.push_back(leg.known(axis));
     }
-    json["legs"].push_back(
-        {{"name", leg.leg}, {"stiffness", stiffness}, {"interval_95", interval}, {"known", known}});
+    Json posture;
+    for (const auto& [joint, position] : leg.posture) posture[joint] = position;
+    json["legs"].push_back({{"name", leg.leg},
+                            {"posture_rad", posture},
+                            {"load_share", leg.load_share},
+                            {"stiffness", stiffness},
+                            {"interval_95", interval},
+                            {"known", known}});
   }
   json["loose_footings"] = Json::array();
   for (const LooseFooting& footing : result.loose_footings) {

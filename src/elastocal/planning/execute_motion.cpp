@@ -182,6 +182,18 @@ Commanded Commands(const Project& project, const StoredCalibration& calibration,
           corrected.broken.empty() ? "" : corrected.broken.front()};
 }
 
+/// How a controller that knows a calibration has the root link at the first rest, on flat soles: as
+/// planned, since its commands make up for the errors. That of the nominal robot takes the inertial
+/// unit as mounted by the robot description.
+std::optional<Eigen::Matrix3d> CalibratedMounting(const Project& project,
+                                                  const JointMotion& planned, DeployAs as) {
+  if (as == DeployAs::kNominal) return std::nullopt;
+  const std::vector<Transform> T_root_link =
+      LinkTransforms(project.tree, planned.q.row(0).transpose());
+  const int standing = planned.support.front().front();
+  return T_root_link[static_cast<std::size_t>(standing)].linear().transpose();
+}
+
 /// What a critically damped servo of this frequency must be told so that it follows q: the inverse
 /// of its lag, by differences of the samples.
 Eigen::MatrixXd FeedForward(const Eigen::MatrixXd& q, const Eigen::VectorXd& time_s,
@@ -244,6 +256,7 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
     execution.run = StandThrough(
         robot, project.soles, planned, physics,
         {.stabiliser = execution.stabilised ? &stabiliser : nullptr,
+         .R_world_root_at_rest = CalibratedMounting(project, planned, execution.as),
          .commanded = &commands[i / 2].q,
          .watch = [&](Eigen::Index sample, const Eigen::VectorXd& posture,
                       const VirtualRobot& body) { watch.Look(sample, posture, body); }});

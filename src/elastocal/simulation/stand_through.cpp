@@ -45,9 +45,11 @@ double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles,
   return InsideMargin(SupportPolygon(standing, T_world_sole), ZeroMomentPoint(force, moment));
 }
 
-StandingSense Sense(const VirtualRobot& body, std::size_t soles) {
+/// `R_root_unit`: how the inertial unit is mounted.
+StandingSense Sense(const VirtualRobot& body, std::size_t soles,
+                    const Eigen::Matrix3d& R_root_unit) {
   StandingSense sense;
-  sense.R_world_root = body.WaistPose().linear();
+  sense.R_world_root = body.WaistPose().linear() * R_root_unit;
   sense.wrenches.resize(6, static_cast<Eigen::Index>(soles));
   for (Eigen::Index i = 0; i < sense.wrenches.cols(); ++i) {
     sense.wrenches.col(i) = body.SoleWrench(static_cast<int>(i));
@@ -79,6 +81,10 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
   VirtualRobot body(robot, feet, commanded.row(0).transpose(), physics);
   body.Settle(kLongestSettling);
   const Transform begin = body.WaistPose();
+  Eigen::Matrix3d R_root_unit = Eigen::Matrix3d::Identity();
+  if (options.R_world_root_at_rest) {
+    R_root_unit = begin.linear().transpose() * *options.R_world_root_at_rest;
+  }
   StandingRun run;
   run.least_zmp_margin = std::numeric_limits<double>::infinity();
   const double first = motion.time_s[0], last = motion.time_s[motion.time_s.size() - 1];
@@ -98,7 +104,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
     run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
     run.tracking = std::max(run.tracking,
                             TrackingError(robot, body.Encoders(), now.Of(commanded) + correction));
-    const StandingSense sense = Sense(body, soles.size());
+    const StandingSense sense = Sense(body, soles.size(), R_root_unit);
     run.least_zmp_margin = std::min(run.least_zmp_margin, ZmpMargin(body, soles, sense));
     const Eigen::VectorXd planned = now.Of(motion.q);
     if (options.watch) options.watch(now.at, planned, body);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "elastocal/motion/stabiliser.hpp"
@@ -27,6 +28,11 @@ struct StandingRun {
 /// How a controller plays a motion.
 struct StandThroughOptions {
   Stabiliser* stabiliser = nullptr;  ///< none: nothing controls the balance
+  /// Orientation of the root link in the rest at the beginning, as the controller's model has it:
+  /// the mounting of the inertial unit is taken from this rest. Markers leave the root frame of a
+  /// calibration open (the gauge), so that it may be inclined to the true one. Without it, the unit
+  /// sits in the root frame of the robot description.
+  std::optional<Eigen::Matrix3d> R_world_root_at_rest = {};
   /// What the joints are commanded where that is not the motion itself, for instance corrected by a
   /// calibration. Times and support are those of the motion.
   const Eigen::MatrixXd* commanded = nullptr;

@@ -28,6 +28,37 @@ std::vector<Transform> DrawPlaces(std::uint64_t seed, std::size_t trials) {
   return places;
 }
 
+/// Where a motion comes to rest: the ends of its rests, and in given samples those that repeat.
+std::vector<Eigen::VectorXd> RestPostures(const Motion& motion) {
+  std::vector<Eigen::VectorXd> postures;
+  for (const MotionSegment& segment : motion.segments) {
+    if (segment.IsRest()) postures.push_back(segment.to);
+    bool resting = false;
+    for (Eigen::Index i = 1; i < segment.samples.rows(); ++i) {
+      const bool rests = segment.samples.row(i) == segment.samples.row(i - 1);
+      if (rests && !resting) postures.push_back(segment.samples.row(i).transpose());
+      resting = rests;
+    }
+  }
+  return postures;
+}
+
+/// The mean of the postures in which the robot rests on one foot alone in calibration trials; where
+/// there are none, `stand`.
+Eigen::VectorXd PostureOn(int foot_link, const std::vector<PlannedTrial>& trials,
+                          const Eigen::VectorXd& stand) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(stand.size());
+  int count = 0;
+  for (const PlannedTrial& trial : trials) {
+    if (trial.kind != TrialKind::kCalibration || trial.support != std::vector{foot_link}) continue;
+    for (const Eigen::VectorXd& posture : RestPostures(trial.motion)) {
+      sum += posture;
+      ++count;
+    }
+  }
+  return count > 0 ? Eigen::VectorXd(sum / count) : stand;
+}
+
 }  // namespace
 
 void SwitchOffImperfections(VirtualExperimentOptions& options) {
@@ -85,9 +116,10 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
   const PostureSampler sampler(described.tree, legs, options.motion.postures,
                                StreamSeed(options.seed, "stand"));
   for (const Leg& leg : legs) {
+    const Eigen::VectorXd posture = PostureOn(leg.foot_link, experiment.trials, sampler.stand());
     experiment.legs.push_back(
-        {leg.chain, leg.foot_link, sampler.stand(),
-         LumpedWaistCompliance(experiment.robot, leg, sampler.stand(), options.physics)});
+        {leg.chain, leg.foot_link, posture,
+         LumpedWaistCompliance(experiment.robot, leg, posture, options.physics)});
   }
   return experiment;
 }

@@ -41,7 +41,8 @@ struct VirtualExperimentOptions {
 /// still yield to the load, which encoders measure. Motions and physics stay.
 void SwitchOffImperfections(VirtualExperimentOptions& options);
 
-/// A leg's lumped compliance, and the posture in which it was computed.
+/// A leg's lumped compliance, and the posture in which it was computed: the mean of those in which
+/// the robot rests on this leg alone in calibration trials (else that in which it stands).
 struct LegCompliance {
   std::string chain;
   int foot_link = 0;

@@ -13,6 +13,7 @@ WaistCompliance LumpedWaistCompliance(const TrueRobot& robot, const Leg& leg,
   constexpr double kForce = 20.0;
   constexpr double kMoment = 4.0;
   options.standing = Standing::kWelded;
+  options.gravity = 0.0;  // the weight on a leg that gives way is a load of its own
   options.servo_stiffness *= kHeld;
   options.sliding_servo_stiffness *= kHeld;
   TrueRobot smooth = robot;

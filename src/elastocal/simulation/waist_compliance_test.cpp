@@ -70,23 +70,12 @@ TEST(LumpedWaistCompliance, OfAJointSpringIsThatOfItsLever) {
   EXPECT_NEAR(waist.C_foot(3, 3), 0.0, 1e-8);
 }
 
-TEST(LumpedWaistCompliance, WeightMakesAColumnSofter) {
+TEST(LumpedWaistCompliance, IsThatOfTheSpringAndNotOfAPendulumOnIt) {
   TrueRobot robot = Rigid();
   robot.foot_compliance[0] << 0, 0, 0, 0, 2e-5, 0;
   const WaistCompliance waist = LumpedWaistCompliance(robot, robot.legs[0], Straight(robot));
-  // An inverted pendulum on a spring: 1/K becomes 1/(K - m g h), with all weight but the foot's.
-  double lever = 0.0;
-  for (const auto& [mass, height] : {std::pair{12.0, 1.0285 - 0.08},
-                                     {29.0, 1.0285 + 0.32},
-                                     {5.0, 1.0285 - 0.45},
-                                     {3.0, 1.0285 - 0.80},
-                                     {1.5, 1.0285 - 1.025},
-                                     {5.0, 1.0285 - 0.45},
-                                     {3.0, 1.0285 - 0.80},
-                                     {1.5, 1.0285 - 1.025}}) {
-    lever += 9.81 * mass * height;
-  }
-  EXPECT_NEAR(waist.stiffness[4], 5e4 - lever, 0.05 * lever);
+  // The weight would make it softer by m g h, some 450 N.m/rad.
+  EXPECT_NEAR(waist.stiffness[4], 5e4, 20.0);
 }
 
 }  // namespace

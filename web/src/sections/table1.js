@@ -98,22 +98,22 @@ function csv(parameters) {
     parameters.map((p) => [p.name, p.unit, p.value, p.sd, p.status, String(p.significant)]));
 }
 
-function legsTable(parameters, legs) {
+function legsTable(legs) {
   const axes = ['x', 'y', 'z', 'rx', 'ry', 'rz'];
-  const of = (leg, axis) => parameters.find((p) => p.name === `${leg.name}.compliance_${axis}`);
-  const cell = (leg, axis, i) => {
-    const parameter = of(leg, axis);
-    const text = significant(leg.stiffness[i]);
-    if (parameter?.status === 'estimated') return text;
-    return h('span', {class: 'held', title: STATUS_WORDS[parameter?.status] ?? 'not in this model'}, text);
+  const cell = (leg, i) => {
+    const [low, high] = leg.interval_95?.[i] ?? [null, null];
+    if (leg.known && !leg.known[i]) return h('span', {class: 'held'}, low === null ? 'unknown' : `unknown, > ${significant(low)}`);
+    return h('span', {}, significant(leg.stiffness[i]), low === null ? null : [h('br'), h('span', {class: 'sd'}, interval(low, high))]);
   };
   return figure({
     title: 'Stiffness of the legs between foot and waist',
-    note: 'Stiffness of the whole leg against forces along the axes of the foot (x, y, z) and moments about them (rx, ry, rz), averaged over the postures in which the leg stood. A grey value comes from the joints alone: the data do not support a term of the leg itself in that direction.',
+    note: 'Stiffness of the whole leg against forces along the axes of the foot (x, y, z) and moments about them (rx, ry, rz), in the mean of the postures in which the leg stood alone, with its 95 % interval. Unknown: the data do not tell it from a rigid leg.',
     body: table({caption: 'Stiffness of the legs',
       columns: [{text: 'Leg'}, ...axes.map((a, i) => ({text: `K ${a}`, unit: i < 3 ? 'N/mm' : 'N·m/rad', number: true}))],
-      rows: legs.map((leg) => [leg.name.replaceAll('_', ' '), ...axes.map((a, i) => cell(leg, a, i))])}),
-    data: {name: 'leg_stiffness.csv', text: () => toCsv(['leg', ...axes.map((a, i) => `K_${a}_${i < 3 ? 'N_per_mm' : 'Nm_per_rad'}`)], legs.map((leg) => [leg.name, ...leg.stiffness]))},
+      rows: legs.map((leg) => [leg.name.replaceAll('_', ' '), ...axes.map((a, i) => cell(leg, i))])}),
+    data: {name: 'leg_stiffness.csv', text: () => toCsv(
+      ['leg', ...axes.flatMap((a, i) => ['', '_low', '_high'].map((end) => `K_${a}${end}_${i < 3 ? 'N_per_mm' : 'Nm_per_rad'}`))],
+      legs.map((leg) => [leg.name, ...leg.stiffness.flatMap((value, i) => [value, ...(leg.interval_95?.[i] ?? [null, null])])]))},
   });
 }
 
@@ -157,5 +157,5 @@ export function table1Section(report) {
       title: 'Elasticity',
       note: 'The compliance c says how far a joint gives way under load: c_z about its axis, c_x and c_y across it; c₀ how far the root link gives way up to a joint on it, about its own origin and axes. The inverse K of a compliance is the stiffness; it is shown where the 95 % interval of the compliance excludes a rigid joint.',
       body: holders[1].at, data: {name: 'elasticity.csv', text: () => csv(summary.parameters.filter((p) => /\.compliance_/.test(p.name)))},
-    }), legs.length > 0 && legsTable(summary.parameters, legs), externals(summary.parameters, legNames));
+    }), legs.length > 0 && legsTable(legs), externals(summary.parameters, legNames));
 }

@@ -194,6 +194,14 @@ test('names from the user’s files are shown, not run', async () => {
   await page.close();
 });
 
+test('the stiffness of a leg has its interval, or is unknown', async () => {
+  const {page, problems} = await openPage(browser, sample);
+  const row = await page.$$eval('[aria-label="Stiffness of the legs"] tbody tr', (all) => [...all[0].cells].map((cell) => cell.innerText.replaceAll('\n', ' ')));
+  assert.deepEqual(row.slice(1), ['unknown, > 33.0', 'unknown, > 32.0', '186 181.5 to 190.2', '24\u202f700 22\u202f500 to 26\u202f800', '5\u202f230 5\u202f190 to 5\u202f270', 'unknown']);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
 test('nine equal warnings are one line with the names, and fold out', async () => {
   const {page, problems} = await openPage(browser, sample);
   const lines = await page.$$eval('#findings .words:not(.state-check) > ul > li', (all) => all.map((li) => li.firstChild.textContent + (li.querySelector(':scope > .others')?.textContent ?? '')));
