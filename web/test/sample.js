@@ -95,6 +95,29 @@ function sampleMotion() {
   return {name: 'motion', rows: 3000, columns, margins: {sets: [{name: 'leg', left_out: [{posture: 2, reason: EVIL}]}], margins: {zmp_m: 0.0214, torque_share: 0.31, spheres: `a and ${EVIL}`}}};
 }
 
+/** A byte for each difference from picture to picture, as the program packs displacements. */
+function packed(pictures) {
+  const flat = pictures.flatMap((picture, i) => picture.map((x, k) => x - (i > 0 ? pictures[i - 1][k] : 0)));
+  return Buffer.from(Int8Array.from(flat).buffer).toString('base64');
+}
+
+/** Two robots that execute a motion of 40 pictures; one falls after 25. */
+function sampleDeployment() {
+  const pictures = 40;
+  const times = Array.from({length: pictures}, (_, i) => 0.2 * (i + 1));
+  const links = ['base_link', 'thigh', 'shank', 'upper_arm', 'forearm', 'head', 'sole'];
+  const qs = times.map((t) => joints.map((_, k) => 0.5 * Math.sin(t + k)));
+  const robot = (as, count, mm) => ({as, stabilised: true, pictures: count,
+    displacement: packed(times.slice(0, count).map((t) => links.flatMap((_, k) => [Math.round(10 * mm), k, Math.round(20 * Math.sin(t)), 0, 0, k]))),
+    tips: [{link: 'forearm', place: 'hand', distance_mm: times.slice(0, count).map((_, i) => mm + 0.1 * i)},
+           {link: 'sole', place: 'foot', distance_mm: times.slice(0, count).map((_, i) => i < 10 ? null : mm / 2)}]});
+  const error = (mm) => ({rms_mm: mm, max_mm: 2 * mm, rms_deg: 0.1, max_deg: 0.2, samples: 40});
+  const run = (as, mm, stood) => ({as, stabilised: true, refused: '', stood, time_s: stood ? 8 : 5, hands: error(mm), swinging_feet: error(mm), landing: error(mm), waist: error(mm), centre_of_mass: error(mm), stabiliser_largest_shift_mm: 4});
+  return {executions: [run('nominal', 12, false), run('compensated', 1.5, true)],
+    playback: {time_s: times, joints, links, unit_m: 1e-4, unit_rad: 1e-4, q: float32(qs.flat()), root: float32(times.flatMap(() => [...WAIST, 0, 0, 0, 1])),
+      robots: [robot('nominal', 25, 12), robot('compensated', pictures, 1.5)]}};
+}
+
 function sampleDesign() {
   const columns = {algorithm: [], chain: [], seed: [], postures: [], o1: []};
   for (const [algorithm, best] of [['NOCP', 0.795], ['COCP', 0.79], ['random', 0.66]]) {
@@ -116,7 +139,7 @@ export function sampleReport() {
     format: 'elastocal-report-1', version: '0.0.0', folder: EVIL, summary, data: sampleData(),
     correlation: {names, lower: Buffer.from(Int8Array.from(lower).buffer).toString('base64')},
     validation: {status: 'better', recording: 'another day', rmse_3d_mm: {uncalibrated: 7, calibrated: 1.1}, rmse_coordinate_mm: {uncalibrated: 4, calibrated: 0.7}, max_mm: {uncalibrated: 20, calibrated: 3}, rmse_3d_mm_with_outliers: {uncalibrated: 8, calibrated: 1.3}},
-    design: sampleDesign(), motions: [sampleMotion()],
+    deployment: sampleDeployment(), design: sampleDesign(), motions: [sampleMotion()],
     calibrations: [{label: 'spring', parameters: earlier}, {label: 'now', parameters: summary.parameters}],
     comparison: {status: 'moved', moved: ['arm_1_joint'], a: {recording: 'spring'}, joints: [{joint: 'arm_1_joint', F: 120, p_adjusted: 1e-9, moved: true}, {joint: EVIL, F: 1.1, p_adjusted: 0.4, moved: false}]},
     runs: {calibrate: {command_line: `elastocal calibrate ${EVIL} -o out`, version: '0.0.0', seed: 1, inputs: [{file: 'robot.urdf', bytes: 12345, sha256: 'ab'.repeat(32)}]}},

@@ -109,7 +109,7 @@ int Deploy(const SimulateCommand& command) {
   const std::vector<Execution> executions = PlayExecutions(
       project, ReadCalibration(calibration.calibration), ReadMotion(command.motion, project),
       options, TerminalProgress("executed motion", quiet));
-  const std::string json = FormatExecutions(executions);
+  const std::string json = FormatExecutions(project.tree, executions);
   outputs.Set(command.common.json_file, json);
   const std::string no_report =
       SetResults(command.output, {{"deployment.json", json}},

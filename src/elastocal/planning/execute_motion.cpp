@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -20,6 +21,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kBeforeLanding = 0.05;  // s
 constexpr int kEvery = 10;               // looks of 10 ms between two comparisons
+constexpr double kLook = 0.01;           // s
+constexpr int kPictureEvery = 20;        // looks between two pictures, or more
+constexpr int kMostPictures = 2000;
 
 class Sum {
  public:
@@ -48,11 +52,18 @@ class Sum {
   double squares_ = 0.0, turns_ = 0.0;
 };
 
+/// Looks from one picture to the next: a multiple of `kEvery`, more for a long motion.
+int LooksAPicture(const JointMotion& plan) {
+  const double duration = plan.time_s[plan.time_s.size() - 1] - plan.time_s[0];
+  const double fewest = duration / kLook / kMostPictures;
+  return std::max(kPictureEvery, kEvery * static_cast<int>(std::ceil(fewest / kEvery)));
+}
+
 /// Compares where a robot is with where the plan has it.
 class PlanWatch {
  public:
   PlanWatch(const Project& project, const TrueRobot& robot, const JointMotion& plan)
-      : project_(project), robot_(robot), plan_(plan) {
+      : project_(project), robot_(robot), plan_(plan), looks_a_picture_(LooksAPicture(plan)) {
     for (const Chain& chain : project.chains) {
       const int body = project.tree.links[static_cast<std::size_t>(chain.tip_link)].body;
       const bool is_foot =
@@ -63,6 +74,10 @@ class PlanWatch {
       hands_links_.push_back(chain.tip_link);
     }
     MarkLandings();
+    std::vector<PlaybackTip> tips;
+    for (int link : hands_links_) tips.push_back({.link = link});
+    for (const Sole& sole : project.soles) tips.push_back({.link = sole.link, .is_foot = true});
+    recorder_.emplace(project.tree, std::move(tips));
   }
 
   void Look(Eigen::Index sample, const Eigen::VectorXd& planned, const VirtualRobot& body) {
@@ -91,7 +106,12 @@ class PlanWatch {
     }
     waist_.Add(T_wanted, T_got * body.WaistPose());
     AddCentreOfMass(T_wanted, T_root_link, T_got, body);
+    if (looks_ % looks_a_picture_ != 0) return;
+    recorder_->Add(static_cast<double>(looks_) * kLook, planned, T_root_link, support,
+                   LinkPoses(body));
   }
+
+  const Playback& playback() const { return recorder_->playback(); }
 
   void Store(Execution& execution) const {
     execution.hands = hands_.Result();
@@ -128,6 +148,14 @@ class PlanWatch {
     return body.LinkPose(link);
   }
 
+  std::vector<Transform> LinkPoses(const VirtualRobot& body) const {
+    std::vector<Transform> poses;
+    for (std::size_t i = 0; i < project_.tree.links.size(); ++i) {
+      poses.push_back(SolePose(static_cast<int>(i), body));
+    }
+    return poses;
+  }
+
   void AddCentreOfMass(const Transform& T_wanted, const std::vector<Transform>& T_root_link,
                        const Transform& T_got, const VirtualRobot& body) {
     Eigen::Vector3d wanted = Eigen::Vector3d::Zero(), got = Eigen::Vector3d::Zero();
@@ -152,6 +180,8 @@ class PlanWatch {
   std::vector<int> hands_links_, landing_, landing_link_;
   int last_landing_ = -1;
   long looks_ = 0;
+  int looks_a_picture_;
+  std::optional<PlaybackRecorder> recorder_;
   Sum hands_, feet_, landing_sum_, waist_, com_;
 };
 
@@ -261,14 +291,17 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
          .watch = [&](Eigen::Index sample, const Eigen::VectorXd& posture,
                       const VirtualRobot& body) { watch.Look(sample, posture, body); }});
     watch.Store(execution);
+    // One robot of each knowledge is enough to look at: the one whose balance is controlled.
+    if (execution.stabilised) execution.playback = watch.playback();
   };
   ForAll(executions.size(), options.threads, play, progress);
   return executions;
 }
 
-std::string FormatExecutions(const std::vector<Execution>& executions) {
+std::string FormatExecutions(const RobotTree& tree, const std::vector<Execution>& executions) {
   Json json;
   json["executions"] = Json::array();
+  std::vector<NamedPlayback> playbacks;
   for (const Execution& one : executions) {
     json["executions"].push_back({{"as", DeployName(one.as)},
                                   {"stabilised", one.stabilised},
@@ -283,8 +316,13 @@ std::string FormatExecutions(const std::vector<Execution>& executions) {
                                   {"stabiliser_largest_shift_mm", 1e3 * one.run.largest_shift},
                                   {"least_zmp_margin_mm", 1e3 * one.run.least_zmp_margin},
                                   {"largest_lean_deg", one.run.largest_lean * 180.0 / M_PI}});
+    if (one.playback.time_s.empty()) continue;
+    playbacks.push_back({DeployName(one.as), one.stabilised, &one.playback});
   }
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  // The pictures stand on one line, so that people can read what is before them.
+  std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  text.resize(text.rfind("\n}"));
+  return text + ",\n  \"playback\": " + FormatPlaybacks(tree, playbacks) + "\n}\n";
 }
 
 }  // namespace elastocal

@@ -6,6 +6,7 @@
 
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/math/progress.hpp"
+#include "elastocal/planning/playback.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/simulation/stand_through.hpp"
 
@@ -43,6 +44,8 @@ struct Execution {
   PlaceError landing;  ///< of a swinging foot 50 ms before the plan sets it down
   PlaceError waist;    ///< the root link
   PlaceError centre_of_mass;
+  /// Of the stabilised robots: five pictures a second, fewer where they would be more than 2000.
+  Playback playback = {};
 };
 
 struct DeployOptions {
@@ -63,7 +66,8 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
                                       const JointMotion& planned, const DeployOptions& options,
                                       const Progress& progress = {});
 
-/// For programs (JSON) and for people.
-std::string FormatExecutions(const std::vector<Execution>& executions);
+/// As JSON, with what the report's page needs to play the robots side by side. `tree`: the nominal
+/// one.
+std::string FormatExecutions(const RobotTree& tree, const std::vector<Execution>& executions);
 
 }  // namespace elastocal

@@ -14,6 +14,25 @@ export function floats(base64) {
   return result;
 }
 
+/**
+ * Integers of rows of `width`, from base64: each as the difference to the row before (of the first: to zero) in a
+ * signed byte, or -128 and then itself in two bytes, little-endian.
+ */
+export function differences(base64, width, rows) {
+  const view = new DataView(bytes(base64 ?? '').buffer);
+  const result = new Int16Array(width * rows);
+  for (let i = 0, at = 0; i < result.length; ++i) {
+    const step = view.getInt8(at++);
+    if (step !== -128) {
+      result[i] = step + (i >= width ? result[i - width] : 0);
+    } else {
+      result[i] = view.getInt16(at, true);
+      at += 2;
+    }
+  }
+  return result;
+}
+
 /** Signed bytes from base64. */
 export const signedBytes = (base64) => new Int8Array(bytes(base64 ?? '').buffer);
 

@@ -3,6 +3,7 @@ import {toCsv} from '../lib/csv.js';
 import {figure, section} from '../lib/figure.js';
 import {fixed} from '../lib/format.js';
 import {table} from '../lib/table.js';
+import {playbackFigure} from './playback.js';
 
 const PLACES = [['Hands', 'hands'], ['Swinging feet', 'swinging_feet'], ['Waist', 'waist']];
 const KNOWS = {nominal: 'the nominal URDF', urdf: 'the calibrated URDF', compensated: 'geometry and elasticity'};
@@ -15,6 +16,7 @@ export function deploymentSection(report) {
   if (!Array.isArray(runs) || runs.length === 0) return null;
   return section('deployment', 'On the robot', 'The calibration put to use',
     'A virtual robot with the errors of the one that was calibrated executes a planned motion. Distances from the plan in millimetres: root mean square, and the largest in brackets.',
+    playbackFigure(report, (robot) => KNOWS[robot.as] ?? robot.as),
     figure({title: 'Distance from the plan', body: table({caption: 'Distance from the plan',
       columns: [{text: 'The controller knows'}, {text: 'Stabiliser'}, {text: 'Stood'},
         ...PLACES.map(([text]) => ({text, unit: 'mm', number: true})),

@@ -3,17 +3,12 @@ import {css, sequential} from '../lib/colours.js';
 import {h} from '../lib/dom.js';
 import {choice, section} from '../lib/figure.js';
 import {fixed, modelName} from '../lib/format.js';
+import {range} from '../lib/range.js';
 import {advance} from '../viewer/clips.js';
 import {Viewer} from '../viewer/viewer.js';
 
 function toggle(text, checked, change) {
   return h('label', {class: 'check'}, h('input', {type: 'checkbox', checked, onchange: (e) => change(e.target.checked)}), text);
-}
-
-function range(label, attributes, input) {
-  const output = h('output', {});
-  const slider = h('input', {type: 'range', 'aria-label': label, ...attributes, oninput: (e) => input(Number(e.target.value))});
-  return {output, slider, row: h('label', {class: 'range'}, h('span', {}, label), slider, output)};
 }
 
 function colourBar(end) {

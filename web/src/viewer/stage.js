@@ -43,12 +43,12 @@ export class Stage {
     this.camera.position.set(Math.cos(angle), Math.sin(angle), 0.24).normalize().multiplyScalar(distance).add(centre);
     this.home = {position: this.camera.position.clone(), target: centre.clone()};
     this.controls.update();
-    this.addFloor(centre, box.min.z);
+    this.addFloor(centre, box.min.z, Math.max(4, Math.ceil(across + 2)));
   }
 
-  addFloor(centre, height) {
+  addFloor(centre, height, size) {
     this.floor?.removeFromParent();
-    this.floor = new THREE.GridHelper(4, 16, FLOOR, FLOOR);
+    this.floor = new THREE.GridHelper(size, 4 * size, FLOOR, FLOOR);
     this.floor.rotation.x = Math.PI / 2;
     this.floor.position.set(centre.x, centre.y, height);
     this.floor.material.transparent = true;
@@ -100,5 +100,6 @@ export class Stage {
     cancelAnimationFrame(this.pending);
     this.pending = 0;
     this.renderer.render(this.scene, this.camera);
+    this.afterDraw?.();
   }
 }

@@ -26,10 +26,10 @@ export async function waitForViewer(page) {
 }
 
 /** What the 3-D view shows: how many pixels are drawn, in how many colours, and a number for all. */
-export function picture(page) {
-  return page.evaluate(async () => {
+export function picture(page, canvas = '.viewer canvas') {
+  return page.evaluate(async (selector) => {
     await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-    const source = document.querySelector('.viewer canvas');
+    const source = document.querySelector(selector);
     const copy = document.createElement('canvas');
     [copy.width, copy.height] = [source.width, source.height];
     const context = copy.getContext('2d');
@@ -44,7 +44,7 @@ export function picture(page) {
       hash = (Math.imul(hash, 31) + colour + data[i + 3]) | 0;
     }
     return {pixels: data.length / 4, opaque, colours: colours.size, hash};
-  });
+  }, canvas);
 }
 
 /** The data that a report holds. */

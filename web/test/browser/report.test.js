@@ -251,6 +251,37 @@ test('a planned motion plays, with spheres and workspaces', async () => {
   await page.close();
 });
 
+test('the executed robots play beside the plan, with one clock', async () => {
+  const {page, problems} = await openPage(browser, sample);
+  assert.equal(await page.$('.side-by-side[data-ready]'), null, 'nobody looks yet');
+  await page.$eval('.side-by-side', (element) => element.scrollIntoView());
+  await page.waitForSelector('.side-by-side[data-ready]', {timeout: 20000});
+  const look = () => picture(page, '.side-by-side canvas');
+  const numbers = () => page.$$eval('.playback-now tbody tr', (rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  const first = await look();
+  assert.ok(first.opaque > 0.01 * first.pixels, `${first.opaque} of ${first.pixels} pixels are drawn`);
+  assert.deepEqual(await numbers(), [['the nominal URDF', '12.0', '–', ''], ['geometry and elasticity', '1.5', '–', '']]);
+  assert.deepEqual(await page.$$eval('.robot-name', (names) => names.map((name) => name.textContent)), ['the plan', 'the nominal URDF', 'geometry and elasticity']);
+  await page.focus('#playback-time');
+  await page.keyboard.press('End');
+  const last = await look();
+  assert.notEqual(last.hash, first.hash, 'the clock moves the robots');
+  assert.deepEqual(await numbers(), [['the nominal URDF', '14.4', '6.0', 'fell at 5 s'], ['geometry and elasticity', '5.4', '0.8', '']]);
+  await page.focus('#playback-factor');
+  await page.keyboard.press('End');
+  assert.notEqual((await look()).hash, last.hash, 'magnification');
+  assert.deepEqual((await numbers()).map((row) => row[3]), ['fell at 5 s, drawn × 29', '']);
+  await page.click('.playback .play');
+  await page.waitForFunction(() => Number(document.querySelector('#playback-time').value) < 7, undefined, {timeout: 5000});
+  await page.click('.playback .play');
+  assert.equal(await page.getAttribute('.playback .play', 'aria-pressed'), 'false');
+  await page.emulateMedia({media: 'print'});
+  assert.equal(await page.isVisible('.playback'), false, 'on paper there is the table');
+  assert.ok(await page.isVisible('#deployment figure:not(.playback) table'));
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
 test('a folder with a plan alone plays it', async () => {
   const {data: {robot, spheres}, motions} = sampleReport();
   const file = join(folder, 'plan.html');

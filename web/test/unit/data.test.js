@@ -2,19 +2,44 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {floats, signedBytes, unpackTriangle} from '../../src/lib/binary.js';
+import {differences, floats, signedBytes, unpackTriangle} from '../../src/lib/binary.js';
 import {diverging, sequential} from '../../src/lib/colours.js';
 import {columnsToCsv, toCsv} from '../../src/lib/csv.js';
 import {chainRows, medianCurves} from '../../src/lib/curves.js';
 import {byJoint, countByStatus, family, kindsOf, offsetsOverTime, splitName} from '../../src/lib/parameters.js';
+import {pictureAt, readPlayback} from '../../src/lib/playback.js';
 import {table2Rows} from '../../src/lib/table2.js';
 import {stiffness, stiffnessInterval, userUnit} from '../../src/lib/units.js';
 import {advance, feet} from '../../src/viewer/clips.js';
+import {sampleReport} from '../sample.js';
 
 test('floats are little-endian and keep NaN', () => {
   assert.deepEqual([...floats('AACAPwAAAMA=')], [1, -2]);
   assert.ok(Number.isNaN(floats('AADAfw==')[0]));
   assert.deepEqual([...signedBytes('ZM5k')], [100, -50, 100]);
+});
+
+test('displacements come as differences in a byte, large ones as themselves', () => {
+  const bytes = Uint8Array.from([5, 0x80, 0x01, 0x80, 0xff, 3]);  // 5, -32767; -1 and 3 more
+  assert.deepEqual([...differences(Buffer.from(bytes).toString('base64'), 2, 2)], [5, -32767, 4, -32764]);
+});
+
+test('a playback has each robot where it was, and leaves a fallen one where it lay', () => {
+  const playback = readPlayback(sampleReport().deployment.playback);
+  const [fallen, stood] = playback.robots;
+  assert.equal(playback.times.length, 40);
+  assert.ok(Math.abs(stood.displacement(39, 6)[0] - 1.5e-3) < 1e-12);
+  assert.ok(Math.abs(stood.displacement(39, 6)[5] - 6e-4) < 1e-12);
+  assert.deepEqual(fallen.displacement(39, 2), fallen.displacement(24, 2));
+  assert.ok(Math.abs(fallen.distance(39, 'hand') - 14.4) < 1e-9);
+  assert.equal(stood.distance(3, 'foot'), null, 'it stands');
+  assert.equal(stood.distance(20, 'foot'), 0.75);
+  assert.equal(stood.factor(5, 10), 10);
+  assert.ok(Math.abs(fallen.factor(5, 50) - 0.35 / 12e-3) < 1e-9, 'no further than 0.35 m');
+  assert.equal(pictureAt(playback.times, 0), 0);
+  assert.equal(pictureAt(playback.times, 1.05), 4);
+  assert.equal(pictureAt(playback.times, 99), 39);
+  assert.equal(readPlayback(undefined), null);
 });
 
 test('a triangle of correlations becomes a symmetric matrix', () => {

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/planning/playback.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/report/encoding.hpp"
+
+namespace elastocal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Displacement = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+constexpr double kUnit = 1e-4;  // m or rad
+
+std::size_t At(int index) { return static_cast<std::size_t>(index); }
+
+/// Links that a joint moves, the root link, and the tips where they are others.
+std::vector<int> PlayedLinks(const RobotTree& tree, const std::vector<PlaybackTip>& tips) {
+  std::vector<int> links = {0};
+  for (const Joint& joint : tree.joints) links.push_back(joint.child_link);
+  for (const PlaybackTip& tip : tips) {
+    if (std::count(links.begin(), links.end(), tip.link) == 0) links.push_back(tip.link);
+  }
+  return links;
+}
+
+/// Each number, in kUnit, as what it differs by from that of the picture before (of the first: from
+/// zero), in a byte; where that is not enough, -128 and then the number itself in two bytes,
+/// little-endian. What is beyond two bytes becomes the nearest that is not.
+std::string Base64Differences(const std::vector<Displacement>& pictures) {
+  constexpr int kMostStep = 127, kMostNumber = 32767;
+  std::string bytes;
+  Eigen::ArrayXXi before;
+  for (const Displacement& picture : pictures) {
+    const Eigen::ArrayXXi now = (picture.array() / kUnit)
+                                    .round()
+                                    .min(static_cast<double>(kMostNumber))
+                                    .max(-static_cast<double>(kMostNumber))
+                                    .cast<int>();
+    if (before.size() == 0) before = Eigen::ArrayXXi::Zero(now.rows(), now.cols());
+    for (Eigen::Index i = 0; i < now.size(); ++i) {
+      const int number = now.data()[i], step = number - before.data()[i];
+      if (std::abs(step) <= kMostStep) {
+        bytes += static_cast<char>(step);
+        continue;
+      }
+      const auto bits = static_cast<std::uint16_t>(number);
+      bytes +=
+          {static_cast<char>(-128), static_cast<char>(bits & 0xff), static_cast<char>(bits >> 8)};
+    }
+    before = now;
+  }
+  return Base64(bytes);
+}
+
+/// By picture x, y, z and quaternion x, y, z, w.
+std::vector<double> PoseNumbers(const std::vector<Transform>& poses) {
+  std::vector<double> numbers;
+  for (const Transform& pose : poses) {
+    const Eigen::Vector3d p = pose.translation();
+    const Eigen::Quaterniond turn(pose.linear());
+    numbers.insert(numbers.end(), {p.x(), p.y(), p.z(), turn.x(), turn.y(), turn.z(), turn.w()});
+  }
+  return numbers;
+}
+
+Json TipJson(const RobotTree& tree, const PlaybackTip& tip) {
+  Json distances = Json::array();
+  for (double distance : tip.distance_m) {
+    // Not a number becomes null.
+    distances.push_back(std::isfinite(distance) ? Json(std::round(distance / kUnit) / 10.0)
+                                                : Json(nullptr));
+  }
+  return {{"link", tree.links[At(tip.link)].name},
+          {"place", tip.is_foot ? "foot" : "hand"},
+          {"distance_mm", std::move(distances)}};
+}
+
+Json RobotJson(const RobotTree& tree, const NamedPlayback& robot) {
+  Json json = {{"as", robot.as},
+               {"stabilised", robot.stabilised},
+               {"pictures", robot.playback->time_s.size()},
+               {"displacement", Base64Differences(robot.playback->displacement)},
+               {"tips", Json::array()}};
+  for (const PlaybackTip& tip : robot.playback->tips) json["tips"].push_back(TipJson(tree, tip));
+  return json;
+}
+
+}  // namespace
+
+PlaybackRecorder::PlaybackRecorder(const RobotTree& tree, std::vector<PlaybackTip> tips)
+    : tree_(tree) {
+  playback_.links = PlayedLinks(tree, tips);
+  playback_.tips = std::move(tips);
+}
+
+/// The plan's feet do not move while they stand: the root link follows from the one that stands.
+Transform PlaybackRecorder::PlanRoot(const std::vector<Transform>& T_root_link, int foot,
+                                     const std::vector<Transform>& T_world_link) {
+  if (foot_ < 0) {
+    T_plan_foot_ = LinkTransforms(
+        tree_, Eigen::VectorXd(Eigen::VectorXd::Zero(tree_.coordinate_count())))[At(foot)];
+    T_plan_foot_.translation().z() = 0.0;
+    T_plan_world_ = T_plan_foot_ * T_world_link[At(foot)].inverse();
+  } else if (foot != foot_) {
+    const Transform T_plan_root = T_plan_foot_ * T_root_link[At(foot_)].inverse();
+    T_plan_foot_ = T_plan_root * T_root_link[At(foot)];
+  }
+  foot_ = foot;
+  return T_plan_foot_ * T_root_link[At(foot)].inverse();
+}
+
+void PlaybackRecorder::AddDistances(const std::vector<Transform>& T_root_link,
+                                    const std::vector<int>& support,
+                                    const std::vector<Transform>& T_world_link) {
+  const Transform T_wanted = T_root_link[At(support.front())].inverse();
+  const Transform T_got = T_world_link[At(support.front())].inverse();
+  for (PlaybackTip& tip : playback_.tips) {
+    const bool stands = std::count(support.begin(), support.end(), tip.link) > 0;
+    const Eigen::Vector3d wanted = T_wanted * T_root_link[At(tip.link)].translation();
+    const Eigen::Vector3d got = T_got * T_world_link[At(tip.link)].translation();
+    tip.distance_m.push_back(stands ? std::numeric_limits<double>::quiet_NaN()
+                                    : (got - wanted).norm());
+  }
+}
+
+void PlaybackRecorder::Add(double time_s, const Eigen::VectorXd& q,
+                           const std::vector<Transform>& T_root_link,
+                           const std::vector<int>& support,
+                           const std::vector<Transform>& T_world_link) {
+  const Transform T_plan_root = PlanRoot(T_root_link, support.front(), T_world_link);
+  Displacement displacement(6, static_cast<Eigen::Index>(playback_.links.size()));
+  for (std::size_t i = 0; i < playback_.links.size(); ++i) {
+    const Transform wanted = T_plan_root * T_root_link[At(playback_.links[i])];
+    const Transform got = T_plan_world_ * T_world_link[At(playback_.links[i])];
+    displacement.col(static_cast<Eigen::Index>(i)) << got.translation() - wanted.translation(),
+        RotationVector(got.linear() * wanted.linear().transpose());
+  }
+  playback_.time_s.push_back(time_s);
+  playback_.q.push_back(q);
+  playback_.T_plan_root.push_back(T_plan_root);
+  playback_.displacement.push_back(std::move(displacement));
+  AddDistances(T_root_link, support, T_world_link);
+}
+
+std::string FormatPlaybacks(const RobotTree& tree, const std::vector<NamedPlayback>& robots) {
+  Json json = Json::object();
+  if (robots.empty()) return json.dump();
+  // The plan is the same for all; the robot that stood longest has most of it.
+  const Playback& longest =
+      *std::max_element(robots.begin(), robots.end(),
+                        [](const NamedPlayback& a, const NamedPlayback& b) {
+                          return a.playback->time_s.size() < b.playback->time_s.size();
+                        })
+           ->playback;
+  json["time_s"] = Json::array();
+  std::vector<double> q;
+  for (std::size_t i = 0; i < longest.time_s.size(); ++i) {
+    json["time_s"].push_back(std::round(1e3 * longest.time_s[i]) / 1e3);
+    q.insert(q.end(), longest.q[i].begin(), longest.q[i].end());
+  }
+  for (int joint : tree.coordinate_joint) json["joints"].push_back(tree.joints[At(joint)].name);
+  json["q"] = Base64Floats(q);
+  json["root"] = Base64Floats(PoseNumbers(longest.T_plan_root));
+  for (int link : longest.links) json["links"].push_back(tree.links[At(link)].name);
+  json["unit_m"] = kUnit;
+  json["unit_rad"] = kUnit;
+  for (const NamedPlayback& robot : robots) json["robots"].push_back(RobotJson(tree, robot));
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace elastocal

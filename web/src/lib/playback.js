@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+import {differences, floats} from './binary.js';
+
+const MOST_MOVED = 0.35;  // m or rad: further than that nothing is exaggerated
+
+/** Picture at or before a time; the last one after the end. */
+export function pictureAt(times, time) {
+  let low = 0;
+  let high = times.length - 1;
+  while (low < high) {
+    const middle = Math.ceil((low + high) / 2);
+    if (times[middle] <= time) low = middle; else high = middle - 1;
+  }
+  return low;
+}
+
+/** One executed robot: pictures of displacements from the plan, as the program packed them. */
+class PlayedRobot {
+  constructor(packed, links, unitM, unitRad) {
+    Object.assign(this, {as: packed.as, stabilised: packed.stabilised, pictures: packed.pictures, tips: packed.tips ?? []});
+    this.width = 6 * links;
+    this.values = differences(packed.displacement, this.width, this.pictures);
+    this.units = [unitM, unitM, unitM, unitRad, unitRad, unitRad];
+  }
+
+  /** Its last picture at i or before: a robot that fell stays where it lay. */
+  last(i) {
+    return Math.min(i, this.pictures - 1);
+  }
+
+  /** Displacement of a link in picture i: x, y, z in m, then a rotation vector in rad. */
+  displacement(i, link) {
+    const from = this.width * this.last(i) + 6 * link;
+    return this.units.map((unit, k) => unit * this.values[from + k]);
+  }
+
+  /** The factor asked for, or the largest that keeps the exaggerated robot in one piece. */
+  factor(i, wanted) {
+    let largest = 0;
+    const from = this.width * this.last(i);
+    for (let k = 0; k < this.width; ++k) largest = Math.max(largest, this.units[k % 6] * Math.abs(this.values[from + k]));
+    return Math.max(1, Math.min(wanted, largest > 0 ? MOST_MOVED / largest : wanted));
+  }
+
+  /** Largest distance from the plan, mm, of the places of a kind in picture i; null where all stand. */
+  distance(i, place) {
+    const known = this.tips.filter((tip) => tip.place === place).map((tip) => tip.distance_mm[this.last(i)]).filter((mm) => typeof mm === 'number');
+    return known.length > 0 ? Math.max(...known) : null;
+  }
+}
+
+/** `deployment.playback` made ready: the plan's pictures, and those of each robot. Null without any. */
+export function readPlayback(playback) {
+  const times = playback?.time_s ?? [];
+  if (times.length === 0 || !Array.isArray(playback.robots)) return null;
+  const [q, root] = [floats(playback.q), floats(playback.root)];
+  const n = playback.joints?.length ?? 0;
+  return {
+    times,
+    joints: playback.joints ?? [],
+    links: playback.links ?? [],
+    posture: (i) => q.subarray(n * i, n * (i + 1)),
+    root: (i) => ({position: Array.from(root.subarray(7 * i, 7 * i + 3)), quaternion: Array.from(root.subarray(7 * i + 3, 7 * i + 7))}),
+    robots: playback.robots.map((robot) => new PlayedRobot(robot, playback.links.length, playback.unit_m, playback.unit_rad)).filter((robot) => robot.pictures > 0),
+  };
+}
+
+/** Distances of all robots as rows: as, time, then the tips in order. */
+export function distanceRows({times, robots}) {
+  return robots.flatMap((robot) => Array.from({length: robot.pictures}, (_, i) => [robot.as, times[i], ...robot.tips.map((tip) => tip.distance_mm[i])]));
+}
