@@ -113,6 +113,44 @@ void ExpectSize(const CauseReport& report, const CauseFinding& finding, const In
   }
 }
 
+/// What the injected cause does at a value of the variable that drives it, rad or m.
+double InjectedEffect(const Injected& injected, const CausePicture& picture, double x,
+                      const CauseReport& report) {
+  const std::string cause = injected.cause;
+  const Correction& correction = report.corrections[static_cast<std::size_t>(picture.correction)];
+  if (cause.ends_with("eccentricity")) return injected.size * std::sin(x);
+  if (cause.ends_with("backlash")) return std::abs(x) > 2.0 ? std::copysign(injected.size, x) : NAN;
+  if (cause.ends_with("hysteresis") || cause.ends_with("suspension")) return injected.size * x;
+  return injected.size * (x - correction.centre);  // gear, drift
+}
+
+/// The dots show the injected cause, and scatter about it no more than they say; the curve is near
+/// it, as far as springs and geometry leave it.
+void ExpectPicture(const CauseReport& report, const Injected& injected) {
+  ASSERT_FALSE(report.pictures.empty());
+  ASSERT_LE(report.pictures.size(), 6u);
+  const CausePicture& picture = report.pictures.front();
+  EXPECT_EQ(picture.finding.cause, injected.cause);
+  ASSERT_GT(picture.x.size(), 30);
+  double squares = 0.0, off = 0.0, effect = 0.0, count = 0.0;
+  for (Eigen::Index i = 0; i < picture.x.size(); ++i) {
+    const double wanted = InjectedEffect(injected, picture, picture.x[i], report);
+    if (!std::isfinite(wanted)) continue;
+    squares += std::pow((picture.y[i] - wanted) / picture.sd[i], 2);
+    off += std::pow(picture.y[i] - wanted, 2);
+    effect += std::pow(wanted, 2);
+    count += 1.0;
+  }
+  EXPECT_LT(off, 0.5 * effect) << injected.cause << ": the dots show the cause";
+  EXPECT_LT(std::sqrt(squares / count), 1.5) << injected.cause;
+  EXPECT_NEAR(picture.curve_x.maxCoeff(), picture.x.maxCoeff(), 1e-12);
+  for (Eigen::Index i : {Eigen::Index{0}, picture.curve_x.size() - 1}) {
+    const double wanted = InjectedEffect(injected, picture, picture.curve_x[i], report);
+    if (!std::isfinite(wanted)) continue;
+    EXPECT_NEAR(picture.curve_y[i], wanted, 0.4 * std::sqrt(effect / count)) << injected.cause;
+  }
+}
+
 TEST(Causes, TheInjectedOneIsNamedFirst) {
   const Project project = Elastic(ArmProject());
   for (const Injected& injected : kInjected) {
@@ -126,6 +164,7 @@ TEST(Causes, TheInjectedOneIsNamedFirst) {
       if (search.accepted && named == injected.cause) {
         ++first;
         ExpectSize(report, search.chosen.front(), injected);
+        ExpectPicture(report, injected);
       } else {
         std::printf("  seed %d: %s%s (best %s, p %.2g)\n", seed, named.c_str(),
                     search.accepted ? "" : " not accepted", search.findings.front().cause.c_str(),

@@ -50,8 +50,13 @@ CauseReport StudyCauses(const Project& given, const Measurements& measured,
   const ErrorModel wide =
       SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
   const LinearStudy study = MakeLinearStudy(wide, recording, result, project.calibration);
-  return {SearchCauses(study, {.seed = seed.value_or(1)}), wide.parameters,
-          wide.elasticity.corrections, recording.posture_count()};
+  CauseReport report;
+  report.search = SearchCauses(study, {.seed = seed.value_or(1)});
+  report.parameters = wide.parameters;
+  report.corrections = wide.elasticity.corrections;
+  report.postures = recording.posture_count();
+  report.pictures = DrawCauses(study, report.search, wide, recording, result, project.calibration);
+  return report;
 }
 
 std::optional<CauseReport> ChooseCauses(const Measurements& measured,

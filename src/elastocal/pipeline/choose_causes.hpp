@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastocal/calibration/cause_search.hpp"
+#include "elastocal/pipeline/cause_pictures.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 
 namespace elastocal {
@@ -18,6 +19,7 @@ struct CauseReport {
   std::vector<Parameter> parameters;    ///< that CauseFinding::parameters refer to
   std::vector<Correction> corrections;  ///< that these refer to
   int postures = 0;
+  std::vector<CausePicture> pictures;  ///< of the causes that were taken, and of the best others
 };
 
 /// Calibrates without extra causes (those of `project` are ignored), then tests each and searches

@@ -10,6 +10,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
+#include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/report/json_reader.hpp"
@@ -120,7 +121,12 @@ std::string SizeOf(const CauseReport& report, const CauseFinding& finding) {
   if (harmonic && finding.estimate.size() == 2) {
     value = std::hypot(finding.estimate[0], finding.estimate[1]);
   }
-  return fmt::format("{:.2g} +- {:.1g} {}", factor * value, factor * finding.sd[surest], unit);
+  // Both end at the second significant digit of the standard deviation.
+  const double sd = factor * finding.sd[surest];
+  const int decimals = std::isfinite(sd) && sd > 0.0
+                           ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sd))), 0, 8)
+                           : 2;
+  return fmt::format("{:.{}f} +- {:.{}f} {}", factor * value, decimals, sd, decimals, unit);
 }
 
 Json CandidateJson(const CauseReport& report, const CauseFinding& finding) {
@@ -238,6 +244,7 @@ std::string MakeDiagnosisJson(const Diagnosis& diagnosis) {
     json["chosen"].push_back(CandidateJson(diagnosis.report, finding));
   }
   json["words"] = DescribeDiagnosis(diagnosis.report);
+  json["pictures"] = CausePicturesJson(diagnosis.report);
   json["candidates"] = Json::array();
   for (const CauseFinding& finding : search.findings) {
     json["candidates"].push_back(CandidateJson(diagnosis.report, finding));

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/calibration/leg_stiffness.hpp"
+#include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/diagnose.hpp"
 
 namespace elastocal {
@@ -297,7 +298,10 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["short_models"] = ShortModels(run);
   json["elasticity_tried"] = ElasticityJson(run.elasticity);
   if (!run.extra.empty()) json["extra"] = run.extra;
-  if (run.causes) json["diagnosis"] = DescribeDiagnosis(*run.causes);
+  if (run.causes) {
+    json["diagnosis"] = DescribeDiagnosis(*run.causes);
+    json["diagnosis_pictures"] = CausePicturesJson(*run.causes);
+  }
   json["excitation"] = ExcitationJson(run);
   json["iterations"] = result.iterations;
   json["initial_cost"] = result.initial_cost;

@@ -125,8 +125,8 @@ Json MissingJson(const Json& report, const std::string& folder) {
 
 std::vector<std::string> ReportFiles(const std::vector<std::string>& names) {
   static const std::vector<std::string> known = {
-      "summary.json",    "report_data.json", "validation.json", "comparison.json",
-      "deployment.json", "robot_data.json",  "runs.json",       "motion.csv"};
+      "summary.json",   "report_data.json", "validation.json", "comparison.json", "deployment.json",
+      "diagnosis.json", "robot_data.json",  "runs.json",       "motion.csv"};
   const auto has = [](const std::vector<std::string>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
@@ -147,7 +147,8 @@ std::string MakeReportJson(const ReportSources& sources) {
   for (const auto& [key, name] :
        {std::pair{"summary", "summary.json"}, std::pair{"data", "report_data.json"},
         std::pair{"validation", "validation.json"}, std::pair{"comparison", "comparison.json"},
-        std::pair{"deployment", "deployment.json"}, std::pair{"runs", "runs.json"}}) {
+        std::pair{"deployment", "deployment.json"}, std::pair{"diagnosis", "diagnosis.json"},
+        std::pair{"runs", "runs.json"}}) {
     const auto file = sources.files.find(name);
     if (file != sources.files.end()) report[key] = ParseJsonObject(file->first, file->second);
   }

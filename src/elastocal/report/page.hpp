@@ -25,10 +25,9 @@ struct ReportSources {
 };
 
 /// Those of the files of a folder, by name, that a page shows: summary.json, report_data.json,
-/// robot_data.json, validation.json, comparison.json, deployment.json, runs.json; what design
-/// writes
-/// (`*_curves.csv`,
-/// `*_summary.json`) and plan (motion.csv, or X.csv beside X_margins.json).
+/// robot_data.json, validation.json, comparison.json, deployment.json, diagnosis.json,
+/// runs.json; what design writes (`*_curves.csv`, `*_summary.json`) and plan (motion.csv, or X.csv
+/// beside X_margins.json).
 std::vector<std::string> ReportFiles(const std::vector<std::string>& names);
 
 /// The data of a page, as docs/formats.md has it under "report.html": everything that the files

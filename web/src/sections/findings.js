@@ -6,6 +6,7 @@ import {count, fixed, list, plural, withSd} from '../lib/format.js';
 import {groupTexts, knownNames, othersOf, sentence, spoken} from '../lib/groups.js';
 import {outlierRows, placeOf} from '../lib/outliers.js';
 import {table} from '../lib/table.js';
+import {causesFigure} from './causes.js';
 
 const SHOWN = 25;
 
@@ -20,6 +21,13 @@ function groupLine(group, names) {
 function words(title, kind, items, names) {
   if (!items?.length) return null;
   return h('div', {class: `words state-${kind}`}, h('h3', {}, title), h('ul', {}, ...groupTexts(items, names).map((group) => groupLine(group, names))));
+}
+
+/** What diagnose says, sentence by sentence: each has its own numbers, so that none is like another. */
+function causeWords(texts, names) {
+  if (texts.length === 0) return null;
+  return h('div', {class: 'words'}, h('h3', {}, 'What geometry and springs leave, and why'),
+    h('ul', {}, ...texts.map((text) => h('li', {}, text.endsWith(':') ? text : sentence(text.trim(), names)))));
 }
 
 function outlierFigure(report) {
@@ -69,9 +77,10 @@ export function findingsSection(report) {
   if (!summary) return null;
   const names = knownNames(report);
   const {objections, remarks, warnings} = spoken(summary);
-  const quiet = !objections.length && !remarks.length && !warnings.length && !summary.outliers?.length && !summary.diagnosis?.length;
+  const diagnosis = report.diagnosis?.words ?? summary.diagnosis ?? [];
+  const quiet = !objections.length && !remarks.length && !warnings.length && !summary.outliers?.length && !diagnosis.length;
   return section('findings', 'Findings', 'Warnings and outliers', quiet ? 'The program found nothing that needs a look.' : 'This is what the program found on the way, the gravest first.',
     words('Why the result should not be deployed', 'bad', objections, names), words('Look at these before deploying', 'check', remarks, names),
-    words('What geometry and springs leave, and why', '', (summary.diagnosis ?? []).map((text) => text.trim()), names),
+    causeWords(diagnosis, names), causesFigure(report),
     words('Warnings', '', warnings, names), outlierFigure(report), trialsFigure(report));
 }

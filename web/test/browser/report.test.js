@@ -204,7 +204,7 @@ test('the stiffness of a leg has its interval, or is unknown', async () => {
 
 test('nine equal warnings are one line with the names, and fold out', async () => {
   const {page, problems} = await openPage(browser, sample);
-  const lines = await page.$$eval('#findings .words:not(.state-check) > ul > li', (all) => all.map((li) => li.firstChild.textContent + (li.querySelector(':scope > .others')?.textContent ?? '')));
+  const lines = await page.$$eval('#findings .words.state- > ul > li', (all) => all.map((li) => li.firstChild.textContent + (li.querySelector(':scope > .others')?.textContent ?? '')));
   assert.equal(lines.length, 2);
   assert.match(lines[1], /"arm_1_joint".*The same is true of "arm_2_joint", .* and "arm_9_joint"\.$/);
   await page.click('#findings .words details summary');
@@ -280,6 +280,27 @@ test('the executed robots play beside the plan, with one clock', async () => {
   assert.ok(await page.isVisible('#deployment figure:not(.playback) table'));
   assert.deepEqual(problems, []);
   await page.close();
+});
+
+test('causes are shown with their curve, and the file of diagnose goes before the summary', async () => {
+  const {page, problems} = await openPage(browser, sample);
+  const names = () => page.$$eval('#findings .cause h4', (all) => all.map((h4) => h4.textContent));
+  assert.deepEqual(await names(), ['arm_1_joint.eccentricity', `${EVIL}.hysteresis`, 'waist.drift']);
+  assert.equal(await page.$$eval('#findings .cause .plot canvas', (all) => all.filter((c) => c.width > 100).length), 3);
+  await page.focus('#findings .cause .plot');
+  await page.keyboard.press('Home');
+  assert.match(await page.textContent('#findings .cause .readout'), /position of arm_1_joint −[89]\d/);
+  assert.deepEqual(problems, []);
+  await page.close();
+  const report = sampleReport();
+  report.diagnosis = {words: ['None of 44 causes was found.'], pictures: report.summary.diagnosis_pictures.slice(2)};
+  const file = join(folder, 'diagnosed.html');
+  writeFileSync(file, fill(readFileSync(template, 'utf8'), report));
+  const other = await openPage(browser, file);
+  assert.deepEqual(await other.page.$$eval('#findings .cause h4', (all) => all.map((h4) => h4.textContent)), ['waist.drift']);
+  assert.ok((await other.page.textContent('#findings')).includes('None of 44 causes was found.'));
+  assert.deepEqual(other.problems, []);
+  await other.page.close();
 });
 
 test('a folder with a plan alone plays it', async () => {

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/calibration/cause_search.hpp"
+
+namespace elastocal {
+
+/// What drives a cause.
+enum class CauseVariable {
+  kPosition,  ///< of a joint, rad or m
+  kLoad,      ///< of a joint, N.m or N
+  kApproach,  ///< direction of the last motion, -1 or 1
+  kMoment,    ///< of the weight on the root link, N.m
+  kTime       ///< h
+};
+
+/// What a cause looks like: displacement of the joint (or of the root link) against what drives it.
+/// The points are partial residuals (Larsen and McCleary 1972): the displacement that the cause has
+/// in a posture, and what that posture's own residuals ask for beside it.
+struct CausePicture {
+  CauseFinding finding;
+  /// Those of `finding.parameters` that are drawn: with one displacement and one variable.
+  std::vector<int> parameters;
+  int correction = 0;  ///< of the model, of the first of them
+  CauseVariable variable = CauseVariable::kPosition;
+  int joint = -1;             ///< whose position, load or motion is the variable; -1: of none
+  std::string driver, owner;  ///< name of that joint, and of the one displaced; empty: of none
+  bool is_angle = false;      ///< whether the displacement is in rad, and not in m
+  std::vector<int> postures;
+  /// By posture: variable, displacement, and standard deviation of that by the noise of the
+  /// markers.
+  Eigen::VectorXd x, y, sd;
+  Eigen::VectorXd curve_x, curve_y;  ///< the cause as it was estimated
+};
+
+/// At most `most` pictures: of the causes that were taken, each beside those before it, then of the
+/// others, the smallest p first, beside the calibration alone. Postures in which the displacement
+/// is known four times worse than in most are left out, and of very many only some are shown.
+/// `wide`, `recording`, `result`, `options`: what the study was made from.
+std::vector<CausePicture> DrawCauses(const LinearStudy& study, const CauseSearch& search,
+                                     const ErrorModel& wide, const Recording& recording,
+                                     const CalibrationResult& result,
+                                     const CalibrationOptions& options, int most = 6);
+
+}  // namespace elastocal
