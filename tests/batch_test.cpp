@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/report/page.hpp"
 #include "tests/run_program.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -33,6 +34,12 @@ studies:
   ProgramResult Run(const std::string& folder, const std::string& more = "") {
     return RunProgram("batch " + manifest_ + " -o " + Folder(folder) + " " + more);
   }
+  /// What a page shows.
+  static nlohmann::json PageData(const std::string& page) {
+    const std::string begin = "<script type=\"application/json\" id=\"report-data\">";
+    const std::size_t from = page.find(begin) + begin.size();
+    return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+  }
   std::string Read(const std::string& folder, const std::string& file) {
     return ReadFile(fs::path(Folder(folder)) / file);
   }
@@ -46,6 +53,15 @@ TEST_F(Batch, IsDoneOnceAndTheSameInWhateverOrder) {
   ASSERT_EQ(first.exit_code, 0) << first.out << first.err;
   EXPECT_TRUE(first.out.starts_with("4 tasks: 4 to be deployed")) << first.out;
   EXPECT_FALSE(fs::exists(Folder("two") + "/arm_1_recording"));
+  if (!PageTemplate().empty()) {
+    const nlohmann::json page = PageData(Read("two", "fleet.html"));
+    EXPECT_EQ(page["format"], "elastocal-fleet-1");
+    EXPECT_EQ(page["fleet"], nlohmann::json::parse(Read("two", "fleet.json")));
+    ASSERT_EQ(page["sessions"].size(), 4u);
+    EXPECT_EQ(page["sessions"][2]["robot"], "arm_3");
+    EXPECT_GT(page["sessions"][2]["uncalibrated_mm"], page["sessions"][2]["urdf_mm"]);
+    EXPECT_TRUE(page["prior"]);
+  }
   ASSERT_EQ(Run("one", "--workers 1").exit_code, 0);
   for (const char* file : {"prior/covariance.csv", "family.csv", "arm_3/covariance.csv"}) {
     EXPECT_EQ(Read("one", file), Read("two", file)) << file;

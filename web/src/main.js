@@ -2,6 +2,7 @@
 import './style.css';
 import './print.css';
 
+import {batchesSection, driftSection, familySection, fleetNotesSection, fleetRobotsSection, fleetVerdictSection, outOfFamilySection} from './fleet/sections.js';
 import {h} from './lib/dom.js';
 import {isDark, setTheme} from './lib/theme.js';
 import {contactSection, contactVerdictSection} from './sections/contact.js';
@@ -32,6 +33,18 @@ const SECTIONS_OF_TOUCHES = [
   reproduceSection,
 ];
 
+// Of a fleet: which robots need somebody, and what they have in common.
+const SECTIONS_OF_A_FLEET = [
+  fleetVerdictSection, fleetRobotsSection, outOfFamilySection, batchesSection, driftSection, familySection, fleetNotesSection,
+];
+
+const isFleet = (report) => report.format === 'elastocal-fleet-1';
+
+function sectionsOf(report) {
+  if (isFleet(report)) return SECTIONS_OF_A_FLEET;
+  return report.summary?.contact ? SECTIONS_OF_TOUCHES : SECTIONS;
+}
+
 /** A part that fails says so in its place and leaves the others alone. */
 function build(make, report) {
   try {
@@ -42,11 +55,12 @@ function build(make, report) {
   }
 }
 
+const titleOf = (report) => isFleet(report) ? 'Fleet' : report.summary?.robot || report.data?.robot?.name || report.folder || '';
+
 function header(report) {
   const dark = h('button', {type: 'button', class: 'quiet', onclick: () => setTheme(isDark() ? 'light' : 'dark')}, 'Light / dark');
-  const robot = report.summary?.robot ?? report.data?.robot?.name ?? '';
-  return h('header', {class: 'top'}, h('p', {class: 'brand'}, h('strong', {}, 'elastocal'), ' calibration report'),
-    h('h1', {}, robot || report.folder || 'Report'),
+  return h('header', {class: 'top'}, h('p', {class: 'brand'}, h('strong', {}, 'elastocal'), isFleet(report) ? ' fleet report' : ' calibration report'),
+    h('h1', {}, titleOf(report) || 'Report'),
     h('p', {class: 'source'}, report.summary?.recording ? `from ${report.summary.recording}` : report.folder ?? ''), dark);
 }
 
@@ -63,9 +77,8 @@ function licences() {
 }
 
 function show(report) {
-  const sections = (report.summary?.contact ? SECTIONS_OF_TOUCHES : SECTIONS).map((make) => build(make, report)).filter(Boolean);
-  const title = report.summary?.robot ?? report.folder ?? '';
-  document.title = `${title} – elastocal report`;
+  const sections = sectionsOf(report).map((make) => build(make, report)).filter(Boolean);
+  document.title = `${titleOf(report)} – elastocal report`;
   document.getElementById('app').append(
     h('a', {class: 'skip', href: '#main'}, 'Skip to the report'), header(report), contents(sections),
     h('main', {id: 'main'}, ...sections),

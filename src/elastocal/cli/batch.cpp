@@ -20,6 +20,7 @@
 #include "elastocal/fleet/task_process.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/report/page.hpp"
 #include "elastocal/robot/parameters.hpp"
 
 namespace elastocal::cli {
@@ -155,6 +156,8 @@ std::string DescribeReport(const FleetReport& report, const fs::path& output) {
                         Millimetres(report.family.median_error, 3));
   }
   text += DescribeFamily(report);
+  if (!PageTemplate().empty())
+    text += fmt::format("Report: {}\n", (output / "fleet.html").string());
   if (!report.prior.parameters.empty()) {
     text += fmt::format("Prior for the next robot: calibrate --prior {} --days 0\n",
                         (output / "prior").string());

@@ -142,6 +142,9 @@ void AddDrifts(const std::string& name, const Values& values,
     if (of.size() < 2 || !(squares > 0.0)) continue;
     const double slope = product / squares, sd = 1.0 / std::sqrt(squares);
     findings.push_back({robot, name, values.unit, slope, sd, StudentTwoSidedTail(slope / sd, 1e6)});
+    for (const Value* one : of) {
+      findings.back().sessions.push_back({*members[one->member].day, one->value, one->sd});
+    }
   }
 }
 

@@ -40,11 +40,17 @@ struct BatchDifference {
   double p_adjusted = 1.0;
 };
 
+/// A parameter as a session of a robot found it, SI.
+struct SessionValue {
+  double day = 0.0, value = 0.0, sd = 0.0;
+};
+
 /// A parameter that changes over the sessions of a robot.
 struct ParameterDrift {
   std::string robot, parameter, unit;
   double per_day = 0.0, sd = 0.0;
   double p_adjusted = 1.0;
+  std::vector<SessionValue> sessions = {};  ///< in the order of the members
 };
 
 struct FleetFamily {

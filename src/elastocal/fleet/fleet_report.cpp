@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/fleet/fleet_page.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -99,6 +100,10 @@ std::string FleetJson(const FleetReport& report) {
   for (const ParameterDrift& one : report.family.drifts) {
     Json found = FindingJson(one.parameter, one.unit, one.p_adjusted);
     found.update({{"robot", one.robot}, {"per_day", one.per_day}, {"sd", one.sd}});
+    for (const SessionValue& session : one.sessions) {
+      found["sessions"].push_back(
+          {{"day", session.day}, {"value", session.value}, {"sd", session.sd}});
+    }
     json["drifts"].push_back(std::move(found));
   }
   json["notes"] = report.notes;
@@ -175,12 +180,15 @@ FleetReport MakeFleetReport(const std::vector<FleetTask>& tasks, const std::vect
 }
 
 std::vector<fs::path> FleetFileNames() {
-  return {"fleet.json", "sessions.csv", "family.csv", "prior/calibration.yaml",
-          "prior/covariance.csv"};
+  return {
+      "fleet.json",          "fleet.html", "sessions.csv", "family.csv", "prior/calibration.yaml",
+      "prior/covariance.csv"};
 }
 
 std::vector<std::string> MakeFleetFiles(const FleetReport& report) {
-  std::vector<std::string> files = {FleetJson(report), SessionsTable(report), FamilyTable(report)};
+  const std::string json = FleetJson(report);
+  std::vector<std::string> files = {json, MakeFleetPage(report, json), SessionsTable(report),
+                                    FamilyTable(report)};
   if (report.prior.parameters.empty()) {
     files.insert(files.end(), 2, "");
   } else {

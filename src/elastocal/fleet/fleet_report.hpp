@@ -35,11 +35,12 @@ struct FleetReport {
 FleetReport MakeFleetReport(const std::vector<FleetTask>& tasks, const std::vector<TaskEnd>& ends,
                             const std::filesystem::path& output, double level = 0.05);
 
-/// The names of the files of a report in the folder of a batch: fleet.json, sessions.csv,
-/// family.csv, prior/calibration.yaml and prior/covariance.csv.
+/// The names of the files of a report in the folder of a batch: fleet.json, fleet.html,
+/// sessions.csv, family.csv, prior/calibration.yaml and prior/covariance.csv.
 std::vector<std::filesystem::path> FleetFileNames();
 
-/// Their contents in that order; the prior's are empty where there is none.
+/// Their contents in that order; the prior's are empty where there is none, and so is the page
+/// where the program was built without it.
 std::vector<std::string> MakeFleetFiles(const FleetReport& report);
 
 }  // namespace elastocal

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "elastocal/fleet/fleet_report.hpp"
+
+namespace elastocal {
+
+/// The report of a fleet as one HTML file that needs nothing else (docs/formats.md): robots with
+/// verdict and figures, and what they have in common. `fleet_json`: the text of fleet.json. Empty
+/// where the program was built without the page.
+std::string MakeFleetPage(const FleetReport& report, const std::string& fleet_json);
+
+}  // namespace elastocal
