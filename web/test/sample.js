@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A report made by hand: every section has data, and some names are HTML.
+import {deflateSync} from 'node:zlib';
+
 import {EVIL, joints, markerPositions, markers, stl, urdf, WAIST} from './sample_robot.js';
 
 const float32 = (values) => Buffer.from(new Float32Array(values).buffer).toString('base64');
@@ -108,10 +110,10 @@ function samplePictures() {
           of('waist.drift', 'time', 'h', Array.from({length: 60}, (_, i) => i / 30), (x) => 0.5 * (x - 1), line(0, 2))];
 }
 
-/** A byte for each difference from picture to picture, as the program packs displacements. */
+/** A byte for each difference from picture to picture, deflated, as the program packs displacements. */
 function packed(pictures) {
   const flat = pictures.flatMap((picture, i) => picture.map((x, k) => x - (i > 0 ? pictures[i - 1][k] : 0)));
-  return Buffer.from(Int8Array.from(flat).buffer).toString('base64');
+  return deflateSync(Buffer.from(Int8Array.from(flat).buffer)).toString('base64');
 }
 
 /** Two robots that execute a motion of 40 pictures; one falls after 25. */
@@ -119,7 +121,7 @@ function sampleDeployment() {
   const pictures = 40;
   const times = Array.from({length: pictures}, (_, i) => 0.2 * (i + 1));
   const links = ['base_link', 'thigh', 'shank', 'upper_arm', 'forearm', 'head', 'sole'];
-  const qs = times.map((t) => joints.map((_, k) => 0.5 * Math.sin(t + k)));
+  const qs = times.map((t) => joints.map((_, k) => Math.round(120 * Math.sin(t / 10 + k))));
   const robot = (as, count, mm) => ({as, stabilised: true, pictures: count,
     displacement: packed(times.slice(0, count).map((t) => links.flatMap((_, k) => [Math.round(10 * mm), k, Math.round(20 * Math.sin(t)), 0, 0, k]))),
     tips: [{link: 'forearm', place: 'hand', distance_mm: times.slice(0, count).map((_, i) => mm + 0.1 * i)},
@@ -127,7 +129,7 @@ function sampleDeployment() {
   const error = (mm) => ({rms_mm: mm, max_mm: 2 * mm, rms_deg: 0.1, max_deg: 0.2, samples: 40});
   const run = (as, mm, stood) => ({as, stabilised: true, refused: '', stood, time_s: stood ? 8 : 5, hands: error(mm), swinging_feet: error(mm), landing: error(mm), waist: error(mm), centre_of_mass: error(mm), stabiliser_largest_shift_mm: 4});
   return {executions: [run('nominal', 12, false), run('compensated', 1.5, true)],
-    playback: {time_s: times, joints, links, unit_m: 1e-4, unit_rad: 1e-4, q: float32(qs.flat()), root: float32(times.flatMap(() => [...WAIST, 0, 0, 0, 1])),
+    playback: {time_s: times, joints, links, unit_m: 1e-4, unit_rad: 1e-4, q: packed(qs), root: float32(times.flatMap(() => [...WAIST, 0, 0, 0, 1])),
       robots: [robot('nominal', 25, 12), robot('compensated', pictures, 1.5)]}};
 }
 

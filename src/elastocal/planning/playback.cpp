@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <stdexcept>
 
 #include <nlohmann/json.hpp>
+#include <zlib.h>
 
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/report/encoding.hpp"
@@ -32,33 +34,45 @@ std::vector<int> PlayedLinks(const RobotTree& tree, const std::vector<PlaybackTi
   return links;
 }
 
+/// Bytes in zlib's format (RFC 1950).
+std::string Deflated(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string result(size, '\0');
+  const int status =
+      compress2(reinterpret_cast<Bytef*>(result.data()), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+  if (status != Z_OK) throw std::runtime_error("zlib: no memory for " + std::to_string(size));
+  result.resize(size);
+  return result;
+}
+
 /// Each number, in kUnit, as what it differs by from that of the picture before (of the first: from
-/// zero), in a byte; where that is not enough, -128 and then the number itself in two bytes,
-/// little-endian. What is beyond two bytes becomes the nearest that is not.
-std::string Base64Differences(const std::vector<Displacement>& pictures) {
-  constexpr int kMostStep = 127, kMostNumber = 32767;
+/// zero), in a byte; where that is not enough, -128 and then the number itself in four bytes,
+/// little-endian. All of it deflated and in base64.
+template <typename Picture>
+std::string Base64Differences(const std::vector<Picture>& pictures) {
+  constexpr int kMostStep = 127;
+  constexpr double kMostNumber = 2e9;
   std::string bytes;
   Eigen::ArrayXXi before;
-  for (const Displacement& picture : pictures) {
-    const Eigen::ArrayXXi now = (picture.array() / kUnit)
-                                    .round()
-                                    .min(static_cast<double>(kMostNumber))
-                                    .max(-static_cast<double>(kMostNumber))
-                                    .cast<int>();
+  for (const Picture& picture : pictures) {
+    const Eigen::ArrayXXi now =
+        (picture.array() / kUnit).round().min(kMostNumber).max(-kMostNumber).template cast<int>();
     if (before.size() == 0) before = Eigen::ArrayXXi::Zero(now.rows(), now.cols());
     for (Eigen::Index i = 0; i < now.size(); ++i) {
-      const int number = now.data()[i], step = number - before.data()[i];
+      const std::int64_t number = now.data()[i], step = number - before.data()[i];
       if (std::abs(step) <= kMostStep) {
         bytes += static_cast<char>(step);
         continue;
       }
-      const auto bits = static_cast<std::uint16_t>(number);
-      bytes +=
-          {static_cast<char>(-128), static_cast<char>(bits & 0xff), static_cast<char>(bits >> 8)};
+      bytes += static_cast<char>(-128);
+      for (int shift = 0; shift < 32; shift += 8) {
+        bytes += static_cast<char>((number >> shift) & 0xff);
+      }
     }
     before = now;
   }
-  return Base64(bytes);
+  return Base64(Deflated(bytes));
 }
 
 /// By picture x, y, z and quaternion x, y, z, w.
@@ -162,13 +176,9 @@ std::string FormatPlaybacks(const RobotTree& tree, const std::vector<NamedPlayba
                         })
            ->playback;
   json["time_s"] = Json::array();
-  std::vector<double> q;
-  for (std::size_t i = 0; i < longest.time_s.size(); ++i) {
-    json["time_s"].push_back(std::round(1e3 * longest.time_s[i]) / 1e3);
-    q.insert(q.end(), longest.q[i].begin(), longest.q[i].end());
-  }
+  for (double time : longest.time_s) json["time_s"].push_back(std::round(1e3 * time) / 1e3);
   for (int joint : tree.coordinate_joint) json["joints"].push_back(tree.joints[At(joint)].name);
-  json["q"] = Base64Floats(q);
+  json["q"] = Base64Differences(longest.q);
   json["root"] = Base64Floats(PoseNumbers(longest.T_plan_root));
   for (int link : longest.links) json["links"].push_back(tree.links[At(link)].name);
   json["unit_m"] = kUnit;

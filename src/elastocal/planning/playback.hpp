@@ -66,8 +66,8 @@ struct NamedPlayback {
   const Playback* playback = nullptr;
 };
 
-/// The playbacks of robots that execute one plan, as JSON (docs/formats.md): displacements in
-/// 0.1 mm and 0.1 mrad, a byte for what has changed from picture to picture.
+/// The playbacks of robots that execute one plan, as JSON (docs/formats.md): numbers in 0.1 mm and
+/// 0.1 mrad, a byte for what has changed from picture to picture, deflated.
 std::string FormatPlaybacks(const RobotTree& tree, const std::vector<NamedPlayback>& robots);
 
 }  // namespace elastocal

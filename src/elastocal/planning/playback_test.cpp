@@ -5,15 +5,39 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <zlib.h>
 
 #include "elastocal/math/rotation_vector.hpp"
-#include "elastocal/report/encoding.hpp"
 #include "tests/biped.hpp"
 
 namespace elastocal {
 namespace {
 
 using Json = nlohmann::json;
+
+std::string FromBase64(const std::string& text) {
+  const std::string alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned bits = 0, count = 0;
+  for (const char c : text.substr(0, text.find('='))) {
+    bits = (bits << 6) | static_cast<unsigned>(alphabet.find(c));
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>((bits >> count) & 0xff);
+  }
+  return bytes;
+}
+
+std::string Inflated(const std::string& deflated) {
+  std::string bytes(1000, '\0');
+  uLongf size = bytes.size();
+  const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                                reinterpret_cast<const Bytef*>(deflated.data()), deflated.size());
+  EXPECT_EQ(status, Z_OK);
+  bytes.resize(size);
+  return bytes;
+}
 
 /// A biped in a planned posture, somewhere in the world.
 struct Played {
@@ -82,7 +106,8 @@ TEST(Playback, DisplacementAndDistanceAreThoseOfTheLink) {
   recorder.Add(0.2, played.q, played.T_root_link, {played.left}, T_world_link);
   const Playback& playback = recorder.playback();
   for (std::size_t i = 0; i < playback.links.size(); ++i) {
-    const Eigen::Matrix<double, 6, 1> moved = playback.displacement[1].col(static_cast<Eigen::Index>(i));
+    const Eigen::Matrix<double, 6, 1> moved =
+        playback.displacement[1].col(static_cast<Eigen::Index>(i));
     const bool is_trunk = playback.links[i] == played.trunk;
     EXPECT_NEAR(moved.head<3>().norm(), is_trunk ? 13e-3 : 0.0, 1e-12);
     EXPECT_NEAR(moved.tail<3>().norm(), is_trunk ? 20e-3 : 0.0, 1e-12);
@@ -101,7 +126,7 @@ TEST(Playback, JsonHasDifferencesInTenthsAndNullForAStandingFoot) {
   const Eigen::VectorXd q(0);
   const std::vector<Transform> still = {Transform::Identity()};
   recorder.Add(0.2, q, still, {0}, still);
-  // 12.34 mm, and 5 m and 3 mrad the other way: a step of a byte, and what two bytes cannot hold.
+  // 12.34 mm, and 5 m and 3 mrad the other way: a step of a byte, and more than one.
   Transform moved(Eigen::Translation3d(12.34e-3, -5.0, 0.0));
   moved.linear() = RotationFromVector({0.0, 0.0, -3e-3});
   recorder.Add(0.4, q, still, {0}, {moved});
@@ -116,12 +141,11 @@ TEST(Playback, JsonHasDifferencesInTenthsAndNullForAStandingFoot) {
   EXPECT_EQ(robot["pictures"], 3);
   EXPECT_EQ(robot["tips"][0]["place"], "foot");
   EXPECT_EQ(robot["tips"][0]["distance_mm"], Json::parse("[null, null, null]"));
-  // 123, -32767 (escaped), 0; 0, 0, -30. Then -124 (-247 from there: escaped), the same, 1; the
-  // same.
+  // 123, -50000 (escaped: b0 3c ff ff), 0; 0, 0, -30. Then -124 (-247 from there: escaped), 0, 1.
   const std::string bytes = std::string(6, '\0') +
-                            std::string("\x7b\x80\x01\x80\x00\x00\x00\xe2", 8) +
-                            std::string("\x80\x84\xff\x00\x01\x00\x00\x00", 8);
-  EXPECT_EQ(robot["displacement"], Base64(bytes));
+                            std::string("\x7b\x80\xb0\x3c\xff\xff\x00\x00\x00\xe2", 10) +
+                            std::string("\x80\x84\xff\xff\xff\x00\x01\x00\x00\x00", 10);
+  EXPECT_EQ(Inflated(FromBase64(robot["displacement"])), bytes);
 }
 
 }  // namespace

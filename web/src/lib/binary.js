@@ -14,20 +14,26 @@ export function floats(base64) {
   return result;
 }
 
+/** Deflated bytes (zlib), from base64. */
+export async function inflated(base64) {
+  const stream = new Blob([bytes(base64 ?? '')]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
 /**
- * Integers of rows of `width`, from base64: each as the difference to the row before (of the first: to zero) in a
- * signed byte, or -128 and then itself in two bytes, little-endian.
+ * Integers of rows of `width`, from bytes: each as the difference to the row before (of the first: to zero) in a
+ * signed byte, or -128 and then itself in four bytes, little-endian.
  */
-export function differences(base64, width, rows) {
-  const view = new DataView(bytes(base64 ?? '').buffer);
-  const result = new Int16Array(width * rows);
+export function differences(packed, width, rows) {
+  const view = new DataView(packed.buffer, packed.byteOffset, packed.byteLength);
+  const result = new Int32Array(width * rows);
   for (let i = 0, at = 0; i < result.length; ++i) {
     const step = view.getInt8(at++);
     if (step !== -128) {
       result[i] = step + (i >= width ? result[i - width] : 0);
     } else {
-      result[i] = view.getInt16(at, true);
-      at += 2;
+      result[i] = view.getInt32(at, true);
+      at += 4;
     }
   }
   return result;

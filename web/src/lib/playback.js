@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {differences, floats} from './binary.js';
+import {differences, floats, inflated} from './binary.js';
 
 const MOST_MOVED = 0.35;  // m or rad: further than that nothing is exaggerated
 
@@ -16,10 +16,10 @@ export function pictureAt(times, time) {
 
 /** One executed robot: pictures of displacements from the plan, as the program packed them. */
 class PlayedRobot {
-  constructor(packed, links, unitM, unitRad) {
+  constructor(packed, links, values, unitM, unitRad) {
     Object.assign(this, {as: packed.as, stabilised: packed.stabilised, pictures: packed.pictures, tips: packed.tips ?? []});
     this.width = 6 * links;
-    this.values = differences(packed.displacement, this.width, this.pictures);
+    this.values = values;
     this.units = [unitM, unitM, unitM, unitRad, unitRad, unitRad];
   }
 
@@ -49,23 +49,26 @@ class PlayedRobot {
   }
 }
 
-/** `deployment.playback` made ready: the plan's pictures, and those of each robot. Null without any. */
-export function readPlayback(playback) {
-  const times = playback?.time_s ?? [];
-  if (times.length === 0 || !Array.isArray(playback.robots)) return null;
-  const [q, root] = [floats(playback.q), floats(playback.root)];
-  const n = playback.joints?.length ?? 0;
+/** Robots of a playback that have pictures; none where nothing was recorded. */
+export const playedRobots = (playback) => playback?.time_s?.length > 0 ? (playback.robots ?? []).filter((robot) => robot.pictures > 0) : [];
+
+/** `deployment.playback` made ready: the plan's pictures, and those of each robot. */
+export async function readPlayback(playback) {
+  const {time_s: times, joints, links} = playback;
+  const root = floats(playback.root);
+  const n = joints.length;
+  const q = differences(await inflated(playback.q), n, times.length);
+  const robots = await Promise.all(playedRobots(playback).map(async (robot) => new PlayedRobot(robot, links.length,
+    differences(await inflated(robot.displacement), 6 * links.length, robot.pictures), playback.unit_m, playback.unit_rad)));
   return {
-    times,
-    joints: playback.joints ?? [],
-    links: playback.links ?? [],
-    posture: (i) => q.subarray(n * i, n * (i + 1)),
+    times, joints, links, robots,
+    posture: (i) => Array.from(q.subarray(n * i, n * (i + 1)), (x) => playback.unit_rad * x),
     root: (i) => ({position: Array.from(root.subarray(7 * i, 7 * i + 3)), quaternion: Array.from(root.subarray(7 * i + 3, 7 * i + 7))}),
-    robots: playback.robots.map((robot) => new PlayedRobot(robot, playback.links.length, playback.unit_m, playback.unit_rad)).filter((robot) => robot.pictures > 0),
   };
 }
 
 /** Distances of all robots as rows: as, time, then the tips in order. */
-export function distanceRows({times, robots}) {
-  return robots.flatMap((robot) => Array.from({length: robot.pictures}, (_, i) => [robot.as, times[i], ...robot.tips.map((tip) => tip.distance_mm[i])]));
+export function distanceRows(playback) {
+  const times = playback.time_s;
+  return playedRobots(playback).flatMap((robot) => Array.from({length: robot.pictures}, (_, i) => [robot.as, times[i], ...robot.tips.map((tip) => tip.distance_mm[i])]));
 }

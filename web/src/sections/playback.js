@@ -3,7 +3,7 @@ import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {choice, figure} from '../lib/figure.js';
 import {fixed, list} from '../lib/format.js';
-import {distanceRows, pictureAt, readPlayback} from '../lib/playback.js';
+import {distanceRows, pictureAt, playedRobots, readPlayback} from '../lib/playback.js';
 import {range} from '../lib/range.js';
 import {table} from '../lib/table.js';
 import {SideBySide} from '../viewer/side_by_side.js';
@@ -86,8 +86,9 @@ function labels(view, frame, names) {
 }
 
 /** Draws the robots into a frame and gives it its panel. */
-function start(frame, panel, canvas, report, playback, names) {
+async function start(frame, panel, canvas, report, names) {
   try {
+    const playback = await readPlayback(report.deployment.playback);
     const view = new SideBySide(canvas, report.data, playback);
     const player = new Player(view, names);
     panel.replaceWith(player.element);
@@ -114,15 +115,16 @@ function whenNear(element, call) {
 
 /** The executed robots beside the plan in 3-D; null where nothing was recorded. On paper the table stands for it. */
 export function playbackFigure(report, names) {
-  const playback = readPlayback(report.deployment?.playback);
-  if (!playback || playback.robots.length === 0 || !report.data?.robot?.urdf) return null;
-  const canvas = h('canvas', {tabindex: '0', role: 'img', 'aria-label': `The plan and, beside it, the robots whose controllers know ${list(playback.robots.map(names))}, in 3-D. Arrow keys turn the view, plus and minus bring it nearer, 0 takes it back.`});
+  const playback = report.deployment?.playback;
+  const robots = playedRobots(playback);
+  if (robots.length === 0 || !report.data?.robot?.urdf) return null;
+  const canvas = h('canvas', {tabindex: '0', role: 'img', 'aria-label': `The plan and, beside it, the robots whose controllers know ${list(robots.map(names))}, in 3-D. Arrow keys turn the view, plus and minus bring it nearer, 0 takes it back.`});
   const frame = h('div', {class: 'viewer side-by-side'}, canvas);
   const panel = h('div', {class: 'viewer-panel'});
   const result = figure({title: 'The plan and the robots that execute it', body: [frame, panel],
     note: 'Blue is where the plan has the robot; red rods lead from the hands and feet of the plan to those of the robot. The robot is drawn further from the plan than it is, by the factor of magnification; one that is far off is magnified less. The numbers are not magnified: they are the largest distance of a hand, and of a foot in the air, seen from the foot that stands. All robots here have a stabiliser.',
-    data: {name: 'deployment_in_time.csv', text: () => toCsv(['as', 'time_s', ...playback.robots[0].tips.map((tip) => `${tip.link}_mm`)], distanceRows(playback))}});
+    data: {name: 'deployment_in_time.csv', text: () => toCsv(['as', 'time_s', ...robots[0].tips.map((tip) => `${tip.link}_mm`)], distanceRows(playback))}});
   result.classList.add('playback', 'on-screen');
-  whenNear(frame, () => start(frame, panel, canvas, report, playback, names));
+  whenNear(frame, () => start(frame, panel, canvas, report, names));
   return result;
 }
