@@ -36,7 +36,7 @@ studies:
   }
   /// What a page shows.
   static nlohmann::json PageData(const std::string& page) {
-    const std::string begin = "<script type=\"application/json\" id=\"report-data\">";
+    const std::string begin = R"(<script type="application/json" id="report-data">)";
     const std::size_t from = page.find(begin) + begin.size();
     return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
   }

@@ -40,7 +40,7 @@ export function fleetVerdictSection(report) {
     refused > 0 && `${count(refused)} ${refused === 1 ? 'has' : 'have'} one that is not`, failed > 0 && `${count(failed)} ${failed === 1 ? 'has' : 'have'} none`,
     workshop > 0 && `${count(workshop)} ${workshop === 1 ? 'needs' : 'need'} a workshop`].filter(Boolean);
   const days = report.sessions.map((s) => s.day).filter((day) => typeof day === 'number');
-  const words = {deploy: 'Nothing to do', check: 'Look at some robots', reject: 'Some robots cannot be deployed'};
+  const words = {deploy: 'All can be deployed', check: 'Look at some robots', reject: 'Some robots cannot be deployed'};
   return h('section', {id: 'verdict', 'data-short': 'Verdict', class: `verdict state-${state}`, 'aria-labelledby': 'verdict-title'},
     h('h2', {id: 'verdict-title', class: 'verdict-word'}, h('span', {class: 'mark', 'aria-hidden': 'true'}), words[state]),
     h('p', {class: 'verdict-sentence'}, `${list(parts)}.`),
