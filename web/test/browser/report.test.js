@@ -168,6 +168,22 @@ for (const [name, file] of Object.entries(files)) {
     }
   });
 
+  test(`${name}: the executed robots end where the data have them`, async () => {
+    const {time_s: times, robots} = embeddedReport(file).deployment.playback;
+    const {page, problems} = await openPage(browser, file);
+    await page.$eval('.side-by-side', (element) => element.scrollIntoView());
+    await page.waitForSelector('.side-by-side[data-ready]', {timeout: 20000});
+    const first = await picture(page, '.side-by-side canvas');
+    await page.focus('#playback-time');
+    await page.keyboard.press('End');
+    assert.notEqual((await picture(page, '.side-by-side canvas')).hash, first.hash);
+    const hands = await page.$$eval('.playback-now tbody tr', (rows) => rows.map((row) => row.cells[1].textContent));
+    assert.deepEqual(hands, robots.map(({tips}) => Math.max(...tips.filter((tip) => tip.place === 'hand').map((tip) => tip.distance_mm.at(-1))).toFixed(1)));
+    assert.ok(robots.some((robot) => robot.pictures === times.length), 'one stood to the end');
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+
   test(`${name}: the viewer is there within 2 s, in less than 5 MB`, async (t) => {
     const times = [];
     // Other tests may run beside this one: the quickest of up to six counts.
