@@ -39,7 +39,8 @@ function causePlot(picture) {
 
 /** What the causes look like that were taken, or come nearest to it; null where none was looked for. */
 export function causesFigure(report) {
-  const pictures = (report.diagnosis?.pictures ?? report.summary.diagnosis_pictures ?? []).filter((picture) => picture.x?.length > 0);
+  const own = report.diagnosis?.pictures;
+  const pictures = (Array.isArray(own) ? own : report.summary.diagnosis_pictures ?? []).filter((picture) => picture.x?.length > 0);
   if (pictures.length === 0) return null;
   return figure({title: 'What they look like', body: [legend(SERIES), h('div', {class: 'causes'}, ...pictures.map(causePlot))],
     note: 'Each dot is a posture: the displacement that the cause has there, and what the residuals of that posture ask for beside it. Where the cause is real, the dots follow the curve. p is that of the score test, adjusted for all causes that were tried.',

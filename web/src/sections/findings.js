@@ -77,7 +77,7 @@ export function findingsSection(report) {
   if (!summary) return null;
   const names = knownNames(report);
   const {objections, remarks, warnings} = spoken(summary);
-  const diagnosis = report.diagnosis?.words ?? summary.diagnosis ?? [];
+  const diagnosis = Array.isArray(report.diagnosis?.words) ? report.diagnosis.words : summary.diagnosis ?? [];
   const quiet = !objections.length && !remarks.length && !warnings.length && !summary.outliers?.length && !diagnosis.length;
   return section('findings', 'Findings', 'Warnings and outliers', quiet ? 'The program found nothing that needs a look.' : 'This is what the program found on the way, the gravest first.',
     words('Why the result should not be deployed', 'bad', objections, names), words('Look at these before deploying', 'check', remarks, names),
