@@ -77,7 +77,7 @@ TEST_F(LegEstimation, FaultsOfARecordingAreNamed) {
   ASSERT_FALSE(of_offset.empty());
   EXPECT_EQ(of_offset[0].kind, FaultKind::kJointOffset);
   EXPECT_EQ(of_offset[0].coordinate, coordinate);
-  EXPECT_NEAR(of_offset[0].posture, 21, 2);
+  EXPECT_EQ(of_offset[0].posture, 21);
   EXPECT_NEAR(of_offset[0].size, 0.02, 0.005);
   const std::string text = DescribeFault(of_offset[0], model_.tree, offset);
   EXPECT_EQ(text.find(model_.tree.joints[joint].name + ": its positions are off by"), 0u) << text;

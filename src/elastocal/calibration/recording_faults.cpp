@@ -144,9 +144,22 @@ class FaultSearch {
     add({FaultKind::kJointGain}, [&](int i) { return recording_.q(i, coordinate); });
     const int count = recording_.posture_count();
     const int stride = std::max(1, count / kSplits);
-    for (int split = stride; split < count; split += stride) {
+    const auto add_split = [&](int split) {
+      if (split <= 0 || split >= count) return;
       add({.kind = FaultKind::kJointOffset, .posture = split},
           [&](int i) { return i >= split ? 1.0 : 0.0; });
+    };
+    const std::size_t before = found_.size();
+    for (int split = stride; split < count; split += stride) add_split(split);
+    if (found_.size() > before) {  // between the best of these and its neighbours
+      const auto best = std::max_element(
+          found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
+          [](const RecordingFault& a, const RecordingFault& b) { return a.share < b.share; });
+      const int around = best->posture;
+      for (int off = 1; off < stride; ++off) {
+        add_split(around - off);
+        add_split(around + off);
+      }
     }
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);

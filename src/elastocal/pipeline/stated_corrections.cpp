@@ -47,6 +47,7 @@ void CheckSize(const std::string& name, double size, double least, double larges
 /// Undoes it in one recording; whether the recording has the trial.
 bool ApplyTo(const StatedCorrection& correction, Recording& recording) {
   bool found = correction.trial.empty();
+  int number = 0;  // of the posture in the trial
   for (int i = 0; i < recording.posture_count(); ++i) {
     const bool here =
         correction.trial.empty() ||
@@ -55,6 +56,7 @@ bool ApplyTo(const StatedCorrection& correction, Recording& recording) {
                  .name == correction.trial);
     if (!here) continue;
     found = true;
+    if (++number < correction.from) continue;
     switch (correction.kind) {
       case FaultKind::kJointGain:
         recording.q(i, correction.coordinate) /= correction.size;
@@ -70,6 +72,39 @@ bool ApplyTo(const StatedCorrection& correction, Recording& recording) {
   return found;
 }
 
+/// Takes ":4" from the end of the trial.
+void ReadFirstPosture(const std::string& name, StatedCorrection& correction) {
+  const std::size_t colon = correction.trial.rfind(':');
+  if (colon == std::string::npos) return;
+  const std::string text = correction.trial.substr(colon + 1);
+  const std::optional<double> number = ParseNumber(text);
+  if (!number || !(*number >= 1.0 && *number <= 1e6) || *number != std::floor(*number)) {
+    Refuse(name, "'" + text + "' is not the number of a posture, from 1");
+  }
+  correction.from = static_cast<int>(*number);
+  correction.trial.resize(colon);
+}
+
+/// The names that undo an offset in all trials from a posture on.
+std::string NamesFromPosture(const RecordingFault& fault, const Joint& joint,
+                             const Recording& recording) {
+  const auto trial_of = [&](int posture) {
+    return recording.trial[static_cast<std::size_t>(posture)];
+  };
+  const int first = trial_of(fault.posture);
+  int begin = 0;
+  while (trial_of(begin) != first) ++begin;
+  std::string names;
+  for (int i = fault.posture; i < recording.posture_count(); ++i) {
+    if (i > fault.posture && trial_of(i) == trial_of(i - 1)) continue;
+    const int from = trial_of(i) == first ? i - begin + 1 : 1;
+    names += fmt::format("{}offset:{}@{}{}={:.4f}", names.empty() ? "" : " ", joint.name,
+                         recording.trials[static_cast<std::size_t>(trial_of(i))].name,
+                         from > 1 ? fmt::format(":{}", from) : "", fault.size / UnitOf(joint));
+  }
+  return names;
+}
+
 std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
   const std::string where = correction.trial.empty() ? "" : " in trial " + correction.trial;
   if (correction.kind == FaultKind::kCameraScale) {
@@ -80,9 +115,11 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
                        correction.size);
   }
   const Joint& joint = *JointOfCoordinate(tree, correction.coordinate);
-  return fmt::format("{:g} {} were taken from the positions of {}{}",
+  const std::string from =
+      correction.from > 1 ? fmt::format(" from posture {} on", correction.from) : "";
+  return fmt::format("{:g} {} were taken from the positions of {}{}{}",
                      correction.size / UnitOf(joint),
-                     joint.type == JointType::kPrismatic ? "mm" : "deg", joint.name, where);
+                     joint.type == JointType::kPrismatic ? "mm" : "deg", joint.name, where, from);
 }
 
 }  // namespace
@@ -102,8 +139,8 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
   const std::size_t equals = name.rfind('=');
   if (colon == std::string::npos || equals == std::string::npos || equals < colon) {
     Refuse(name,
-           "gain:JOINT=FACTOR, gain:JOINT@TRIAL=FACTOR, offset:JOINT@TRIAL=SIZE or "
-           "scale:TRIAL=FACTOR was expected");
+           "gain:JOINT=FACTOR, gain:JOINT@TRIAL=FACTOR, offset:JOINT@TRIAL=SIZE, "
+           "offset:JOINT@TRIAL:POSTURE=SIZE or scale:TRIAL=FACTOR was expected");
   }
   const std::optional<double> size = ParseNumber(name.substr(equals + 1));
   if (!size) Refuse(name, "'" + name.substr(equals + 1) + "' is not a number");
@@ -132,6 +169,7 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
            "an offset in all trials is an error of the robot; offset:JOINT@TRIAL=SIZE was "
            "expected");
   }
+  ReadFirstPosture(name, correction);
   const bool slides = joint.type == JointType::kPrismatic;
   const double largest = slides ? kLargestOffsetMm : kLargestOffsetDeg;
   CheckSize(name, *size, -largest, largest, slides ? " mm" : " deg");
@@ -153,7 +191,10 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
   if (fault.kind == FaultKind::kJointGain) {
     return fmt::format("gain:{}{}={:.5f}", joint->name, where, 1.0 + fault.size);
   }
-  if (trial.empty()) return std::nullopt;
+  if (trial.empty()) {
+    if (recording.trial.empty()) return std::nullopt;
+    return NamesFromPosture(fault, *joint, recording);
+  }
   return fmt::format("offset:{}{}={:.4f}", joint->name, where, fault.size / UnitOf(*joint));
 }
 

@@ -15,12 +15,14 @@ namespace elastocal {
 ///     gain:JOINT=1.05          the joint's positions are 1.05 times the true ones, in all trials
 ///     gain:JOINT@TRIAL=1.05    in this trial alone
 ///     offset:JOINT@TRIAL=2.1   they are 2.1 deg (of a sliding joint: mm) too large in this trial
+///     offset:JOINT@TRIAL:4=2.1 the same from its fourth posture on
 ///     scale:TRIAL=1.005        the cameras' positions are 1.005 times the true ones in this trial
 struct StatedCorrection {
   FaultKind kind = FaultKind::kJointGain;
   int coordinate = -1;     ///< of the robot tree; of a scale: -1
   std::string joint = {};  ///< of a scale: empty
   std::string trial = {};  ///< empty: all
+  int from = 1;            ///< the first posture of the trial that has it, from 1
   double size = 1.0;       ///< gain or scale; offset in rad or m
 };
 
@@ -30,8 +32,9 @@ struct StatedCorrection {
 std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
                                                       const RobotTree& tree);
 
-/// The name that corrects a fault; nothing for an offset from a posture on, of which a recording
-/// for validation does not know on which side it stands.
+/// The names that correct a fault, joined by spaces. An offset from a posture on has one for each
+/// trial of this recording from there on; on which side a trial for validation stands, only its
+/// user knows. Nothing where no name does it.
 std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const RobotTree& tree,
                                             const Recording& recording);
 

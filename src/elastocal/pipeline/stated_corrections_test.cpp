@@ -67,8 +67,28 @@ TEST_F(StatedCorrections, HaveTheNamesThatFaultsAreGiven) {
   const RecordingFault offset{FaultKind::kJointOffset, Coordinate(), 0, 0, 0.1 * M_PI};
   ASSERT_EQ(name(offset), "offset:turret_joint@a=18.0000");
   EXPECT_NEAR(ParseStatedCorrection(*name(offset), project_.tree)->size, offset.size, 1e-12);
-  // From a posture on: a recording for validation does not know on which side it stands.
-  EXPECT_FALSE(name({FaultKind::kJointOffset, Coordinate(), -1, 1, 0.1}).has_value());
+}
+
+// From the second posture of trial a on: trial b has it whole.
+TEST_F(StatedCorrections, OfAnOffsetFromAPostureOnHaveANameForEachTrial) {
+  Recording& recording = measured_.calibration;
+  recording.trial = {0, 0, 0, 1, 1};
+  recording.q = Eigen::MatrixXd::Ones(5, project_.tree.coordinate_count());
+  recording.markers = Eigen::MatrixXd::Ones(5, 3);
+  const RecordingFault fault{FaultKind::kJointOffset, Coordinate(), -1, 1, 0.1 * M_PI};
+  ASSERT_EQ(NameOfCorrection(fault, project_.tree, recording),
+            "offset:turret_joint@a:2=18.0000 offset:turret_joint@b=18.0000");
+  EXPECT_EQ(Apply("offset:turret_joint@a:2=18"),
+            "18 deg were taken from the positions of turret_joint in trial a from posture 2 on");
+  Apply("offset:turret_joint@b=18");
+  const double left = 1.0 - 0.1 * M_PI;
+  Eigen::VectorXd expected(5);
+  expected << 1.0, left, left, left, left;
+  EXPECT_LT((recording.q.col(Coordinate()) - expected).cwiseAbs().maxCoeff(), 1e-12);
+  for (const char* wrong : {"0", "1.5", "x", ""}) {
+    ExpectInputError([&] { Apply("offset:turret_joint@a:" + std::string(wrong) + "=1"); },
+                     {"of a posture"});
+  }
 }
 
 TEST_F(StatedCorrections, NamesThatSayNothingAreRefused) {
