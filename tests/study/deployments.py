@@ -58,6 +58,8 @@ def main():
                       f"  {one['stabiliser_largest_shift_mm']:.1f}")
             for name in ("nominal", "urdf"):
                 for stabilised in (True, False):
+                    if any(found[one, stabilised]["refused"] for one in (name, "compensated")):
+                        continue
                     ratios = [found[name, stabilised][place]["rms_mm"] / found["compensated", stabilised][place]["rms_mm"]
                               for place in PLACES]
                     print(f"{seed:5}  {name} over compensated, {'with' if stabilised else 'without'} stabiliser: "

@@ -11,6 +11,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/motion/motion_check.hpp"
 #include "elastocal/planning/project_motion.hpp"
+#include "elastocal/robot/collision.hpp"
 
 namespace elastocal {
 namespace {
@@ -90,21 +91,32 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
   }
 }
 
-void CheckClearance(const Project& project, const StandingRobot& robot, CompensatedMotion& result) {
-  if (!robot.clearances) return;
-  const std::vector<std::string> names = ContactNames(project);
-  result.clearance.value = std::numeric_limits<double>::infinity();
-  const JointMotion& motion = result.planned.motion;
-  for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
-    const Eigen::VectorXd distances = robot.clearances(motion.q.row(i).transpose());
+/// Distances of the calibrated robot's parts: its links where the last Forward has them.
+class CalibratedClearance {
+ public:
+  explicit CalibratedClearance(const Project& project)
+      : spheres_(project.motion.spheres),
+        pairs_(AllContacts(project)),
+        names_(ContactNames(project)),
+        T_root_link_(project.tree.links.size()) {}
+
+  bool empty() const { return pairs_.empty(); }
+
+  void Look(const Compensator& compensator, double time_s, MotionExtreme& least) {
+    for (std::size_t i = 0; i < T_root_link_.size(); ++i) {
+      T_root_link_[i] = compensator.link_pose(static_cast<int>(i));
+    }
     Eigen::Index nearest = 0;
-    if (distances.size() == 0) return;
-    const double distance = distances.minCoeff(&nearest);
-    KeepSmaller(distance, TimeAt(motion, i), names[static_cast<std::size_t>(nearest)],
-                result.clearance);
+    const double distance = SphereDistances(spheres_, pairs_, T_root_link_).minCoeff(&nearest);
+    KeepSmaller(distance, time_s, names_[static_cast<std::size_t>(nearest)], least);
   }
-  result.has_clearance = true;
-}
+
+ private:
+  const std::vector<CollisionSphere>& spheres_;
+  std::vector<SpherePair> pairs_;
+  std::vector<std::string> names_;
+  std::vector<Transform> T_root_link_;
+};
 
 /// Torques by joint from those by coordinate of the plan.
 Eigen::VectorXd JointTorques(const RobotTree& tree, const Eigen::VectorXd& by_coordinate) {
@@ -153,6 +165,9 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
                      ": torques of the plan need its times and support, and the project's soles");
   }
   Compensator compensator(model);
+  CalibratedClearance clearance(project);
+  result.has_clearance = !clearance.empty();
+  result.clearance.value = std::numeric_limits<double>::infinity();
   const StandingFeet all = (StandingFeet{1} << model.feet.size()) - 1;
   CompensatorStatus status = 0;
   Eigen::VectorXd torque;
@@ -172,9 +187,11 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     Eigen::Index joint = 0;
     const double change = (compensator.command() - nominal).cwiseAbs().maxCoeff(&joint);
     KeepLarger(change, TimeAt(planned, i), CoordinateName(project.tree, joint), result.correction);
+    if (clearance.empty()) continue;
+    compensator.Forward(compensator.command(), torque, feet);
+    clearance.Look(compensator, TimeAt(planned, i), result.clearance);
   }
   if (status != 0) result.broken.push_back(DescribeStatus(status));
-  if (robot != nullptr) CheckClearance(project, *robot, result);
   CheckLimits(project, result);
   return result;
 }

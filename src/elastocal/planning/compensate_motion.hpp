@@ -32,7 +32,9 @@ struct CompensatedMotion {
   double residual_m = 0.0, residual_rad = 0.0;  ///< largest that is left at the end of a limb
   MotionExtreme position;                       ///< least distance to a joint's limit, rad or m
   MotionExtreme velocity;                       ///< largest share of a joint's velocity limit
-  MotionExtreme clearance;  ///< least distance of parts that can touch, m; where there are any
+  /// Least distance of parts that can touch, of the calibrated robot with these positions, m; where
+  /// there are any.
+  MotionExtreme clearance;
   bool has_clearance = false;
   /// Why the motion must not be played, a sentence each: a joint beyond its limit or faster than
   /// it, parts that touch, a correction that was cut. Empty: it may be played.

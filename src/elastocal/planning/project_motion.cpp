@@ -14,7 +14,12 @@
 namespace elastocal {
 namespace {
 
-/// Pairs of spheres of all chains and of those on the other side, each once.
+const std::string& JointName(const Project& project, int k) {
+  return project.tree.joints[Size(k)].name;
+}
+
+}  // namespace
+
 std::vector<SpherePair> AllContacts(const Project& project) {
   std::set<SpherePair> pairs;
   for (const ChainSetup& setup : SetupsOfBothSides(project)) {
@@ -22,12 +27,6 @@ std::vector<SpherePair> AllContacts(const Project& project) {
   }
   return {pairs.begin(), pairs.end()};
 }
-
-const std::string& JointName(const Project& project, int k) {
-  return project.tree.joints[Size(k)].name;
-}
-
-}  // namespace
 
 std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
                                                  const MotionLimits& limits) {

@@ -19,7 +19,11 @@ namespace elastocal {
 std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
                                                  const MotionLimits& limits);
 
-/// Names of the pairs of parts in StandingRobot::clearances: "LHAND and BELLY".
+/// Pairs of spheres of all chains and of those on the other side, each once: those of
+/// StandingRobot::clearances.
+std::vector<SpherePair> AllContacts(const Project& project);
+
+/// Names of these pairs: "LHAND and BELLY".
 std::vector<std::string> ContactNames(const Project& project);
 
 /// The sets of a posture file. Throws what FeetOf throws.

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/planning/compensate_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/planning/project_motion.hpp"
+#include "elastocal/robot/collision.hpp"
+#include "tests/runtime_calibration.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+// Corrected commands take the parts of the calibrated robot to where the plan has them. The nominal
+// robot with these commands would have its feet by centimetres elsewhere, which nobody plays.
+TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const std::unique_ptr<StandingRobot> robot = StandProjectRobot(project, {});
+  JointMotion plan;
+  plan.source = "plan";
+  plan.time_s = Eigen::Vector3d(0.0, 1.0, 2.0);
+  plan.q = project.motion.rest.transpose().replicate(3, 1);
+  std::vector<int> soles;
+  for (const Sole& sole : project.soles) soles.push_back(sole.link);
+  plan.support.assign(3, soles);
+  const double planned = robot->clearances(project.motion.rest).minCoeff();
+  double naive = 0.0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const RuntimeModel model =
+        MakeRuntimeModel(project, RandomCalibration(project, seed), RuntimeContent::kEverything);
+    const CompensatedMotion result = CompensateMotion(project, model, plan);
+    ASSERT_TRUE(result.has_clearance);
+    EXPECT_NEAR(result.clearance.value, planned, 8e-3);
+    const Eigen::VectorXd commanded = result.planned.motion.q.row(0).transpose();
+    naive = std::max(naive, std::abs(robot->clearances(commanded).minCoeff() - planned));
+  }
+  EXPECT_GT(naive, 16e-3);
+}
+
+}  // namespace
+}  // namespace elastocal
