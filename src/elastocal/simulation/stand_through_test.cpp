@@ -75,5 +75,26 @@ TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
   EXPECT_NEAR(run.largest_shift, 29.0 / 60.0 * 0.1, 0.015);
 }
 
+// Its ankles are off by 10 mrad, so that the root link leans although it is where its model means
+// it to be. The stabiliser sets it upright by the unit, unless the unit was mounted in that rest.
+TEST_F(BipedStandsThrough, TheInertialUnitIsMountedAsTheFirstRestShows) {
+  constexpr double kLean = 0.01;
+  JointMotion motion = Bow(0.0);
+  motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 12.0);
+  Eigen::MatrixXd commanded = motion.q;
+  for (const Leg& leg : robot_.legs) commanded.col(leg.joints[4]).array() += kLean;
+  const auto turn = [&](std::optional<Eigen::Matrix3d> R_world_root_at_rest) {
+    Stabiliser stabiliser(biped_.tree, soles_);
+    const StandingRun run = StandThrough(robot_, soles_, motion, {},
+                                         {.stabiliser = &stabiliser,
+                                          .R_world_root_at_rest = R_world_root_at_rest,
+                                          .commanded = &commanded});
+    EXPECT_TRUE(run.stood);
+    return stabiliser.turn().norm();
+  };
+  EXPECT_NEAR(turn(std::nullopt), kLean, 0.3 * kLean);
+  EXPECT_LT(turn(Eigen::Matrix3d::Identity()), 0.1 * kLean);
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -85,6 +85,35 @@ TEST(VirtualExperiment, APerfectRobotFollowsTheForwardKinematics) {
   }
 }
 
+// A rest, a way, and given samples with two rests: the leg is measured in the mean of the three.
+TEST(VirtualExperiment, LegsAreMeasuredInTheMeanOfTheirRests) {
+  const DescribedRobot described = DescribedBiped();
+  const VirtualExperiment plain = PrepareExperiment(described, Short(), {});
+  const Eigen::VectorXd stand = plain.legs[1].posture;
+  const int knee = plain.robot.legs[0].joints[3];
+  const auto bent = [&](double by) {
+    Eigen::VectorXd q = stand;
+    q[knee] += by;
+    return q;
+  };
+  PlannedTrial trial;
+  trial.name = "on the first leg";
+  trial.support = {plain.legs[0].foot_link};
+  MotionSegment rest, way, given;
+  rest.from = rest.to = way.from = stand;
+  way.to = given.from = bent(0.1);
+  given.to = bent(0.2);
+  given.sample_s = Eigen::VectorXd::LinSpaced(5, 0.0, 1.0);
+  given.samples.resize(5, stand.size());
+  for (int i = 0; i < 5; ++i) given.samples.row(i) = (i < 2 ? given.from : given.to).transpose();
+  trial.motion.segments = {rest, way, given};
+  const VirtualExperiment experiment = PrepareExperiment(described, Short(), {trial});
+  EXPECT_LT((experiment.legs[0].posture - bent(0.1)).norm(), 1e-12);
+  EXPECT_EQ(experiment.legs[1].posture, stand);  // never stood on alone
+  trial.kind = TrialKind::kSine;
+  EXPECT_EQ(PrepareExperiment(described, Short(), {trial}).legs[0].posture, stand);
+}
+
 TEST(VirtualExperiment, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
   VirtualExperimentOptions options = Short();
   options.truth.leg_geometry_scale = 0.0;

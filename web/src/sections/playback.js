@@ -3,6 +3,7 @@ import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {choice, figure} from '../lib/figure.js';
 import {fixed, list} from '../lib/format.js';
+import {setPlaying} from '../lib/play.js';
 import {distanceRows, pictureAt, playedRobots, readPlayback} from '../lib/playback.js';
 import {range} from '../lib/range.js';
 import {table} from '../lib/table.js';
@@ -55,12 +56,7 @@ class Player {
   }
 
   setPlaying(playing) {
-    if (playing === Boolean(this.playing)) return;
-    this.playing = playing;
-    this.play.textContent = playing ? 'Pause' : 'Play';
-    this.play.setAttribute('aria-pressed', String(playing));
-    this.last = undefined;
-    if (playing) requestAnimationFrame((t) => this.tick(t));
+    setPlaying(this, playing);
   }
 
   tick(now) {

@@ -3,6 +3,7 @@ import {css, sequential} from '../lib/colours.js';
 import {h} from '../lib/dom.js';
 import {choice, section} from '../lib/figure.js';
 import {fixed, modelName} from '../lib/format.js';
+import {setPlaying} from '../lib/play.js';
 import {range} from '../lib/range.js';
 import {advance} from '../viewer/clips.js';
 import {Viewer} from '../viewer/viewer.js';
@@ -84,13 +85,8 @@ class Panel {
   }
 
   setPlaying(playing) {
-    if (playing === Boolean(this.playing)) return;
-    this.playing = playing;
-    this.play.textContent = playing ? 'Pause' : 'Play';
-    this.play.setAttribute('aria-pressed', String(playing));
-    this.last = undefined;
-    this.position = this.viewer.index;
-    if (playing) requestAnimationFrame((t) => this.tick(t));
+    if (!this.playing) this.position = this.viewer.index;
+    setPlaying(this, playing);
   }
 
   tick(now) {
