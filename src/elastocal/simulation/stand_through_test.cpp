@@ -83,7 +83,7 @@ TEST_F(BipedStandsThrough, TheInertialUnitIsMountedAsTheFirstRestShows) {
   motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 12.0);
   Eigen::MatrixXd commanded = motion.q;
   for (const Leg& leg : robot_.legs) commanded.col(leg.joints[4]).array() += kLean;
-  const auto turn = [&](std::optional<Eigen::Matrix3d> R_world_root_at_rest) {
+  const auto turn = [&](const std::optional<Eigen::Matrix3d>& R_world_root_at_rest) {
     Stabiliser stabiliser(biped_.tree, soles_);
     const StandingRun run = StandThrough(robot_, soles_, motion, {},
                                          {.stabiliser = &stabiliser,
