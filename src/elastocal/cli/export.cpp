@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -17,6 +18,7 @@ namespace {
 struct ExportCommand {
   std::string calibration, project, output;
   bool quiet = false;
+  std::optional<double> least_gain_mm;
   ExportOptions options;
 };
 
@@ -29,9 +31,12 @@ int Export(const ExportCommand& command) {
   outputs.Prepare();
   ExportOptions options = command.options;
   options.version = ProgramVersion();
-  outputs.Set(command.output, ExportCalibration(robot, options));
+  if (command.least_gain_mm) options.least_gain = 1e-3 * *command.least_gain_mm;
+  const ExportedCalibration exported = ExportCalibration(robot, options);
+  outputs.Set(command.output, exported.text);
   outputs.Publish();
   WarnOfExtra(robot);
+  for (const std::string& note : exported.notes) Print(command.quiet, note + "\n");
   Print(command.quiet, fmt::format("Written: {}\n", command.output));
   return kFine;
 }
@@ -71,6 +76,21 @@ void AddExport(CLI::App& app, Action& action) {
                    "Joints whose errors are all below so many standard deviations stay nominal")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
+  command
+      ->add_option("--min-gain", options->least_gain_mm,
+                   "Joints whose errors gain no more than so many mm of RMSE on held-out data stay "
+                   "nominal; recordings as the calibration's record names them")
+      ->check(CLI::Range(0.0, 100.0))
+      ->type_name("MM");
+  command->add_flag("--mjcf-springs", options->options.mjcf_springs,
+                    "For --format mjcf: springs in series with the joints, where the calibration "
+                    "is elastic");
+  command
+      ->add_option("--hip-damping", options->options.hip_damping,
+                   "For --format flex_joints: damping of the hips, N.m.s/rad, which no calibration "
+                   "tells")
+      ->check(CLI::Range(0.0, 1e9))
+      ->type_name("VALUE");
   command->add_flag("--quiet,-q", options->quiet, "Print nothing but warnings and errors");
   command->footer("Example: elastocal export out --format c99 -o talos_model.h");
   command->callback([&action, options] { action = [options] { return Export(*options); }; });

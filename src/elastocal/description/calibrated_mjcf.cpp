@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,6 +21,8 @@ namespace {
 
 constexpr double kSamePlace = 1e-4;  // m and rad: of poses that were written with six digits
 constexpr double kSameAxis = 1e-4;
+// Inertia and damping of springs, as times, s (see simulation/mjcf.hpp).
+constexpr double kSpringInertiaTime = 0.010, kSpringDampingTime = 0.020;
 
 struct MjcfBody {
   XmlElement element;
@@ -80,16 +84,20 @@ Transform ReadBodyPose(const XmlElement& body) {
   return T;
 }
 
-/// Where the URDF has the child link of a joint, in the frame of the MJCF's parent body: a link of
-/// the same part of the robot.
-Transform PoseInParent(const RobotTree& tree, const Joint& joint, const MjcfBody& body) {
+/// The link of the MJCF's body that carries that of a joint: of the same part of the robot.
+const Link& CarrierOf(const RobotTree& tree, const Joint& joint, const MjcfBody& body) {
   const Link& carrier = tree.links[static_cast<std::size_t>(joint.parent_link)];
   for (const Link& link : tree.links) {
-    if (link.name != body.parent || link.body != carrier.body) continue;
-    return link.T_body_link.inverse() * carrier.T_body_link * joint.T_parent_child;
+    if (link.name == body.parent && link.body == carrier.body) return link;
   }
   body.element.Fail("the body is carried by " + Quote(body.parent) + "; " + Quote(carrier.name) +
                     " or a link fixed to it was expected");
+}
+
+/// Where the URDF has the child link of a joint, in the frame of the body that carries it.
+Transform PoseInParent(const RobotTree& tree, const Joint& joint, const MjcfBody& body) {
+  return CarrierOf(tree, joint, body).T_body_link.inverse() *
+         tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link * joint.T_parent_child;
 }
 
 XmlElement JointOf(const MjcfBody& body, const Joint& joint) {
@@ -129,17 +137,137 @@ void CheckNominal(const MjcfBody& body, const Joint& joint, const Transform& exp
       joint.name, 1e3 * off.translation().norm(), turn * 180.0 / M_PI));
 }
 
+/// Where a piece of text goes in front of an element, on a line of its own.
+XmlEdit InFrontOf(const std::string& text, const XmlElement& element, const std::string& lines) {
+  const std::size_t begin = element.Begin();
+  std::size_t line = begin;
+  while (line > 0 && (text[line - 1] == ' ' || text[line - 1] == '\t')) --line;
+  return {begin, 0, lines + "\n" + text.substr(line, begin - line)};
+}
+
 std::string WriteQuaternion(const Eigen::Matrix3d& R) {
   Eigen::Quaterniond quaternion(R);
   if (quaternion.w() < 0.0) quaternion.coeffs() *= -1.0;
   return FormatNumber(quaternion.w()) + " " + WriteVector(quaternion.vec());
 }
 
+std::vector<SeriesSpring> SpringsOf(const std::vector<SeriesSpring>& springs, std::size_t joint) {
+  std::vector<SeriesSpring> found;
+  for (const SeriesSpring& spring : springs) {
+    if (spring.joint == static_cast<int>(joint)) found.push_back(spring);
+  }
+  return found;
+}
+
+/// Puts springs into a model.
+class SpringWriter {
+ public:
+  SpringWriter(const std::string& text, const XmlElement& root) : text_(text), root_(root) {
+    CheckKeyframes();
+    CollectNames(root);
+  }
+
+  /// Those of one joint. `T_parent_root`: the root link in the body that carries the joint's body.
+  /// Whether the body got others around it, in that frame.
+  bool Add(const std::vector<SeriesSpring>& springs, const MjcfBody& body, const XmlElement& motor,
+           const Transform& T_parent_root) {
+    std::map<SpringPlace, std::string> joints;
+    for (const SeriesSpring& spring : springs) joints[spring.place] += SpringText(spring);
+    if (joints.contains(SpringPlace::kJoint)) {
+      edits_.push_back(InFrontOf(text_, motor, joints[SpringPlace::kJoint]));
+    }
+    // One body takes six joints at most: root link and leg get bodies of their own.
+    const std::string name = body.element.Text("name");
+    std::string begin, end;
+    for (const auto& [place, what] : {std::pair{SpringPlace::kLeg, "_leg_elastic"},
+                                      std::pair{SpringPlace::kRootLink, "_root_elastic"}}) {
+      if (!joints.contains(place)) continue;
+      begin += BodyText(Fresh(name + what), end.empty() ? T_parent_root : Transform::Identity()) +
+               joints[place];
+      end += "</body>";
+    }
+    if (end.empty()) return false;
+    edits_.push_back(InFrontOf(text_, body.element, begin));
+    ends_.push_back({body.element.End(), 0, end});
+    // MuJoCo lets a body and the one that carries it pass through each other.
+    if (!body.parent.empty()) {
+      excluded_ += "<exclude body1=\"" + body.parent + "\" body2=\"" + name + "\"/>";
+    }
+    return true;
+  }
+
+  /// The ends of new bodies come first, so that the next body begins behind them.
+  std::vector<XmlEdit> Edits() && {
+    if (!excluded_.empty()) {
+      ends_.push_back(InsertElement(text_, root_, "<contact>" + excluded_ + "</contact>"));
+    }
+    ends_.insert(ends_.end(), edits_.begin(), edits_.end());
+    return std::move(ends_);
+  }
+
+ private:
+  /// MuJoCo's keyframes have one number for each degree of freedom.
+  void CheckKeyframes() const {
+    for (const XmlElement& section : root_.Children()) {
+      if (section.Tag() != "keyframe") continue;
+      for (const XmlElement& key : section.Children()) {
+        if (key.Has("qpos") || key.Has("qvel")) {
+          key.Fail(
+              "a keyframe holds the positions of all joints, and springs add joints; a model "
+              "without keyframes was expected");
+        }
+      }
+    }
+  }
+
+  void CollectNames(const XmlElement& within) {
+    for (const XmlElement& child : within.Children()) {
+      if (child.Has("name")) names_.insert(child.Text("name"));
+      CollectNames(child);
+    }
+  }
+
+  std::string Fresh(const std::string& name) const {
+    if (names_.contains(name)) {
+      root_.Fail("the model has something called " + Quote(name) + ", as a spring would be called");
+    }
+    return name;
+  }
+
+  /// The beginning of a body that weighs nothing.
+  static std::string BodyText(const std::string& name, const Transform& T) {
+    return "<body name=\"" + name + "\" pos=\"" + WriteVector(T.translation()) + "\" quat=\"" +
+           WriteQuaternion(T.linear()) +
+           "\"><inertial pos=\"0 0 0\" mass=\"1e-6\" diaginertia=\"1e-7 1e-7 1e-7\"/>";
+  }
+
+  /// Its inertia and damping make it critically damped by itself, whatever its stiffness.
+  std::string SpringText(const SeriesSpring& spring) const {
+    std::string name = spring.name;  // JOINT.compliance_x: JOINT_elastic_x
+    name.replace(name.rfind('.'), std::string(".compliance").size(), "_elastic");
+    const double stiffness = 1.0 / spring.compliance;
+    return fmt::format(
+        "<joint name=\"{}\" type=\"{}\" axis=\"{}\" pos=\"{}\" stiffness=\"{}\" damping=\"{}\" "
+        "armature=\"{}\" springref=\"0\" ref=\"0\" limited=\"false\" frictionloss=\"0\"/>",
+        Fresh(name), spring.slides ? "slide" : "hinge", WriteVector(spring.axis),
+        WriteVector(spring.anchor), FormatNumber(stiffness),
+        FormatNumber(stiffness * kSpringDampingTime),
+        FormatNumber(stiffness * kSpringInertiaTime * kSpringInertiaTime));
+  }
+
+  const std::string& text_;
+  const XmlElement& root_;
+  std::set<std::string> names_;
+  std::vector<XmlEdit> edits_, ends_;
+  std::string excluded_;
+};
+
 }  // namespace
 
 std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& source,
                                const RobotTree& nominal, const RobotTree& calibrated,
-                               const std::map<std::string, double>& encoder_offsets) {
+                               const std::map<std::string, double>& encoder_offsets,
+                               const std::vector<SeriesSpring>& springs) {
   const XmlText xml(mjcf, source);
   const XmlElement root = xml.Root();
   if (root.Tag() != "mujoco") {
@@ -151,6 +279,8 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
   if (const auto world = root.FindFirst("worldbody")) CollectBodies(*world, "", bodies);
   for (const auto& [name, body] : bodies) names.push_back(name);
   std::vector<XmlEdit> edits;
+  std::optional<SpringWriter> writer;
+  if (!springs.empty()) writer.emplace(mjcf, root);
   for (std::size_t k = 0; k < nominal.joints.size(); ++k) {
     const Joint& joint = nominal.joints[k];
     const std::string& child = nominal.links[static_cast<std::size_t>(joint.child_link)].name;
@@ -161,7 +291,13 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
     }
     CheckNominal(body->second, joint, PoseInParent(nominal, joint, body->second));
     const XmlElement element = JointOf(body->second, joint);
-    const Transform T = PoseInParent(calibrated, calibrated.joints[k], body->second);
+    Transform T = PoseInParent(calibrated, calibrated.joints[k], body->second);
+    if (writer) {
+      const Transform T_parent_root = CarrierOf(nominal, joint, body->second).T_body_link.inverse();
+      if (writer->Add(SpringsOf(springs, k), body->second, element, T_parent_root)) {
+        T = T_parent_root.inverse() * T;  // carried by the root link's own part now
+      }
+    }
     edits.push_back(SetAttribute(body->second.element, "pos", WriteVector(T.translation())));
     edits.push_back(SetAttribute(body->second.element, "quat", WriteQuaternion(T.linear())));
     const auto offset = encoder_offsets.find(joint.name);
@@ -170,7 +306,10 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
     edits.push_back(SetAttribute(
         element, "ref", FormatNumber(element.NumberOr("ref", 0.0) - offset->second / unit)));
   }
-  return ApplyEdits(mjcf, std::move(edits));
+  if (!writer) return ApplyEdits(mjcf, std::move(edits));
+  std::vector<XmlEdit> all = std::move(*writer).Edits();
+  all.insert(all.end(), edits.begin(), edits.end());
+  return ApplyEdits(mjcf, std::move(all));
 }
 
 }  // namespace elastocal

@@ -3,7 +3,9 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
+#include "elastocal/description/series_springs.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
 namespace elastocal {
@@ -19,9 +21,11 @@ namespace elastocal {
 /// `nominal` is the tree of the URDF that was calibrated. Throws InputError naming file and line:
 /// no MJCF; a joint or the body of a joint is missing; a body that is more than 0.1 mm or 0.1 mrad
 /// from where the nominal URDF has it, or on another parent; a joint about another axis, or not in
-/// the origin of its body; an orientation given by anything but `quat`; global coordinates.
+/// the origin of its body; an orientation given by anything but `quat`; global coordinates; with
+/// springs, a keyframe of positions, or something that has the name of a new joint or body.
 std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& source,
                                const RobotTree& nominal, const RobotTree& calibrated,
-                               const std::map<std::string, double>& encoder_offsets);
+                               const std::map<std::string, double>& encoder_offsets,
+                               const std::vector<SeriesSpring>& springs = {});
 
 }  // namespace elastocal

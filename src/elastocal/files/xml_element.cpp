@@ -171,4 +171,29 @@ std::size_t XmlElement::StartTagEnd() const {
   return text_->text_.find('>', place) + 1;
 }
 
+std::size_t XmlElement::End() const {
+  const std::string& text = text_->text_;
+  std::size_t place = StartTagEnd();
+  // The parser has found the text well-formed: end tags match, and comments end.
+  for (int depth = text[place - 2] == '/' ? 0 : 1; depth > 0;) {
+    place = text.find('<', place);
+    const std::string_view rest = std::string_view(text).substr(place);
+    if (rest.starts_with("<!--")) {
+      place = text.find("-->", place + 4) + 3;
+    } else if (rest.starts_with("<![CDATA[")) {
+      place = text.find("]]>", place) + 3;
+    } else if (rest.starts_with("<?")) {
+      place = text.find("?>", place) + 2;
+    } else {
+      const bool closes = rest.starts_with("</");
+      for (; text[place] != '>'; ++place) {
+        if (text[place] == '"' || text[place] == '\'') place = text.find(text[place], place + 1);
+      }
+      depth += closes ? -1 : text[place - 1] == '/' ? 0 : 1;
+      ++place;
+    }
+  }
+  return place;
+}
+
 }  // namespace elastocal

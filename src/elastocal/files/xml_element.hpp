@@ -76,6 +76,9 @@ class XmlElement {
   /// After the name in the start tag, and after the start tag.
   std::size_t NameEnd() const;
   std::size_t StartTagEnd() const;
+  /// The element's first character, and behind its last one, that of its end tag.
+  std::size_t Begin() const { return NameEnd() - Tag().size() - 1; }
+  std::size_t End() const;
 
  private:
   pugi::xml_attribute Attribute(const char* attribute) const;

@@ -47,16 +47,45 @@ fs::path RecordedProject(const fs::path& folder) {
   return project;
 }
 
+fs::path FolderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
 }  // namespace
 
 CalibratedRobot OpenCalibratedRobot(const fs::path& given, const fs::path& project) {
   const fs::path file = FindCalibrationFiles(given).calibration;
   StoredCalibration calibration = ReadCalibration(file);
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const fs::path project_file = project.empty() ? RecordedProject(folder) : project;
+  const fs::path project_file = project.empty() ? RecordedProject(FolderOf(file)) : project;
   CalibratedRobot robot{ReadProject(project_file), std::move(calibration), {}};
   robot.inputs = {project_file, robot.project.urdf, file};
   return robot;
+}
+
+std::vector<fs::path> RecordedRecordings(const CalibratedRobot& robot) {
+  const fs::path file = FolderOf(robot.calibration.source) / "runs.json";
+  const ordered_json runs = ParseJsonObject(file.string(), ReadFile(file));
+  std::vector<fs::path> recordings;
+  const ordered_json inputs =
+      runs.value("calibrate", ordered_json::object()).value("inputs", ordered_json::array());
+  for (std::size_t i = 2; i < inputs.size(); ++i) {
+    const fs::path input = inputs[i].value("file", std::string());
+    if (input.filename() == "experiment.yaml") recordings.push_back(input.parent_path());
+  }
+  if (recordings.empty() && inputs.size() > 2) {
+    recordings.emplace_back(inputs[2].value("file", std::string()));
+  }
+  if (recordings.empty() || recordings.front().empty()) {
+    throw InputError(file.string() +
+                     ": names no recording of calibrate; expected a folder that "
+                     "calibrate -o wrote to");
+  }
+  std::error_code error;
+  for (const fs::path& recording : recordings) {
+    if (fs::exists(recording, error)) continue;
+    throw InputError(file.string() + ": the recording " + recording.string() + " is not there");
+  }
+  return recordings;
 }
 
 }  // namespace elastocal

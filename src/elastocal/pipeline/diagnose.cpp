@@ -8,13 +8,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
-#include "elastocal/report/json_reader.hpp"
-#include "elastocal/tables/read_file.hpp"
 
 namespace elastocal {
 namespace {
@@ -23,33 +20,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr double kLevel = 0.05;
-
-/// The recordings that the record of a calibration names, behind project and URDF: tables, or
-/// folders by their experiment.yaml.
-std::vector<fs::path> RecordedRecordings(const fs::path& folder) {
-  const fs::path file = folder / "runs.json";
-  const Json runs = ParseJsonObject(file.string(), ReadFile(file));
-  std::vector<fs::path> recordings;
-  const Json inputs = runs.value("calibrate", Json::object()).value("inputs", Json::array());
-  for (std::size_t i = 2; i < inputs.size(); ++i) {
-    const fs::path input = inputs[i].value("file", std::string());
-    if (input.filename() == "experiment.yaml") recordings.push_back(input.parent_path());
-  }
-  if (recordings.empty() && inputs.size() > 2) {
-    recordings.emplace_back(inputs[2].value("file", std::string()));
-  }
-  if (recordings.empty() || recordings.front().empty()) {
-    throw InputError(file.string() +
-                     ": names no recording of calibrate; expected a folder that "
-                     "calibrate -o wrote to");
-  }
-  std::error_code error;
-  for (const fs::path& recording : recordings) {
-    if (fs::exists(recording, error)) continue;
-    throw InputError(file.string() + ": the recording " + recording.string() + " is not there");
-  }
-  return recordings;
-}
 
 /// What a cause is by, for the sentence.
 const char* ByWhat(CorrectionShape shape) {
@@ -159,9 +129,7 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
   const auto start = std::chrono::steady_clock::now();
   CalibratedRobot robot = OpenCalibratedRobot(folder, project_file);
   CheckHasMarkers(robot.project);
-  const fs::path file = robot.inputs.back();
-  const std::vector<fs::path> recordings =
-      RecordedRecordings(file.has_parent_path() ? file.parent_path() : fs::path("."));
+  const std::vector<fs::path> recordings = RecordedRecordings(robot);
   Project& project = robot.project;
   const Measurements measured = ReadMeasurements(project, recordings);
   const std::vector<std::string> extra = project.elasticity.extra;

@@ -4,16 +4,22 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "elastocal/description/calibrated_mjcf.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/description/series_springs.hpp"
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/description/urdf_writer.hpp"
+#include "elastocal/files/xml_edit.hpp"
 #include "elastocal/io/linkage_file.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/export_texts.hpp"
+#include "elastocal/pipeline/held_out_gains.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/runtime/c_header.hpp"
 #include "elastocal/tables/read_file.hpp"
@@ -53,6 +59,21 @@ CalibrationResult ResultOf(const StoredRobot& robot) {
   return result;
 }
 
+std::vector<Leg> LegsOf(const Project& project) {
+  std::vector<NamedChain> chains;
+  for (const Chain& chain : project.chains) {
+    chains.push_back({chain.name, chain.from_link, chain.tip_link});
+  }
+  return FindLegs(project.tree, chains);
+}
+
+/// Whether the format has a place for compliances.
+bool HasLoads(const ExportOptions& options) {
+  const std::string& format = options.format;
+  return format == "c99" || format == "runtime" || format == "flex_joints" ||
+         (format == "mjcf" && options.mjcf_springs);
+}
+
 CalibratedUrdf UrdfOf(const CalibratedRobot& robot, const StoredCalibration& calibration,
                       ZeroOffsets zero_offsets) {
   const CalibrationResult result = ResultOf(RestoreRobot(robot.project, calibration));
@@ -60,81 +81,170 @@ CalibratedUrdf UrdfOf(const CalibratedRobot& robot, const StoredCalibration& cal
   return MakeCalibratedUrdf(ReadFile(robot.project.urdf), file, result, zero_offsets);
 }
 
-std::string MjcfOf(const CalibratedRobot& robot, const CalibratedUrdf& apart,
-                   const std::filesystem::path& mjcf) {
-  if (mjcf.empty()) throw InputError("format mjcf: the nominal model was expected (--mjcf FILE)");
+std::string MjcfOf(const CalibratedRobot& robot, const StoredCalibration& calibration,
+                   const CalibratedUrdf& apart, const ExportOptions& options) {
+  const std::string file = options.mjcf.string();
   RobotTree calibrated = ParseUrdf(apart.text, robot.project.urdf.string() + " (calibrated)");
-  return MakeCalibratedMjcf(ReadFile(mjcf), mjcf.string(), robot.project.tree, calibrated,
-                            apart.encoder_offsets);
-}
-
-std::string PalYaml(const CalibratedUrdf& urdf, const std::string& heading) {
-  std::string text = "# " + heading +
-                     "\n# Metres and radians, to be added to the origin of the joint, and the zero "
-                     "of its encoder:\n# position in the URDF = position of the encoder + offset\n";
-  std::map<std::string, double> zeros = urdf.encoder_offsets;
-  for (const auto& [joint, origin] : urdf.calibrated) zeros.emplace(joint, 0.0);
-  for (const auto& [joint, zero] : zeros) {
-    const auto calibrated = urdf.calibrated.find(joint);
-    UrdfOrigin change{};
-    if (calibrated != urdf.calibrated.end()) {
-      const UrdfOrigin& nominal = urdf.nominal.at(joint);
-      change.xyz = calibrated->second.xyz - nominal.xyz;
-      change.rpy = calibrated->second.rpy - nominal.rpy;
-    } else {
-      change.xyz.setZero();
-      change.rpy.setZero();
-    }
-    text += fmt::format(
-        "{}: {{x: {:.17g}, y: {:.17g}, z: {:.17g}, roll: {:.17g}, pitch: {:.17g}, yaw: {:.17g}, "
-        "offset: {:.17g}}}\n",
-        joint, change.xyz.x(), change.xyz.y(), change.xyz.z(), change.rpy.x(), change.rpy.y(),
-        change.rpy.z(), zero);
+  std::vector<SeriesSpring> springs;
+  if (options.mjcf_springs) {
+    springs = SeriesSprings(ResultOf(RestoreRobot(robot.project, calibration)), calibrated,
+                            LegsOf(robot.project));
   }
-  return text;
+  return MakeCalibratedMjcf(ReadFile(options.mjcf), file, robot.project.tree, calibrated,
+                            apart.encoder_offsets, springs);
 }
 
-std::string XmlText(const std::string& text) {
-  std::string safe;
-  for (char c : text) {
-    if (c == '<' || c == '>' || c == '&' || c == '"') {
-      safe += fmt::format("&#{};", static_cast<int>(c));
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
+/// What of a calibration is exported.
+struct Kept {
+  StoredCalibration calibration;      ///< joints that stay nominal without errors
+  std::set<std::string> nominal;      ///< these joints and legs
+  std::vector<std::string> comments;  ///< which, and why
+};
 
-std::string Ros2Transmissions(const CalibratedUrdf& urdf, const std::string& heading) {
-  std::string text = "<!-- " + XmlText(heading) +
-                     "\n     Position of the joint = position of the actuator / reduction + offset "
-                     "(rad or m). Belongs to the\n     URDF of export format urdf_encoder. -->\n";
-  for (const auto& [joint, zero] : urdf.encoder_offsets) {
-    text += fmt::format(
-        "<transmission name=\"{0}_transmission\">\n"
-        "  <plugin>transmission_interface/SimpleTransmission</plugin>\n"
-        "  <joint name=\"{0}\" role=\"joint1\">\n    <offset>{1:.17g}</offset>\n  </joint>\n"
-        "</transmission>\n",
-        XmlText(joint), zero);
-  }
-  return text;
-}
-
-/// The calibration with joints that it hardly tells as they were.
-StoredCalibration KeepSignificant(const CalibratedRobot& robot, const CalibrationEstimate& estimate,
-                                  double least) {
-  StoredCalibration kept = robot.calibration;
-  if (!(least > 0.0)) return kept;
+/// Joints and legs of which it hardly tells anything.
+std::set<std::string> Insignificant(const CalibrationEstimate& estimate, double least) {
   std::map<std::string, double> largest;
   for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (parameter.external) continue;
     double& most = largest[OwnerName(parameter.name)];
     if (parameter.sd > 0.0) most = std::max(most, std::abs(parameter.value) / parameter.sd);
   }
-  for (auto& [name, value] : kept.joint_errors) {
-    if (largest[OwnerName(name)] < least) value = 0.0;
+  std::set<std::string> names;
+  for (const auto& [name, most] : largest) {
+    if (most < least) names.insert(name);
   }
+  return names;
+}
+
+Kept KeepWhatHelps(const CalibratedRobot& robot, const CalibrationEstimate& estimate,
+                   const ExportOptions& options) {
+  Kept kept{robot.calibration, {}, {}};
+  if (options.least_significance > 0.0) {
+    kept.nominal = Insignificant(estimate, options.least_significance);
+    for (const std::string& name : kept.nominal) {
+      kept.comments.push_back(
+          fmt::format("{} is nominal: no error of {:g} standard deviations or more", name,
+                      options.least_significance));
+    }
+  }
+  const auto return_to_nominal = [&] {
+    for (auto& [name, value] : kept.calibration.joint_errors) {
+      if (kept.nominal.contains(OwnerName(name))) value = 0.0;
+    }
+  };
+  return_to_nominal();
+  if (!options.least_gain) return kept;
+  const HeldOutGains gains = FindHeldOutGains(
+      robot,
+      {.least = *options.least_gain, .with_loads = HasLoads(options), .nominal = kept.nominal});
+  for (const JointGain& joint : gains.study.joints) {
+    if (!joint.kept) kept.nominal.insert(joint.owner);
+  }
+  return_to_nominal();
+  for (const std::string& line : DescribeGains(gains)) kept.comments.push_back(line);
   return kept;
+}
+
+/// Comments in front of what an XML file holds.
+std::string WithXmlComment(const std::string& text, const std::string& source,
+                           const std::vector<std::string>& comments) {
+  if (comments.empty()) return text;
+  const XmlText xml(text, source);
+  return ApplyEdits(text, {InsertElement(text, xml.Root(), XmlComment(comments))});
+}
+
+std::string CHeaderOf(const CalibratedRobot& robot, const Kept& kept,
+                      const CalibrationEstimate& estimate, const std::string& heading,
+                      const std::string& given) {
+  const std::string prefix = given.empty() ? CPrefix(robot.project.tree.name) : given;
+  if (prefix != CPrefix(prefix) && prefix.find_first_not_of("abcdefghijklmnopqrstuvwxyz"
+                                                            "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                            "0123456789_") != std::string::npos) {
+    throw InputError("prefix '" + prefix + "': letters, digits and '_' were expected");
+  }
+  return MakeCHeader(MakeRuntimeModel(robot.project, kept.calibration),
+                     {prefix, heading, ParameterComments(estimate), {}});
+}
+
+/// With the comments behind the line that tells the format.
+std::string RuntimeFileOf(const CalibratedRobot& robot, const Kept& kept) {
+  std::ostringstream out;
+  WriteRuntimeModel(MakeRuntimeModel(robot.project, kept.calibration), out);
+  std::string text = out.str();
+  return text.insert(text.find('\n') + 1, YamlComment(kept.comments));
+}
+
+std::string LinkagesOf(const CalibratedRobot& robot, const Kept& kept) {
+  if (robot.project.tree.linkages.empty()) {
+    throw InputError("format linkages: the robot has no linkages");
+  }
+  return YamlComment(kept.comments) +
+         MakeLinkagesYaml(ResultOf(RestoreRobot(robot.project, kept.calibration)));
+}
+
+/// The estimates without those of joints that stay nominal.
+CalibrationEstimate Exported(CalibrationEstimate estimate, const std::set<std::string>& nominal) {
+  std::erase_if(estimate.parameters, [&](const ParameterEstimate& parameter) {
+    return nominal.contains(OwnerName(parameter.name));
+  });
+  return estimate;
+}
+
+void CheckExportOptions(const ExportOptions& options) {
+  const std::string& format = options.format;
+  std::vector<std::string> known;
+  for (const ExportFormat& one : ExportFormats()) known.push_back(one.name);
+  if (std::ranges::find(known, format) == known.end()) {
+    throw InputError("export format '" + format + "'" + DidYouMean(format, known));
+  }
+  if (format == "mjcf" && options.mjcf.empty()) {
+    throw InputError("format mjcf: the nominal model was expected (--mjcf FILE)");
+  }
+  if (format != "mjcf" && options.mjcf_springs) {
+    throw InputError("format " + format + ": --mjcf-springs is about format mjcf");
+  }
+  if (format != "flex_joints" && options.hip_damping) {
+    throw InputError("format " + format + ": --hip-damping is about format flex_joints");
+  }
+}
+
+std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportOptions& options) {
+  const std::string& format = options.format;
+  const CalibrationEstimate estimate =
+      Exported(ReadCalibrationFiles(FindCalibrationFiles(robot.calibration.source)), kept.nominal);
+  std::vector<std::string> heading{fmt::format("{}, calibrated from {}. Made by elastocal {} of {}",
+                                               robot.project.tree.name, robot.calibration.recording,
+                                               options.version, robot.calibration.source)};
+  heading.insert(heading.end(), kept.comments.begin(), kept.comments.end());
+  if (format == "c99") {
+    return CHeaderOf(robot, kept, estimate, fmt::format("{}", fmt::join(heading, "\n   ")),
+                     options.prefix);
+  }
+  if (format == "runtime") return RuntimeFileOf(robot, kept);
+  if (format == "linkages") return LinkagesOf(robot, kept);
+  const std::string source = robot.project.urdf.string();
+  if (format == "urdf") {
+    return WithXmlComment(UrdfOf(robot, kept.calibration, ZeroOffsets::kOrigin).text, source,
+                          kept.comments);
+  }
+  const CalibratedUrdf apart = UrdfOf(robot, kept.calibration, ZeroOffsets::kEncoder);
+  if (format == "urdf_encoder") return WithXmlComment(apart.text, source, kept.comments);
+  if (format == "urdf_rising") {
+    return WithXmlComment(ShiftReferencePositions(apart.text, source, apart.encoder_offsets),
+                          source, kept.comments);
+  }
+  if (format == "mjcf") {
+    return WithXmlComment(MjcfOf(robot, kept.calibration, apart, options), options.mjcf.string(),
+                          kept.comments);
+  }
+  if (format == "xacro") {
+    return WithXmlComment(MakeXacroOffsets(apart), source, kept.comments);
+  }
+  if (format == "pal") return MakePalYaml(apart, heading);
+  if (format == "ros2_control") return MakeRos2Transmissions(apart, heading);
+  return MakeFlexJointsYaml(ResultOf(RestoreRobot(robot.project, kept.calibration)),
+                            ParseUrdf(apart.text, source + " (calibrated)"), LegsOf(robot.project),
+                            estimate, options.hip_damping, heading);
 }
 
 }  // namespace
@@ -149,52 +259,14 @@ std::vector<ExportFormat> ExportFormats() {
           {"xacro", "what is added to the joint origins, as xacro properties"},
           {"pal", "seven numbers a joint: xyz, rpy and the zero of the encoder (YAML)"},
           {"ros2_control", "the zeros of the encoders as offsets of transmissions"},
-          {"mjcf", "the model of --mjcf with calibrated bodies, the zeros as ref of its joints"}};
+          {"mjcf", "the model of --mjcf with calibrated bodies, the zeros as ref of its joints"},
+          {"flex_joints", "stiffness of the hips for the estimator flex-joints (YAML)"}};
 }
 
-std::string ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options) {
-  const CalibrationEstimate estimate = ReadEstimate(robot.calibration.source);
-  const StoredCalibration calibration =
-      KeepSignificant(robot, estimate, options.least_significance);
-  const std::string heading =
-      fmt::format("{}, calibrated from {}. Made by elastocal {} of {}", robot.project.tree.name,
-                  robot.calibration.recording, options.version, robot.calibration.source);
-  const std::string& format = options.format;
-  if (format == "c99") {
-    const std::string prefix =
-        options.prefix.empty() ? CPrefix(robot.project.tree.name) : options.prefix;
-    if (prefix != CPrefix(prefix) && prefix.find_first_not_of("abcdefghijklmnopqrstuvwxyz"
-                                                              "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                              "0123456789_") != std::string::npos) {
-      throw InputError("prefix '" + prefix + "': letters, digits and '_' were expected");
-    }
-    return MakeCHeader(MakeRuntimeModel(robot.project, calibration),
-                       {prefix, heading, ParameterComments(estimate), {}});
-  }
-  if (format == "runtime") {
-    std::ostringstream out;
-    WriteRuntimeModel(MakeRuntimeModel(robot.project, calibration), out);
-    return out.str();
-  }
-  if (format == "linkages") {
-    if (robot.project.tree.linkages.empty()) {
-      throw InputError("format linkages: the robot has no linkages");
-    }
-    return MakeLinkagesYaml(ResultOf(RestoreRobot(robot.project, calibration)));
-  }
-  if (format == "urdf") return UrdfOf(robot, calibration, ZeroOffsets::kOrigin).text;
-  const CalibratedUrdf apart = UrdfOf(robot, calibration, ZeroOffsets::kEncoder);
-  if (format == "urdf_encoder") return apart.text;
-  if (format == "urdf_rising") {
-    return ShiftReferencePositions(apart.text, robot.project.urdf.string(), apart.encoder_offsets);
-  }
-  if (format == "mjcf") return MjcfOf(robot, apart, options.mjcf);
-  if (format == "xacro") return MakeXacroOffsets(apart);
-  if (format == "pal") return PalYaml(apart, heading);
-  if (format == "ros2_control") return Ros2Transmissions(apart, heading);
-  std::vector<std::string> known;
-  for (const ExportFormat& one : ExportFormats()) known.push_back(one.name);
-  throw InputError("export format '" + format + "'" + DidYouMean(format, known));
+ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options) {
+  CheckExportOptions(options);
+  const Kept kept = KeepWhatHelps(robot, ReadEstimate(robot.calibration.source), options);
+  return {TextOf(robot, kept, options), kept.comments};
 }
 
 }  // namespace elastocal

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ struct ExportFormat {
   std::string what;  ///< in a few words
 };
 
-/// c99, runtime, urdf, urdf_encoder, urdf_rising, xacro, pal, ros2_control, mjcf.
+/// All that ExportCalibration knows, in the order of its description.
 std::vector<ExportFormat> ExportFormats();
 
 struct ExportOptions {
@@ -26,6 +27,18 @@ struct ExportOptions {
   double least_significance = 0.0;
   std::string version;              ///< of the program, for comments
   std::filesystem::path mjcf = {};  ///< the nominal model that format mjcf changes
+  /// Of these joints, only those are exported that gain more than this on data that the calibration
+  /// has not seen (FindHeldOutGains, of what the format carries), m; the others stay nominal.
+  std::optional<double> least_gain = {};
+  bool mjcf_springs = false;  ///< of format mjcf: with springs in series with the joints
+  /// Of format flex_joints: damping of the hips, N.m.s/rad; no calibration tells it.
+  std::optional<double> hip_damping = {};
+};
+
+struct ExportedCalibration {
+  std::string text;  ///< of the file
+  /// Which joints stay nominal and why, where that was asked for; comments of the file, too.
+  std::vector<std::string> notes;
 };
 
 /// A calibration as text in a format:
@@ -35,15 +48,18 @@ struct ExportOptions {
 /// - urdf: the user's URDF with changed joint origins,
 /// - urdf_encoder: the same with the joints' zeros left to the encoders,
 /// - urdf_rising: that one, with the zeros added to the joints' element `calibration` (rising),
+/// - linkages: the calibrated rods as a section of a project (io/linkage_file.hpp),
 /// - xacro: what is added to the origins of the URDF, as xacro properties,
 /// - pal: the seven numbers of each joint (xyz, rpy, zero of the encoder) as YAML,
 /// - ros2_control: the zeros of the encoders as offsets of SimpleTransmission,
 /// - mjcf: the user's MJCF with changed bodies, and the zeros as `ref` of its joints
-///   (description/calibrated_mjcf.hpp).
+///   (description/calibrated_mjcf.hpp); with `mjcf_springs` its elasticity as well,
+/// - flex_joints: stiffnesses of the hips (MakeFlexJointsYaml).
 ///
 /// A URDF is read back and compared with the model at 1000 postures (1e-9) before it is returned.
 /// Throws InputError for an unknown format, with the nearest known one, and for mjcf without a
-/// model or with one that is not that of the URDF.
-std::string ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options);
+/// model or with one that is not that of the URDF; for options of another format; with `least_gain`
+/// what FindHeldOutGains throws.
+ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options);
 
 }  // namespace elastocal

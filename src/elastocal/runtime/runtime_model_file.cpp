@@ -112,6 +112,9 @@ class Reader {
  private:
   void Begin(const char* name) {
     name_ = name;
+    while ((in_ >> std::ws).peek() == '#') {
+      in_.ignore(std::numeric_limits<std::streamsize>::max(), '\n');  // a comment
+    }
     std::string word;
     Value(word);
     if (word != name) Fail("'" + word + "'", "this entry");

@@ -43,34 +43,6 @@ std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
   return units;
 }
 
-/// The fold of each posture: a random permutation of the units is cut into equal parts.
-std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options) {
-  const std::vector<int> unit_of = UnitOfPosture(recording, options.unit);
-  std::vector<int> units = unit_of;
-  std::sort(units.begin(), units.end());
-  units.erase(std::unique(units.begin(), units.end()), units.end());
-  const int count = static_cast<int>(units.size());
-  if (count == 0) {
-    throw InputError(recording.source +
-                     ": cross-validation by trials needs a recording of trials; "
-                     "this is a table of postures");
-  }
-  if (options.folds < 2 || options.folds > count) {
-    throw InputError("cross-validation needs 2 to " + std::to_string(count) +
-                     " folds for as many " +
-                     (options.unit == FoldUnit::kTrial ? "trials" : "different postures") +
-                     ", not " + std::to_string(options.folds));
-  }
-  Random random(options.seed);
-  for (int i = count - 1; i > 0; --i) std::swap(units[i], units[random.Index(i + 1)]);
-  std::vector<int> fold;
-  for (int unit : unit_of) {
-    const auto at = std::find(units.begin(), units.end(), unit) - units.begin();
-    fold.push_back(static_cast<int>(at) % options.folds);
-  }
-  return fold;
-}
-
 /// Distances of held-out observations from their predictions, by model.
 struct FoldResult {
   std::vector<int> held_out;
@@ -130,6 +102,33 @@ ObservationMask Judged(const ErrorModel& model, const Recording& recording) {
 }
 
 }  // namespace
+
+std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options) {
+  const std::vector<int> unit_of = UnitOfPosture(recording, options.unit);
+  std::vector<int> units = unit_of;
+  std::sort(units.begin(), units.end());
+  units.erase(std::unique(units.begin(), units.end()), units.end());
+  const int count = static_cast<int>(units.size());
+  if (count == 0) {
+    throw InputError(recording.source +
+                     ": cross-validation by trials needs a recording of trials; "
+                     "this is a table of postures");
+  }
+  if (options.folds < 2 || options.folds > count) {
+    throw InputError("cross-validation needs 2 to " + std::to_string(count) +
+                     " folds for as many " +
+                     (options.unit == FoldUnit::kTrial ? "trials" : "different postures") +
+                     ", not " + std::to_string(options.folds));
+  }
+  Random random(options.seed);
+  for (int i = count - 1; i > 0; --i) std::swap(units[i], units[random.Index(i + 1)]);
+  std::vector<int> fold;
+  for (int unit : unit_of) {
+    const auto at = std::find(units.begin(), units.end(), unit) - units.begin();
+    fold.push_back(static_cast<int>(at) % options.folds);
+  }
+  return fold;
+}
 
 ModelComparison CompareModels(CalibrationResult largest, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,

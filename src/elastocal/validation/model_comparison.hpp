@@ -53,6 +53,10 @@ struct FoldOptions {
   int threads = 1;
 };
 
+/// The fold of each posture: a random permutation of the units is cut into equal parts. Throws
+/// InputError for a number of folds that the recording does not allow.
+std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options);
+
 struct CrossValidation {
   int folds = 0;
   /// Over all held-out observations that could be predicted. Of a posture on two feet, the waist's

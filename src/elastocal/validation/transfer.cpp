@@ -18,19 +18,6 @@ Refit MakeRefit(CalibrationResult result, const Recording& recording,
   return refit;
 }
 
-/// Errors of the model by name; those of markers that are not named are unknown.
-Eigen::VectorXd ErrorsByName(const ErrorModel& model, const std::map<std::string, double>& joints,
-                             const std::map<std::string, double>& externals) {
-  Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
-  for (int i = 0; i < model.parameter_count(); ++i) {
-    const Parameter& parameter = model.parameters[i];
-    const auto& errors = IsExternal(parameter.kind) ? externals : joints;
-    const auto error = errors.find(parameter.name);
-    if (error != errors.end()) delta[i] = error->second;
-  }
-  return delta;
-}
-
 Refit PredictFrozen(const ErrorModel& model, const Recording& recording,
                     const CalibrationOptions& options, const std::map<std::string, double>& joints,
                     const std::map<std::string, double>& externals) {
@@ -49,6 +36,18 @@ Refit PredictFrozen(const ErrorModel& model, const Recording& recording,
 }
 
 }  // namespace
+
+Eigen::VectorXd ErrorsByName(const ErrorModel& model, const std::map<std::string, double>& joints,
+                             const std::map<std::string, double>& externals) {
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const Parameter& parameter = model.parameters[i];
+    const auto& errors = IsExternal(parameter.kind) ? externals : joints;
+    const auto error = errors.find(parameter.name);
+    if (error != errors.end()) delta[i] = error->second;
+  }
+  return delta;
+}
 
 TransferValidation ValidateFrozen(const ErrorModel& model, const Recording& recording,
                                   const CalibrationOptions& options,

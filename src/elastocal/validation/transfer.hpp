@@ -36,6 +36,11 @@ struct FrozenCalibration {
   std::map<std::string, double> joint_errors, externals, uncalibrated_externals;
 };
 
+/// Errors of the model by name, SI: those of joints and legs, and of what belongs to the
+/// experiment. What is not named is 0.
+Eigen::VectorXd ErrorsByName(const ErrorModel& model, const std::map<std::string, double>& joints,
+                             const std::map<std::string, double>& externals);
+
 /// Errors of a calibration on another recording to which nothing is fitted: waist pose and marker
 /// positions are those of the calibration (of trials, each footing is placed anew: the robot stands
 /// elsewhere). The cameras must not have been moved between two tables of postures, nor the

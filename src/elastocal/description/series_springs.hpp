@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/robot/legs.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+
+namespace elastocal {
+
+/// What gives way between the root link and the child link of a joint, from the root outwards.
+enum class SpringPlace {
+  kLeg,       ///< a leg as a whole (eq. 6), in front of its first joint
+  kRootLink,  ///< the root link, as the joint sees it
+  kJoint,     ///< the joint, in front of its motor (eq. 5)
+};
+
+/// A spring in series with the motor of a joint, whose encoder does not see how far it gives way:
+/// its compliance times the load about (along) its axis.
+struct SeriesSpring {
+  int joint = 0;  ///< of the robot tree
+  SpringPlace place = SpringPlace::kJoint;
+  std::string name;  ///< of the parameter: "JOINT.compliance_x"
+  bool slides = false;
+  Eigen::Vector3d axis;     ///< unit vector; see SeriesSprings for the frame
+  Eigen::Vector3d anchor;   ///< a point of the axis, m
+  double compliance = 0.0;  ///< rad/(N.m), or of one that slides m/N; positive
+};
+
+/// The springs of a calibration: those of one joint together, from the root outwards. Axes and
+/// anchors of a joint's own are in the frame of its child link at position 0 as `calibrated` (the
+/// calibrated URDF) has it, those of legs and of the root link in the frame of the root link.
+///
+/// Those of a joint and of the root link are those of eq. 5, but for a turn by a vector, which is
+/// taken as turns about x, y and z one after the other: the difference is the product of two
+/// deflections. Those of a leg are in the axes of the foot, which turn against the root link with
+/// the leg. Here they are where they are when both are level: in a posture in which they are
+/// inclined by an angle a, compliances are mixed by sin a. A leg without a first joint of its own
+/// on the root link has none. Compliances of 0 are left out.
+std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
+                                        const RobotTree& calibrated, const std::vector<Leg>& legs);
+
+}  // namespace elastocal

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+// The exported MJCF with springs, as MuJoCo plays it, against the elastic robot at run time.
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+
+#include "elastocal/description/calibrated_mjcf.hpp"
+#include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/description/urdf_reader.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/robot/legs.hpp"
+#include "elastocal/runtime/compensator.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/runtime_calibration.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+using Model = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
+using Data = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
+
+std::string PoseText(const Transform& T) {
+  const Eigen::Quaterniond q(T.linear());
+  const Eigen::Vector3d p = T.translation();
+  return fmt::format("pos=\"{:.17g} {:.17g} {:.17g}\" quat=\"{:.17g} {:.17g} {:.17g} {:.17g}\"",
+                     p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+}
+
+/// Links of a body of the tree as one point mass (with some inertia): all that statics needs.
+std::string InertialText(const RobotTree& tree, int body) {
+  double mass = 0.0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (const Link& link : tree.links) {
+    if (link.body != body) continue;
+    mass += link.mass;
+    moment += link.mass * (link.T_body_link * link.com);
+  }
+  const Eigen::Vector3d com = mass > 0.0 ? Eigen::Vector3d(moment / mass) : moment;
+  return fmt::format(
+      "<inertial pos=\"{:.17g} {:.17g} {:.17g}\" mass=\"{:.17g}\" diaginertia=\"{} {} {}\"/>\n",
+      com.x(), com.y(), com.z(), std::max(mass, 1e-6), 0.01 + 0.01 * mass, 0.01 + 0.01 * mass,
+      0.01 + 0.01 * mass);
+}
+
+/// A user's model: position-controlled motors, and other things that the export must not disturb.
+struct UserModel {
+  const RobotTree& tree;
+
+  std::string BodiesOn(int parent_body) const {
+    std::string text;
+    for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+      const Joint& joint = tree.joints[k];
+      if (joint.parent_body != parent_body) continue;
+      const Transform T = tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link *
+                          joint.T_parent_child;
+      text += fmt::format(
+          "<body name=\"{}\" {}><!-- </body> in a comment -->\n{}"
+          "<joint name=\"{}\" type=\"{}\" axis=\"{:.17g} {:.17g} {:.17g}\" armature=\"1\" "
+          "damping=\"300\" limited=\"false\"/>\n",
+          tree.links[static_cast<std::size_t>(joint.child_link)].name, PoseText(T),
+          InertialText(tree, static_cast<int>(k) + 1), joint.name,
+          joint.type == JointType::kRevolute ? "hinge" : "slide", joint.axis.x(), joint.axis.y(),
+          joint.axis.z());
+      text += BodiesOn(static_cast<int>(k) + 1) + "</body>\n";
+    }
+    return text;
+  }
+
+  std::string Text(bool floats) const {
+    const auto root = std::find_if(tree.links.begin(), tree.links.end(), [](const Link& link) {
+      return link.body == 0 && link.T_body_link.isApprox(Transform::Identity());
+    });
+    std::string motors;
+    for (const Joint& joint : tree.joints) {
+      motors += fmt::format("<position name=\"{0}\" joint=\"{0}\" kp=\"20000\"/>\n", joint.name);
+    }
+    return "<mujoco><compiler angle=\"radian\"/>\n"
+           "<option timestep=\"0.001\"/><default><joint damping=\"7\" limited=\"true\" "
+           "range=\"-1e-3 1e-3\" frictionloss=\"100\"/></default>\n<worldbody>\n<body name=\"" +
+           root->name + "\">" + (floats ? "<freejoint name=\"float\"/>" : "") +
+           InertialText(tree, 0) + BodiesOn(0) + "</body>\n</worldbody>\n<actuator>\n" + motors +
+           "</actuator></mujoco>\n";
+  }
+};
+
+class ElasticMjcf : public testing::Test {
+ protected:
+  ElasticMjcf() : project_(ReadProject(SourceFile("models/talos/project.yaml"))) {
+    stored_ = RandomCalibration(project_, 1);
+    for (const Chain& chain : project_.chains) {
+      chains_.push_back({chain.name, chain.from_link, chain.tip_link});
+    }
+    legs_ = FindLegs(project_.tree, chains_);
+  }
+
+  /// Compliances whose names begin so are taken away.
+  void TakeAway(const std::string& beginning) {
+    for (auto& [name, value] : stored_.joint_errors) {
+      if (name.starts_with(beginning + ".compliance")) value = 0.0;
+    }
+  }
+
+  std::string Export(const std::string& user) const {
+    const StoredRobot robot = RestoreRobot(project_, stored_);
+    CalibrationResult result;
+    result.model = robot.model;
+    result.delta = robot.errors;
+    const CalibratedUrdf apart = MakeCalibratedUrdf(ReadFile(project_.urdf), project_.urdf.string(),
+                                                    result, ZeroOffsets::kEncoder);
+    const RobotTree calibrated = ParseUrdf(apart.text, "calibrated");
+    return MakeCalibratedMjcf(user, "user.xml", project_.tree, calibrated, apart.encoder_offsets,
+                              SeriesSprings(result, calibrated, legs_));
+  }
+
+  static Model Load(const std::string& text) {
+    const ScratchFolder folder;
+    std::array<char, 1000> error{};
+    const std::string file = folder.Write("robot.xml", text);
+    Model model(mj_loadXML(file.c_str(), nullptr, error.data(), error.size()), &mj_deleteModel);
+    if (!model) throw std::runtime_error(error.data());
+    return model;
+  }
+
+  Eigen::VectorXd Posture(std::uint64_t seed) const {
+    Random random(seed);
+    Eigen::VectorXd q = project_.motion.rest;
+    for (double& position : q) position += random.Uniform(-0.2, 0.2);
+    return q.cwiseMax(project_.motion.lower).cwiseMin(project_.motion.upper);
+  }
+
+  double JointPosition(const Joint& joint, const Eigen::VectorXd& q) const {
+    return joint.multiplier * q[joint.coordinate] + joint.offset;
+  }
+
+  /// Motors and joints at a posture.
+  void Put(const mjModel& model, const Eigen::VectorXd& q, mjData& data) const {
+    for (const Joint& joint : project_.tree.joints) {
+      const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
+      const int motor = mj_name2id(&model, mjOBJ_ACTUATOR, joint.name.c_str());
+      data.qpos[model.jnt_qposadr[id]] = data.ctrl[motor] = JointPosition(joint, q);
+    }
+  }
+
+  /// What the encoders show.
+  Eigen::VectorXd Encoders(const mjModel& model, const mjData& data) const {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(project_.tree.coordinate_count());
+    for (std::size_t c = 0; c < project_.tree.coordinate_joint.size(); ++c) {
+      const Joint& joint =
+          project_.tree.joints[static_cast<std::size_t>(project_.tree.coordinate_joint[c])];
+      const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
+      q[static_cast<Eigen::Index>(c)] = data.qpos[model.jnt_qposadr[id]];
+    }
+    return q;
+  }
+
+  static Transform BodyPose(const mjModel& model, const mjData& data, const std::string& name) {
+    const int body = mj_name2id(&model, mjOBJ_BODY, name.c_str());
+    Transform T = Transform::Identity();
+    T.translation() = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * body);
+    T.linear() =
+        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.xmat + 9 * body);
+    return T;
+  }
+
+  const std::string& LinkName(int link) const {
+    return project_.tree.links[static_cast<std::size_t>(link)].name;
+  }
+
+  static void Play(const mjModel& model, double seconds, mjData& data) {
+    while (data.time < seconds) mj_step(&model, &data);
+    double fastest = 0.0;
+    for (int i = 0; i < model.nv; ++i) fastest = std::max(fastest, std::abs(data.qvel[i]));
+    ASSERT_LT(fastest, 1e-4);  // at rest
+    mj_kinematics(&model, &data);
+  }
+
+  Project project_;
+  StoredCalibration stored_;
+  std::vector<NamedChain> chains_;
+  std::vector<Leg> legs_;
+};
+
+/// Largest share of the deflection by which it may be off. Both take loads of the deflected robot,
+/// ours of the first deflection.
+constexpr double kShare = 1e-3;
+/// The springs of a leg are in the axes of its foot, which is inclined against the root link here
+/// by some tenths of a radian.
+constexpr double kShareOnLeg = 0.03;
+
+TEST_F(ElasticMjcf, HangsAsTheElasticModelDoes) {
+  TakeAway("leg_left");  // of legs as a whole, which a held root does not load
+  TakeAway("leg_right");
+  const Model model = Load(Export(UserModel{project_.tree}.Text(false)));
+  Compensator elastic(MakeRuntimeModel(project_, stored_));
+  Compensator rigid(MakeRuntimeModel(project_, stored_, RuntimeContent::kGeometry));
+  for (std::uint64_t seed : {3, 4}) {
+    const Data data(mj_makeData(model.get()), &mj_deleteData);
+    Put(*model, Posture(seed), *data);
+    Play(*model, 3.0, *data);
+    const Eigen::VectorXd q = Encoders(*model, *data);
+    elastic.Forward(q, Eigen::VectorXd(), 0);
+    rigid.Forward(q, Eigen::VectorXd(), 0);
+    double largest = 0.0, off = 0.0;
+    for (const Joint& joint : project_.tree.joints) {
+      if (joint.mimic) continue;
+      const Transform T = BodyPose(*model, *data, LinkName(joint.child_link));
+      const auto expected = elastic.link_pose(joint.child_link);
+      largest = std::max(
+          largest,
+          (rigid.link_pose(joint.child_link).translation() - expected.translation()).norm());
+      off = std::max(off, (T.translation() - expected.translation()).norm());
+    }
+    EXPECT_GT(largest, 5e-4);
+    EXPECT_LT(off, kShare * largest);
+  }
+}
+
+TEST_F(ElasticMjcf, StandsOnOneFootAsTheElasticModelDoes) {
+  TakeAway("leg_right");  // which swings, and stretches in MuJoCo by its own weight
+  const Eigen::VectorXd q = Posture(7);
+  const Leg& leg = *std::ranges::find(legs_, std::string("leg_left"), &Leg::chain);
+  const Joint& ankle = project_.tree.joints[static_cast<std::size_t>(leg.joints.back())];
+  const std::string foot = LinkName(ankle.child_link);
+  Compensator elastic(MakeRuntimeModel(project_, stored_));
+  Compensator rigid(MakeRuntimeModel(project_, stored_, RuntimeContent::kGeometry));
+  const StandingFeet feet = 1u << (&leg - legs_.data());
+  rigid.Forward(q, Eigen::VectorXd(), 0);
+  Transform T_root_foot = Transform::Identity();  // the sole's link, flat on the floor
+  T_root_foot.matrix() = rigid.link_pose(leg.foot_link).matrix();
+  const Transform T_world_root = Transform(leg.R_floor_foot) * T_root_foot.inverse();
+
+  const std::string text = Export(UserModel{project_.tree}.Text(true));
+  const auto put = [&](const mjModel& model, mjData& data) {
+    const Eigen::Quaterniond quaternion(T_world_root.linear());
+    Eigen::Map<Eigen::Vector3d>(data.qpos) = T_world_root.translation();
+    Eigen::Map<Eigen::Vector4d>(data.qpos + 3) << quaternion.w(), quaternion.vec();
+    Put(model, q, data);
+    mj_kinematics(&model, &data);
+  };
+  const Model floating = Load(text);
+  const Data there(mj_makeData(floating.get()), &mj_deleteData);
+  put(*floating, *there);
+  const Transform T_foot_world = BodyPose(*floating, *there, foot).inverse();
+  const Eigen::Quaterniond turn(T_foot_world.linear());
+  const Eigen::Vector3d shift = T_foot_world.translation();
+  const std::string weld = fmt::format(
+      "<equality><weld body1=\"{}\" relpose=\"{} {} {} {} {} {} {}\" solref=\"0.005 1\" "
+      "solimp=\"0.999 0.9999 0.001\"/></equality></mujoco>",
+      foot, shift.x(), shift.y(), shift.z(), turn.w(), turn.x(), turn.y(), turn.z());
+  const Model model = Load(text.substr(0, text.rfind("</mujoco>")) + weld);
+  const Data data(mj_makeData(model.get()), &mj_deleteData);
+  put(*model, *data);
+  Play(*model, 5.0, *data);
+
+  const Eigen::VectorXd encoders = Encoders(*model, *data);
+  const Transform T_foot_root =
+      BodyPose(*model, *data, foot).inverse() *
+      BodyPose(
+          *model, *data,
+          LinkName(project_.tree.joints[static_cast<std::size_t>(leg.joints.front())].parent_link));
+  elastic.Forward(encoders, Eigen::VectorXd(), feet);
+  rigid.Forward(encoders, Eigen::VectorXd(), feet);
+  // Of the sole in the body of the foot.
+  const Transform T_body_sole =
+      project_.tree.links[static_cast<std::size_t>(ankle.child_link)].T_body_link.inverse() *
+      project_.tree.links[static_cast<std::size_t>(leg.foot_link)].T_body_link;
+  const Eigen::Vector3d root = (T_body_sole.inverse() * T_foot_root).translation();
+  const double deflection =
+      (elastic.root_pose().translation() - rigid.root_pose().translation()).norm();
+  const double off = (elastic.root_pose().translation() - root).norm();
+  EXPECT_GT(deflection, 1e-2);
+  EXPECT_LT(off, kShareOnLeg * deflection);
+}
+
+TEST_F(ElasticMjcf, WithoutCompliancesNothingIsAdded) {
+  for (auto& [name, value] : stored_.joint_errors) {
+    if (name.find(".compliance") != std::string::npos) value = 0.0;
+  }
+  EXPECT_EQ(Export(UserModel{project_.tree}.Text(false)).find("elastic"), std::string::npos);
+}
+
+TEST_F(ElasticMjcf, RefusesKeyframesAndNamesThatAreTaken) {
+  std::string user = UserModel{project_.tree}.Text(false);
+  const auto with = [&](const std::string& found, const std::string& text) {
+    std::string changed = user;
+    return changed.replace(user.rfind(found), 0, text);
+  };
+  ExpectInputError([&] { Export(with("</mujoco>", "<keyframe><key qpos=\"0 0\"/></keyframe>")); },
+                   {"user.xml", "keyframe"});
+  ExpectInputError(
+      [&] { Export(with("</worldbody>", "<body name=\"leg_left_1_link_root_elastic\"/>")); },
+      {"leg_left_1_link_root_elastic"});
+}
+
+}  // namespace
+}  // namespace elastocal
