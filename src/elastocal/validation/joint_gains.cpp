@@ -151,12 +151,11 @@ class SplitDisplacements {
       moved.translation() = twist.head<3>();
       to.model.T_ref_waist = moved * to.model.T_ref_waist;
     }
-    for (int i = 0; i < to.model.parameter_count(); ++i) {
-      const Parameter& parameter = to.model.parameters[static_cast<std::size_t>(i)];
-      if (parameter.kind != ParameterKind::kMarker || count[parameter.marker] == 0.0) continue;
-      const auto index = static_cast<std::size_t>(parameter.marker);
-      to.delta[i] +=
-          (pull[index] - by_waist[index] * twist)[parameter.axis] / count[parameter.marker];
+    const int first = to.model.parameter_count() - 3 * to.model.marker_count();
+    for (int m = 0; m < markers; ++m) {
+      const auto index = static_cast<std::size_t>(m);
+      if (count[m] == 0.0) continue;
+      to.delta.segment<3>(first + 3 * m) += (pull[index] - by_waist[index] * twist) / count[m];
     }
   }
 
@@ -191,6 +190,7 @@ using Observations = Eigen::Matrix3Xd;
 /// What is left of the held-out observations with every joint corrected, and what each joint adds
 /// to it where it returns to nominal.
 struct HeldOutErrors {
+  Observations estimate;  ///< with the estimate itself, whatever an export carries of it
   Observations residual;
   std::vector<Observations> by_owner;
   Observations by_all;  ///< of all joints together
@@ -233,6 +233,7 @@ void AddSplit(const HeldOutSplit& split, const CalibrationOptions& options,
       mask(i, m) = seen.col(m).any() && residuals.block<1, 3>(i, 3 * m).allFinite();
     }
   }
+  Append(displacements.Residuals(), mask, errors.estimate);
   Append(residuals, mask, errors.residual);
   Append(displacements.To(nominal) - base, mask, errors.by_all);
   for (std::size_t k = 0; k < owners.size(); ++k) {
@@ -247,9 +248,9 @@ void AddSplit(const HeldOutSplit& split, const CalibrationOptions& options,
 
 /// Leaves out observations that no robot explains.
 void LeaveOutWrongOnes(HeldOutErrors& errors) {
-  std::vector<double> distances(static_cast<std::size_t>(errors.residual.cols()));
+  std::vector<double> distances(static_cast<std::size_t>(errors.estimate.cols()));
   for (std::size_t i = 0; i < distances.size(); ++i) {
-    distances[i] = errors.residual.col(static_cast<Eigen::Index>(i)).norm();
+    distances[i] = errors.estimate.col(static_cast<Eigen::Index>(i)).norm();
   }
   std::vector<double> sorted = distances;
   std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));

@@ -36,7 +36,7 @@ struct GainStudy {
   double all = 0.0;               ///< every joint corrected
   double kept = 0.0;              ///< those that are kept
   int observations = 0;
-  int left_out = 0;  ///< observations further off than six times the median: measured wrong
+  int left_out = 0;  ///< observations over six times the median from the estimate: measured wrong
 };
 
 struct GainOptions {
