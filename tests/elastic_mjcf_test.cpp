@@ -21,76 +21,13 @@
 #include "tests/runtime_calibration.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
+#include "tests/user_mjcf.hpp"
 
 namespace elastocal {
 namespace {
 
 using Model = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
 using Data = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
-
-std::string PoseText(const Transform& T) {
-  const Eigen::Quaterniond q(T.linear());
-  const Eigen::Vector3d p = T.translation();
-  return fmt::format("pos=\"{:.17g} {:.17g} {:.17g}\" quat=\"{:.17g} {:.17g} {:.17g} {:.17g}\"",
-                     p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
-}
-
-/// Links of a body of the tree as one point mass (with some inertia): all that statics needs.
-std::string InertialText(const RobotTree& tree, int body) {
-  double mass = 0.0;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (const Link& link : tree.links) {
-    if (link.body != body) continue;
-    mass += link.mass;
-    moment += link.mass * (link.T_body_link * link.com);
-  }
-  const Eigen::Vector3d com = mass > 0.0 ? Eigen::Vector3d(moment / mass) : moment;
-  return fmt::format(
-      "<inertial pos=\"{:.17g} {:.17g} {:.17g}\" mass=\"{:.17g}\" diaginertia=\"{} {} {}\"/>\n",
-      com.x(), com.y(), com.z(), std::max(mass, 1e-6), 0.01 + 0.01 * mass, 0.01 + 0.01 * mass,
-      0.01 + 0.01 * mass);
-}
-
-/// A user's model: position-controlled motors, and other things that the export must not disturb.
-struct UserModel {
-  const RobotTree& tree;
-
-  std::string BodiesOn(int parent_body) const {
-    std::string text;
-    for (std::size_t k = 0; k < tree.joints.size(); ++k) {
-      const Joint& joint = tree.joints[k];
-      if (joint.parent_body != parent_body) continue;
-      const Transform T = tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link *
-                          joint.T_parent_child;
-      text += fmt::format(
-          "<body name=\"{}\" {}><!-- </body> in a comment -->\n{}"
-          "<joint name=\"{}\" type=\"{}\" axis=\"{:.17g} {:.17g} {:.17g}\" armature=\"1\" "
-          "damping=\"300\" limited=\"false\"/>\n",
-          tree.links[static_cast<std::size_t>(joint.child_link)].name, PoseText(T),
-          InertialText(tree, static_cast<int>(k) + 1), joint.name,
-          joint.type == JointType::kRevolute ? "hinge" : "slide", joint.axis.x(), joint.axis.y(),
-          joint.axis.z());
-      text += BodiesOn(static_cast<int>(k) + 1) + "</body>\n";
-    }
-    return text;
-  }
-
-  std::string Text(bool floats) const {
-    const auto root = std::find_if(tree.links.begin(), tree.links.end(), [](const Link& link) {
-      return link.body == 0 && link.T_body_link.isApprox(Transform::Identity());
-    });
-    std::string motors;
-    for (const Joint& joint : tree.joints) {
-      motors += fmt::format("<position name=\"{0}\" joint=\"{0}\" kp=\"20000\"/>\n", joint.name);
-    }
-    return "<mujoco><compiler angle=\"radian\"/>\n"
-           "<option timestep=\"0.001\"/><default><joint damping=\"7\" limited=\"true\" "
-           "range=\"-1e-3 1e-3\" frictionloss=\"100\"/></default>\n<worldbody>\n<body name=\"" +
-           root->name + "\">" + (floats ? "<freejoint name=\"float\"/>" : "") +
-           InertialText(tree, 0) + BodiesOn(0) + "</body>\n</worldbody>\n<actuator>\n" + motors +
-           "</actuator></mujoco>\n";
-  }
-};
 
 class ElasticMjcf : public testing::Test {
  protected:
