@@ -144,14 +144,13 @@ std::string WithOrigins(const std::string& urdf,
     pugi::xml_node origin = joint.child("origin");
     if (!origin) origin = joint.append_child("origin");
     const char* names[] = {"xyz", "rpy"};
-    for (int part = 0; part < 2; ++part) {
+    for (std::size_t part = 0; part < 2; ++part) {
       std::istringstream before(origin.attribute(names[part]).as_string("0 0 0"));
       std::string text;
-      for (int i = 0; i < 3; ++i) {
+      for (std::size_t i = 0; i < 3; ++i) {
         double value = 0.0;
         before >> value;
-        text += fmt::format("{:.17g} ",
-                            value + numbers->second[static_cast<std::size_t>(3 * part + i)]);
+        text += fmt::format("{:.17g} ", value + numbers->second[3 * part + i]);
       }
       origin.remove_attribute(names[part]);
       origin.append_attribute(names[part]) = text.c_str();

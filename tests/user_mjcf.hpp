@@ -13,7 +13,7 @@ namespace elastocal {
 inline std::string PoseText(const Transform& T) {
   const Eigen::Quaterniond q(T.linear());
   const Eigen::Vector3d p = T.translation();
-  return fmt::format("pos=\"{:.17g} {:.17g} {:.17g}\" quat=\"{:.17g} {:.17g} {:.17g} {:.17g}\"",
+  return fmt::format(R"(pos="{:.17g} {:.17g} {:.17g}" quat="{:.17g} {:.17g} {:.17g} {:.17g}")",
                      p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
 }
 

@@ -238,7 +238,7 @@ class SpringWriter {
   static std::string BodyText(const std::string& name, const Transform& T) {
     return "<body name=\"" + name + "\" pos=\"" + WriteVector(T.translation()) + "\" quat=\"" +
            WriteQuaternion(T.linear()) +
-           "\"><inertial pos=\"0 0 0\" mass=\"1e-6\" diaginertia=\"1e-7 1e-7 1e-7\"/>";
+           R"("><inertial pos="0 0 0" mass="1e-6" diaginertia="1e-7 1e-7 1e-7"/>)";
   }
 
   /// Its inertia and damping make it critically damped by itself, whatever its stiffness.
