@@ -1,137 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands `export`, in each of its formats and read back, and `compensate`, as their users run
-// them.
+// The command `export` as its users run it: each of its formats, read back.
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
-#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <yaml-cpp/yaml.h>
 
-#include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/files/output_files.hpp"
-#include "elastocal/io/motion_file.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
-#include "elastocal/runtime/compensator.hpp"
-#include "elastocal/tables/read_file.hpp"
+#include "tests/calibrated_talos.hpp"
 #include "tests/program_fixture.hpp"
-#include "tests/runtime_calibration.hpp"
 #include "tests/user_mjcf.hpp"
 
 namespace elastocal {
 namespace {
-
-const Eigen::VectorXd kStatics;  // no torques
-constexpr double kRounding = 1e-9;
-
-/// The small TALOS with a drawn calibration in a folder.
-class CalibratedTalos : public testing::Test {
- protected:
-  CalibratedTalos()
-      : project_(ReadProject(ProjectFile())), stored_(RandomCalibration(project_, 1)) {
-    WriteCalibration(stored_);
-  }
-
-  static std::string ProjectFile() { return SourceFile("models/talos/project.yaml").string(); }
-
-  void WriteCalibration(const StoredCalibration& stored) {
-    CalibrationEstimate estimate;
-    estimate.robot = stored.robot;
-    estimate.nominal = stored.nominal;
-    estimate.recording = "drawn <at> random -- twice";
-    estimate.model = "full";
-    const StoredRobot robot = RestoreRobot(project_, stored);
-    for (const Parameter& parameter : robot.model.parameters) {
-      const auto value = stored.joint_errors.find(parameter.name);
-      if (value == stored.joint_errors.end()) continue;
-      estimate.parameters.push_back({.name = parameter.name,
-                                     .unit = UnitName(parameter.unit),
-                                     .value = value->second,
-                                     .sd = std::max(0.1 * std::abs(value->second), 1e-12)});
-    }
-    std::filesystem::create_directories(scratch_.path() / "out");
-    scratch_.Write("out/calibration.yaml", MakeCalibrationYaml(estimate));
-  }
-
-  /// `export` into a file; its path.
-  std::string Export(const std::string& format, const std::string& more = "") {
-    const std::string file = (scratch_.path() / format).string();
-    const ProgramResult result = RunExport(format, file, more);
-    EXPECT_EQ(result.exit_code, 0) << format << ": " << result.err;
-    return file;
-  }
-
-  ProgramResult RunExport(const std::string& format, const std::string& file,
-                          const std::string& more = "") const {
-    return RunProgram("export " + (scratch_.path() / "out").string() + " --project " +
-                      ProjectFile() + " --format " + format + " -o " + file + " " + more);
-  }
-
-  ProgramResult Compensate(const std::string& motion, const std::string& more = "") const {
-    return RunProgram("compensate " + (scratch_.path() / "out").string() + " --project " +
-                      ProjectFile() + " --motion " + motion + " -o " +
-                      (scratch_.path() / "corrected.csv").string() + " " + more);
-  }
-
-  Compensator Robot(RuntimeContent content) const {
-    return Compensator(MakeRuntimeModel(project_, stored_, content));
-  }
-
-  Eigen::VectorXd Posture(int number) const {
-    Eigen::VectorXd q = project_.motion.rest;
-    for (Eigen::Index c = 0; c < q.size(); ++c) q[c] += 0.1 * std::sin(1.7 * number + 2.3 * c);
-    return q.cwiseMax(project_.motion.lower).cwiseMin(project_.motion.upper);
-  }
-
-  /// The zeros of the encoders, by coordinate.
-  Eigen::VectorXd Zeros(const std::map<std::string, double>& by_joint) const {
-    Eigen::VectorXd zeros = Eigen::VectorXd::Zero(project_.tree.coordinate_count());
-    for (std::size_t c = 0; c < project_.tree.coordinate_joint.size(); ++c) {
-      const auto joint = static_cast<std::size_t>(project_.tree.coordinate_joint[c]);
-      const auto zero = by_joint.find(project_.tree.joints[joint].name);
-      if (zero != by_joint.end()) zeros[static_cast<Eigen::Index>(c)] = zero->second;
-    }
-    return zeros;
-  }
-
-  std::map<std::string, double> TrueZeros() const {
-    std::map<std::string, double> zeros;
-    for (const Joint& joint : project_.tree.joints) {
-      const auto found = stored_.joint_errors.find(joint.name + ".theta");
-      if (!joint.mimic && found != stored_.joint_errors.end()) zeros[joint.name] = found->second;
-    }
-    return zeros;
-  }
-
-  /// A robot description is the calibrated rigid robot, at positions of the encoders plus `zeros`.
-  void ExpectTheCalibratedRobot(const std::string& urdf,
-                                const std::map<std::string, double>& zeros) {
-    const RobotTree tree = ParseUrdf(urdf, "exported");
-    Compensator rigid = Robot(RuntimeContent::kGeometry);
-    double largest = 0.0;
-    for (int posture = 0; posture < 10; ++posture) {
-      const Eigen::VectorXd q = Posture(posture);
-      rigid.Forward(q, kStatics, 0);
-      const std::vector<Transform> T_root_link = LinkTransforms(tree, q + Zeros(zeros));
-      for (std::size_t i = 0; i < T_root_link.size(); ++i) {
-        largest = std::max(largest,
-                           (T_root_link[i].matrix() - rigid.link_pose(static_cast<int>(i)).matrix())
-                               .cwiseAbs()
-                               .maxCoeff());
-      }
-    }
-    EXPECT_LT(largest, kRounding);
-  }
-
-  Project project_;
-  StoredCalibration stored_;
-  ScratchFolder scratch_;
-};
 
 /// The nominal URDF with numbers added to the origins of its joints.
 std::string WithOrigins(const std::string& urdf,
@@ -228,8 +115,8 @@ TEST_F(CalibratedTalos, ControllersGetTheElasticRobot) {
   Compensator read(ReadRuntimeModel(std::filesystem::path(Export("runtime"))));
   for (StandingFeet feet : {0u, 1u, 3u}) {
     const Eigen::VectorXd q = Posture(static_cast<int>(feet));
-    expected.Command(q, kStatics, feet);
-    read.Command(q, kStatics, feet);
+    expected.Command(q, NoTorques(), feet);
+    read.Command(q, NoTorques(), feet);
     EXPECT_EQ(read.command(), expected.command());
   }
   if (std::system("cc --version > /dev/null 2>&1") != 0) return;  // no compiler here
@@ -248,12 +135,12 @@ TEST_F(CalibratedTalos, ControllersGetTheElasticRobot) {
   ASSERT_EQ(
       std::system(("cc -std=c99 -Wall -Werror -o " + program + " " + source + " -lm").c_str()), 0);
   ASSERT_EQ(std::system((program + " > " + program + ".txt").c_str()), 0);
-  expected.Command(q, kStatics, 1);
+  expected.Command(q, NoTorques(), 1);
   std::istringstream numbers(ReadFile(program + ".txt"));
   for (double command : expected.command()) {
     double number = 0.0;
     ASSERT_TRUE(numbers >> number);
-    EXPECT_NEAR(number, command, kRounding);
+    EXPECT_NEAR(number, command, 1e-9);
   }
 }
 
@@ -324,90 +211,6 @@ TEST_F(CalibratedTalos, InsignificantJointsAreNamedInEveryFile) {
   Compensator read(ReadRuntimeModel(scratch_.path() / "runtime"));  // with its comment
   EXPECT_EQ(read.model().robot, "talos");
   ExpectTheCalibratedRobot(ReadFile(scratch_.path() / "urdf"), {});
-}
-
-/// A motion of two seconds about a posture.
-std::string MotionText(const RobotTree& tree, const Eigen::VectorXd& middle, double swing) {
-  std::string text = "time";
-  for (int k : tree.coordinate_joint) text += "," + tree.joints[static_cast<std::size_t>(k)].name;
-  for (int i = 0; i <= 20; ++i) {
-    text += fmt::format("\n{:.1f}", 0.1 * i);
-    for (double q : middle) text += fmt::format(",{:.9f}", q + swing * std::sin(0.3 * i));
-  }
-  return text + "\n";
-}
-
-TEST_F(CalibratedTalos, CompensatedHandsAreWhereThePlanMeant) {
-  const std::string motion =
-      scratch_.Write("plan.csv", MotionText(project_.tree, project_.motion.rest, 0.05));
-  const std::string json = (scratch_.path() / "c.json").string();
-  const ProgramResult result = Compensate(motion, "--json " + json);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(nlohmann::json::parse(ReadFile(json))["status"], "fine");
-  const JointMotion plan = ReadMotion(motion, project_);
-  const JointMotion corrected = ReadMotion(scratch_.path() / "corrected.csv", project_);
-  ASSERT_EQ(corrected.q.rows(), plan.q.rows());
-  Compensator nominal = Robot(RuntimeContent::kNominal), real = Robot(RuntimeContent::kEverything);
-  const int hand =
-      project_.chains[static_cast<std::size_t>(FindChain(project_, "arm_left"))].tip_link;
-  const auto place = [&](Compensator& robot, const JointMotion& at, Eigen::Index i) {
-    robot.Forward(at.q.row(i).transpose(), kStatics, 3);
-    return Eigen::Vector3d(robot.link_pose(hand).translation());
-  };
-  for (Eigen::Index i = 0; i < plan.q.rows(); i += 5) {
-    const Eigen::Vector3d wanted = place(nominal, plan, i);
-    EXPECT_LT((place(real, corrected, i) - wanted).norm(), 2e-4);
-    EXPECT_GT((place(real, plan, i) - wanted).norm(), 3e-3);
-  }
-}
-
-TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {
-  // At the limit of a joint that the correction moves beyond it: one direction or the other.
-  int refused = 0;
-  const Joint& elbow =
-      project_.tree.joints[static_cast<std::size_t>(FindJoint(project_.tree, "arm_left_4_joint"))];
-  const Eigen::Index k = elbow.coordinate;
-  Eigen::VectorXd middle = project_.motion.rest;
-  for (const double limit : {elbow.limits.lower, elbow.limits.upper}) {
-    middle[k] = limit;
-    const std::string motion = scratch_.Write("plan.csv", MotionText(project_.tree, middle, 0.0));
-    const std::string json = (scratch_.path() / "c.json").string();
-    std::filesystem::remove(scratch_.path() / "corrected.csv");
-    const ProgramResult result = Compensate(motion, "--json " + json);
-    const bool written = std::filesystem::exists(scratch_.path() / "corrected.csv");
-    if (result.exit_code == 0) {
-      EXPECT_TRUE(written);
-      continue;
-    }
-    ++refused;
-    EXPECT_EQ(result.exit_code, 4);
-    EXPECT_FALSE(written);
-    EXPECT_NE(result.err.find("must not be played"), std::string::npos) << result.err;
-    EXPECT_EQ(nlohmann::json::parse(ReadFile(json))["status"], "refused");
-  }
-  EXPECT_GT(refused, 0);
-}
-
-TEST_F(CalibratedTalos, ACalibrationOfAnotherRobotIsRefused) {
-  const std::string motion =
-      scratch_.Write("plan.csv", MotionText(project_.tree, project_.motion.rest, 0.0));
-  const std::string calibration = (scratch_.path() / "out" / "calibration.yaml").string();
-  std::string text = ReadFile(calibration);
-  const std::size_t at = text.find(stored_.nominal);
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, stored_.nominal.size(), "0123456789abcdef");
-  scratch_.Write("out/calibration.yaml", text);
-  const ProgramResult compensated = Compensate(motion);
-  EXPECT_EQ(compensated.exit_code, 3);
-  EXPECT_NE(compensated.err.find("other nominal geometry"), std::string::npos) << compensated.err;
-  EXPECT_FALSE(std::filesystem::exists(scratch_.path() / "corrected.csv"));
-  for (const char* format : {"urdf", "c99", "runtime", "pal", "flex_joints"}) {
-    const std::string file = (scratch_.path() / format).string();
-    const ProgramResult exported = RunExport(format, file);
-    EXPECT_EQ(exported.exit_code, 3) << format;
-    EXPECT_NE(exported.err.find("other nominal geometry"), std::string::npos) << exported.err;
-    EXPECT_FALSE(std::filesystem::exists(file)) << format;
-  }
 }
 
 TEST_F(Program, OnlyWhatHeldOutPosturesSayHelpsIsExported) {

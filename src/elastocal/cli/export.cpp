@@ -10,6 +10,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/export_calibration.hpp"
+#include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/report/version.hpp"
 
 namespace elastocal::cli {
@@ -27,6 +28,9 @@ int Export(const ExportCommand& command) {
   OutputSet outputs;
   outputs.Protect(robot.inputs);
   if (!command.options.mjcf.empty()) outputs.Protect({command.options.mjcf});
+  if (command.least_gain_mm) {
+    outputs.Protect(InputFiles(robot.project, RecordedRecordings(robot)));
+  }
   outputs.Declare(command.output);
   outputs.Prepare();
   ExportOptions options = command.options;
