@@ -59,7 +59,7 @@ find_package(Python REQUIRED COMPONENTS Interpreter)
 math(EXPR next "${Python_VERSION_MINOR} + 1")
 set(python ${Python_VERSION_MAJOR}.)
 elastocal_package(python python3-elastocal python
-  "libelastocal0 ${same}, python3 (>= ${python}${Python_VERSION_MINOR}~), python3 (<< ${python}${next}~), python3-numpy"
+  "${libraries}, python3 (>= ${python}${Python_VERSION_MINOR}~), python3 (<< ${python}${next}~), python3-numpy"
   "calibration of robots: Python module" "${what}\nThis package has the Python module elastocal.")
 if(TARGET elastocal_mpi)
   list(APPEND CPACK_COMPONENTS_ALL mpi)

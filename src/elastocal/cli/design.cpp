@@ -56,11 +56,7 @@ PostureDesignOptions MakeOptions(const DesignCommand& command) {
   design.nocp.block = command.block;
   design.nocp.plateau.tolerance = command.plateau;
   design.nocp.plateau.max_postures = command.max_count;
-  if (command.count > 0) {
-    design.nocp.plateau.tolerance = -1.0;
-    design.nocp.plateau.max_postures = command.count;
-    design.postures = command.count;
-  }
+  if (command.count > 0) SetPostureCount(command.count, design);
   return options;
 }
 
@@ -126,10 +122,7 @@ int Design(const DesignCommand& command) {
   const DesignFiles files(command.output);
   OutputSet outputs;
   outputs.Protect({command.project, project.urdf});
-  outputs.Declare(files.postures, "robot: ");
-  outputs.Declare(files.summary, "{");
-  outputs.Declare(files.curves, "algorithm,");
-  outputs.Declare(files.picture, "<svg");
+  files.Declare(outputs);
   DeclarePlanningReport(command.output, outputs);
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();

@@ -32,18 +32,6 @@ std::string DesignText(const ObservationDesign& design) {
                      design.information, design.candidates, design.information_at_random);
 }
 
-/// An earlier simulation is replaced; nobody's recordings are.
-void CheckReplaces(const std::map<std::filesystem::path, std::string>& files,
-                   const std::filesystem::path& folder, bool force) {
-  if (force || std::filesystem::exists(folder / "truth.yaml")) return;
-  for (const auto& [file, text] : files) {
-    if (!std::filesystem::exists(file)) continue;
-    throw InputError(file.string() +
-                     ": is there and was not simulated (there is no truth.yaml beside it), so it "
-                     "is not replaced; choose another folder, or give --force");
-  }
-}
-
 std::vector<ChainPostures> PosturesToPlay(const SimulateObservationsCommand& command,
                                           const Project& project, const Progress& progress) {
   if (!command.postures.empty()) return ReadPostureFile(command.postures, project);
@@ -96,16 +84,12 @@ int RunObservationDesign(const DesignObservationsCommand& command, const Project
 
 int RunObservationSimulation(const SimulateObservationsCommand& command, const Project& project) {
   const std::filesystem::path folder = command.output;
-  std::map<std::filesystem::path, std::string> files;
-  for (const char* name : {"observations.csv", "corners.csv", "truth.yaml"}) {
-    if (name != std::string("corners.csv") || !project.contact->seen_tags.empty()) {
-      files[folder / name] = {};
-    }
-  }
-  CheckReplaces(files, folder, command.force);
   OutputSet outputs;
   outputs.Protect({project.file, project.urdf, command.postures});
-  for (const auto& [file, text] : files) outputs.Declare(file);
+  for (const std::filesystem::path& file :
+       FilesOfObservedSimulation(project, folder, command.force)) {
+    outputs.Declare(file);
+  }
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
   const bool quiet = command.common.Silent();

@@ -106,10 +106,7 @@ int Plan(const PlanCommand& command) {
   std::vector<std::filesystem::path> inputs = {command.project, project.urdf};
   if (!command.postures.empty()) inputs.push_back(command.postures);
   outputs.Protect(inputs);
-  outputs.Declare(files.motion, "time,");
-  outputs.Declare(files.margins, "{");
-  outputs.Declare(files.trajectory, "header:");
-  for (const std::filesystem::path& file : files.chains) outputs.Declare(file, "time,");
+  files.Declare(outputs);
   DeclarePlanningReport(command.output, outputs);
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();

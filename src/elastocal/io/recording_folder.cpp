@@ -8,6 +8,7 @@
 #include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -100,14 +101,17 @@ class UpAxis {
 std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const MarkedRobot& robot,
                                     const Project& project, UpAxis& up) {
   std::vector<TrialSamples> samples;
+  const InterruptionOfCaller interruption;
   const auto start_reading = [&](std::size_t i) {
-    return std::async(std::launch::async, [&trial = trials[i], &project] {
+    return std::async(std::launch::async, [&, &trial = trials[i]] {
+      const Interruptible interruptible = interruption.Share();
       return ReadMarkerFile(trial.markers, trial.reading, project);
     });
   };
   std::future<MarkerFile> markers = start_reading(0);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const JointLog log = ReadJointFile(trials[i].joints, trials[i].reading, project);
+    while (markers.wait_for(kBetweenLooks) != std::future_status::ready) InterruptionPoint();
     MarkerFile file = markers.get();
     up.Take(file);
     if (i + 1 < trials.size()) markers = start_reading(i + 1);

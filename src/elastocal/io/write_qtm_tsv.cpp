@@ -5,6 +5,7 @@
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -50,6 +51,7 @@ std::string FormatQtmTsv(const MarkerTrajectories& trajectories, int decimals) {
   text.reserve(text.size() +
                static_cast<std::size_t>(positions.size()) * static_cast<std::size_t>(decimals + 7));
   for (Eigen::Index i = 0; i < positions.rows(); ++i) {
+    InterruptionPoint();
     text += std::to_string(i + 1) + "\t";
     AppendFixed(static_cast<double>(i) / trajectories.rate_hz, kTimeDecimals, text);
     for (Eigen::Index c = 0; c < positions.cols(); ++c) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Sparse>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/smooth_step.hpp"
@@ -33,6 +34,7 @@ bool PlaceLegs(const StandingRobot& robot, const Stretch& stretch,
   PlacedPosture pose = stretch.begin;
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const PlacedPosture before = pose;
+    InterruptionPoint();
     pose = {stretch.q.row(i).transpose(), T_world_root[Size(i)]};
     const auto place = [&](int foot, const Transform& T_world_sole) {
       for (const int c : robot.legs[Size(foot)].coordinates()) pose.q[c] = before.q[c];

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "elastocal/math/bspline.hpp"
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
@@ -85,6 +86,7 @@ class WayAround {
 
  private:
   Eigen::VectorXd At(const Eigen::MatrixXd& control, Eigen::Index sample) const {
+    InterruptionPoint();
     return clearances_(control.transpose() * basis_.row(sample).transpose());
   }
 
@@ -99,6 +101,7 @@ class WayAround {
     const double lack = Lack(distances);
     for (const int c : moving_) {
       const double at = q[c];
+      InterruptionPoint();
       q[c] = at + kStep;
       away[c] = (lack - Lack(clearances_(q))) / kStep;
       q[c] = at;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "elastocal/math/interruption.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -64,6 +66,7 @@ class LocalSearch {
     constexpr std::ptrdiff_t kLongestMoved = 3;
     Change best;
     for (std::ptrdiff_t i = 1; i < count(); ++i) {
+      InterruptionPoint();
       for (std::ptrdiff_t j = i + 1; j < count(); ++j) {
         const double gain =
             Between(i - 1, i) + Between(j, j + 1) - Between(i - 1, j) - Between(i, j + 1);

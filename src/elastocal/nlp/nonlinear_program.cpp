@@ -2,6 +2,7 @@
 #include "elastocal/nlp/nonlinear_program.hpp"
 
 #include <cmath>
+#include <exception>
 
 #include <IpIpoptApplication.hpp>
 #include <IpSolveStatistics.hpp>
@@ -24,6 +25,9 @@ class IpoptProgram : public Ipopt::TNLP {
   const Eigen::VectorXd& x() const { return x_; }
   double objective() const { return objective_; }
   Termination termination() const { return termination_; }
+  void RethrowFailure() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian_entries, Index& hessian_entries,
                     IndexStyleEnum& style) override {
@@ -110,6 +114,12 @@ class IpoptProgram : public Ipopt::TNLP {
     return true;
   }
 
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index, Number, Number, Number, Number, Number,
+                             Number, Number, Number, Index, const Ipopt::IpoptData*,
+                             Ipopt::IpoptCalculatedQuantities*) override {
+    return !failure_;
+  }
+
   void finalize_solution(Ipopt::SolverReturn status, Index n, const Number* x, const Number*,
                          const Number*, Index, const Number*, const Number*, Number objective,
                          const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
@@ -124,9 +134,16 @@ class IpoptProgram : public Ipopt::TNLP {
  private:
   static Eigen::Map<Eigen::VectorXd> Map(Number* values, Index size) { return {values, size}; }
 
+  /// Exceptions, interruptions among them, do not get through Ipopt: they end it, and are kept.
   bool Update(Index n, const Number* x, bool fresh) {
+    if (failure_) return false;
     if (fresh || !evaluated_) {
-      defined_ = program_.Evaluate(Eigen::Map<const Eigen::VectorXd>(x, n));
+      try {
+        defined_ = program_.Evaluate(Eigen::Map<const Eigen::VectorXd>(x, n));
+      } catch (...) {
+        failure_ = std::current_exception();
+        return false;
+      }
       evaluated_ = true;
     }
     return defined_;
@@ -179,6 +196,7 @@ class IpoptProgram : public Ipopt::TNLP {
   double objective_ = NAN;
   Termination termination_ = Termination::kFailure;
   bool evaluated_ = false, defined_ = false;
+  std::exception_ptr failure_;
 };
 
 void Configure(Ipopt::IpoptApplication& ipopt, const NonlinearProgramOptions& options) {
@@ -211,6 +229,7 @@ NonlinearProgramResult Solve(NonlinearProgram& program, const Eigen::VectorXd& x
   Ipopt::SmartPtr<IpoptProgram> view = new IpoptProgram(program, x0);
   const Ipopt::ApplicationReturnStatus status =
       ipopt->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(view)));
+  view->RethrowFailure();
   result.x = view->x();
   result.objective = view->objective();
   result.termination = view->termination();

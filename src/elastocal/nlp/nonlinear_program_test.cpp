@@ -2,6 +2,7 @@
 #include "elastocal/nlp/nonlinear_program.hpp"
 
 #include <cmath>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -90,6 +91,23 @@ TEST(NonlinearProgram, StepsBackWhereItIsUndefined) {
   const auto result = Solve(program, Eigen::VectorXd::Constant(1, 4.0), {});
   EXPECT_EQ(result.termination, Termination::kConverged);
   EXPECT_NEAR(result.x[0], 0.25, 1e-4);
+}
+
+/// A programme whose evaluation throws after some evaluations.
+class Failing : public HockSchittkowski71 {
+ public:
+  bool Evaluate(const Eigen::VectorXd& x) override {
+    if (++evaluations == 5) throw std::runtime_error("fifth");
+    return HockSchittkowski71::Evaluate(x);
+  }
+
+  int evaluations = 0;
+};
+
+TEST(NonlinearProgram, HandsAnExceptionOnAtOnce) {
+  Failing program;
+  EXPECT_THROW(Solve(program, Eigen::Vector4d(1.0, 5.0, 5.0, 1.0), {}), std::runtime_error);
+  EXPECT_EQ(program.evaluations, 5);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/optim/normal_equations.hpp"
 
 namespace elastocal {
@@ -64,6 +65,7 @@ LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0
         return result;
       }
       ++result.iterations;
+      InterruptionPoint();
       const Eigen::VectorXd next = result.x + equations.Expand(step);
       problem.Evaluate(next, true);
       const double cost = CostOf(problem);

@@ -90,6 +90,13 @@ DesignFiles::DesignFiles(const std::filesystem::path& output)
       curves(Beside(output, "_curves.csv")),
       picture(Beside(output, "_curves.svg")) {}
 
+void DesignFiles::Declare(OutputSet& outputs) const {
+  outputs.Declare(postures, "robot: ");
+  outputs.Declare(summary, "{");
+  outputs.Declare(curves, "algorithm,");
+  outputs.Declare(picture, "<svg");
+}
+
 std::string FormatDesignSummary(const Project& project, const PostureDesign& design,
                                 const PostureDesignOptions& options) {
   Json chains = Json::array();

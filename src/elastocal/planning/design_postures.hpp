@@ -60,7 +60,8 @@ struct DesignFiles {
 
   std::filesystem::path postures, summary, curves, picture;
 
-  std::vector<std::filesystem::path> all() const { return {postures, summary, curves, picture}; }
+  /// To the set, with how files of these kinds begin.
+  void Declare(OutputSet& outputs) const;
 };
 
 /// Puts the contents of these files, which have been declared, into the set.

@@ -78,10 +78,11 @@ void MotionFiles::AddChains(const fs::path& folder, const std::vector<std::strin
   }
 }
 
-std::vector<fs::path> MotionFiles::all() const {
-  std::vector<fs::path> files = {motion, margins, trajectory};
-  files.insert(files.end(), chains.begin(), chains.end());
-  return files;
+void MotionFiles::Declare(OutputSet& outputs) const {
+  outputs.Declare(motion, "time,");
+  outputs.Declare(margins, "{");
+  outputs.Declare(trajectory, "header:");
+  for (const fs::path& file : chains) outputs.Declare(file, "time,");
 }
 
 void SetMotionFiles(const MotionFiles& files, const Project& project, const MotionPlan& plan,

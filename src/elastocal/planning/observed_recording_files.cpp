@@ -3,6 +3,7 @@
 #include <yaml-cpp/emitter.h>
 
 #include "elastocal/io/recording_columns.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/planning/simulate_observations.hpp"
 #include "elastocal/planning/truth_file.hpp"
@@ -94,6 +95,21 @@ std::string QuantitiesYaml(const ObservedRecording& recording) {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> FilesOfObservedSimulation(const Project& project,
+                                                             const std::filesystem::path& folder,
+                                                             bool force) {
+  std::vector<std::filesystem::path> files = {folder / "observations.csv", folder / "truth.yaml"};
+  if (!project.contact->seen_tags.empty()) files.push_back(folder / "corners.csv");
+  if (force || std::filesystem::exists(folder / "truth.yaml")) return files;
+  for (const std::filesystem::path& file : files) {
+    if (!std::filesystem::exists(file)) continue;
+    throw InputError(file.string() +
+                     ": is there and was not simulated (there is no truth.yaml beside it), so it "
+                     "is not replaced; choose another folder, or give --force");
+  }
+  return files;
+}
 
 std::map<std::string, std::string> FormatObservedRecording(const Project& project,
                                                            const ObservedRecording& recording) {

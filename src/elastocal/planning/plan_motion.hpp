@@ -112,7 +112,8 @@ struct MotionFiles {
   /// no planned motion: it is not replaced.
   void AddChains(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-  std::vector<std::filesystem::path> all() const;
+  /// To the set, with how files of these kinds begin.
+  void Declare(OutputSet& outputs) const;
 };
 
 /// Puts the contents of these files, which have been declared, into the set.

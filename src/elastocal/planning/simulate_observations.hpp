@@ -53,6 +53,12 @@ ObservedRecording SimulateObservations(const Project& project,
 std::map<std::string, std::string> FormatObservedRecording(const Project& project,
                                                            const ObservedRecording& recording);
 
+/// These files in a folder. An earlier simulation there is to be replaced; throws InputError where
+/// files of these names were not simulated (there is no truth.yaml beside them), unless `force`.
+std::vector<std::filesystem::path> FilesOfObservedSimulation(const Project& project,
+                                                             const std::filesystem::path& folder,
+                                                             bool force);
+
 /// The run for programs (JSON).
 std::string FormatObservedSimulation(const ObservedRecording& recording);
 

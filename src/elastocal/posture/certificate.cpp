@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/nlp/nonlinear_program.hpp"
 
 namespace elastocal {
@@ -85,6 +86,7 @@ class WeightedSet {
   /// / N_b, which never lowers the determinant.
   void OptimiseWeights() {
     for (int i = 0; i < kWeightIterations; ++i) {
+      InterruptionPoint();
       const Eigen::MatrixXd inverse = Inverse(Information());
       Eigen::VectorXd ratio(size());
       for (int k = 0; k < size(); ++k) {

@@ -53,6 +53,12 @@ const char* AlgorithmName(DesignAlgorithm algorithm) {
   return kNames[static_cast<int>(algorithm)];
 }
 
+void SetPostureCount(int count, DesignOptions& options) {
+  options.postures = count;
+  options.nocp.plateau.max_postures = count;
+  options.nocp.plateau.tolerance = -1.0;  // no plateau
+}
+
 ChainDesign DesignChain(const ErrorModel& model, const std::vector<int>& base,
                         const MotionSetup& motion, const ChainSetup& chain,
                         const DesignOptions& options) {

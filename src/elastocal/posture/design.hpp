@@ -28,6 +28,9 @@ struct DesignOptions {
   std::uint64_t seed = 1;
 };
 
+/// Asks for exactly so many postures, whatever the algorithm.
+void SetPostureCount(int count, DesignOptions& options);
+
 /// Calibration postures of one chain.
 struct ChainDesign {
   ChainSetup setup;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/posture/feasible_set.hpp"
 
+#include "elastocal/math/interruption.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -33,6 +35,7 @@ Eigen::VectorXd FeasibleSet::ConstraintUpper() const {
 
 void EvaluateConstraints(FeasibleSet& set, const Eigen::VectorXd& x, Eigen::VectorXd& values,
                          Eigen::MatrixXd& jacobian) {
+  InterruptionPoint();
   values.resize(set.constraint_count());
   jacobian.resize(set.constraint_count(), set.variable_count());
   set.chain.Move(x);

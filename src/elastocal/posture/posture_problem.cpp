@@ -6,9 +6,12 @@
 
 #include <Eigen/Cholesky>
 
+#include "elastocal/math/interruption.hpp"
+
 namespace elastocal {
 
 Eigen::MatrixXd EvaluateRegressor(PostureProblem& problem, const Eigen::VectorXd& x) {
+  InterruptionPoint();
   Eigen::MatrixXd psi = problem.regressor.Evaluate(problem.feasible.chain, x);
   if (!problem.visible) return psi;
   problem.feasible.chain.Move(x);

@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/posture/exchange.hpp"
 
 namespace elastocal {
@@ -61,6 +62,7 @@ class Search {
   int Best(double& most) const {
     int best = -1;
     for (std::size_t i = 0; i < information_.size(); ++i) {
+      InterruptionPoint();
       const double value = ExpectedInformation(prior_, sum_ + information_[i], options_.aim);
       if (best >= 0 && !(value > most + kLeastGain)) continue;
       most = value;

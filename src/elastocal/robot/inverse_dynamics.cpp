@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/robot/inverse_dynamics.hpp"
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/transform.hpp"
 
 namespace elastocal {
@@ -61,6 +62,7 @@ InverseDynamicsResult InverseDynamics(const RobotTree& tree,
                                       const std::vector<BodyInertia>& inertias,
                                       const RobotState& state, const Vector3d& gravity,
                                       const std::vector<LinkWrench>& wrenches) {
+  InterruptionPoint();
   // First pass, outwards: how the bodies move. Second pass, inwards: sum of the wrenches that move
   // them, about the world's origin.
   std::vector<BodyMotion> motion(tree.body_count());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/robot/linkage_errors.hpp"
 
 namespace elastocal {
@@ -266,6 +267,7 @@ void GeneralizedJacobian::EvaluateLeg(int leg) {
 
 void GeneralizedJacobian::Evaluate(const Geometry& geometry, const Eigen::VectorXd& q,
                                    const JointLoads& loads) {
+  InterruptionPoint();
   EvaluateScrews(geometry, q, loads);
   for (int leg = 0; leg < model_.leg_count(); ++leg) EvaluateLeg(leg);
   for (int m = 0; m < model_.marker_count(); ++m) {

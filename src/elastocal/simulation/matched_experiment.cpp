@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/leg_load.hpp"
 #include "elastocal/robot/statics.hpp"
@@ -125,6 +126,7 @@ TrueMotion PlayMatchedMotion(const MatchedExperiment& experiment, std::size_t in
   Eigen::VectorXd last;
   StandingPose pose;
   for (int i = 0; i < motion.frame_count(); ++i) {
+    InterruptionPoint();
     const Eigen::VectorXd q = PostureAt(trial.motion, i / motion.rate_hz);
     if (i == 0 || q != last) {
       const std::vector<Transform> T_waist_link = LinkTransforms(model.tree, q);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/simulation/faults.hpp"
@@ -50,6 +51,7 @@ void SwapLabels(const SensorOptions& options, const std::vector<NamedCluster>& c
 
 void AddNoise(const SensorOptions& options, Random& random, Eigen::MatrixXd& positions) {
   for (Eigen::Index i = 0; i < positions.rows(); ++i) {
+    InterruptionPoint();
     for (Eigen::Index m = 0; m < positions.cols(); m += 3) {
       Eigen::Vector3d error = random.NormalVector(3, options.marker_noise_sd);
       if (random.Uniform(0.0, 1.0) < options.outlier_share) {
@@ -113,6 +115,7 @@ JointLog MakeLog(const TrueRobot& robot, const TrueMotion& motion, const SensorO
   const double step =
       options.encoder_bits > 0 ? 2.0 * M_PI * std::pow(0.5, options.encoder_bits) : 0.0;
   for (Eigen::Index i = 0; i < rows; ++i) {
+    InterruptionPoint();
     log.time_s[i] = static_cast<double>(i) / options.log_rate_hz;
     const double frame = (log.time_s[i] + truth.lag_s) / rate * motion.rate_hz;
     log.positions.row(i) = Interpolate(motion.encoders, frame);
@@ -120,6 +123,7 @@ JointLog MakeLog(const TrueRobot& robot, const TrueMotion& motion, const SensorO
   }
   AddCauses(robot, options, log);
   for (Eigen::Index c = 0; c < log.positions.cols(); ++c) {
+    InterruptionPoint();
     const int k = robot.tree.coordinate_joint[static_cast<std::size_t>(c)];
     const bool slides =
         robot.tree.joints[static_cast<std::size_t>(k)].type == JointType::kPrismatic;

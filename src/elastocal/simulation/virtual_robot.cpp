@@ -12,6 +12,7 @@
 #include <mujoco/mujoco.h>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/interruption.hpp"
 
 namespace elastocal {
 namespace {
@@ -181,6 +182,7 @@ void VirtualRobot::Command(const Eigen::VectorXd& encoders) {
 }
 
 void VirtualRobot::Step() {
+  InterruptionPoint();
   simulation_->ApplyFriction();
   mj_step(simulation_->model.get(), simulation_->data.get());
   // After a step, MuJoCo's bodies are still where they were before it.

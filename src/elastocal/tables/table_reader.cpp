@@ -5,6 +5,7 @@
 #include <array>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/utf8.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
@@ -89,6 +90,7 @@ void LineReader::Begin() {
 }
 
 bool LineReader::Next(std::span<char>& line) {
+  InterruptionPoint();
   if (line_ == 0 && buffer_.empty()) Begin();
   std::size_t searched = begin_, end = 0;
   while ((end = buffer_.find(line_end_, searched)) == std::string::npos) {

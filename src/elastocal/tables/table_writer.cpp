@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -39,6 +40,7 @@ void TableWriter::AddFixed(double value, int decimals) {
 }
 
 void TableWriter::EndRow() {
+  InterruptionPoint();
   text_ += '\n';
   row_begins_ = true;
 }

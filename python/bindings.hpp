@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/eigen.h>
+#include <pybind11/functional.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/interruption.hpp"
+#include "elastocal/math/progress.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+
+// What the parts of the Python module share. Each part adds classes and functions of one subject.
+
+namespace elastocal::python {
+
+namespace py = pybind11;
+using py::literals::operator""_a;
+
+using Path = std::filesystem::path;
+using Paths = std::vector<Path>;
+using Names = std::vector<std::string>;
+
+void AddRobot(py::module_& module);        ///< Robot, Project
+void AddCalibrating(py::module_& module);  ///< calibrate, validate, check, compare
+void AddRecordings(py::module_& module);   ///< read, info, write_table
+void AddDesigning(py::module_& module);    ///< design, design_after
+void AddMotions(py::module_& module);      ///< plan
+void AddSimulating(py::module_& module);   ///< simulate
+void AddRuntime(py::module_& module);      ///< Runtime
+
+/// No result: the limits leave no posture, or no motion. `elastocal.InfeasibleError`.
+struct Infeasible : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What a long call does meanwhile: it lets other Python threads run, and ends when a signal's
+/// handler raises, as that of Ctrl-C does. Nothing of Python may be touched while it lives.
+class LongCall {
+ public:
+  LongCall();
+
+ private:
+  py::gil_scoped_release unlocked_;
+  Interruptible interruptible_;
+};
+
+/// Does work as a long call.
+template <typename Work>
+auto Unlocked(const Work& work) {
+  const LongCall guard;
+  return work();
+}
+
+/// A dict of what a JSON text holds.
+py::object FromJson(const std::string& text);
+
+/// One path, or several.
+Paths PathsOf(const py::object& paths);
+
+/// Positions by coordinate of the tree [rad or m]: an array, or a dict of joints, the others
+/// being at zero. Throws InputError with `what` for another size or an unknown joint.
+Eigen::VectorXd PositionsOf(const py::object& q, const Names& coordinates, const std::string& what);
+
+/// Joints that are entries of q, in its order.
+Names CoordinateNames(const RobotTree& tree);
+
+/// Throws InputError for a value outside the bounds of an option of the command line
+/// ("plan --move-s"), in the name of the argument that is called like it (move_s).
+void ExpectBounded(const std::string& option, double value);
+/// The same for a count.
+void ExpectWithin(const char* argument, long long value, long long least, long long most);
+
+/// The entry of a name. Throws InputError with all names for another one.
+template <typename Value>
+const Value& Named(const char* argument, const std::string& name,
+                   const std::vector<std::pair<const char*, Value>>& values) {
+  std::string all;
+  for (const auto& [known, value] : values) {
+    if (name == known) return value;
+    all += (all.empty() ? "'" : ", '") + std::string(known) + "'";
+  }
+  throw InputError(std::string(argument) + ": '" + name + "'; one of " + all + " was expected");
+}
+
+}  // namespace elastocal::python

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bindings.hpp"
+#include "elastocal/io/posture_table.hpp"
+#include "elastocal/io/recorded_files.hpp"
+#include "elastocal/pipeline/recording_info.hpp"
+
+namespace elastocal::python {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+py::dict ToDict(const MarkerTrajectories& markers, const RecordingFile& file) {
+  const auto frames = static_cast<py::ssize_t>(markers.frame_count());
+  const auto count = static_cast<py::ssize_t>(markers.marker_count());
+  py::array_t<double> positions({frames, count, py::ssize_t{3}});
+  Eigen::Map<RowMajor>(positions.mutable_data(), frames, 3 * count) = markers.positions;
+  py::dict result;
+  result["names"] = markers.names;
+  result["rate_hz"] = markers.rate_hz;
+  result["positions"] = positions;
+  result["up"] = file.up.empty() ? py::object(py::none()) : py::object(py::str(file.up));
+  return result;
+}
+
+/// What the file holds, under its own names.
+py::dict Read(const Path& path, const std::string& unit, const std::string& topic) {
+  RecordingFile file =
+      Unlocked([&] { return ReadAnyRecording(path, {.unit = unit, .joints_topic = topic}); });
+  py::dict result;
+  result["format"] = file.format;
+  result["markers"] = py::none();
+  result["joints"] = py::none();
+  if (file.markers) result["markers"] = ToDict(*file.markers, file);
+  if (file.joints) {
+    py::dict joints;
+    joints["names"] = file.joints->names;
+    joints["time_s"] = std::move(file.joints->time_s);
+    joints["positions"] = std::move(file.joints->positions);
+    joints["torques"] = std::move(file.joints->torques);
+    result["joints"] = joints;
+  }
+  result["notes"] = file.notes;
+  return result;
+}
+
+py::object Info(const Path& file, const std::string& unit, const std::string& topic) {
+  constexpr int kPictureColumns = 48;
+  return FromJson(Unlocked([&] {
+    return MakeInfoJson(
+        DescribeRecording(file.string(), {.unit = unit, .joints_topic = topic}, kPictureColumns));
+  }));
+}
+
+using Cube = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+void WriteTable(const Project& project, const Path& file, const RowMajor& positions,
+                const Cube& markers, const std::optional<Names>& marker_names) {
+  Recording recording;
+  recording.q = positions;
+  if (marker_names) {
+    recording.marker_names = *marker_names;
+  } else {
+    for (const Marker& marker : project.markers) recording.marker_names.push_back(marker.name);
+  }
+  const auto postures = static_cast<py::ssize_t>(positions.rows());
+  const auto count = static_cast<py::ssize_t>(recording.marker_names.size());
+  if (positions.cols() != project.tree.coordinate_count()) {
+    throw InputError("positions: " + std::to_string(positions.cols()) + " columns; " +
+                     std::to_string(project.tree.coordinate_count()) +
+                     " were expected, one a joint of the project");
+  }
+  if (markers.ndim() != 3 || markers.shape(0) != postures || markers.shape(1) != count ||
+      markers.shape(2) != 3) {
+    throw InputError("markers: an array of (" + std::to_string(postures) + ", " +
+                     std::to_string(count) + ", 3) was expected");
+  }
+  recording.markers = Eigen::Map<const RowMajor>(markers.data(), postures, 3 * count);
+  WritePostureTable(file, recording, project.tree);
+}
+
+}  // namespace
+
+void AddRecordings(py::module_& module) {
+  module.def("read", Read, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
+             "Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, "
+             "NaN where not seen, and 'joints' with time_s (samples), positions (samples, joints), "
+             "rad or m, and torques (samples, joints), N.m or N. unit: of lengths, where the file "
+             "does not say it ('mm'). topic: of the joints, in a bag with several.");
+  module.def("info", Info, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
+             "What is in a recording: the dict of `elastocal info --json`.");
+  module.def("write_table", WriteTable, "project"_a, "file"_a, "positions"_a, "markers"_a,
+             py::kw_only(), "marker_names"_a = std::nullopt,
+             "Writes a table of static postures (CSV) that calibrate() and the program read. "
+             "positions: (postures, joints), rad or m, by Project.joints. markers: (postures, "
+             "markers, 3), m, NaN where not seen, by Project.markers unless `marker_names` names "
+             "them. Columns have the default names of docs/formats.md.");
+}
+
+}  // namespace elastocal::python

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bindings.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/runtime/compensator.hpp"
+
+namespace elastocal::python {
+namespace {
+
+/// A calibrated robot for a controller. An object serves one thread at a time.
+class PyRuntime {
+ public:
+  PyRuntime(const Path& calibration, const Path& project, const std::string& content)
+      : compensator_(Make(calibration, project, content)) {}
+
+  const RuntimeModel& model() const { return compensator_.model(); }
+
+  py::dict Forward(const py::object& q, const Eigen::VectorXd& torque, StandingFeet feet) {
+    const CompensatorStatus status = compensator_.Forward(Positions(q), Checked(torque), feet);
+    py::dict poses;
+    for (std::size_t i = 0; i < model().link_names.size(); ++i) {
+      poses[py::str(model().link_names[i])] =
+          Eigen::Matrix4d(compensator_.link_pose(static_cast<int>(i)).matrix());
+    }
+    py::dict result;
+    result["links"] = poses;
+    result["root"] = Eigen::Matrix4d(compensator_.root_pose().matrix());
+    result["status"] = DescribeStatus(status);
+    return result;
+  }
+
+  Eigen::VectorXd Command(const py::object& q, const Eigen::VectorXd& torque, StandingFeet feet) {
+    compensator_.Command(Positions(q), Checked(torque), feet);
+    return compensator_.command();
+  }
+
+  Eigen::VectorXd Correct(const py::object& q, const Eigen::VectorXd& torque, StandingFeet feet) {
+    compensator_.Correct(Positions(q), Checked(torque), feet);
+    return compensator_.rigid_positions();
+  }
+
+ private:
+  static RuntimeModel Make(const Path& calibration, const Path& project,
+                           const std::string& content) {
+    const auto wanted = Named<RuntimeContent>("content", content,
+                                              {{"nominal", RuntimeContent::kNominal},
+                                               {"geometry", RuntimeContent::kGeometry},
+                                               {"everything", RuntimeContent::kEverything}});
+    const CalibratedRobot robot = OpenCalibratedRobot(calibration, project);
+    return MakeRuntimeModel(robot.project, robot.calibration, wanted);
+  }
+
+  Eigen::VectorXd Positions(const py::object& q) const {
+    return PositionsOf(q, model().coordinate_names, "q");
+  }
+
+  const Eigen::VectorXd& Checked(const Eigen::VectorXd& torque) const {
+    if (torque.size() == 0 || torque.size() == model().joint_count()) return torque;
+    throw InputError("torque: " + std::to_string(torque.size()) + " torques; none or " +
+                     std::to_string(model().joint_count()) + " were expected");
+  }
+
+  Compensator compensator_;
+};
+
+constexpr const char* kArguments =
+    " q: (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of "
+    "the robot,), N.m, measured; empty: those of gravity. feet: bit i for foot i that stands.";
+
+}  // namespace
+
+void AddRuntime(py::module_& module) {
+  const Eigen::VectorXd none;
+  const auto with_arguments = [](const std::string& what) { return what + kArguments; };
+  py::class_<PyRuntime>(module, "Runtime",
+                        "The calibrated robot in a controller. One thread at a time.")
+      .def(py::init<const Path&, const Path&, const std::string&>(), "calibration"_a,
+           "project"_a = "", "content"_a = "everything", py::call_guard<LongCall>(),
+           "calibration: the folder that calibrate wrote. content: 'everything', 'geometry' "
+           "(without elasticity) or 'nominal'.")
+      .def_property_readonly(
+          "joints", [](const PyRuntime& r) { return r.model().coordinate_names; },
+          "Joints that are entries of q, in its order.")
+      .def_property_readonly("links", [](const PyRuntime& r) { return r.model().link_names; })
+      .def_property_readonly(
+          "feet", [](const PyRuntime& r) { return r.model().foot_names; },
+          "Links of the feet, in the order of the bits of `feet`.")
+      .def("forward", &PyRuntime::Forward, "q"_a, "torque"_a = none, "feet"_a = 0u,
+           with_arguments("Poses (4, 4) in m of all 'links' in the root link's frame, with "
+                          "deflection, of the 'root', and the 'status'.")
+               .c_str())
+      .def("command", &PyRuntime::Command, "q"_a, "torque"_a = none, "feet"_a = 0u,
+           with_arguments("Positions (joints,) to command so that hands and feet go where the "
+                          "nominal robot has them at q.")
+               .c_str())
+      .def("correct", &PyRuntime::Correct, "q"_a, "torque"_a = none, "feet"_a = 0u,
+           with_arguments("Positions (joints,) at which a rigid calibrated robot has its hands "
+                          "where the real one has them.")
+               .c_str());
+}
+
+}  // namespace elastocal::python
