@@ -38,7 +38,7 @@ class LeftArm(unittest.TestCase):
 
     def test_five_lines(self):
         project = elastocal.Project(ARM)
-        found = elastocal.calibrate(project, [TABLE], folds=0)
+        found = elastocal.calibrate(project, TABLE, folds=0)
         self.assertTrue(found.deployable)
         self.assertEqual(f"{found.urdf_rmse_mm:.2f} mm", "0.57 mm")
 
@@ -85,8 +85,47 @@ class LeftArm(unittest.TestCase):
         # What is commanded brings the real hand where the nominal one is at q.
         again = real.forward(real.command(q))["links"][tip][:3, 3]
         self.assertLess(np.linalg.norm(again - at[0]), 1e-5)
+        # Joints by name, the others at zero; and the project that the calibration names.
+        again = elastocal.Runtime(self.folder / "cli").forward(bent)["links"][tip]
+        every = real.forward(np.array([bent.get(name, 0.0) for name in real.joints]))["links"][tip]
+        np.testing.assert_array_equal(again, every)
+        # Uncalibrated, it is the robot of the project.
+        nominal_at = nominal.forward(bent)["links"][tip]
+        np.testing.assert_allclose(nominal_at, self.project.robot.poses(bent)[tip], atol=1e-9)
         with self.assertRaises(elastocal.InputError):
             real.forward(np.zeros(3))
+
+
+class Arrays(unittest.TestCase):
+    """A recording that is made of arrays: an arm with an error that is known."""
+
+    def test_known_error_is_found(self):
+        error, noise, marker = 0.01, 1e-4, np.array([0.06, 0.01, -0.07])  # rad, m, m
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "project.yaml"
+            file.write_text(f"robot: {{urdf: {SOURCE}/models/talos/talos.urdf}}\n"
+                            "chains:\n  - {name: arm, tip: gripper_left_base_link}\n"
+                            "markers:\n  single:\n"
+                            f"    - {{name: HAND, link: arm_left_7_link, position_mm: {list(1e3 * marker)}}}\n")
+            project = elastocal.Project(file)
+            robot, random = project.robot, np.random.default_rng(1)
+            moving = [name.startswith(("torso", "arm_left")) for name in robot.joints]
+            postures = np.where(moving, random.uniform(robot.lower, robot.upper, (60, len(moving))), project.rest)
+            offset = error * np.array([name == "arm_left_4_joint" for name in robot.joints])
+            seen = [(robot.poses(q + offset)["arm_left_7_link"] @ [*marker, 1.0])[:3] for q in postures]
+            table = pathlib.Path(folder) / "recording.csv"
+            elastocal.write_table(project, table, postures,
+                                  np.array(seen)[:, None, :] + random.normal(0.0, noise, (60, 1, 3)))
+            found = elastocal.calibrate(project, table, folds=0)
+            i = found.parameters.index("arm_left_4_joint.theta")
+            self.assertAlmostEqual(found.values[i], error, delta=4.0 * found.sd[i])  # no luck needed
+            self.assertLess(found.sd[i], 2e-3)
+            self.assertLess(found.urdf_rmse_mm, 2e3 * noise)  # of three coordinates
+            steps = []
+            elastocal.calibrate(project, [table], folds=2, progress=lambda *at: steps.append(at))
+            self.assertIn(("cross-validation", 2, 2), steps)
+            with self.assertRaisesRegex(elastocal.InputError, r"markers: an array of \(60, 1, 3\)"):
+                elastocal.write_table(project, table, postures, np.zeros((60, 3)))
 
 
 class Files(unittest.TestCase):

@@ -31,7 +31,7 @@ CALLS = {
     "validate": "elastocal.validate(project, calibration, recording)",
     "check": "elastocal.check(project, calibration, recording)",
     "compare": "elastocal.compare(calibration, calibration)",
-    "read": "elastocal.read(pathlib.Path(recording) / 'arms.tsv')",
+    "read": "elastocal.read(pathlib.Path(recording) / 'leg_left.tsv')",
     "runtime": "elastocal.Runtime(calibration, talos)",
 }
 CHILD = """

@@ -8,6 +8,7 @@
 #include "elastocal/calibration/loads.hpp"
 #include "elastocal/calibration/outliers.hpp"
 #include "elastocal/calibration/placing_markers.hpp"
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/leg_load.hpp"
@@ -66,6 +67,7 @@ class Predictor {
     PlaceWaist(Transform::Identity(), Vector6d::Zero(), geometry_);
     const auto all = [](int) { return true; };
     for (int i = 0; i < recording.posture_count(); ++i) {
+      InterruptionPoint();
       Registration registration;
       AddMarkers(recording, i, MarkerPositions(model, geometry_, Q(i)), all, registration);
       if (const auto T = registration.Solve()) placement_.T_ref_waist[i] = *T;
@@ -73,6 +75,7 @@ class Predictor {
     loads_ = ComputeLoads(model, recording, delta, placement_, options.load);
     for (std::size_t f = 0; f < placement_.footings.size(); ++f) PlaceFooting(f, known);
     for (int i = 0; i < recording.posture_count(); ++i) {
+      InterruptionPoint();
       if (placement_.footing[i] < 0) PlaceByMarkers(i);
     }
   }
@@ -81,6 +84,7 @@ class Predictor {
     Prediction prediction;
     prediction.positions.resize(recording_.posture_count(), recording_.markers.cols());
     for (int i = 0; i < recording_.posture_count(); ++i) {
+      InterruptionPoint();
       prediction.positions.row(i) = Markers(i).reshaped().transpose();
     }
     prediction.distances = MarkerDistances(recording_, prediction.positions);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
@@ -15,6 +16,7 @@ Transform RegisterWaist(const ErrorModel& model, const Recording& recording) {
       ApplyErrors(at_origin, Eigen::VectorXd::Zero(at_origin.parameter_count()));
   std::vector<Eigen::Vector3d> nominal, measured;
   for (int i = 0; i < recording.posture_count(); ++i) {
+    InterruptionPoint();
     const Eigen::Matrix3Xd p_waist_marker =
         MarkerPositions(at_origin, geometry, recording.q.row(i).transpose());
     for (int m = 0; m < recording.marker_count(); ++m) {

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 
@@ -56,6 +57,7 @@ struct WindowSystem {
   WindowSystem(const UniformSpeed& measured, const UniformSpeed& predicted,
                const FrameInterval& frames, double lag_s, std::vector<char>& taken) {
     for (int frame = frames.begin; frame < frames.end; ++frame) {
+      InterruptionPoint();
       char& take = taken[static_cast<std::size_t>(frame - frames.begin)];
       if (take == 0) continue;
       const double value = measured.values[frame];

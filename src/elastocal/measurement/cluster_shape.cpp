@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 
@@ -126,6 +127,7 @@ ClusterShape MeasureShape(const DistanceTable& table, int size, double tolerance
     std::vector<double> values;
     std::vector<double> steps;
     for (Eigen::Index frame = 0; frame < table.rows(); frame += stride) {
+      InterruptionPoint();
       const double value = table(frame, pair);
       if (std::isnan(value)) continue;
       values.push_back(value);

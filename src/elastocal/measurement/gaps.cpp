@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
@@ -65,6 +66,7 @@ MarkerSmoothing FillMarker(int longest_fill, int neighbourhood,
   MarkerSmoothing report;
   report.frames_seen = static_cast<int>(std::count(seen.begin(), seen.end(), true));
   for (const FrameInterval& gap : RunsWhere(frames, [&](int frame) { return !seen[frame]; })) {
+    InterruptionPoint();
     const GapFit fit{gap, neighbourhood};
     std::optional<Cubic> cubic;
     if (gap.size() <= longest_fill) cubic = FitCubic(fit, seen, positions);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
@@ -188,6 +189,7 @@ void Apply(const Plan& plan, const ClusterShape& shape, const std::vector<int>& 
            Eigen::MatrixXd& positions) {
   std::vector<Eigen::RowVector3d> raw(markers.size());
   for (int frame = 0; frame < static_cast<int>(positions.rows()); ++frame) {
+    InterruptionPoint();
     const auto position = [&](int i) { return positions.block<1, 3>(frame, 3 * markers[i]); };
     if (plan.order[frame] != 0) {
       for (int i = 0; i < shape.size; ++i) raw[i] = position(i);

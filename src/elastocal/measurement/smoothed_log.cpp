@@ -7,6 +7,7 @@
 
 #include "elastocal/math/butterworth.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/frame_interval.hpp"
 
@@ -89,6 +90,7 @@ SmoothedLog SmoothLog(const JointLog& log, const SmoothingOptions& options) {
   smoothed.wrench_sensors = static_cast<int>(log.wrench_sensors.size());
   smoothed.margin_s = 0.5 / options.cutoff_hz;
   for (const FrameInterval& samples : SplitAtHoles(log.time_s)) {
+    InterruptionPoint();
     if (samples.size() < 2) continue;
     LogPiece piece = MakePiece(log, samples);
     if (!(piece.rate_hz > 2.0 * options.cutoff_hz)) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
@@ -42,6 +43,7 @@ PostureInformation::PostureInformation(const ObservationResiduals& residuals,
 }
 
 double PostureInformation::Gain(int posture, const Eigen::MatrixXd& covariance) const {
+  InterruptionPoint();
   const Eigen::MatrixXd& J = rows_[Size(posture)];
   if (J.rows() == 0) return 0.0;
   Eigen::MatrixXd S = J * covariance * J.transpose();
@@ -50,6 +52,7 @@ double PostureInformation::Gain(int posture, const Eigen::MatrixXd& covariance) 
 }
 
 double PostureInformation::Update(int posture, double sign, Eigen::MatrixXd& covariance) const {
+  InterruptionPoint();
   const Eigen::MatrixXd& J = rows_[Size(posture)];
   if (J.rows() == 0) return 0.0;
   const Eigen::MatrixXd across = covariance * J.transpose();
