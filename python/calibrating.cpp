@@ -122,9 +122,12 @@ void AddCalibrationClass(py::module_& module) {
       .def_property_readonly(
           "status", [](const PyCalibration& c) { return RunStatus(c.run); },
           "'converged', 'not converged', 'failed' or 'implausible'.")
-      .def_property_readonly("objections",
-                             [](const PyCalibration& c) { return c.run.verdict.objections; })
-      .def_property_readonly("warnings", [](const PyCalibration& c) { return c.run.warnings; })
+      .def_property_readonly(
+          "objections", [](const PyCalibration& c) { return c.run.verdict.objections; },
+          "Why it cannot be trusted, a sentence each.")
+      .def_property_readonly(
+          "warnings", [](const PyCalibration& c) { return c.run.warnings; },
+          "What a user should know, a sentence each.")
       .def_property_readonly(
           "urdf_rmse_mm",
           [](const PyCalibration& c) {

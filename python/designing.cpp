@@ -190,7 +190,9 @@ void AddDesigning(py::module_& module) {
       .def_property_readonly(
           "summary", [](const PyDesign& d) { return FromJson(d.summary); },
           "The dict of `elastocal design --json`: index, bound, efficiency of each chain ...")
-      .def_property_readonly("warnings", [](const PyDesign& d) { return d.warnings; })
+      .def_property_readonly(
+          "warnings", [](const PyDesign& d) { return d.warnings; },
+          "What a user should know, a sentence each.")
       .def_property_readonly("text", &PyDesign::text, "The posture file.")
       .def("save", SaveDesign, "file"_a, py::call_guard<LongCall>(),
            "Writes the posture file (YAML) and, as the program does, summary and curves beside "

@@ -25,7 +25,8 @@ class Robot:
     """A nominal robot, as its URDF describes it."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """As in the URDF."""
     @property
     def joints(self) -> list[str]:
         """Joints that are entries of q, in its order; mimic joints are not."""
@@ -45,25 +46,32 @@ class Robot:
     def effort(self) -> _Array:
         """Largest torques (joints,), N.m, or forces, N."""
     def poses(self, q: _Positions) -> dict[str, _Array]:
-        """Poses (4, 4) of all links in the root link's frame, without deflection; q: (joints,) or a dict of joints."""
+        """Poses (4, 4) of all links in the root link's frame, by name, without deflection. q: (joints,), rad or m,
+        or a dict of joints, the others being at 0."""
 
 class Project:
     """A project file with its robot."""
 
-    def __init__(self, file: _Path) -> None: ...
+    def __init__(self, file: _Path) -> None:
+        """Reads a project file (YAML; docs/formats.md)."""
     @property
-    def robot(self) -> Robot: ...
+    def robot(self) -> Robot:
+        """Its nominal robot."""
     @property
-    def file(self) -> str: ...
+    def file(self) -> str:
+        """The project file."""
     @property
-    def urdf(self) -> str: ...
+    def urdf(self) -> str:
+        """The robot description."""
     @property
     def joints(self) -> list[str]:
         """Joints that are entries of q, in its order."""
     @property
-    def chains(self) -> list[str]: ...
+    def chains(self) -> list[str]:
+        """Names of the chains that are calibrated."""
     @property
-    def markers(self) -> list[str]: ...
+    def markers(self) -> list[str]:
+        """Names of all markers."""
     @property
     def rest(self) -> _Array:
         """Posture of rest (joints,), rad or m: of joints that a posture leaves out."""
@@ -78,9 +86,11 @@ class Calibration:
     def status(self) -> str:
         """'converged', 'not converged', 'failed' or 'implausible'."""
     @property
-    def objections(self) -> list[str]: ...
+    def objections(self) -> list[str]:
+        """Why it cannot be trusted, a sentence each."""
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[str]:
+        """What a user should know, a sentence each."""
     @property
     def urdf_rmse_mm(self) -> float:
         """Root mean square of the markers' distances to what the calibrated URDF alone predicts."""
@@ -99,7 +109,8 @@ class Calibration:
     @property
     def files(self) -> dict[str, str]:
         """Texts of the files that `elastocal calibrate` writes, by name."""
-    def save(self, folder: _Path) -> None: ...
+    def save(self, folder: _Path) -> None:
+        """Writes these files."""
 
 class Design:
     """Calibration postures that design() found."""
@@ -112,13 +123,15 @@ class Design:
         """By chain, the links that stand on the floor meanwhile."""
     @property
     def summary(self) -> dict[str, Any]:
-        """The dict of `elastocal design --json`."""
+        """The dict of `elastocal design --json`: index, bound, efficiency of each chain ..."""
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[str]:
+        """What a user should know, a sentence each."""
     @property
     def text(self) -> str:
         """The posture file."""
-    def save(self, file: _Path) -> None: ...
+    def save(self, file: _Path) -> None:
+        """Writes the posture file (YAML) and, as the program does, summary and curves beside it."""
 
 class Plan:
     """A motion of the whole robot that plan() found."""
@@ -139,14 +152,17 @@ class Plan:
     def support(self) -> list[list[str]]:
         """By sample, the links that stand on the floor."""
     @property
-    def left_out(self) -> list[str]: ...
+    def left_out(self) -> list[str]:
+        """What of the postures is left out, and why, a sentence each."""
     @property
     def broken(self) -> list[str]:
         """Limits that the motion breaks; of a balanced one, none."""
     @property
     def summary(self) -> dict[str, Any]:
-        """The dict of `elastocal plan --json`."""
-    def save(self, file: _Path, *, trajectory: _Path = "", per_chain: _Path = "") -> None: ...
+        """The dict of `elastocal plan --json`: visits, margins, and how the robots that tried it came through."""
+    def save(self, file: _Path, *, trajectory: _Path = "", per_chain: _Path = "") -> None:
+        """Writes the motion (CSV) and its margins beside it. trajectory: a file, also as a ROS
+        trajectory_msgs/JointTrajectory (YAML). per_chain: a folder, also a motion for each chain."""
 
 class _Markers(TypedDict):
     names: list[str]
@@ -186,7 +202,10 @@ def calibrate(
     days: float = 1.0,
     accept: Sequence[str] = ...,
     progress: Optional[Callable[[str, int, int], None]] = None,
-) -> Calibration: ...
+) -> Calibration:
+    """Calibrates from a posture table or from recording folders (a path or several), like the command of that name.
+    folds: of the cross-validation, 0 for none; None: ten for a table. prior: the folder of an earlier calibration,
+    `days` ago. accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
 def validate(
     project: Project,
     calibration: _Path,
@@ -195,7 +214,9 @@ def validate(
     frozen: bool = False,
     seed: Optional[int] = None,
     accept: Sequence[str] = ...,
-) -> dict[str, Any]: ...
+) -> dict[str, Any]:
+    """Applies a saved calibration to another recording: the dict of validation.json. frozen: waist and markers are
+    not fitted anew."""
 def check(
     project: Project,
     calibration: _Path,
@@ -205,10 +226,18 @@ def check(
     days: float = 1.0,
     seed: Optional[int] = None,
     accept: Sequence[str] = ...,
-) -> dict[str, Any]: ...
-def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]: ...
-def read(file: _Path, *, unit: str = "", topic: str = "") -> _Recording: ...
-def info(file: _Path, *, unit: str = "", topic: str = "") -> dict[str, Any]: ...
+) -> dict[str, Any]:
+    """Tells from a few postures whether a saved calibration still holds: the dict of `elastocal check --json`.
+    level: chance of a false alarm. days: since the calibration."""
+def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]:
+    """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'suspects',
+    'warnings' and 'parameters' (values in SI units)."""
+def read(file: _Path, *, unit: str = "", topic: str = "") -> _Recording:
+    """Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, NaN where not seen, and
+    'joints' with time_s (samples), positions (samples, joints), rad or m, and torques (samples, joints), N.m or N.
+    unit: of lengths, where the file does not say it ('mm'). topic: of the joints, in a bag with several."""
+def info(file: _Path, *, unit: str = "", topic: str = "") -> dict[str, Any]:
+    """What is in a recording: the dict of `elastocal info --json`."""
 def write_table(
     project: Project,
     file: _Path,
@@ -216,7 +245,10 @@ def write_table(
     markers: ArrayLike,
     *,
     marker_names: Optional[Sequence[str]] = None,
-) -> None: ...
+) -> None:
+    """Writes a table of static postures (CSV) that calibrate() and the program read. positions: (postures, joints),
+    rad or m, by Project.joints. markers: (postures, markers, 3), m, NaN where not seen, by Project.markers unless
+    `marker_names` names them. Columns have the default names of docs/formats.md."""
 def design(
     project: Project,
     *,
@@ -232,7 +264,10 @@ def design(
     certificate: bool = True,
     seed: int = 1,
     progress: _Progress = None,
-) -> Design: ...
+) -> Design:
+    """Finds the smallest set of postures that tells most of the identifiable parameters, like the command of that
+    name. count: exactly so many for each chain. elastic: compliances too. curves: also what other algorithms reach.
+    progress: called with (done, total). Raises InfeasibleError where a chain has no such postures."""
 def design_after(
     project: Project,
     calibration: _Path,
@@ -245,7 +280,10 @@ def design_after(
     marker_noise_mm: float = ...,
     seed: int = 1,
     progress: _Progress = None,
-) -> Design: ...
+) -> Design:
+    """Chooses, like `elastocal design --after`, `count` postures of each chain that add most to a saved calibration
+    or, with check=True, that tell best whether a joint (of `joints`, or any) has moved since. days: since the
+    calibration. marker_noise_mm: of a coordinate, errors of the model included."""
 def plan(
     project: Project,
     postures: Optional[_Postures] = None,
@@ -267,7 +305,12 @@ def plan(
     threads: int = ...,
     seed: int = 1,
     progress: _Progress = None,
-) -> Plan: ...
+) -> Plan:
+    """Plans a motion through calibration postures that the robot does standing by itself, like the command of that
+    name. postures: a Design, a posture file, or a dict of chains with arrays (postures, joints), rad or m, or lists
+    of dicts of joints. kind: a validation motion instead, 'sine', 'random' (`count` postures a chain) or
+    'repeatability'. robots: so many with errors try it. Arguments are those of the command, in the unit of their
+    suffix, else SI. Raises InfeasibleError where there is no motion or it breaks a limit."""
 def simulate(
     project: Project,
     folder: _Path,
@@ -287,26 +330,41 @@ def simulate(
     robot_seed: Optional[int] = None,
     threads: int = ...,
     progress: _Progress = None,
-) -> dict[str, Any]: ...
-def simulation_settings() -> dict[str, dict[str, str]]: ...
+) -> dict[str, Any]:
+    """Simulates a calibration experiment on a robot with known errors into `folder`, like the command of that name,
+    and returns the dict of `elastocal simulate --json` with 'warnings'. motion: a Plan, a file (CSV), or a dict
+    with time_s (samples,), positions (samples, joints) and perhaps support (lists of links). postures: a Design, a
+    file, or a dict of chains. settings: a file, or a dict of simulation_settings(). nominal: begins without
+    imperfections. Progress counts trials."""
+def simulation_settings() -> dict[str, dict[str, str]]:
+    """What `settings` of simulate() may hold: by key, its 'default' and 'help'."""
 
 class Runtime:
     """The calibrated robot in a controller. One thread at a time."""
 
     def __init__(
         self, calibration: _Path, project: _Path = "", content: str = "everything"
-    ) -> None: ...
+    ) -> None:
+        """calibration: the folder that calibrate wrote. content: 'everything', 'geometry' (without elasticity) or
+        'nominal'."""
     @property
     def joints(self) -> list[str]:
         """Joints that are entries of q, in its order."""
     @property
-    def links(self) -> list[str]: ...
+    def links(self) -> list[str]:
+        """Names of all links."""
     @property
     def feet(self) -> list[str]:
         """Links of the feet, in the order of the bits of `feet`."""
     def forward(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> dict[str, Any]:
-        """Poses (4, 4) in m of all 'links' in the root link's frame, with deflection, of the 'root', and the 'status'."""
+        """Poses (4, 4) in m of all 'links' in the root link's frame, with deflection, of the 'root', and the
+        'status'. q: (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the
+        robot,), N.m, measured; empty: those of gravity. feet: bit i for foot i that stands."""
     def command(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> _Array:
-        """Positions (joints,) to command so that hands and feet go where the nominal robot has them at q."""
+        """Positions (joints,) to command so that hands and feet go where the nominal robot has them at q. q:
+        (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the robot,), N.m,
+        measured; empty: those of gravity. feet: bit i for foot i that stands."""
     def correct(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> _Array:
-        """Positions (joints,) at which a rigid calibrated robot has its hands where the real one has them."""
+        """Positions (joints,) at which a rigid calibrated robot has its hands where the real one has them. q:
+        (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the robot,), N.m,
+        measured; empty: those of gravity. feet: bit i for foot i that stands."""

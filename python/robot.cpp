@@ -37,7 +37,8 @@ Names NamesOf(const Things& things) {
 
 void AddRobot(py::module_& module) {
   py::class_<RobotTree>(module, "Robot", "A nominal robot, as its URDF describes it.")
-      .def_property_readonly("name", [](const RobotTree& r) { return r.name; })
+      .def_property_readonly(
+          "name", [](const RobotTree& r) { return r.name; }, "As in the URDF.")
       .def_property_readonly("joints", CoordinateNames,
                              "Joints that are entries of q, in its order; mimic joints are not.")
       .def_property_readonly(
@@ -72,17 +73,22 @@ void AddRobot(py::module_& module) {
 
   py::class_<Project>(module, "Project", "A project file with its robot.")
       .def(py::init([](const Path& file) { return ReadProject(file); }), "file"_a,
-           py::call_guard<LongCall>())
+           py::call_guard<LongCall>(), "Reads a project file (YAML; docs/formats.md).")
       .def_property_readonly(
           "robot", [](const Project& p) -> const RobotTree& { return p.tree; },
-          py::return_value_policy::reference_internal)
-      .def_property_readonly("file", [](const Project& p) { return p.file.string(); })
-      .def_property_readonly("urdf", [](const Project& p) { return p.urdf.string(); })
+          py::return_value_policy::reference_internal, "Its nominal robot.")
+      .def_property_readonly(
+          "file", [](const Project& p) { return p.file.string(); }, "The project file.")
+      .def_property_readonly(
+          "urdf", [](const Project& p) { return p.urdf.string(); }, "The robot description.")
       .def_property_readonly(
           "joints", [](const Project& p) { return CoordinateNames(p.tree); },
           "Joints that are entries of q, in its order.")
-      .def_property_readonly("chains", [](const Project& p) { return NamesOf(p.chains); })
-      .def_property_readonly("markers", [](const Project& p) { return NamesOf(p.markers); })
+      .def_property_readonly(
+          "chains", [](const Project& p) { return NamesOf(p.chains); },
+          "Names of the chains that are calibrated.")
+      .def_property_readonly(
+          "markers", [](const Project& p) { return NamesOf(p.markers); }, "Names of all markers.")
       .def_property_readonly(
           "rest", [](const Project& p) { return p.motion.rest; },
           "Posture of rest (joints,), rad or m: of joints that a posture leaves out.");

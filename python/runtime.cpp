@@ -81,7 +81,8 @@ void AddRuntime(py::module_& module) {
       .def_property_readonly(
           "joints", [](const PyRuntime& r) { return r.model().coordinate_names; },
           "Joints that are entries of q, in its order.")
-      .def_property_readonly("links", [](const PyRuntime& r) { return r.model().link_names; })
+      .def_property_readonly(
+          "links", [](const PyRuntime& r) { return r.model().link_names; }, "Names of all links.")
       .def_property_readonly(
           "feet", [](const PyRuntime& r) { return r.model().foot_names; },
           "Links of the feet, in the order of the bits of `feet`.")

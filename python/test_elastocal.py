@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The module against the command line, on the measured arm and on files of the repository."""
+import ast
 import json
 import os
 import pathlib
@@ -14,6 +15,7 @@ import elastocal
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 SHARED = pathlib.Path(os.environ.get("ELASTOCAL_SHARED_DATA", SOURCE.parent / "shared" / "data"))
 ARM = SOURCE / "examples/talos_left_arm/project.yaml"
+STUB = SOURCE / "python/elastocal.pyi"
 TABLE = SHARED / "talos_left_arm_mocap/talos_left_arm_02_10_contact.csv"
 
 
@@ -141,6 +143,23 @@ class Files(unittest.TestCase):
         log = SOURCE / "tests/recordings/joints_matrix.npz"
         np.testing.assert_array_equal(elastocal.read(log)["joints"]["positions"], np.load(log)["q"])
         self.assertEqual(elastocal.info(log)["joints"]["samples"], 6)
+
+    def test_docstrings(self):
+        """Everything has one, and help() says what the stub file says."""
+        def check(name, thing, node):
+            # pybind11 puts the signature of a function before its text.
+            said = " ".join((thing.__doc__ or "").split())
+            stub = " ".join((ast.get_docstring(node) or "").split())
+            self.assertTrue(stub and said.endswith(stub), f"{name}: {stub!r} in the stub, {said!r} in the module")
+
+        for node in ast.parse(STUB.read_text()).body:
+            thing = getattr(elastocal, getattr(node, "name", ""), None)
+            if thing is None:
+                continue
+            check(node.name, thing, node)
+            for member in getattr(node, "body", []):
+                if isinstance(thing, type) and isinstance(member, ast.FunctionDef):
+                    check(f"{node.name}.{member.name}", getattr(thing, member.name), member)
 
     def test_errors(self):
         with self.assertRaisesRegex(elastocal.InputError, "no such file"):

@@ -44,7 +44,7 @@ for file in /usr/share/man/man1/elastocal.1.gz /usr/share/bash-completion/comple
   test -s "$file"
 done
 cd /tmp
-python3 -c "import elastocal; print(elastocal.Project('/usr/share/elastocal/models/talos/project.yaml').robot)"
+python3 -c "import elastocal; print(elastocal.Project('/usr/share/elastocal/models/talos/project.yaml').robot.name)"
 elastocal calibrate /usr/share/elastocal/models/talos/project.yaml \
   --recording /mnt/recording /mnt/recording_sine /mnt/recording_random -o out --quiet 2>/dev/null
 diff <(grep -v ^recording: out/calibration.yaml) <(grep -v ^recording: /mnt/calibration.yaml)

@@ -104,7 +104,7 @@ int Plan(const PlanCommand& command) {
   if (!command.folder.empty()) files.AddChains(command.folder, chains);
   OutputSet outputs;
   std::vector<std::filesystem::path> inputs = {command.project, project.urdf};
-  if (!command.postures.empty()) inputs.push_back(command.postures);
+  if (!command.postures.empty()) inputs.emplace_back(command.postures);
   outputs.Protect(inputs);
   files.Declare(outputs);
   DeclarePlanningReport(command.output, outputs);

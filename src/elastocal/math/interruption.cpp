@@ -14,6 +14,7 @@ struct Interruptible::State {
   std::function<void()> look;
   std::thread::id owner = std::this_thread::get_id();
   Clock::time_point next_look = Clock::now();  ///< of the owner alone
+  std::exception_ptr reason;                   ///< what ended the work; of the owner alone
   std::atomic<bool> ended = false;
 };
 
@@ -30,12 +31,14 @@ void InterruptionPoint() {
     if (state->ended) throw Interrupted();
     return;
   }
+  if (state->reason) std::rethrow_exception(state->reason);
   const Clock::time_point now = Clock::now();
   if (now < state->next_look) return;
   state->next_look = now + kBetweenLooks;
   try {
     state->look();
   } catch (...) {
+    state->reason = std::current_exception();
     state->ended = true;
     throw;
   }

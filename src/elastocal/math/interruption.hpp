@@ -22,7 +22,8 @@ struct Interrupted : std::exception {
 
 /// While it lives, the work of this thread can be ended early, as by Ctrl-C: InterruptionPoint
 /// calls `look` on this thread, every kBetweenLooks, and an exception that `look` throws leaves the
-/// work like any other. What ForAll does on further threads for this work ends with it.
+/// work like any other; where somebody swallows it, the next point throws it again. What ForAll
+/// does on further threads for this work ends with it.
 ///
 ///   const Interruptible interruptible([] { if (stop) throw Stop(); });
 ///   DesignPostures(project, {});

@@ -48,6 +48,17 @@ TEST(Interruption, EndsTheWorkOfItsThread) {
   EXPECT_LT(steady_clock::now() - begin, std::chrono::seconds(5));
 }
 
+TEST(Interruption, IsNotForgottenWhereSomebodySwallowsIt) {
+  int thrown = 0;
+  const Interruptible interruptible([&] {
+    ++thrown;
+    throw Stop();
+  });
+  EXPECT_THROW(WorkForLong(), Stop);
+  EXPECT_THROW(InterruptionPoint(), Stop);
+  EXPECT_EQ(thrown, 1);
+}
+
 TEST(Interruption, EndsTheWorkOfAllThreadsOfForAll) {
   // One task ends at once, so that the caller may be the thread that has nothing left to do.
   for (const std::size_t quick : {0u, 1u}) {

@@ -57,21 +57,27 @@ class IpoptProgram : public Ipopt::TNLP {
   }
 
   bool eval_f(Index n, const Number* x, bool fresh, Number& value) override {
-    if (!Update(n, x, fresh)) return false;
-    value = program_.Objective();
-    return std::isfinite(value);
+    return Guarded([&] {
+      if (!Update(n, x, fresh)) return false;
+      value = program_.Objective();
+      return std::isfinite(value);
+    });
   }
 
   bool eval_grad_f(Index n, const Number* x, bool fresh, Number* gradient) override {
-    if (!Update(n, x, fresh)) return false;
-    Map(gradient, n) = program_.Gradient();
-    return true;
+    return Guarded([&] {
+      if (!Update(n, x, fresh)) return false;
+      Map(gradient, n) = program_.Gradient();
+      return true;
+    });
   }
 
   bool eval_g(Index n, const Number* x, bool fresh, Index m, Number* values) override {
-    if (!Update(n, x, fresh)) return false;
-    Map(values, m) = program_.Constraints();
-    return true;
+    return Guarded([&] {
+      if (!Update(n, x, fresh)) return false;
+      Map(values, m) = program_.Constraints();
+      return true;
+    });
   }
 
   bool eval_jac_g(Index n, const Number* x, bool fresh, Index, Index, Index* rows, Index* columns,
@@ -80,12 +86,14 @@ class IpoptProgram : public Ipopt::TNLP {
       WriteStructure(rows, columns);
       return true;
     }
-    if (!Update(n, x, fresh)) return false;
-    for (const Eigen::MatrixXd& block : program_.Jacobian()) {
-      Map(values, static_cast<Index>(block.size())) = block.reshaped();
-      values += block.size();
-    }
-    return true;
+    return Guarded([&] {
+      if (!Update(n, x, fresh)) return false;
+      for (const Eigen::MatrixXd& block : program_.Jacobian()) {
+        Map(values, static_cast<Index>(block.size())) = block.reshaped();
+        values += block.size();
+      }
+      return true;
+    });
   }
 
   bool eval_h(Index n, const Number* x, bool fresh, Number objective_factor, Index m,
@@ -100,18 +108,20 @@ class IpoptProgram : public Ipopt::TNLP {
       }
       return true;
     }
-    if (!Update(n, x, fresh)) return false;
-    // While Ipopt restores feasibility, the objective plays no part and teaches nothing about its
-    // curvature.
-    if (objective_factor > 0.0) {
-      LearnCurvature(objective_factor, Eigen::Map<const Eigen::VectorXd>(x, n),
-                     Eigen::Map<const Eigen::VectorXd>(multipliers, m));
-    }
-    for (Index j = 0; j < n; ++j) {
-      Map(values, n - j) = hessian_.hessian().col(j).tail(n - j);
-      values += n - j;
-    }
-    return true;
+    return Guarded([&] {
+      if (!Update(n, x, fresh)) return false;
+      // While Ipopt restores feasibility, the objective plays no part and teaches nothing about its
+      // curvature.
+      if (objective_factor > 0.0) {
+        LearnCurvature(objective_factor, Eigen::Map<const Eigen::VectorXd>(x, n),
+                       Eigen::Map<const Eigen::VectorXd>(multipliers, m));
+      }
+      for (Index j = 0; j < n; ++j) {
+        Map(values, n - j) = hessian_.hessian().col(j).tail(n - j);
+        values += n - j;
+      }
+      return true;
+    });
   }
 
   bool intermediate_callback(Ipopt::AlgorithmMode, Index, Number, Number, Number, Number, Number,
@@ -134,16 +144,22 @@ class IpoptProgram : public Ipopt::TNLP {
  private:
   static Eigen::Map<Eigen::VectorXd> Map(Number* values, Index size) { return {values, size}; }
 
-  /// Exceptions, interruptions among them, do not get through Ipopt: they end it, and are kept.
-  bool Update(Index n, const Number* x, bool fresh) {
+  /// Ipopt swallows exceptions. Those of the programme, interruptions among them, are kept and end
+  /// it.
+  template <typename Work>
+  bool Guarded(const Work& work) {
     if (failure_) return false;
+    try {
+      return work();
+    } catch (...) {
+      failure_ = std::current_exception();
+      return false;
+    }
+  }
+
+  bool Update(Index n, const Number* x, bool fresh) {
     if (fresh || !evaluated_) {
-      try {
-        defined_ = program_.Evaluate(Eigen::Map<const Eigen::VectorXd>(x, n));
-      } catch (...) {
-        failure_ = std::current_exception();
-        return false;
-      }
+      defined_ = program_.Evaluate(Eigen::Map<const Eigen::VectorXd>(x, n));
       evaluated_ = true;
     }
     return defined_;

@@ -93,21 +93,35 @@ TEST(NonlinearProgram, StepsBackWhereItIsUndefined) {
   EXPECT_NEAR(result.x[0], 0.25, 1e-4);
 }
 
-/// A programme whose evaluation throws after some evaluations.
+/// A programme that throws when it is evaluated, or asked for its gradient, for the fifth time.
 class Failing : public HockSchittkowski71 {
  public:
+  explicit Failing(bool in_gradient) : in_gradient_(in_gradient) {}
+
   bool Evaluate(const Eigen::VectorXd& x) override {
-    if (++evaluations == 5) throw std::runtime_error("fifth");
+    if (!in_gradient_) Count();
     return HockSchittkowski71::Evaluate(x);
   }
+  Eigen::VectorXd Gradient() override {
+    if (in_gradient_) Count();
+    return HockSchittkowski71::Gradient();
+  }
 
-  int evaluations = 0;
+  int count = 0;
+
+ private:
+  void Count() {
+    if (++count == 5) throw std::runtime_error("fifth");
+  }
+  bool in_gradient_;
 };
 
 TEST(NonlinearProgram, HandsAnExceptionOnAtOnce) {
-  Failing program;
-  EXPECT_THROW(Solve(program, Eigen::Vector4d(1.0, 5.0, 5.0, 1.0), {}), std::runtime_error);
-  EXPECT_EQ(program.evaluations, 5);
+  for (const bool in_gradient : {false, true}) {
+    Failing program(in_gradient);
+    EXPECT_THROW(Solve(program, Eigen::Vector4d(1.0, 5.0, 5.0, 1.0), {}), std::runtime_error);
+    EXPECT_EQ(program.count, 5);
+  }
 }
 
 }  // namespace
