@@ -89,7 +89,7 @@ void ExpectThatMujocoAgrees(const CalibratedMjcf& robot) {
   const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(model.get()),
                                                                &mj_deleteData);
   Random random(2);
-  for (int posture = 0; posture < 20; ++posture) {
+  for (int posture = 0; posture < 1000; ++posture) {
     const Eigen::VectorXd q = RandomPosture(robot.calibrated, random);
     for (const Joint& joint : robot.calibrated.joints) {
       const int id = mj_name2id(model.get(), mjOBJ_JOINT, joint.name.c_str());

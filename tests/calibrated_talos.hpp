@@ -106,7 +106,7 @@ class CalibratedTalos : public testing::Test {
     const RobotTree tree = ParseUrdf(urdf, "exported");
     Compensator rigid = Robot(RuntimeContent::kGeometry);
     double largest = 0.0;
-    for (int posture = 0; posture < 10; ++posture) {
+    for (int posture = 0; posture < 1000; ++posture) {
       const Eigen::VectorXd q = Posture(posture);
       rigid.Forward(q, NoTorques(), 0);
       const std::vector<Transform> T_root_link = LinkTransforms(tree, q + Zeros(zeros));

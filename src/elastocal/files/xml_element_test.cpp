@@ -55,5 +55,22 @@ TEST(XmlElement, KnowsItsPlaces) {
   EXPECT_EQ(text.substr(a.StartTagEnd()), "|");
 }
 
+TEST(XmlElement, EndsBehindItsOwnEndTag) {
+  const std::string text =
+      "<r><a n='x'><!-- </a> > --><a t='>'/><![CDATA[</a>]]><?p </a> ?><b><a ></a></b>> '\n</a >"
+      "<c/><d></d></r>|";
+  const XmlText xml(text, kSource);
+  const auto all = [&](const XmlElement& element) {
+    return text.substr(element.Begin(), element.End() - element.Begin());
+  };
+  const std::vector<XmlElement> children = xml.Root().Children();
+  ASSERT_EQ(children.size(), 3u);
+  EXPECT_EQ(all(children[0]), text.substr(3, text.find("<c/>") - 3));
+  EXPECT_EQ(all(children[0].Children()[1]), "<b><a ></a></b>");
+  EXPECT_EQ(all(children[1]), "<c/>");
+  EXPECT_EQ(all(children[2]), "<d></d>");
+  EXPECT_EQ(text.substr(xml.Root().End()), "|");
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -22,6 +22,9 @@ struct HeldOutGains {
 ///   (nearly equal ones together). Each is judged by the estimate of the other four, which is made
 ///   anew. That takes as long as five calibrations.
 ///
+/// Mistakes of the recording that calibrate undid (AcceptMistakes) are not undone here, and folds
+/// know no earlier calibration.
+///
 /// Throws InputError: a project without markers; what RecordedRecordings and ReadMeasurements
 /// refuse; a calibration of another robot; fewer than ten postures.
 HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& options);
