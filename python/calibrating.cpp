@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bindings.hpp"
 #include "elastocal/elastocal.hpp"
+#include "elastocal/planning/next_postures.hpp"
 
 namespace elastocal::python {
 namespace {
@@ -85,10 +86,11 @@ py::object Check(const Project& project, const Path& calibration, const Path& re
   RefuseInstruments(project);
   ExpectBounded("check --level", level);
   ExpectBounded("check --days", days);
+  const CheckOptions options{
+      .joints = {.level = level}, .days = days, .seed = seed, .accept = accept};
   return FromJson(Unlocked([&] {
-    return MakeCheckJson(CheckCalibration(
-        project, calibration, recording,
-        {.joints = {.level = level}, .days = days, .seed = seed, .accept = accept}));
+    const CheckRun run = CheckCalibration(project, calibration, recording, options);
+    return MakeCheckJson(project, run, DesignNextPostures(project, calibration, run, options));
   }));
 }
 
@@ -173,7 +175,8 @@ void AddCalibrating(py::module_& module) {
       "check", Check, "project"_a, "calibration"_a, "recording"_a, py::kw_only(), "level"_a = 0.05,
       "days"_a = 1.0, "seed"_a = std::nullopt, "accept"_a = Names(),
       "Tells from a few postures whether a saved calibration still holds: the dict of `elastocal "
-      "check --json`. level: chance of a false alarm. days: since the calibration.");
+      "check --json`, with the 'next_postures' to record where several joints may have changed. "
+      "level: chance of a false alarm. days: since the calibration.");
   module.def("compare", Compare, "a"_a, "b"_a, py::kw_only(), "level"_a = 0.05,
              "Tells which joints moved between two saved calibrations: a dict with 'changed', "
              "'moved', 'suspects', 'warnings' and 'parameters' (values in SI units).");

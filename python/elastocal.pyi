@@ -227,8 +227,9 @@ def check(
     seed: Optional[int] = None,
     accept: Sequence[str] = ...,
 ) -> dict[str, Any]:
-    """Tells from a few postures whether a saved calibration still holds: the dict of `elastocal check --json`.
-    level: chance of a false alarm. days: since the calibration."""
+    """Tells from a few postures whether a saved calibration still holds: the dict of `elastocal check --json`, with
+    the 'next_postures' to record where several joints may have changed. level: chance of a false alarm. days: since
+    the calibration."""
 def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]:
     """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'suspects',
     'warnings' and 'parameters' (values in SI units)."""

@@ -17,16 +17,19 @@
 #include "elastocal/pipeline/check_calibration.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/planning/next_postures.hpp"
 
 namespace elastocal::cli {
 namespace {
 
 constexpr double kLeastShown = 0.01;  // of the probability of a joint
 constexpr std::size_t kMostShown = 5;
+constexpr int kNext = 5;  // postures of a limb that are proposed
 
 struct CheckCommand {
   CommonOptions common;
   std::string project, calibration;
+  std::string output;                  ///< posture file; empty: none
   std::vector<std::string> recording;  ///< one
   CheckOptions check;
 };
@@ -79,11 +82,7 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
                         joint.p_adjusted);
   }
   if (!run.check.suspects.empty()) {
-    text += fmt::format(
-        "Changed: one of {}. Five postures of each limb that tell which:\n"
-        "  elastocal design {} --after {} --check --count 5 --joints {} -o next.yaml\n",
-        fmt::join(run.check.suspects, ", "), command.project, command.calibration,
-        fmt::join(run.check.suspects, " "));
+    text += fmt::format("Changed: one of {}.\n", fmt::join(run.check.suspects, ", "));
   }
   return text;
 }
@@ -109,6 +108,37 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
   return text;
 }
 
+/// A posture in degrees and mm, without the joints that are at rest in it.
+std::string PostureText(const Project& project, const Eigen::VectorXd& q) {
+  constexpr double kShown = 1e-3;  // rad or m
+  std::string text;
+  for (int i = 0; i < project.tree.coordinate_count(); ++i) {
+    if (std::abs(q[i] - project.motion.rest[i]) < kShown) continue;
+    const Joint& joint = project.tree.joints[project.tree.coordinate_joint[i]];
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", joint.name,
+                        joint.type == JointType::kPrismatic
+                            ? fmt::format("{:.0f} mm", 1e3 * q[i])
+                            : fmt::format("{:.1f}", 180.0 / M_PI * q[i]));
+  }
+  return text;
+}
+
+/// Which postures to record next; empty where nothing is open.
+std::string NextText(const Project& project, const NextPostures& next, const std::string& file) {
+  if (!next.why_none.empty()) {
+    return "\nNo postures that tell which: " + next.why_none + "\n";
+  }
+  if (next.postures.empty()) return "";
+  std::string text = "\nPostures that tell which (degrees; the other joints at rest)\n";
+  for (const ChainPostures& chain : next.postures) {
+    for (const Eigen::VectorXd& q : chain.q) {
+      text += fmt::format("  {}: {}\n", chain.chain, PostureText(project, q));
+    }
+  }
+  return text + (file.empty() ? "-o FILE writes them as a posture file, for plan\n"
+                              : fmt::format("Wrote {}\n", file));
+}
+
 int Check(const CheckCommand& command) {
   const Project project = ReadProject(command.project);
   CheckHasMarkers(project);
@@ -117,16 +147,23 @@ int Check(const CheckCommand& command) {
   inputs.insert(inputs.end(), {files.calibration, files.covariance});
   OutputSet outputs;
   outputs.Protect(inputs);
+  outputs.Declare(command.output, "robot: ");
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
   CheckOptions options = command.check;
   options.seed = command.common.seed;
   const CheckRun run =
       CheckCalibration(project, command.calibration, command.recording.front(), options);
-  outputs.Set(command.common.json_file, MakeCheckJson(run));
+  const bool quiet = command.common.Silent();
+  const NextPostures next = DesignNextPostures(project, command.calibration, run, options, kNext,
+                                               TerminalProgress("designed chain", quiet));
+  if (!next.postures.empty()) {
+    outputs.Set(command.output, FormatPostureFile(project.tree, next.postures));
+  }
+  outputs.Set(command.common.json_file, MakeCheckJson(project, run, next));
   outputs.Publish();
 
-  Print(command.common.Silent(), DescribeCheck(run, command));
+  Print(quiet, DescribeCheck(run, command) + NextText(project, next, command.output));
   PrintWarnings(run.warnings, command.common.verbose);
   if (!run.converged()) spdlog::error("the fit has not converged: {}", run.estimate.message);
   return run.converged() && !run.check.changed() ? kFine : kNotConverged;
@@ -149,6 +186,11 @@ void AddCheck(CLI::App& app, Action& action) {
                    "Days since the calibration: joints may have drifted a little")
       ->check(InBounds("check --days"))
       ->capture_default_str();
+  command
+      ->add_option("-o,--output", options->output,
+                   "Where a joint has changed and several may be it: five postures of each limb "
+                   "that tell which, as a posture file (YAML)")
+      ->type_name("FILE");
   AddAcceptOption(*command, options->check.accept);
   AddCommonOptions(*command, options->common);
   command->footer(

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kLeadIn = 5.0;  // at rest before the first set, s
 
-void CheckOptions(const MotionPlanOptions& options) {
+void CheckPlanOptions(const MotionPlanOptions& options) {
   const auto expect = [](bool fine, const char* what, double found, const char* expected) {
     if (!fine) throw InputError(fmt::format("{}: found {}; expected {}", what, found, expected));
   };
@@ -165,7 +165,7 @@ std::vector<LimitUse> MotionPlan::broken() const {
 
 MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& postures,
                       const MotionPlanOptions& options, const Progress& progress) {
-  CheckOptions(options);
+  CheckPlanOptions(options);
   CheckHasNoLinkages(project, "the command plan");
   const auto robot = StandProjectRobot(project, options.limits);
   return PlanSets(project, *robot, PostureTours(*robot, postures), options, progress);
@@ -173,7 +173,7 @@ MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& 
 
 MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std::uint64_t seed,
                                 const MotionPlanOptions& options, const Progress& progress) {
-  CheckOptions(options);
+  CheckPlanOptions(options);
   CheckHasNoLinkages(project, "the command plan");
   const auto robot = StandProjectRobot(project, options.limits);
   Random random(seed);

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/planning/next_postures.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "elastocal/planning/design_follow_up.hpp"
+
+namespace elastocal {
+
+NextPostures DesignNextPostures(const Project& project, const std::filesystem::path& calibration,
+                                const CheckRun& run, const CheckOptions& options, int count,
+                                const Progress& progress) {
+  NextPostures next;
+  if (run.check.suspects.empty()) return next;
+  if (project.motion.chains.empty()) {
+    next.why_none = "the project has no section 'design', which says what postures may be";
+    return next;
+  }
+  const FollowUpDesign design = DesignFollowUp(project, calibration,
+                                               {.aim = SequentialAim::kChanges,
+                                                .postures = count,
+                                                .days = options.days,
+                                                .joints = run.check.suspects,
+                                                .seed = options.seed.value_or(1)},
+                                               progress);
+  next.why_none = design.infeasible;
+  if (design.infeasible.empty()) next.postures = design.postures();
+  return next;
+}
+
+std::string MakeCheckJson(const Project& project, const CheckRun& run, const NextPostures& next) {
+  using Json = nlohmann::ordered_json;
+  Json json = Json::parse(MakeCheckJson(run));
+  json["next_postures"] = Json::array();
+  for (const ChainPostures& chain : next.postures) {
+    Json postures = Json::array();
+    for (const Eigen::VectorXd& q : chain.q) {
+      Json posture;
+      for (int i = 0; i < project.tree.coordinate_count(); ++i) {
+        posture[project.tree.joints[project.tree.coordinate_joint[i]].name] = q[i];
+      }
+      postures.push_back(std::move(posture));
+    }
+    json["next_postures"].push_back({{"chain", chain.chain}, {"postures", std::move(postures)}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace elastocal
