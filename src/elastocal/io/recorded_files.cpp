@@ -184,7 +184,7 @@ JointLog ReadPlainLog(const ByteSource& source) {
   for (const auto& [name, column] : columns) {
     if (column.size() != time.size()) table.Fail("two columns " + Quote(name));
   }
-  return JoinColumns(source.name(), time, columns);
+  return JoinColumns(source.name(), time, std::move(columns));
 }
 
 }  // namespace

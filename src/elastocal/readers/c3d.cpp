@@ -208,7 +208,6 @@ class C3dReader {
 
   MarkerTrajectories ReadPoints(const std::vector<std::size_t>& points, double unit) const {
     MarkerRows rows;
-    rows.Reserve(points.size(), layout_.frames);
     const auto width = static_cast<std::size_t>(layout_.frame_bytes());
     const std::size_t block = std::max<std::size_t>(1, (1u << 18) / width);  // frames at a time
     std::vector<char> bytes(width * block);

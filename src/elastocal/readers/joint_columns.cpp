@@ -24,8 +24,8 @@ Eigen::VectorXd ToVector(const Column& column) {
   return Eigen::Map<const Eigen::VectorXd>(column.data(), static_cast<Eigen::Index>(column.size()));
 }
 
-void AddOnce(const std::string& source, const std::string& joint, const char* what,
-             const Column& column, std::map<std::string, const Column*>& columns) {
+void AddOnce(const std::string& source, const std::string& joint, const char* what, Column& column,
+             std::map<std::string, Column*>& columns) {
   if (columns.emplace(joint, &column).second) return;
   throw InputError(source + ": two columns have the " + what + " of joint " + Quote(joint));
 }
@@ -33,9 +33,9 @@ void AddOnce(const std::string& source, const std::string& joint, const char* wh
 }  // namespace
 
 JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
-                     const std::map<std::string, std::vector<double>>& columns) {
-  std::map<std::string, const Column*> positions, torques;
-  for (const auto& [name, column] : columns) {
+                     std::map<std::string, std::vector<double>> columns) {
+  std::map<std::string, Column*> positions, torques;
+  for (auto& [name, column] : columns) {
     RequireUtf8(name, source);
     std::string joint = name;
     if (TakeEnding(joint, "_velocity")) continue;
@@ -57,14 +57,18 @@ JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
   const auto samples = log.time_s.size();
   const auto count = static_cast<Eigen::Index>(positions.size());
   log.positions.resize(samples, count);
-  log.torques.setConstant(samples, count, kNaN);
+  // What has been copied is freed, so that a large log is in memory little more than once.
   for (const auto& [joint, column] : positions) {
-    const auto i = static_cast<Eigen::Index>(log.names.size());
-    log.positions.col(i) = ToVector(*column);
-    if (const auto torque = torques.find(joint); torque != torques.end()) {
-      log.torques.col(i) = ToVector(*torque->second);
-    }
+    log.positions.col(static_cast<Eigen::Index>(log.names.size())) = ToVector(*column);
+    *column = Column();
     log.names.push_back(joint);
+  }
+  log.torques.setConstant(samples, count, kNaN);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto torque = torques.find(log.names[static_cast<std::size_t>(i)]);
+    if (torque == torques.end()) continue;
+    log.torques.col(i) = ToVector(*torque->second);
+    *torque->second = Column();
   }
   CheckJointLog(log);
   return log;

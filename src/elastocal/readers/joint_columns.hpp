@@ -15,7 +15,7 @@ namespace elastocal {
 /// torque without positions, a position twice, positions that are not finite, time that does not
 /// increase.
 JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
-                     const std::map<std::string, std::vector<double>>& columns);
+                     std::map<std::string, std::vector<double>> columns);
 
 /// Throws InputError naming the sample where time does not increase or a position is not finite.
 void CheckJointLog(const JointLog& log);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kAxisLength = 0.1;  // m
 constexpr int kBodyPoints = 4;
+constexpr std::size_t kBlock = 3 << 16;  // numbers, 1.5 MiB
 constexpr int kPointNumbers = 3 * kBodyPoints;
 
 std::vector<std::string> PointNames(const std::string& body) {
@@ -45,13 +46,22 @@ void MarkerRows::Add(double x, double y, double z) {
   const bool seen = std::isfinite(x) && std::isfinite(y) && std::isfinite(z) &&
                     (x != 0.0 || y != 0.0 || z != 0.0);
   if (seen) {
-    numbers_.insert(numbers_.end(), {x, y, z});
+    Append(x, y, z);
   } else {
     AddGap();
   }
 }
 
-void MarkerRows::AddGap() { numbers_.insert(numbers_.end(), {kNaN, kNaN, kNaN}); }
+void MarkerRows::AddGap() { Append(kNaN, kNaN, kNaN); }
+
+void MarkerRows::Append(double x, double y, double z) {
+  if (blocks_.empty()) {
+    blocks_.emplace_back();
+  } else if (blocks_.back().size() == kBlock) {
+    blocks_.emplace_back().reserve(kBlock);
+  }
+  blocks_.back().insert(blocks_.back().end(), {x, y, z});
+}
 
 MarkerTrajectories MarkerRows::Take(std::string source, std::vector<std::string> names,
                                     double rate_hz) {
@@ -59,11 +69,23 @@ MarkerTrajectories MarkerRows::Take(std::string source, std::vector<std::string>
   markers.source = std::move(source);
   markers.rate_hz = rate_hz;
   const auto columns = static_cast<Eigen::Index>(3 * names.size());
-  const auto rows = columns == 0 ? 0 : static_cast<Eigen::Index>(numbers_.size()) / columns;
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  markers.positions = Eigen::Map<const RowMajor>(numbers_.data(), rows, columns);
+  std::size_t count = 0;
+  for (const std::vector<double>& block : blocks_) count += block.size();
+  markers.positions.resize(columns == 0 ? 0 : static_cast<Eigen::Index>(count) / columns, columns);
+  Eigen::Index row = 0, column = 0;
+  for (std::vector<double>& block : blocks_) {
+    for (const double number : block) {
+      if (row == markers.positions.rows()) break;
+      markers.positions(row, column) = number;
+      if (++column == columns) {
+        column = 0;
+        ++row;
+      }
+    }
+    block = std::vector<double>();
+  }
   markers.names = std::move(names);
-  numbers_ = {};
+  blocks_.clear();
   return markers;
 }
 

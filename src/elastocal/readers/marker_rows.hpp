@@ -13,20 +13,18 @@ namespace elastocal {
 /// Trajectories frame by frame, as readers find them.
 class MarkerRows {
  public:
-  /// What a file may claim to hold is reserved only up to `frames_at_most`.
-  void Reserve(std::size_t markers, std::size_t frames_at_most) {
-    numbers_.reserve(3 * markers * frames_at_most);
-  }
-
   /// A position in m. One that is not finite, or exactly 0 0 0, is a gap.
   void Add(double x, double y, double z);
   void AddGap();
 
-  /// The rows so far, all of as many markers as there are names.
+  /// The rows so far, all of as many markers as there are names. They take little more memory than
+  /// the trajectories: what has been copied is freed.
   MarkerTrajectories Take(std::string source, std::vector<std::string> names, double rate_hz);
 
  private:
-  std::vector<double> numbers_;
+  void Append(double x, double y, double z);
+
+  std::vector<std::vector<double>> blocks_;  ///< of equal size, but for the last
 };
 
 /// Names that are all different: where one comes again, "#2" is added, and so on.

@@ -134,17 +134,20 @@ class NpzReader {
     std::map<std::string, std::vector<double>> columns;
     if (names) {
       if (!names->is_text || names->shape.size() != 1) Fail("'names' is no list of texts");
-      const auto positions = Take({"positions", "position", "q"});
-      if (!positions) Fail("there are names of joints, but no array 'positions' or 'q'");
-      AddColumns(names->texts, *positions, time.size(), "", columns);
-      const auto torques = Take({"torques", "torque", "efforts", "effort", "tau"});
-      if (torques) AddColumns(names->texts, *torques, time.size(), "_torque", columns);
+      if (const auto positions = Take({"positions", "position", "q"})) {
+        AddColumns(names->texts, *positions, time.size(), "", columns);
+      } else {
+        Fail("there are names of joints, but no array 'positions' or 'q'");
+      }
+      if (const auto torques = Take({"torques", "torque", "efforts", "effort", "tau"})) {
+        AddColumns(names->texts, *torques, time.size(), "_torque", columns);
+      }
       Take({"velocities", "velocity", "dq"});
     } else {
       AddArrays(time.size(), columns);
     }
     if (columns.empty()) Fail("there is no array of any joint beside the time");
-    return JoinColumns(source_.name(), time, columns);
+    return JoinColumns(source_.name(), time, std::move(columns));
   }
 
   void AddColumns(const std::vector<std::string>& names, const NpyArray& array, std::size_t samples,
