@@ -12,6 +12,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/utf8.hpp"
 #include "elastocal/readers/byte_source.hpp"
+#include "elastocal/readers/marker_rows.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -20,7 +21,6 @@ namespace {
 
 /// More lines above the frames are no header, and would only take long to read.
 constexpr int kMostHeaderLines = 10000;
-constexpr std::size_t kMostReserved = 20000000;  // numbers: a file may claim what it does not hold
 
 /// What stands above the frames: lines `KEY<tab>value` and a row of column names `[Frame] [Time]
 /// NAME X ...`; either may be absent, but one of them has to name the markers.
@@ -206,8 +206,6 @@ class FrameReader {
     if (lines_.cells.empty()) throw InputError(source + ": no frame below the header");
     frames_.first_line = lines_.reader.line();
     FindLayout();
-    positions_.reserve(
-        std::min(kMostReserved, 3 * header_.names.size() * header_.frames.value_or(0)));
     std::size_t count = 0;
     do {
       if (lines_.blank()) break;
@@ -222,7 +220,7 @@ class FrameReader {
                        std::to_string(*header_.frames) +
                        " (correct it if frames were left out on purpose)");
     }
-    frames_.positions = StackRows(positions_, count);
+    frames_.positions = rows_.Take(source, header_.names, header_.rate_hz).positions;
     return std::move(frames_);
   }
 
@@ -256,7 +254,7 @@ class FrameReader {
       ++i;
     }
     for (std::size_t m = 0; m < header_.names.size(); ++m, i += 3) {
-      double x = Number(i), y = Number(i + 1), z = Number(i + 2);
+      const double x = Number(i), y = Number(i + 1), z = Number(i + 2);
       const int missing = std::isnan(x) + std::isnan(y) + std::isnan(z);
       if (missing == 1 || missing == 2) {
         Fail(i, "X, Y and Z, or none of them for a marker that was not seen");
@@ -266,8 +264,7 @@ class FrameReader {
         const double position = axis == 0 ? x : axis == 1 ? y : z;
         if (!range.Contains(position)) Fail(i + axis, range.InWords() + " (mm)");
       }
-      if (x == 0.0 && y == 0.0 && z == 0.0) x = y = z = kNaN;
-      for (double position : {x, y, z}) positions_.push_back(kMetresPerMm * position);
+      rows_.Add(kMetresPerMm * x, kMetresPerMm * y, kMetresPerMm * z);  // 0 0 0 is a gap
     }
     if (i < width_ && !lines_.cells[i].empty()) Fail(i, "the end of the line");
   }
@@ -295,8 +292,8 @@ class FrameReader {
   QtmLines& lines_;
   const QtmHeader& header_;
   QtmFrames frames_;
-  std::size_t width_ = 0;          ///< cells of each row
-  std::vector<double> positions_;  ///< row after row
+  std::size_t width_ = 0;  ///< cells of each row
+  MarkerRows rows_;
 };
 
 /// Judges the columns Frame and Time, and finds the rate.
