@@ -33,7 +33,7 @@ void AddOnce(const std::string& source, const std::string& joint, const char* wh
 }  // namespace
 
 JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
-                     std::map<std::string, std::vector<double>> columns) {
+                     std::map<std::string, std::vector<double>>&& columns) {
   std::map<std::string, Column*> positions, torques;
   for (auto& [name, column] : columns) {
     RequireUtf8(name, source);
