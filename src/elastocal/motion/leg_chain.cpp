@@ -16,9 +16,8 @@ namespace elastocal {
 namespace {
 
 /// The step that does what is wanted: of several the shortest, of none the one that comes nearest.
-Eigen::VectorXd LeastStep(const Eigen::MatrixXd& screws,
-                          const Eigen::Matrix<double, 6, 1>& wanted) {
-  if (screws.cols() == 6) return screws.partialPivLu().solve(wanted);
+Eigen::VectorXd LeastStep(const Eigen::MatrixXd& screws, const Eigen::VectorXd& wanted) {
+  if (screws.cols() == screws.rows()) return screws.partialPivLu().solve(wanted);
   return ShortestSolution(screws, wanted);
 }
 
@@ -85,6 +84,15 @@ Transform LegChain::SolePose(const Eigen::VectorXd& q) const {
   return Evaluate(q, screws);
 }
 
+void LegChain::Prefer(const Eigen::VectorXd& q) {
+  if (coordinates_.size() <= 6) return;
+  Eigen::MatrixXd screws;
+  Evaluate(q, screws);
+  preferred_ = q(coordinates_);
+  const auto count = static_cast<Eigen::Index>(coordinates_.size());
+  still_ = OrthogonalFactor(screws.transpose()).rightCols(count - 6).transpose();
+}
+
 bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
   constexpr int kIterations = 40;
   constexpr double kReached = 1e-11;
@@ -94,9 +102,13 @@ bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
     const Transform found = Evaluate(q, screws);
     const Eigen::Vector3d turn = RotationVector(T_root_sole.linear() * found.linear().transpose());
     const Eigen::Vector3d move = T_root_sole.translation() - found.translation();
-    if (turn.norm() < kReached && move.norm() < kReached) return true;
-    Eigen::Matrix<double, 6, 1> wanted;
-    wanted << turn, move - turn.cross(found.translation());
+    Eigen::VectorXd off;
+    if (still_.rows() > 0) off = still_ * (preferred_ - q(coordinates_));
+    if (turn.norm() < kReached && move.norm() < kReached && off.norm() < kReached) return true;
+    Eigen::VectorXd wanted(6 + off.size());
+    wanted << turn, move - turn.cross(found.translation()), off;
+    screws.conservativeResize(wanted.size(), Eigen::NoChange);
+    screws.bottomRows(still_.rows()) = still_;
     Eigen::VectorXd step = LeastStep(screws, wanted);
     const double largest = step.cwiseAbs().maxCoeff();
     if (!(largest < 1e6)) return false;

@@ -11,8 +11,9 @@ namespace elastocal {
 
 /// A leg: the joints from the root link to a sole. It has five or more entries of q of its own;
 /// joints within it may be coupled, but not to joints elsewhere. With more than six, the leg stays
-/// near the posture from which it is placed; with five, only some poses of the sole are in reach
-/// (those parallel to the root link, where what is missing is the joint about the vertical).
+/// near the posture from which it is placed, or goes by the one that is preferred; with five, only
+/// some poses of the sole are in reach (those parallel to the root link, where what is missing is
+/// the joint about the vertical).
 class LegChain {
  public:
   /// Keeps a reference. Throws InputError for fewer joints, and for coupling to joints elsewhere.
@@ -26,6 +27,12 @@ class LegChain {
 
   /// Pose of the sole in the root link's frame.
   Transform SolePose(const Eigen::VectorXd& q) const;
+
+  /// Of the many postures of a leg with more than six joints that have the same pose of the sole,
+  /// `Place` takes from now on the one that differs from `q` only by what moves the sole (as seen
+  /// at `q`). It depends on the pose alone then, not on the way to it. Other legs are left as they
+  /// are.
+  void Prefer(const Eigen::VectorXd& q);
 
   /// Moves the leg's joints in `q` by Newton's method until the sole has the given pose in the root
   /// link's frame (1e-11 m and rad). Limits are not checked. Returns false, with the joints
@@ -41,6 +48,8 @@ class LegChain {
   int sole_link_;
   double length_ = 0.0;
   std::vector<int> joints_, coordinates_;
+  Eigen::VectorXd preferred_;  ///< by the leg's coordinates; empty: none
+  Eigen::MatrixXd still_;      ///< rows: directions of the joints in which the sole stays, there
 };
 
 }  // namespace elastocal

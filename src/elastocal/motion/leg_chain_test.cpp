@@ -52,6 +52,23 @@ TEST(LegChain, OfSevenJointsStaysNearWhereItIsPlacedFrom) {
   }
 }
 
+TEST(LegChain, OfSevenJointsWithAPreferenceGoesByThePoseAlone) {
+  const RobotTree tree = OneLeg("zxytyyx");
+  LegChain leg(tree, FindLink(tree, "sole"));
+  Eigen::VectorXd rest(7);
+  rest << 0, 0, kHip, 0, kKnee, kHip, 0;
+  leg.Prefer(rest);
+  Random random(2);
+  for (int i = 0; i < 50; ++i) {
+    const Transform wanted = leg.SolePose(rest + random.NormalVector(7, 0.05));
+    Eigen::VectorXd one = rest + random.NormalVector(7, 0.1);
+    Eigen::VectorXd other = rest + random.NormalVector(7, 0.1);
+    ASSERT_TRUE(leg.Place(wanted, one) && leg.Place(wanted, other));
+    EXPECT_LT((one - other).norm(), 1e-9);
+    EXPECT_LT((leg.SolePose(one).matrix() - wanted.matrix()).norm(), 1e-10);
+  }
+}
+
 TEST(LegChain, OfFiveJointsReachesWhatIsParallelToTheRoot) {
   const RobotTree tree = OneLeg("xyyyx");
   const LegChain leg(tree, FindLink(tree, "sole"));

@@ -2,6 +2,7 @@
 #include "elastocal/motion/stabiliser.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
@@ -12,6 +13,11 @@ namespace elastocal {
 namespace {
 
 Eigen::Vector3d Level(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0.0}; }
+
+/// Where a sole is pressed, in its axes, m.
+Eigen::Vector2d CentreOfPressure(const Vector6d& wrench) {
+  return ZeroMomentPoint(wrench.head<3>(), wrench.tail<3>());
+}
 
 Eigen::Vector2d Within(const Eigen::Vector2d& v, double largest) {
   return v.cwiseMax(-largest).cwiseMin(largest);
@@ -25,7 +31,10 @@ Stabiliser::Stabiliser(const RobotTree& tree, const std::vector<Sole>& soles,
       options_(options),
       inertias_(BodyInertias(tree)),
       correction_(Eigen::VectorXd::Zero(tree.coordinate_count())) {
-  for (const Sole& sole : soles) legs_.emplace_back(tree, sole.link);
+  for (const Sole& sole : soles) {
+    legs_.emplace_back(tree, sole.link);
+    middle_.push_back(sole.centre());
+  }
   if (!legs_.empty()) leg_length_ = legs_[0].length();
   weight_ = TotalMass(tree) * kGravity.norm();
 }
@@ -42,6 +51,7 @@ Eigen::VectorXd Stabiliser::Correct(const Eigen::VectorXd& planned, const std::v
   StandOn(static_cast<int>(standing - legs_.begin()));
   LearnTurn(sense, interval_s);
   LearnFeet(sense, interval_s);
+  LearnHeight(sense, interval_s);
   LearnShift(planned, sense, interval_s);
   const double largest = options_.largest_speed * interval_s;
   correction_ += (Corrected(planned) - planned - correction_).cwiseMax(-largest).cwiseMin(largest);
@@ -65,16 +75,37 @@ void Stabiliser::LearnTurn(const StandingSense& sense, double interval_s) {
   turn_ = Within(turn_ - options_.turn_rate * interval_s * lean, options_.largest_turn);
 }
 
+bool Stabiliser::BothPressed(const StandingSense& sense) const {
+  return legs_.size() == 2 && sense.wrenches.row(2).minCoeff() >= options_.least_pressure * weight_;
+}
+
 void Stabiliser::LearnFeet(const StandingSense& sense, double interval_s) {
-  if (legs_.size() != 2 || sense.wrenches.row(2).minCoeff() < options_.least_pressure * weight_)
-    return;
-  const auto pressed = [&](Eigen::Index i) {
-    return ZeroMomentPoint(sense.wrenches.col(i).head<3>(), sense.wrenches.col(i).tail<3>());
-  };
-  const Eigen::Vector2d apart = pressed(0) - pressed(1);
+  if (!BothPressed(sense)) return;
+  const Eigen::Vector2d apart =
+      CentreOfPressure(sense.wrenches.col(0)) - CentreOfPressure(sense.wrenches.col(1));
   const Eigen::Vector2d turn(apart.y(), -apart.x());  // lifts the edge that is loaded more
   foot_ =
       Within(foot_ + options_.foot_rate / leg_length_ * interval_s * turn, options_.largest_turn);
+}
+
+void Stabiliser::LearnHeight(const StandingSense& sense, double interval_s) {
+  if (!BothPressed(sense)) return;
+  const Transform T_reference_root = T_root_sole_[Size(reference_)].inverse();
+  std::array<Eigen::Vector2d, 2> middle;
+  Eigen::Vector2d off_middle = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto wrench = sense.wrenches.col(static_cast<Eigen::Index>(i));
+    const Transform T_reference_sole = T_reference_root * T_root_sole_[i];
+    middle[i] = (T_reference_sole * Level(middle_[i])).head<2>();
+    const Eigen::Vector2d off = CentreOfPressure(wrench) - middle_[i];
+    off_middle += wrench[2] / sense.wrenches.row(2).sum() *
+                  (T_reference_sole.linear() * Level(off)).head<2>();
+  }
+  const Eigen::Vector2d across = middle[0] - middle[1];
+  // A first foot that is too low presses both on the sides towards the second one.
+  const double largest = options_.largest_turn * across.norm();
+  height_ -= options_.height_rate / leg_length_ * interval_s * off_middle.dot(across);
+  height_ = std::clamp(height_, -largest, largest);
 }
 
 void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense& sense,
@@ -111,6 +142,8 @@ Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
     const Eigen::Vector2d foot = i == 0 ? foot_ : Eigen::Vector2d(-foot_);
     Transform T_moved_sole = (T_root_reference * T_reference_root).inverse() * T_root_sole_[i];
     T_moved_sole.linear() = T_moved_sole.linear() * RotationFromVector(share * Level(foot));
+    T_moved_sole.translation() +=
+        share * (i == 0 ? 0.5 : -0.5) * height_ * T_moved_sole.linear().col(2);
     if (legs_[i].Place(T_moved_sole, corrected)) continue;
     for (const int c : legs_[i].coordinates()) corrected[c] = planned[c] + correction_[c];
   }

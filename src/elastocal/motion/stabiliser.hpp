@@ -27,6 +27,9 @@ struct StabiliserOptions {
   double shift_rate = 0.3;  ///< shift of the root link by the error of the zero-moment point, 1/s
   /// Turn of two feet by the difference of their centres of pressure, rad/s per length of a leg.
   double foot_rate = 0.16;
+  /// Turn of the line between two feet by the load's mean distance from their middles, rad/s per
+  /// length of a leg.
+  double height_rate = 0.16;
   double filter_s = 0.5;        ///< time constant of the low-pass on the zero-moment point
   double largest_shift = 0.12;  ///< share, in either direction
   double largest_turn = 0.15;   ///< rad, about either axis, of root link and feet
@@ -66,7 +69,9 @@ class Stabiliser {
  private:
   void StandOn(int reference);
   void LearnTurn(const StandingSense& sense, double interval_s);
+  bool BothPressed(const StandingSense& sense) const;
   void LearnFeet(const StandingSense& sense, double interval_s);
+  void LearnHeight(const StandingSense& sense, double interval_s);
   void LearnShift(const Eigen::VectorXd& planned, const StandingSense& sense, double interval_s);
   Eigen::VectorXd Corrected(const Eigen::VectorXd& planned) const;
 
@@ -74,12 +79,14 @@ class Stabiliser {
   StabiliserOptions options_;
   std::vector<BodyInertia> inertias_;
   std::vector<LegChain> legs_;              ///< by sole
+  std::vector<Eigen::Vector2d> middle_;     ///< of the soles, in their axes, m
   double leg_length_ = 1.0, weight_ = 0.0;  ///< m, N
   std::vector<Transform> T_root_sole_;      ///< as planned
   int reference_ = 0;                       ///< the sole in whose axes turn and shift are expressed
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero(), turn_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d off_ = Eigen::Vector2d::Zero();   ///< filtered error of the zero-moment point, m
   Eigen::Vector2d foot_ = Eigen::Vector2d::Zero();  ///< turn of the first of two soles, rad
+  double height_ = 0.0;                             ///< of the first of two soles over the other, m
   Eigen::VectorXd correction_;                      ///< of the joints
 };
 

@@ -107,6 +107,7 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
               robot.limits.position_margin, pose.q)) {
       throw InputError("the leg of '" + name + "' cannot stand bent on a level floor");
     }
+    robot.legs[i].Prefer(pose.q);
   }
   const std::vector<int> feet = robot.AllFeet();
   if (!BalanceAtRest(robot, feet, SupportCentre(robot, feet), pose)) {

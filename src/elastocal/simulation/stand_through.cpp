@@ -9,7 +9,9 @@ namespace elastocal {
 namespace {
 
 constexpr double kLongestSettling = 4.0;  // s
-constexpr double kFallen = 0.7;  // share of the waist's height below which the robot has fallen
+constexpr double kLook = 0.01;            // s between two looks at the robot
+constexpr double kLoaded = 0.05;  // share of the weight on a sole from which on it is loaded
+constexpr double kFallen = 0.7;   // share of the waist's height below which the robot has fallen
 
 /// The samples before and after a time, and the share of the second one. `at` moves along with the
 /// time.
@@ -32,11 +34,11 @@ void MoveTo(const JointMotion& motion, double time_s, Between& between) {
 /// Distance of the zero-moment point to the edge of the loaded soles, m.
 double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles,
                  const StandingSense& sense) {
-  constexpr double kPressed = 50.0;  // N
+  const double pressed = kLoaded * sense.wrenches.row(2).sum();
   std::vector<Sole> standing;
   std::vector<Transform> T_world_sole;
   for (std::size_t i = 0; i < soles.size(); ++i) {
-    if (!(sense.wrenches(2, static_cast<Eigen::Index>(i)) > kPressed)) continue;
+    if (!(sense.wrenches(2, static_cast<Eigen::Index>(i)) > pressed)) continue;
     standing.push_back(soles[i]);
     T_world_sole.push_back(body.SolePose(static_cast<int>(i)));
   }
@@ -79,19 +81,34 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
   for (const Sole& sole : soles) feet.push_back(sole.link);
   const Eigen::MatrixXd& commanded = options.commanded != nullptr ? *options.commanded : motion.q;
   VirtualRobot body(robot, feet, commanded.row(0).transpose(), physics);
-  body.Settle(kLongestSettling);
-  const Transform begin = body.WaistPose();
+  const long per_look = std::max(1L, std::lround(kLook / body.time_step_s()));
+  const double interval = static_cast<double>(per_look) * body.time_step_s();
   Eigen::Matrix3d R_root_unit = Eigen::Matrix3d::Identity();
-  if (options.R_world_root_at_rest) {
-    R_root_unit = begin.linear().transpose() * *options.R_world_root_at_rest;
+  Eigen::VectorXd correction = Eigen::VectorXd::Zero(motion.q.cols());
+  const auto correct = [&](Eigen::Index sample, const Eigen::VectorXd& planned,
+                           const StandingSense& sense) {
+    const std::vector<int>& support = motion.support[static_cast<std::size_t>(sample)];
+    correction = options.stabiliser->Correct(planned, support, sense, interval) - planned;
+  };
+  if (options.stabiliser == nullptr || options.R_world_root_at_rest) {
+    body.Settle(kLongestSettling);
+    if (options.R_world_root_at_rest) {
+      R_root_unit = body.WaistPose().linear().transpose() * *options.R_world_root_at_rest;
+    }
+  } else {  // a robot whose errors would let it fall is held upright from the beginning
+    const long looks = std::lround(kLongestSettling / interval);
+    for (long i = 0; i < looks; ++i) {
+      body.Command(commanded.row(0).transpose() + correction);
+      for (long step = 0; step < per_look; ++step) body.Step();
+      correct(0, motion.q.row(0).transpose(), Sense(body, soles.size(), R_root_unit));
+    }
   }
+  const Transform begin = body.WaistPose();
   StandingRun run;
   run.least_zmp_margin = std::numeric_limits<double>::infinity();
   const double first = motion.time_s[0], last = motion.time_s[motion.time_s.size() - 1];
   const auto steps = static_cast<long>(std::floor((last - first) / body.time_step_s()));
-  const long per_look = std::max(1L, std::lround(0.01 / body.time_step_s()));
   Between now;
-  Eigen::VectorXd correction = Eigen::VectorXd::Zero(motion.q.cols());
   for (long i = 1; i <= steps; ++i) {
     run.time_s = static_cast<double>(i) * body.time_step_s();
     MoveTo(motion, first + run.time_s, now);
@@ -109,9 +126,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
     const Eigen::VectorXd planned = now.Of(motion.q);
     if (options.watch) options.watch(now.at, planned, body);
     if (options.stabiliser == nullptr) continue;
-    const double interval = static_cast<double>(per_look) * body.time_step_s();
-    const std::vector<int>& support = motion.support[static_cast<std::size_t>(now.at)];
-    correction = options.stabiliser->Correct(planned, support, sense, interval) - planned;
+    correct(now.at, planned, sense);
     run.largest_shift = std::max(run.largest_shift, options.stabiliser->shift().norm());
   }
   run.stood = true;
