@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
@@ -37,6 +38,9 @@ Stabiliser::Stabiliser(const RobotTree& tree, const std::vector<Sole>& soles,
   }
   if (!legs_.empty()) leg_length_ = legs_[0].length();
   weight_ = TotalMass(tree) * kGravity.norm();
+  frequency_ = std::sqrt(kGravity.norm() / leg_length_);
+  shifts_.assign(legs_.size(), Eigen::Vector2d::Zero());
+  turns_ = shifts_;
 }
 
 Eigen::VectorXd Stabiliser::Correct(const Eigen::VectorXd& planned, const std::vector<int>& support,
@@ -49,6 +53,7 @@ Eigen::VectorXd Stabiliser::Correct(const Eigen::VectorXd& planned, const std::v
   T_root_sole_.clear();
   for (const LegChain& leg : legs_) T_root_sole_.push_back(leg.SolePose(planned));
   StandOn(static_cast<int>(standing - legs_.begin()));
+  ShareWeight(planned, support);
   LearnTurn(sense, interval_s);
   LearnFeet(sense, interval_s);
   LearnHeight(sense, interval_s);
@@ -58,13 +63,50 @@ Eigen::VectorXd Stabiliser::Correct(const Eigen::VectorXd& planned, const std::v
   return planned + correction_;
 }
 
-/// Expresses the corrections in the axes of another sole.
+/// Expresses the filtered error in the axes of another sole.
 void Stabiliser::StandOn(int reference) {
   if (reference == reference_) return;
   const Eigen::Matrix3d R =
       T_root_sole_[Size(reference)].linear().transpose() * T_root_sole_[Size(reference_)].linear();
-  for (Eigen::Vector2d* v : {&shift_, &turn_, &off_}) *v = (R * Level(*v)).head<2>();
+  off_ = (R * Level(off_)).head<2>();
   reference_ = reference;
+}
+
+/// The share of the weight that the plan puts on each sole: of two by the lever rule, of more
+/// alike.
+void Stabiliser::ShareWeight(const Eigen::VectorXd& planned, const std::vector<int>& support) {
+  share_.resize(static_cast<Eigen::Index>(legs_.size()));
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    const bool stands =
+        std::find(support.begin(), support.end(), legs_[i].sole_link()) != support.end();
+    share_[static_cast<Eigen::Index>(i)] = stands ? 1.0 / static_cast<double>(support.size()) : 0.0;
+  }
+  if (legs_.size() != 2 || share_.minCoeff() == 0.0) return;
+  const Eigen::Vector3d com = CentreOfMass(tree_, inertias_, planned);
+  const Eigen::Vector3d first = T_root_sole_[0] * Level(middle_[0]);
+  const Eigen::Vector3d across = T_root_sole_[1] * Level(middle_[1]) - first;
+  share_[1] = std::clamp((com - first).dot(across) / across.squaredNorm(), 0.0, 1.0);
+  share_[0] = 1.0 - share_[1];
+}
+
+Eigen::Vector2d Stabiliser::Blend(const std::vector<Eigen::Vector2d>& by_sole) const {
+  const Eigen::Matrix3d R_reference_root = T_root_sole_[Size(reference_)].linear().transpose();
+  Eigen::Vector3d blend = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < by_sole.size(); ++i) {
+    const Eigen::Vector3d own = T_root_sole_[i].linear() * Level(by_sole[i]);
+    blend += share_[static_cast<Eigen::Index>(i)] * R_reference_root * own;
+  }
+  return blend.head<2>();
+}
+
+void Stabiliser::Learn(const Eigen::Vector2d& change, double largest,
+                       std::vector<Eigen::Vector2d>& by_sole) {
+  const Eigen::Matrix3d& R_root_reference = T_root_sole_[Size(reference_)].linear();
+  const Eigen::Vector3d of_all = R_root_reference * Level(change) / share_.squaredNorm();
+  for (std::size_t i = 0; i < by_sole.size(); ++i) {
+    const Eigen::Vector3d own = T_root_sole_[i].linear().transpose() * of_all;
+    by_sole[i] = Within(by_sole[i] + share_[static_cast<Eigen::Index>(i)] * own.head<2>(), largest);
+  }
 }
 
 void Stabiliser::LearnTurn(const StandingSense& sense, double interval_s) {
@@ -72,7 +114,8 @@ void Stabiliser::LearnTurn(const StandingSense& sense, double interval_s) {
   const Eigen::Vector3d up =
       T_root_sole_[Size(reference_)].linear().transpose() * sense.R_world_root.row(2).transpose();
   const Eigen::Vector2d lean = up.cross(Eigen::Vector3d::UnitZ()).head<2>();
-  turn_ = Within(turn_ - options_.turn_rate * interval_s * lean, options_.largest_turn);
+  Learn(-options_.turn_rate * frequency_ * interval_s * lean, options_.largest_turn, turns_);
+  turn_ = Blend(turns_);
 }
 
 bool Stabiliser::BothPressed(const StandingSense& sense) const {
@@ -119,12 +162,14 @@ void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense&
     force += pressed;
     moment += T.linear() * wrench.tail<3>() + T.translation().cross(pressed);
   }
+  shift_ = Blend(shifts_);
   if (!(force.z() > options_.least_pressure * weight_)) return;
   const Eigen::Vector3d com = T_reference_root * CentreOfMass(tree_, inertias_, planned);
   const Eigen::Vector2d off = ZeroMomentPoint(force, moment) - com.head<2>();
   off_ += std::min(1.0, interval_s / options_.filter_s) * (off - off_);
-  shift_ = Within(shift_ - options_.shift_rate * interval_s * off_,
-                  options_.largest_shift * leg_length_);
+  Learn(-options_.shift_rate * frequency_ * interval_s * off_, options_.largest_shift * leg_length_,
+        shifts_);
+  shift_ = Blend(shifts_);
 }
 
 Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {

@@ -19,12 +19,13 @@ struct StandingSense {
   Eigen::Matrix<double, 6, Eigen::Dynamic> wrenches;
 };
 
-/// How fast a stabiliser corrects. It must be slower than the sway of the robot on its feet (about
-/// 3 rad/s), or the robot rocks from foot to foot. Lengths are shares of the leg's length, so that
-/// robots of every size are treated alike.
+/// How fast a stabiliser corrects. It must be slower than the sway of the robot on its feet, whose
+/// natural frequency is sqrt(g / l) with the leg's length l (about 3 rad/s for a robot of a man's
+/// size), or the robot rocks from foot to foot. Rates are shares of that frequency and lengths are
+/// shares of l, so that robots of every size are treated alike.
 struct StabiliserOptions {
-  double turn_rate = 0.8;   ///< turn of the root link by the error of its inclination, 1/s
-  double shift_rate = 0.3;  ///< shift of the root link by the error of the zero-moment point, 1/s
+  double turn_rate = 0.24;   ///< turn of the root link by the error of its inclination
+  double shift_rate = 0.18;  ///< shift of the root link by the error of the zero-moment point
   /// Turn of two feet by the difference of their centres of pressure, rad/s per length of a leg.
   double foot_rate = 0.16;
   /// Turn of the line between two feet by the load's mean distance from their middles, rad/s per
@@ -47,6 +48,8 @@ struct StabiliserOptions {
 ///   centres of pressure at like points (a foot on its edge lets the robot rock, and its centre of
 ///   pressure no longer tells where the weight is),
 /// - shifts the root link until the zero-moment point is where the planned centre of mass is.
+/// Turn and shift are learned for each foot by its planned share of the weight, because every leg
+/// has errors of its own: what it learned on a foot is used again when the weight comes back.
 /// It knows the robot by its description, without errors and elasticity, and takes planned
 /// positions for those of a robot at rest. The paper's robot has its own stabiliser, for which
 /// section 3.6 plans.
@@ -68,6 +71,11 @@ class Stabiliser {
 
  private:
   void StandOn(int reference);
+  void ShareWeight(const Eigen::VectorXd& planned, const std::vector<int>& support);
+  /// What was learned for the soles, by their shares of the weight, in the axes of the reference.
+  Eigen::Vector2d Blend(const std::vector<Eigen::Vector2d>& by_sole) const;
+  /// Changes what was learned so that its blend changes by `change`.
+  void Learn(const Eigen::Vector2d& change, double largest, std::vector<Eigen::Vector2d>& by_sole);
   void LearnTurn(const StandingSense& sense, double interval_s);
   bool BothPressed(const StandingSense& sense) const;
   void LearnFeet(const StandingSense& sense, double interval_s);
@@ -81,8 +89,11 @@ class Stabiliser {
   std::vector<LegChain> legs_;              ///< by sole
   std::vector<Eigen::Vector2d> middle_;     ///< of the soles, in their axes, m
   double leg_length_ = 1.0, weight_ = 0.0;  ///< m, N
+  double frequency_ = 1.0;                  ///< of the sway, rad/s
   std::vector<Transform> T_root_sole_;      ///< as planned
   int reference_ = 0;                       ///< the sole in whose axes turn and shift are expressed
+  Eigen::VectorXd share_;                   ///< of the planned weight, by sole
+  std::vector<Eigen::Vector2d> shifts_, turns_;  ///< by sole, in its axes
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero(), turn_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d off_ = Eigen::Vector2d::Zero();   ///< filtered error of the zero-moment point, m
   Eigen::Vector2d foot_ = Eigen::Vector2d::Zero();  ///< turn of the first of two soles, rad

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/motion/stabiliser.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "elastocal/math/rotation_vector.hpp"
@@ -22,12 +24,13 @@ class BipedStabiliser : public testing::Test {
     T_root_sole_ = {left.SolePose(planned_), right.SolePose(planned_)};
     const Eigen::Vector3d com = CentreOfMass(tree_, BodyInertias(tree_), planned_);
     sense_.wrenches.setZero(6, 2);
-    for (Eigen::Index i = 0; i < 2; ++i) {  // half of the weight each, under the centre of mass
+    const double y[] = {T_root_sole_[0].translation().y(), T_root_sole_[1].translation().y()};
+    for (Eigen::Index i = 0; i < 2; ++i) {  // the weight by the lever rule, in line with the middle
+      const double share = (com.y() - y[1 - i]) / (y[i] - y[1 - i]);
       const double ahead = com.x() - T_root_sole_[static_cast<std::size_t>(i)].translation().x();
-      sense_.wrenches.col(i) << 0.0, 0.0, kHalf, 0.0, -kHalf * ahead, 0.0;
+      const double force = 2.0 * kHalf * share;
+      sense_.wrenches.col(i) << 0.0, 0.0, force, 0.0, -force * ahead, 0.0;
     }
-    const double middle = 0.5 * (T_root_sole_[0].translation() + T_root_sole_[1].translation()).y();
-    for (Eigen::Index i = 0; i < 2; ++i) sense_.wrenches(3, i) = kHalf * (com.y() - middle);
   }
 
   /// The root link's pose in the first sole after ten steps of 10 ms, against the planned one.
@@ -60,7 +63,8 @@ TEST_F(BipedStabiliser, LeavesAloneWhatStandsAsPlanned) {
 TEST_F(BipedStabiliser, TurnsBackARootThatLeansForwards) {
   sense_.R_world_root = RotationFromVector({0.0, 0.05, 0.0});
   const Eigen::Vector3d turn = RotationVector(RootMoved().linear());
-  EXPECT_NEAR(turn.y(), -0.8 * 0.1 * 0.05, 1e-5);  // rate, time, error
+  const double sway = std::sqrt(9.81 / LegChain(tree_, soles_[0].link).length());
+  EXPECT_NEAR(turn.y(), -0.24 * sway * 0.1 * 0.05, 1e-5);  // rate, time, error
   EXPECT_NEAR(turn.x(), 0.0, 1e-5);
 }
 
@@ -90,6 +94,43 @@ TEST_F(BipedStabiliser, TurnsFeetUntilBothArePressedAlike) {
   };
   EXPECT_NEAR(turned(0), -0.16 / 0.812 * 0.1 * 0.1, 1e-5);  // rate, distance, time
   EXPECT_NEAR(turned(1), 0.16 / 0.812 * 0.1 * 0.1, 1e-5);
+}
+
+TEST_F(BipedStabiliser, LiftsAFootThatIsTooLow) {
+  // A left leg that is too long: both soles are pressed 2 cm towards the middle of the robot.
+  sense_.wrenches(3, 0) -= sense_.wrenches(2, 0) * 0.02;
+  sense_.wrenches(3, 1) -= sense_.wrenches(2, 1) * 0.02;
+  Stabiliser stabiliser(tree_, soles_);
+  Eigen::VectorXd q;
+  for (int i = 0; i < 10; ++i) {
+    q = stabiliser.Correct(planned_, {soles_[0].link, soles_[1].link}, sense_, 0.01);
+  }
+  const LegChain left(tree_, soles_[0].link), right(tree_, soles_[1].link);
+  const double lifted = (right.SolePose(q).inverse() * left.SolePose(q)).translation().z() -
+                        (T_root_sole_[1].inverse() * T_root_sole_[0]).translation().z();
+  const double width = (T_root_sole_[0].translation() - T_root_sole_[1].translation()).norm();
+  EXPECT_NEAR(lifted, 0.16 / left.length() * 0.1 * width * 0.02, 1e-6);  // rate, time, distances
+}
+
+TEST_F(BipedStabiliser, RemembersWhatItLearnedOnAFoot) {
+  Stabiliser stabiliser(tree_, soles_);
+  const auto shift_on = [&](int foot, double ahead, int steps) {
+    StandingSense sense = sense_;
+    const double force = 2.0 * kHalf;
+    const Eigen::Vector3d com = CentreOfMass(tree_, BodyInertias(tree_), planned_);
+    const Eigen::Vector3d local = T_root_sole_[static_cast<std::size_t>(foot)].inverse() * com;
+    sense.wrenches.setZero();
+    sense.wrenches.col(foot) << 0.0, 0.0, force, force * local.y(), -force * (local.x() + ahead),
+        0.0;
+    for (int i = 0; i < steps; ++i) {
+      stabiliser.Correct(planned_, {soles_[static_cast<std::size_t>(foot)].link}, sense, 0.01);
+    }
+    return stabiliser.shift().x();
+  };
+  const double left = shift_on(0, 0.02, 100);
+  EXPECT_LT(left, -1e-3);
+  EXPECT_GT(shift_on(1, -0.02, 100), 1e-3);
+  EXPECT_LT(shift_on(0, 0.0, 1), 0.95 * left);
 }
 
 TEST_F(BipedStabiliser, LetsALiftedLegGoAsPlanned) {

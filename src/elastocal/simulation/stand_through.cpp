@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/statics.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -46,6 +49,31 @@ double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles,
   const auto [force, moment] = body.FloorWrench();
   return InsideMargin(SupportPolygon(standing, T_world_sole), ZeroMomentPoint(force, moment));
 }
+
+/// What those who put a robot down do with their hands: they turn its waist upright, with the
+/// moment of a spring that would hold its weight twice over and of a damper, in the world's axes.
+class Hands {
+ public:
+  Hands(const TrueRobot& robot, const VirtualRobot& body)
+      : stiffness_(2.0 * TotalMass(robot.tree) * kGravity.norm() *
+                   body.WaistPose().translation().z()),
+        before_(body.WaistPose().linear()) {}
+
+  Vector6d Hold(const VirtualRobot& body, double interval_s) {
+    constexpr double kDamping = 0.15;  // s
+    const Eigen::Matrix3d R = body.WaistPose().linear();
+    const Eigen::Vector3d lean = Eigen::Vector3d::UnitZ().cross(R.col(2));
+    const Eigen::Vector3d speed = RotationVector(R * before_.transpose()) / interval_s;
+    before_ = R;
+    Vector6d wrench = Vector6d::Zero();
+    wrench.tail<3>() = -stiffness_ * (lean + kDamping * speed);
+    return wrench;
+  }
+
+ private:
+  double stiffness_;  // N.m/rad
+  Eigen::Matrix3d before_;
+};
 
 /// `R_root_unit`: how the inertial unit is mounted.
 StandingSense Sense(const VirtualRobot& body, std::size_t soles,
@@ -95,13 +123,19 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
     if (options.R_world_root_at_rest) {
       R_root_unit = body.WaistPose().linear().transpose() * *options.R_world_root_at_rest;
     }
-  } else {  // a robot whose errors would let it fall is held upright from the beginning
+  } else {  // the hands let go slowly, so that a robot with errors stands by itself at the end
+    Hands hands(robot, body);
     const long looks = std::lround(kLongestSettling / interval);
     for (long i = 0; i < looks; ++i) {
+      const double held = 1.0 - static_cast<double>(i + 1) / static_cast<double>(looks);
       body.Command(commanded.row(0).transpose() + correction);
-      for (long step = 0; step < per_look; ++step) body.Step();
+      for (long step = 0; step < per_look; ++step) {
+        body.PushWaist(held * hands.Hold(body, body.time_step_s()));
+        body.Step();
+      }
       correct(0, motion.q.row(0).transpose(), Sense(body, soles.size(), R_root_unit));
     }
+    body.PushWaist(Vector6d::Zero());
   }
   const Transform begin = body.WaistPose();
   StandingRun run;
