@@ -71,6 +71,27 @@ TEST_F(CalibrationFile, ReadsBackWaistAndMarkers) {
   }
 }
 
+TEST_F(CalibrationFile, ReadsBackWhatTheUrdfHasOfAnotherModel) {
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
+  EXPECT_EQ(AsInUrdf(ReadCalibration(file_)).joint_errors, ReadCalibration(file_).joint_errors);
+  CalibrationResult in_urdf = result_;
+  in_urdf.delta *= 0.5;
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin, nullptr, &in_urdf));
+  const StoredCalibration stored = ReadCalibration(file_);
+  const StoredCalibration rigid = AsInUrdf(stored);
+  for (int i = 0; i < result_.model.parameter_count(); ++i) {
+    const Parameter& parameter = result_.model.parameters[i];
+    if (IsExternal(parameter.kind)) continue;
+    EXPECT_EQ(stored.joint_errors.at(parameter.name), result_.delta[i]);
+    EXPECT_EQ(rigid.joint_errors.at(parameter.name), in_urdf.delta[i]);
+  }
+  std::string text = ReadFile(file_);
+  const std::string before = "errors:\n    ";
+  text.insert(text.find(before) + before.size(), "no_");
+  Write(text);
+  ExpectInputError([&] { ReadCalibration(file_); }, {"no_rail_joint", "the list below has"});
+}
+
 TEST_F(CalibrationFile, ReadsBackWhatAComparisonNeeds) {
   Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
   CalibrationEstimate estimate = ReadEstimate(file_);

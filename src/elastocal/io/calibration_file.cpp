@@ -132,6 +132,20 @@ void EmitUncalibrated(const CalibrationResult& result, YAML::Emitter& yaml) {
   yaml << YAML::EndMap;
 }
 
+/// What the calibrated URDF has, of another model.
+void EmitInUrdf(const CalibrationResult& result, YAML::Emitter& yaml) {
+  yaml << YAML::Key << "urdf" << YAML::Value << YAML::BeginMap;
+  yaml << YAML::Key << "model" << YAML::Value << ModelKindName(result.kind)
+       << YAML::Comment("the calibrated URDF has the errors of this model");
+  yaml << YAML::Key << "errors" << YAML::Value << YAML::BeginMap;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[i];
+    if (IsExternal(parameter.kind) || IsElastic(parameter.kind)) continue;
+    yaml << YAML::Key << parameter.name << YAML::Value << FormatNumber(result.delta[i]);
+  }
+  yaml << YAML::EndMap << YAML::EndMap;
+}
+
 constexpr ParameterStatus kStatuses[] = {ParameterStatus::kEstimated, ParameterStatus::kUnsupported,
                                          ParameterStatus::kHeld, ParameterStatus::kNotInModel};
 
@@ -146,6 +160,12 @@ ParameterStatus ReadStatus(const YamlValue& value) {
   return ParameterStatus::kNotInModel;
 }
 
+/// The value of a parameter; an angle is at most half a turn.
+double ReadError(const YamlValue& value, double most) {
+  if (std::isinf(most)) return value.Number();
+  return value.Number({.lower = -most, .upper = most, .with_lower = true, .with_upper = true});
+}
+
 ParameterEstimate ReadParameter(const YamlValue& item) {
   ParameterEstimate parameter;
   parameter.name = item.Get("name").Text();
@@ -157,11 +177,7 @@ ParameterEstimate ReadParameter(const YamlValue& item) {
               units[0] + either + ", the unit of " + Quote(parameter.name));
   parameter.external =
       parameter.name.starts_with("waist.T0.") || parameter.name.starts_with("marker.");
-  parameter.value =
-      std::isinf(most)
-          ? item.Get("value").Number()
-          : item.Get("value").Number(
-                {.lower = -most, .upper = most, .with_lower = true, .with_upper = true});
+  parameter.value = ReadError(item.Get("value"), most);
   parameter.status = ReadStatus(item.Get("status"));
   parameter.sd = std::numeric_limits<double>::quiet_NaN();
   if (parameter.status == ParameterStatus::kEstimated || item.Find("sd")) {
@@ -212,7 +228,8 @@ std::string NominalFingerprint(const ErrorModel& model) {
 }
 
 std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
-                                ZeroOffsets zero_offsets, const CalibrationResult* uncalibrated) {
+                                ZeroOffsets zero_offsets, const CalibrationResult* uncalibrated,
+                                const CalibrationResult* in_urdf) {
   YAML::Emitter yaml;
   yaml << YAML::Comment("Written by elastocal: deviations from the nominal URDF, in SI units.");
   yaml << YAML::BeginMap;
@@ -239,6 +256,7 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(result.interval_factor);
   if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, yaml);
   if (uncalibrated != nullptr) EmitUncalibrated(*uncalibrated, yaml);
+  if (in_urdf != nullptr) EmitInUrdf(*in_urdf, yaml);
   yaml << YAML::Key << "parameter_count" << YAML::Value << result.model.parameter_count()
        << YAML::Comment("a file that was cut has fewer");
   yaml << YAML::Key << "parameters" << YAML::Value << YAML::BeginSeq;
@@ -331,6 +349,22 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
     for (const auto& [name, value] : uncalibrated->Entries()) {
       stored.uncalibrated_externals[name] = value.Number();
     }
+  }
+  if (const auto urdf = root.Find("urdf")) {
+    const YamlValue errors = urdf->Get("errors");
+    for (const auto& [name, value] : errors.Entries()) {
+      value.Expect(stored.joint_errors.contains(name), "a parameter that the list below has");
+      stored.urdf_errors[name] = ReadError(value, UnitsOf(name).most);
+    }
+  }
+  return stored;
+}
+
+StoredCalibration AsInUrdf(StoredCalibration stored) {
+  if (stored.urdf_errors.empty()) return stored;
+  for (auto& [name, value] : stored.joint_errors) {
+    const auto found = stored.urdf_errors.find(name);
+    value = found == stored.urdf_errors.end() ? 0.0 : found->second;
   }
   return stored;
 }

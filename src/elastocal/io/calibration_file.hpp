@@ -22,10 +22,13 @@ std::string NominalFingerprint(const ErrorModel& model);
 /// calibration.yaml: every parameter with unit, value, standard deviation and status, and what is
 /// needed to judge them (docs/formats.md).
 /// `uncalibrated`, where given: the result that has only waist and markers fitted to the same
-/// recording, for a comparison on other recordings.
+/// recording, for a comparison on other recordings. `in_urdf`, where given: the result whose
+/// geometry the calibrated URDF has, where that is another than `result` (a rigid model that
+/// predicts better by itself than without the other's elasticity).
 std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
                                 ZeroOffsets zero_offsets,
-                                const CalibrationResult* uncalibrated = nullptr);
+                                const CalibrationResult* uncalibrated = nullptr,
+                                const CalibrationResult* in_urdf = nullptr);
 
 /// The same of what is known of a robot without a recording of its own, such as a fleet's prior.
 std::string MakeCalibrationYaml(const CalibrationEstimate& estimate);
@@ -45,6 +48,8 @@ struct StoredCalibration {
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
   std::map<std::string, double> joint_errors;  ///< by parameter name, SI
+  /// The errors that the calibrated URDF has, where they are others; else empty.
+  std::map<std::string, double> urdf_errors;
   /// Of a table of postures: nominal pose of the waist in the frame of the recording.
   std::optional<Transform> T_ref_waist;
   /// Waist (deviations from there) and markers, by parameter name, SI: of the calibrated model, and
@@ -55,6 +60,10 @@ struct StoredCalibration {
 
 /// Reads a calibration.yaml. Throws InputError naming file, line and key.
 StoredCalibration ReadCalibration(const std::filesystem::path& file);
+
+/// The same robot as the calibrated URDF has it: with the errors of the model that predicts best
+/// without elasticity, and compliances of zero where that is another model.
+StoredCalibration AsInUrdf(StoredCalibration stored);
 
 /// Throws InputError naming the line where the calibration has a parameter of a joint or chain that
 /// is neither the model's nor one of `chains`, and where a joint lacks some of its parameters of

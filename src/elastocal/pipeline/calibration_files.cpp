@@ -44,10 +44,14 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
   std::map<std::string, std::string> files;
   if (run.urdf) {
     const CalibrationResult& result = run.comparison.largest();
+    const auto& results = run.comparison.results;
+    const ModelKind in_urdf = run.deployment.urdf_kind;
+    const bool same = in_urdf == result.kind || in_urdf == ModelKind::kRigid;
     files[UrdfName(project)] = run.urdf->text;
     files["calibration.yaml"] =
         MakeCalibrationYaml(result, run.recording.source, run.zero_offsets,
-                            &run.comparison.results[static_cast<int>(ModelKind::kUncalibrated)]);
+                            &results[static_cast<int>(ModelKind::kUncalibrated)],
+                            same ? nullptr : &results[static_cast<int>(in_urdf)]);
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
     if (!project.tree.linkages.empty()) files["linkages.yaml"] = MakeLinkagesYaml(result);

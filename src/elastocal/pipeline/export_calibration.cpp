@@ -74,6 +74,11 @@ bool HasLoads(const ExportOptions& options) {
          (format == "mjcf" && options.mjcf_springs);
 }
 
+/// Whether it is the calibrated URDF in another form.
+bool IsRigid(const ExportOptions& options) {
+  return !HasLoads(options) && options.format != "linkages";
+}
+
 CalibratedUrdf UrdfOf(const CalibratedRobot& robot, const StoredCalibration& calibration,
                       ZeroOffsets zero_offsets) {
   const CalibrationResult result = ResultOf(RestoreRobot(robot.project, calibration));
@@ -118,7 +123,7 @@ std::set<std::string> Insignificant(const CalibrationEstimate& estimate, double 
 
 Kept KeepWhatHelps(const CalibratedRobot& robot, const CalibrationEstimate& estimate,
                    const ExportOptions& options) {
-  Kept kept{robot.calibration, {}, {}};
+  Kept kept{IsRigid(options) ? AsInUrdf(robot.calibration) : robot.calibration, {}, {}};
   if (options.least_significance > 0.0) {
     kept.nominal = Insignificant(estimate, options.least_significance);
     for (const std::string& name : kept.nominal) {

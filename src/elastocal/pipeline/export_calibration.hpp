@@ -45,7 +45,8 @@ struct ExportedCalibration {
 ///
 /// - c99: one self-contained header (runtime/c_header.hpp), with elasticity,
 /// - runtime: the file that Compensator reads (runtime/runtime_model.hpp), with elasticity,
-/// - urdf: the user's URDF with changed joint origins,
+/// - urdf: the user's URDF with changed joint origins; as all rigid formats, with the errors that
+///   the URDF by calibrate has (AsInUrdf),
 /// - urdf_encoder: the same with the joints' zeros left to the encoders,
 /// - urdf_rising: that one, with the zeros added to the joints' element `calibration` (rising),
 /// - linkages: the calibrated rods as a section of a project (io/linkage_file.hpp),

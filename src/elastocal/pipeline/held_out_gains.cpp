@@ -20,10 +20,13 @@ constexpr int kLeastGainPostures = 10;
 
 /// The estimate as stored, judged by trials for validation.
 HeldOutSplit StoredSplit(const RecordedModel& recorded, Measurements measured,
-                         const StoredCalibration& stored) {
+                         const StoredCalibration& stored, bool with_loads) {
   HeldOutSplit split;
   split.model = recorded.model;
   split.delta = ErrorsByName(recorded.model, stored.joint_errors, stored.externals);
+  if (!with_loads && !stored.urdf_errors.empty()) {
+    split.exported = ErrorsByName(recorded.model, AsInUrdf(stored).joint_errors, stored.externals);
+  }
   split.training = std::move(measured.calibration);
   split.held_out = std::move(measured.validation);
   return split;
@@ -73,8 +76,9 @@ HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& o
   if (held_out > 0) {
     gains.judged_on = fmt::format("{} postures of {} held-out trials", held_out,
                                   measured.validation.trials.size());
-    gains.study = StudyGains({StoredSplit(recorded, std::move(measured), robot.calibration)},
-                             project.calibration, options);
+    gains.study = StudyGains(
+        {StoredSplit(recorded, std::move(measured), robot.calibration, options.with_loads)},
+        project.calibration, options);
   } else {
     gains.judged_on =
         fmt::format("{} postures, each by an estimate without the fifth that it is in",

@@ -220,7 +220,8 @@ StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibr
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,
                               RuntimeContent content) {
   CheckHasNoLinkages(project, "the robot at run time");
-  const StoredRobot robot = RestoreRobot(project, calibration);
+  const bool rigid = content == RuntimeContent::kGeometry;
+  const StoredRobot robot = RestoreRobot(project, rigid ? AsInUrdf(calibration) : calibration);
   RuntimeModel model;
   model.robot = project.tree.name;
   model.calibration = calibration.source;

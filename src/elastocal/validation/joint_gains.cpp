@@ -168,6 +168,11 @@ class SplitDisplacements {
   Eigen::MatrixXd held_out_before_;
 };
 
+/// The errors that a split judges.
+const Eigen::VectorXd& Exported(const HeldOutSplit& split) {
+  return split.exported.size() > 0 ? split.exported : split.delta;
+}
+
 /// Joints and legs with errors that are deployed, in the order of the model.
 std::vector<std::string> OwnersWithErrors(const std::vector<HeldOutSplit>& splits,
                                           const GainOptions& gains) {
@@ -177,7 +182,7 @@ std::vector<std::string> OwnersWithErrors(const std::vector<HeldOutSplit>& split
       const Parameter& parameter = split.model.parameters[static_cast<std::size_t>(i)];
       if (IsExternal(parameter.kind) || !IsCarried(parameter, gains)) continue;
       const std::string owner = OwnerName(parameter.name);
-      if (split.delta[i] == 0.0 || std::ranges::find(owners, owner) != owners.end()) continue;
+      if (Exported(split)[i] == 0.0 || std::ranges::find(owners, owner) != owners.end()) continue;
       owners.push_back(owner);
     }
   }
@@ -216,7 +221,7 @@ void AddSplit(const HeldOutSplit& split, const CalibrationOptions& options,
               const std::vector<std::string>& owners, const GainOptions& gains,
               HeldOutErrors& errors) {
   const SplitDisplacements displacements(split, options);
-  Eigen::VectorXd deployed = split.delta, nominal = split.delta;
+  Eigen::VectorXd deployed = Exported(split), nominal = split.delta;
   for (int i = 0; i < split.model.parameter_count(); ++i) {
     const Parameter& parameter = split.model.parameters[static_cast<std::size_t>(i)];
     if (IsExternal(parameter.kind)) continue;

@@ -14,6 +14,8 @@ namespace elastocal {
 struct HeldOutSplit {
   ErrorModel model;
   Eigen::VectorXd delta;  ///< errors with markers and, of a table of postures, the waist
+  /// Errors that are exported, where they are another model's; empty: `delta`.
+  Eigen::VectorXd exported = {};
   Recording training, held_out;
   /// Whether the held-out postures are of trials of `training`, and their feet stand where they
   /// stand there; else each trial of `held_out` is placed anew.
