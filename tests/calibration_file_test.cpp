@@ -224,10 +224,10 @@ TEST(Fingerprint, TellsNominalRobotsApart) {
   EXPECT_EQ(same.find_first_not_of("0123456789abcdef"), std::string::npos);
   const std::string origin = "<origin xyz=\"0 -0.01 0.05\"/>";  // of finger_right_joint
   for (const auto& [what, by] : std::vector<std::pair<std::string, std::string>>{
-           {origin, "<origin xyz=\"0 -0.01 0.05001\"/>"},
-           {origin, "<origin xyz=\"0 -0.01 0.05\" rpy=\"0 1e-5 0\"/>"},
-           {"multiplier=\"-1\"", "multiplier=\"-1.01\""},
-           {"<joint name=\"finger_right_joint\"", "<joint name=\"finger_other_joint\""}}) {
+           {origin, R"(<origin xyz="0 -0.01 0.05001"/>)"},
+           {origin, R"(<origin xyz="0 -0.01 0.05" rpy="0 1e-5 0"/>)"},
+           {R"(multiplier="-1")", R"(multiplier="-1.01")"},
+           {R"(<joint name="finger_right_joint")", R"(<joint name="finger_other_joint")"}}) {
     EXPECT_NE(FingerprintWith(what, by), same) << by;
   }
 }

@@ -28,8 +28,8 @@ double LengthOf(const RobotTree& tree, int link) {
   Eigen::Vector3d end = poses[static_cast<std::size_t>(link)].translation();
   const std::vector<int> joints =
       JointsToBody(tree, tree.links[static_cast<std::size_t>(link)].body);
-  for (auto k = joints.rbegin(); k != joints.rend(); ++k) {
-    const int child = tree.joints[static_cast<std::size_t>(*k)].child_link;
+  for (std::size_t k = joints.size(); k-- > 0;) {
+    const int child = tree.joints[static_cast<std::size_t>(joints[k])].child_link;
     const Eigen::Vector3d here = poses[static_cast<std::size_t>(child)].translation();
     length += (end - here).norm();
     end = here;
