@@ -105,10 +105,14 @@ bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
     Eigen::VectorXd off;
     if (still_.rows() > 0) off = still_ * (preferred_ - q(coordinates_));
     if (turn.norm() < kReached && move.norm() < kReached && off.norm() < kReached) return true;
-    Eigen::VectorXd wanted(6 + off.size());
-    wanted << turn, move - turn.cross(found.translation()), off;
-    screws.conservativeResize(wanted.size(), Eigen::NoChange);
-    screws.bottomRows(still_.rows()) = still_;
+    Eigen::VectorXd wanted(6);
+    wanted << turn, move - turn.cross(found.translation());
+    if (still_.rows() > 0) {
+      wanted.conservativeResize(6 + off.size());
+      wanted.tail(off.size()) = off;
+      screws.conservativeResize(wanted.size(), Eigen::NoChange);
+      screws.bottomRows(still_.rows()) = still_;
+    }
     Eigen::VectorXd step = LeastStep(screws, wanted);
     const double largest = step.cwiseAbs().maxCoeff();
     if (!(largest < 1e6)) return false;

@@ -29,13 +29,12 @@ NextPostures DesignNextPostures(const Project& project, const std::filesystem::p
 }
 
 std::string MakeCheckJson(const Project& project, const CheckRun& run, const NextPostures& next) {
-  using Json = nlohmann::ordered_json;
-  Json json = Json::parse(MakeCheckJson(run));
-  json["next_postures"] = Json::array();
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(MakeCheckJson(run));
+  json["next_postures"] = nlohmann::ordered_json::array();
   for (const ChainPostures& chain : next.postures) {
-    Json postures = Json::array();
+    auto postures = nlohmann::ordered_json::array();
     for (const Eigen::VectorXd& q : chain.q) {
-      Json posture;
+      nlohmann::ordered_json posture;
       for (int i = 0; i < project.tree.coordinate_count(); ++i) {
         posture[project.tree.joints[project.tree.coordinate_joint[i]].name] = q[i];
       }
@@ -43,7 +42,7 @@ std::string MakeCheckJson(const Project& project, const CheckRun& run, const Nex
     }
     json["next_postures"].push_back({{"chain", chain.chain}, {"postures", std::move(postures)}});
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace elastocal
