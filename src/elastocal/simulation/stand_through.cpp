@@ -109,6 +109,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
   for (const Sole& sole : soles) feet.push_back(sole.link);
   const Eigen::MatrixXd& commanded = options.commanded != nullptr ? *options.commanded : motion.q;
   VirtualRobot body(robot, feet, commanded.row(0).transpose(), physics);
+  const double height = body.WaistPose().translation().z();
   const long per_look = std::max(1L, std::lround(kLook / body.time_step_s()));
   const double interval = static_cast<double>(per_look) * body.time_step_s();
   Eigen::Matrix3d R_root_unit = Eigen::Matrix3d::Identity();
@@ -150,7 +151,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
     body.Step();
     if (i % per_look != 0) continue;
     const Transform waist = body.WaistPose();
-    if (!(waist.translation().z() > kFallen * begin.translation().z())) return run;
+    if (!(waist.translation().z() > kFallen * height)) return run;
     const double upright = waist.linear().col(2).dot(begin.linear().col(2));
     run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
     run.tracking = std::max(run.tracking,

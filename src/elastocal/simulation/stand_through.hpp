@@ -14,7 +14,7 @@ namespace elastocal {
 
 /// How a robot that stands freely went through a motion.
 struct StandingRun {
-  bool stood = false;   ///< whether the waist never sank below 0.7 of its height
+  bool stood = false;   ///< whether the waist never sank below 0.7 of its height as put down
   double time_s = 0.0;  ///< until the fall, or duration of the whole motion
   double largest_lean =
       0.0;  ///< largest angle of the root link's z axis to its direction at the beginning, rad
@@ -49,6 +49,9 @@ struct StandThroughOptions {
 /// samples are joined by straight lines. A `stabiliser` (of the same soles) corrects the commands
 /// 100 times a second by the measurements of the inertial unit and the feet. Without it, the joints
 /// follow the motion and nothing controls the balance.
+///
+/// Before the motion the robot is put down in its first posture, 4 s at the most. With a stabiliser
+/// whose unit sits in the root frame, hands hold the root link upright meanwhile and let go slowly.
 StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
                          const JointMotion& motion, PhysicsOptions physics,
                          const StandThroughOptions& options = {});

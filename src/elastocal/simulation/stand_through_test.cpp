@@ -75,6 +75,21 @@ TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
   EXPECT_NEAR(run.largest_shift, 29.0 / 60.0 * 0.1, 0.015);
 }
 
+// A centre of mass ahead of the toes: the robot falls as soon as it is put down, unless hands hold
+// it until the stabiliser has shifted it back.
+TEST_F(BipedStandsThrough, HandsHoldItWhileItIsPutDown) {
+  RobotTree& tree = robot_.tree;
+  const int trunk = tree.joints[1].child_link;
+  tree.links[static_cast<std::size_t>(trunk)].com.x() += 0.16;
+  JointMotion motion = Bow(0.0);
+  motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 6.0);
+  const StandingRun alone = StandThrough(robot_, soles_, motion, {});
+  EXPECT_FALSE(alone.stood);
+  EXPECT_LT(alone.time_s, 0.1);  // it lies there when the motion begins
+  Stabiliser stabiliser(biped_.tree, soles_);
+  EXPECT_TRUE(StandThrough(robot_, soles_, motion, {}, {.stabiliser = &stabiliser}).stood);
+}
+
 // Its ankles are off by 10 mrad, so that the root link leans although it is where its model means
 // it to be. The stabiliser sets it upright by the unit, unless the unit was mounted in that rest.
 TEST_F(BipedStandsThrough, TheInertialUnitIsMountedAsTheFirstRestShows) {
