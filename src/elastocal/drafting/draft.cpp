@@ -270,6 +270,7 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics);
   draft.stands = draft.soles.size() <= 2 && !draft.soles.empty() && draft.rest.stands &&
                  CanBalance(draft.tree, draft.limbs);
+  if (draft.stands) draft.stance = ChooseStance(draft.tree, draft.soles);
   draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
   constexpr double kMargin = 0.004;  // of the longest branch: 5 mm on a robot of 1.75 m
   draft.sphere_margin =

@@ -186,6 +186,11 @@ class DraftWriter {
       text_ += fmt::format("    - {{link: {}, lower_mm: {}, upper_mm: {}}}{}\n", Word(sole.link),
                            MmList(sole.lower), MmList(sole.upper), note);
     }
+    if (draft_.stance) {
+      text_ +=
+          fmt::format("  stance_mm: {:.0f}  # wider than in the zero posture: room for errors\n",
+                      *draft_.stance / kMetresPerMm);
+    }
   }
 
   const ProjectDraft& draft_;
@@ -225,6 +230,7 @@ std::string FormatDraftSummary(const ProjectDraft& draft) {
                      {"rest", draft.rest.source},
                      {"stands", draft.stands},
                      {"soles", soles},
+                     {"stance_mm", draft.stance ? Json(*draft.stance / kMetresPerMm) : Json()},
                      {"design", designs},
                      {"warnings", draft.warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -124,6 +124,27 @@ std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& sha
   return soles;
 }
 
+std::optional<double> ChooseStance(const RobotTree& tree, const std::vector<DraftedSole>& soles) {
+  constexpr double kRoom = 0.08;  // between the soles, as a share of the height of the root link
+  if (soles.size() != 2) return {};
+  const auto T_root_link = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  const auto corners = [&](const DraftedSole& sole) {
+    Eigen::Matrix3Xd points(3, 4);
+    points << sole.lower.x(), sole.upper.x(), sole.upper.x(), sole.lower.x(),  //
+        sole.lower.y(), sole.lower.y(), sole.upper.y(), sole.upper.y(), 0.0, 0.0, 0.0, 0.0;
+    return Eigen::Matrix3Xd(T_root_link[Size(FindLink(tree, sole.link))] * points);
+  };
+  const Eigen::Matrix3Xd a = corners(soles[0]), b = corners(soles[1]);
+  Eigen::Vector3d between = b.rowwise().mean() - a.rowwise().mean();
+  between.z() = 0.0;
+  const double distance = between.norm();
+  const Eigen::RowVector3d along = between.transpose() / distance;
+  const double gap = (along * b).minCoeff() - (along * a).maxCoeff();
+  const double room = kRoom * -a.row(2).mean();
+  if (gap >= room) return {};
+  return distance + room - gap;
+}
+
 std::string AddSoleLinks(const std::string& urdf, const RobotTree& tree,
                          const std::vector<DraftedSole>& soles) {
   std::string added;

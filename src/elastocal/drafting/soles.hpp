@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,10 @@ struct DraftedSole {
 /// is taken to be as high as usual. Corners are in the sole's frame.
 std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& shapes,
                                    const Limbs& limbs);
+
+/// Distance between the centres of two soles, m, at which feet do not touch where errors of the
+/// robot bring them nearer: given if they are closer in the zero posture.
+std::optional<double> ChooseStance(const RobotTree& tree, const std::vector<DraftedSole>& soles);
 
 /// The URDF with the links that soles add, fixed to the feet and without mass.
 std::string AddSoleLinks(const std::string& urdf, const RobotTree& tree,

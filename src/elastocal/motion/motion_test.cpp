@@ -257,6 +257,25 @@ TEST_F(BalancedWalker, ThreadsDoNotMatter) {
   EXPECT_FALSE(Broken(CheckMotion(robot_, first), robot_.limits));
 }
 
+TEST(StandUp, PutsTheFeetAsFarApartAsTheStanceAsks) {
+  const Walker walker = MakeWalker();
+  StandingRobot usual(walker.tree, walker.soles, {}), wide(walker.tree, walker.soles, {});
+  StandUp(usual, NeutralPosture(usual.tree, 0.05), {});
+  StandOptions options;
+  options.stance = 0.4;
+  StandUp(wide, NeutralPosture(wide.tree, 0.05), options);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Transform T_world_sole =
+        wide.T_world_root *
+        LinkTransforms(wide.tree, wide.rest)[static_cast<std::size_t>(walker.soles[i].link)];
+    EXPECT_NEAR(T_world_sole.translation().y(), i == 0 ? 0.2 : -0.2, 1e-9);
+    EXPECT_NEAR(T_world_sole.translation().z(), 0.0, 1e-9);
+    EXPECT_NEAR(T_world_sole.translation().x(), usual.T_world_sole[i].translation().x(), 1e-9);
+    EXPECT_TRUE(T_world_sole.linear().isIdentity(1e-9));
+  }
+  EXPECT_NEAR(usual.T_world_sole[0].translation().y(), 0.085, 1e-9);
+}
+
 TEST(HeldRobot, VisitsItsPosturesWithoutBalanceAndWithTheTorquesOfStatics) {
   const Walker walker = MakeWalker();
   StandingRobot robot(walker.tree, {}, {});

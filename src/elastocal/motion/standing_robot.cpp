@@ -10,6 +10,11 @@
 namespace elastocal {
 namespace {
 
+Eigen::Vector3d SoleCentre(const Sole& sole, const Transform& T_world_sole) {
+  const Eigen::Vector2d centre = sole.centre();
+  return T_world_sole * Eigen::Vector3d(centre.x(), centre.y(), 0.0);
+}
+
 /// Bends a straight leg, the knee one way or the other, until the sole is in place.
 bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_sole,
           double position_margin, Eigen::VectorXd& q) {
@@ -44,6 +49,15 @@ double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
   if (bend > robot.limits.least_knee) return -robot.legs[0].SolePose(posture).translation().z();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(posture.size());
   return -(1.0 - options.drop) * robot.legs[0].SolePose(zero).translation().z();
+}
+
+/// Moves two soles apart, or together, until their centres have the distance `stance`.
+void Widen(double stance, const std::vector<Sole>& soles, std::vector<Transform>& T_world_sole) {
+  const Eigen::Vector3d between =
+      SoleCentre(soles[1], T_world_sole[1]) - SoleCentre(soles[0], T_world_sole[0]);
+  const Eigen::Vector3d half = 0.5 * (stance / between.norm() - 1.0) * between;
+  T_world_sole[0].pretranslate(-half);
+  T_world_sole[1].pretranslate(half);
 }
 
 }  // namespace
@@ -103,6 +117,13 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
     }
     T_world_sole.translation().z() = 0.0;
     robot.T_world_sole.push_back(T_world_sole);
+  }
+  if (options.stance && robot.soles.size() == 2) {
+    Widen(*options.stance, robot.soles, robot.T_world_sole);
+  }
+  for (std::size_t i = 0; i < robot.soles.size(); ++i) {
+    const Transform& T_world_sole = robot.T_world_sole[i];
+    const std::string& name = robot.tree.links[Size(robot.soles[i].link)].name;
     if (!Bend(robot.legs[i], robot.tree, pose.T_world_root.inverse() * T_world_sole,
               robot.limits.position_margin, pose.q)) {
       throw InputError("the leg of '" + name + "' cannot stand bent on a level floor");
@@ -121,9 +142,7 @@ Eigen::Vector2d SupportCentre(const StandingRobot& robot, const std::vector<int>
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   if (feet.empty()) return sum;
   for (const int foot : feet) {
-    const Eigen::Vector2d centre = robot.soles[Size(foot)].centre();
-    sum +=
-        (robot.T_world_sole[Size(foot)] * Eigen::Vector3d(centre.x(), centre.y(), 0.0)).head<2>();
+    sum += SoleCentre(robot.soles[Size(foot)], robot.T_world_sole[Size(foot)]).head<2>();
   }
   return sum / static_cast<double>(feet.size());
 }

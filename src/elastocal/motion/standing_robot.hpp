@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,10 +57,13 @@ struct StandingRobot {
 struct StandOptions {
   /// If the given posture has straight legs, the waist is lowered by this share of its height.
   double drop = 0.07;
+  /// Distance between the centres of two soles, m; default: as in the zero posture.
+  std::optional<double> stance;
 };
 
 /// Stands the robot up in a posture (by coordinate). The feet are flat and where they are under the
-/// root link in the zero posture. The root link is upright and as high above the feet as in the
+/// root link in the zero posture, or moved apart (together) along the line of their centres to the
+/// stance. The root link is upright and as high above the feet as in the
 /// posture, or lower by the drop if its knees are less bent than the limits require. The centre of
 /// mass is over the middle of the support. A held robot rests in the posture itself. Throws
 /// InputError if the legs cannot do this.

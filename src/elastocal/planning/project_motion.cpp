@@ -47,7 +47,9 @@ std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
       return SphereDistances(spheres, pairs, LinkTransforms(tree, q));
     };
   }
-  StandUp(*robot, project.motion.rest, {});
+  StandOptions options;
+  options.stance = project.stance;
+  StandUp(*robot, project.motion.rest, options);
   return robot;
 }
 

@@ -116,6 +116,9 @@ struct Project {
   CalibrationOptions calibration;
   ElasticityChoice elasticity;
   std::vector<Sole> soles;  ///< that the robot can stand on; none: it is not planned for
+  /// Distance between the centres of two soles on which it stands, m; default: as in the zero
+  /// posture.
+  std::optional<double> stance;
   std::optional<ContactProject> contact;  ///< recordings are tables of touches and instruments
   MotionSetup motion;                     ///< what the calibration postures and motions keep to
 };

@@ -100,7 +100,7 @@ void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& moti
 }  // namespace
 
 void ReadStanding(const YamlValue& section, Project& project) {
-  section.ExpectKeys({"soles"});
+  section.ExpectKeys({"soles", "stance_mm"});
   const YamlValue list = section.Get("soles");
   std::set<int> links;
   for (const YamlValue& value : list.Items()) {
@@ -113,6 +113,10 @@ void ReadStanding(const YamlValue& section, Project& project) {
     project.soles.push_back(sole);
   }
   list.Expect(project.soles.size() == 1 || project.soles.size() == 2, "one or two soles");
+  if (const auto stance = section.Find("stance_mm")) {
+    stance->Expect(project.soles.size() == 2, "two soles, which have a distance");
+    project.stance = kOneMm * stance->Bounded();
+  }
 }
 
 void ReadCollision(const YamlValue& section, Project& project) {
