@@ -48,7 +48,7 @@ for (const [name, file] of Object.entries(files)) {
     const buttons = await page.$$('figure .figure-head button');
     assert.equal(buttons.length, await page.$$eval('figure', (figures) => figures.length));
     for (const button of buttons) {
-      const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
+      const [download] = await Promise.all([page.waitForEvent('download'), button.evaluate((b) => b.click())]);
       assert.match(download.suggestedFilename(), /\.csv$/);
       assert.ok(readFileSync(await download.path(), 'utf8').trimEnd().split('\n').length > 1, download.suggestedFilename());
     }
