@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -136,6 +137,27 @@ TEST_F(Report, SaysHowToGetTheSameAgain) {
   EXPECT_EQ(run["inputs"][2]["bytes"], std::filesystem::file_size(recording_));
 }
 
+TEST_F(Report, TheRecordIsReadFromAnyFolder) {
+  // Typed in the recording's folder, by relative names.
+  std::filesystem::copy(project_, scratch_.path() / "arm6_project.yaml");
+  std::filesystem::copy(SourceFile("tests/robots/arm6.urdf"), scratch_.path() / "arm6.urdf");
+  const std::string recording = std::filesystem::path(recording_).filename().string();
+  const std::string go = "cd " + scratch_.path().string() + " && " ELASTOCAL_PROGRAM;
+  ASSERT_EQ(std::system(
+                (go + " calibrate arm6_project.yaml --recording " + recording + " -o typed --quiet")
+                    .c_str()),
+            0);
+  const std::string out = (scratch_.path() / "typed").string();
+  const ProgramResult elsewhere = RunProgram("diagnose " + out);
+  EXPECT_EQ(elsewhere.exit_code, 0) << elsewhere.err;
+
+  std::ofstream(recording_, std::ios::app) << "\n";
+  const ProgramResult changed = RunProgram("diagnose " + out);
+  EXPECT_EQ(changed.exit_code, 3);
+  EXPECT_NE(changed.err.find("has changed since the calibration"), std::string::npos)
+      << changed.err;
+}
+
 #ifdef ELASTOCAL_HAS_PAGE
 
 TEST_F(Report, EndsCalibrateAndValidate) {
@@ -155,6 +177,30 @@ TEST_F(Report, EndsCalibrateAndValidate) {
   EXPECT_EQ(both["validation"]["status"], "better");
   EXPECT_TRUE(both["runs"].contains("calibrate"));
   EXPECT_TRUE(both["runs"].contains("validate"));
+}
+
+TEST_F(Report, LeavesOutWhatIsOfAnotherCalibration) {
+  ASSERT_EQ(Calibrate().exit_code, 0);
+  const ProgramResult diagnosed =
+      RunProgram("diagnose " + out_ + " --json " + out_ + "/diagnosis.json");
+  ASSERT_EQ(diagnosed.exit_code, 0) << diagnosed.err;
+  Record(2);
+  ASSERT_EQ(RunProgram("validate " + project_ + " --calibration " + out_ + " --recording " +
+                       recording_ + " -o " + out_)
+                .exit_code,
+            0);
+  ASSERT_EQ(RunProgram("report " + out_).exit_code, 0);
+  const Json before = DataOf(out_ + "/report.html");
+  EXPECT_TRUE(before.contains("validation"));
+  EXPECT_TRUE(before.contains("diagnosis"));
+
+  ASSERT_EQ(Calibrate().exit_code, 0);  // by the second recording
+  const Json after = DataOf(out_ + "/report.html");
+  EXPECT_FALSE(after.contains("validation"));
+  EXPECT_FALSE(after.contains("diagnosis"));
+  const std::string missing = after["missing"].dump();
+  EXPECT_NE(missing.find("validation.json is of another calibration"), std::string::npos);
+  EXPECT_NE(missing.find("diagnosis.json is of another calibration"), std::string::npos);
 }
 
 TEST_F(Report, ShowsEarlierCalibrationsAndGoesWhereItIsTold) {

@@ -35,8 +35,9 @@ void SetCommandLine(int argc, char** argv) {
 
 RunRecord MakeRunRecord(const std::string& command, const CommonOptions& options,
                         std::vector<InputRecord> inputs) {
-  return {command, QuoteCommandLine(CommandLine()), ProgramVersion(), options.seed,
-          std::move(inputs)};
+  std::error_code unknown;  // a folder that was removed
+  return {command,           QuoteCommandLine(CommandLine()),   ProgramVersion(), options.seed,
+          std::move(inputs), fs::current_path(unknown).string()};
 }
 
 void PrintReportPlace(const fs::path& folder, const std::string& why_none, bool quiet) {

@@ -106,10 +106,11 @@ int Deploy(const SimulateCommand& command) {
     }
   }
   const bool quiet = command.common.Silent();
-  const std::vector<Execution> executions = PlayExecutions(
-      project, ReadCalibration(calibration.calibration), ReadMotion(command.motion, project),
-      options, TerminalProgress("executed motion", quiet));
-  const std::string json = FormatExecutions(project.tree, executions);
+  const StoredCalibration stored = ReadCalibration(calibration.calibration);
+  const std::vector<Execution> executions =
+      PlayExecutions(project, stored, ReadMotion(command.motion, project), options,
+                     TerminalProgress("executed motion", quiet));
+  const std::string json = FormatExecutions(project.tree, stored.fingerprint, executions);
   outputs.Set(command.common.json_file, json);
   const std::string no_report =
       SetResults(command.output, {{"deployment.json", json}},

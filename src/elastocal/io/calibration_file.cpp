@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -57,7 +58,7 @@ void AddLinkage(const RobotTree& tree, const Linkage& linkage, RoundedText& text
   }
 }
 
-std::uint64_t Fnv1a(const std::string& text) {
+std::uint64_t Fnv1a(std::string_view text) {
   std::uint64_t hash = 14695981039346656037u;
   for (const unsigned char byte : text) hash = (hash ^ byte) * 1099511628211u;
   return hash;
@@ -224,7 +225,11 @@ std::string NominalFingerprint(const ErrorModel& model) {
     text.Add(placement.T_joint_body);
   }
   for (const Linkage& linkage : tree.linkages) AddLinkage(tree, linkage, text);
-  return fmt::format("{:016x}", Fnv1a(text.text()));
+  return CalibrationFingerprint(text.text());
+}
+
+std::string CalibrationFingerprint(std::string_view text) {
+  return fmt::format("{:016x}", Fnv1a(text));
 }
 
 std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
@@ -332,6 +337,7 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   const YamlValue root = YamlValue::Parse(text, file.string());
   StoredCalibration stored;
   stored.source = file.string();
+  stored.fingerprint = CalibrationFingerprint(text);
   for (const YamlValue& item : root.Get("parameters").Items()) {
     stored.lines[item.Get("name").Text()] = item.line();
   }

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
@@ -18,6 +19,10 @@ namespace elastocal {
 /// parent, mimicking and placement (radians and metres, rounded to 1e-9). Links, limits, inertia,
 /// visuals, comments and markers do not count.
 std::string NominalFingerprint(const ErrorModel& model);
+
+/// A number for the text of a calibration.yaml. What is measured or studied with a calibration
+/// names it by that, and is not shown beside another one.
+std::string CalibrationFingerprint(std::string_view text);
 
 /// calibration.yaml: every parameter with unit, value, standard deviation and status, and what is
 /// needed to judge them (docs/formats.md).
@@ -43,7 +48,8 @@ CalibrationEstimate ParseEstimate(const std::string& text, const std::string& so
 
 /// What another run needs of such a file.
 struct StoredCalibration {
-  std::string source;  ///< the file, for messages
+  std::string source;       ///< the file, for messages
+  std::string fingerprint;  ///< CalibrationFingerprint of its text
   std::string robot;
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;

@@ -94,13 +94,27 @@ void LegChain::Prefer(const Eigen::VectorXd& q) {
 }
 
 bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
+  return Solve(T_root_sole, false, q);
+}
+
+bool LegChain::PlaceFlat(const Transform& T_root_sole, Eigen::VectorXd& q) const {
+  return Solve(T_root_sole, coordinates_.size() < 6, q);
+}
+
+bool LegChain::Solve(const Transform& T_root_sole, bool any_heading, Eigen::VectorXd& q) const {
   constexpr int kIterations = 40;
   constexpr double kReached = 1e-11;
   constexpr double kLargestMove = 0.3;  // rad
   Eigen::MatrixXd screws;
   for (int i = 0; i < kIterations; ++i) {
     const Transform found = Evaluate(q, screws);
-    const Eigen::Vector3d turn = RotationVector(T_root_sole.linear() * found.linear().transpose());
+    Eigen::Vector3d turn = RotationVector(T_root_sole.linear() * found.linear().transpose());
+    if (any_heading) {  // the turn about the normal is one more unknown
+      const Eigen::Vector3d normal = T_root_sole.linear().col(2);
+      screws.conservativeResize(Eigen::NoChange, screws.cols() + 1);
+      screws.rightCols<1>() << normal, found.translation().cross(normal);
+      turn -= normal * normal.dot(turn);
+    }
     const Eigen::Vector3d move = T_root_sole.translation() - found.translation();
     Eigen::VectorXd off;
     if (still_.rows() > 0) off = still_ * (preferred_ - q(coordinates_));
@@ -117,7 +131,7 @@ bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
     const double largest = step.cwiseAbs().maxCoeff();
     if (!(largest < 1e6)) return false;
     step *= std::min(1.0, kLargestMove / std::max(largest, 1e-12));
-    q(coordinates_) += step;
+    q(coordinates_) += step.head(static_cast<Eigen::Index>(coordinates_.size()));
   }
   return false;
 }

@@ -39,7 +39,12 @@ class LegChain {
   /// anywhere, if the pose is out of reach or the knee gets straight.
   bool Place(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
+  /// The same, but the sole of a leg of five joints, which cannot have every pose, may turn about
+  /// its normal.
+  bool PlaceFlat(const Transform& T_root_sole, Eigen::VectorXd& q) const;
+
  private:
+  bool Solve(const Transform& T_root_sole, bool any_heading, Eigen::VectorXd& q) const;
   /// Pose of the sole; sets `screws` to its derivatives, 6 x coordinates: a rotation and the
   /// velocity of the point at the root's origin.
   Transform Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const;

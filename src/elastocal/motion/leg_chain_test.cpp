@@ -82,6 +82,20 @@ TEST(LegChain, OfFiveJointsReachesWhatIsParallelToTheRoot) {
   EXPECT_FALSE(leg.Place(wanted, q));
 }
 
+TEST(LegChain, OfFiveJointsPutsItsSoleFlatWhateverItsHeading) {
+  const RobotTree tree = OneLeg("xyyyx");
+  const LegChain leg(tree, FindLink(tree, "sole"));
+  Eigen::VectorXd q(5);
+  q << 0, kHip, kKnee, kHip, 0;
+  Transform wanted = leg.SolePose(q);
+  wanted.translation() += Eigen::Vector3d(0.03, -0.05, 0.02);
+  wanted.linear() = (RotAxis({0, 0, 1}, 0.2) * RotAxis({0.6, 0.8, 0}, 0.1)).linear();
+  ASSERT_TRUE(leg.PlaceFlat(wanted, q));
+  const Transform found = leg.SolePose(q);
+  EXPECT_LT((found.translation() - wanted.translation()).norm(), 1e-10);
+  EXPECT_LT((found.linear().col(2) - wanted.linear().col(2)).norm(), 1e-10);
+}
+
 TEST(LegChain, JointsOfALegMayFollowEachOtherButNoOthers) {
   // The second knee bends as much as the first.
   RobotTree tree = OneLeg("zxyyyyx");

@@ -189,7 +189,7 @@ Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
     T_moved_sole.linear() = T_moved_sole.linear() * RotationFromVector(share * Level(foot));
     T_moved_sole.translation() +=
         share * (i == 0 ? 0.5 : -0.5) * height_ * T_moved_sole.linear().col(2);
-    if (legs_[i].Place(T_moved_sole, corrected)) continue;
+    if (legs_[i].PlaceFlat(T_moved_sole, corrected)) continue;
     for (const int c : legs_[i].coordinates()) corrected[c] = planned[c] + correction_[c];
   }
   return corrected;

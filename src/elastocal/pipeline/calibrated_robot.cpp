@@ -17,6 +17,47 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+fs::path FolderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// An input of `calibrate` as runs.json has it.
+struct RecordedInput {
+  fs::path file;  ///< from here
+  std::string sha256;
+};
+
+/// The inputs of the calibration in a folder: project, URDF, then recordings. None where the record
+/// has none.
+std::vector<RecordedInput> RecordedInputs(const fs::path& runs) {
+  const ordered_json all = ParseJsonObject(runs.string(), ReadFile(runs));
+  const ordered_json none = ordered_json::object();
+  const auto member = [&](const ordered_json& json, const char* key) {
+    return json.is_object() && json.contains(key) ? json.at(key) : none;
+  };
+  const auto text = [&](const ordered_json& json, const char* key) {
+    const ordered_json value = member(json, key);
+    return value.is_string() ? value.get<std::string>() : std::string();
+  };
+  const ordered_json run = member(all, "calibrate");
+  const fs::path folder = text(run, "folder");
+  std::vector<RecordedInput> inputs;
+  const ordered_json list = member(run, "inputs");
+  for (const ordered_json& input : list) {
+    fs::path file = text(input, "file");
+    std::error_code error;
+    const fs::path there = folder / file;  // relative names start where calibrate was typed
+    if (file.is_relative() && !file.empty() && fs::exists(there, error)) file = there;
+    inputs.push_back({file, text(input, "sha256")});
+  }
+  return inputs;
+}
+
+bool HasChanged(const RecordedInput& input) {
+  const std::vector<InputRecord> now = RecordInputs({input.file});
+  return now.empty() || input.sha256 != now.front().sha256;
+}
+
 /// The project file that the record of a calibration names first, as it was then.
 fs::path RecordedProject(const fs::path& folder) {
   const fs::path file = folder / "runs.json";
@@ -25,30 +66,18 @@ fs::path RecordedProject(const fs::path& folder) {
   if (!fs::exists(file, error)) {
     throw InputError(file.string() + ": is not there: it says which project was calibrated" + hint);
   }
-  const ordered_json runs = ParseJsonObject(file.string(), ReadFile(file));
-  const auto run = runs.find("calibrate");
-  const ordered_json none;
-  const ordered_json& inputs =
-      run != runs.end() && run->is_object() && run->contains("inputs") ? run->at("inputs") : none;
-  const ordered_json& input = inputs.is_array() && !inputs.empty() ? inputs[0] : none;
-  const auto text = [&](const char* key) {
-    const bool there = input.is_object() && input.contains(key) && input[key].is_string();
-    return there ? input[key].get<std::string>() : std::string();
-  };
-  const fs::path project = text("file");
-  if (project.empty()) throw InputError(file.string() + ": no inputs of calibrate" + hint);
+  const std::vector<RecordedInput> inputs = RecordedInputs(file);
+  if (inputs.empty() || inputs.front().file.empty()) {
+    throw InputError(file.string() + ": no inputs of calibrate" + hint);
+  }
+  const fs::path& project = inputs.front().file;
   if (!fs::exists(project, error)) {
     throw InputError(file.string() + ": the project " + project.string() + " is not there" + hint);
   }
-  const std::vector<InputRecord> now = RecordInputs({project});
-  if (now.empty() || text("sha256") != now.front().sha256) {
+  if (HasChanged(inputs.front())) {
     throw InputError(project.string() + ": has changed since the calibration" + hint);
   }
   return project;
-}
-
-fs::path FolderOf(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
 }  // namespace
@@ -64,26 +93,25 @@ CalibratedRobot OpenCalibratedRobot(const fs::path& given, const fs::path& proje
 
 std::vector<fs::path> RecordedRecordings(const CalibratedRobot& robot) {
   const fs::path file = FolderOf(robot.calibration.source) / "runs.json";
-  const ordered_json runs = ParseJsonObject(file.string(), ReadFile(file));
+  const std::vector<RecordedInput> inputs = RecordedInputs(file);
   std::vector<fs::path> recordings;
-  const ordered_json inputs =
-      runs.value("calibrate", ordered_json::object()).value("inputs", ordered_json::array());
   for (std::size_t i = 2; i < inputs.size(); ++i) {
-    const fs::path input = inputs[i].value("file", std::string());
+    const fs::path& input = inputs[i].file;
     if (input.filename() == "experiment.yaml") recordings.push_back(input.parent_path());
   }
-  if (recordings.empty() && inputs.size() > 2) {
-    recordings.emplace_back(inputs[2].value("file", std::string()));
-  }
+  if (recordings.empty() && inputs.size() > 2) recordings.push_back(inputs[2].file);
   if (recordings.empty() || recordings.front().empty()) {
     throw InputError(file.string() +
                      ": names no recording of calibrate; expected a folder that "
                      "calibrate -o wrote to");
   }
   std::error_code error;
-  for (const fs::path& recording : recordings) {
-    if (fs::exists(recording, error)) continue;
-    throw InputError(file.string() + ": the recording " + recording.string() + " is not there");
+  for (std::size_t i = 2; i < inputs.size(); ++i) {
+    const std::string name = inputs[i].file.string();
+    if (!fs::exists(inputs[i].file, error)) {
+      throw InputError(file.string() + ": the recording " + name + " is not there");
+    }
+    if (HasChanged(inputs[i])) throw InputError(name + ": has changed since the calibration");
   }
   return recordings;
 }

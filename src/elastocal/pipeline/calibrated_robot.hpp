@@ -24,7 +24,8 @@ CalibratedRobot OpenCalibratedRobot(const std::filesystem::path& given,
                                     const std::filesystem::path& project = {});
 
 /// The recordings that it was made from, as runs.json beside it names them: tables, or folders of
-/// trials. Throws InputError where there is no such record, or a recording is not there.
+/// trials. Throws InputError where there is no such record, or a recording is not there or has
+/// changed since (by its checksum).
 std::vector<std::filesystem::path> RecordedRecordings(const CalibratedRobot& robot);
 
 }  // namespace elastocal

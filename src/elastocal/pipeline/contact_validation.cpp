@@ -71,6 +71,7 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   ObservationTables tables = ReadObservationTables(recordings, project, &contacts.feet);
   ContactValidation run;
   run.calibration_file = file.string();
+  run.calibration_fingerprint = stored.fingerprint;
   for (const std::filesystem::path& table : recordings) {
     run.recording += (run.recording.empty() ? "" : ", ") + table.string();
   }
@@ -104,6 +105,7 @@ std::string MakeContactValidationJson(const ContactValidation& run) {
   nlohmann::ordered_json json;
   json["status"] = run.better() ? "better" : "not better";
   json["calibration"] = run.calibration_file;
+  json["calibration_fingerprint"] = run.calibration_fingerprint;
   json["recording"] = run.recording;
   json["postures"] = run.observations.posture_count();
   json["contact"] = FiguresJson(run.model, run.calibrated);

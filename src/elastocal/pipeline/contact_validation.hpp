@@ -12,7 +12,7 @@ namespace elastocal {
 
 /// A calibration on observations of another day.
 struct ContactValidation {
-  std::string calibration_file, recording;
+  std::string calibration_file, calibration_fingerprint, recording;
   Observations observations;
   ObservedRobot model;
   /// Whether each posture was predicted by tables and trackers that the others of the file place;

@@ -137,6 +137,7 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
   project.elasticity.extra = extra;
   Diagnosis diagnosis;
   diagnosis.report = StudyCauses(project, measured, seed);
+  diagnosis.calibration_fingerprint = robot.calibration.fingerprint;
   diagnosis.recording = measured.calibration.source;
   diagnosis.inputs = robot.inputs;
   diagnosis.inputs.insert(diagnosis.inputs.end(), recordings.begin(), recordings.end());
@@ -198,6 +199,7 @@ std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
 std::string MakeDiagnosisJson(const Diagnosis& diagnosis) {
   const CauseSearch& search = diagnosis.report.search;
   Json json;
+  json["calibration_fingerprint"] = diagnosis.calibration_fingerprint;
   json["recording"] = diagnosis.recording;
   json["postures"] = diagnosis.report.postures;
   json["held_out_mm"] = 1e3 * search.error;

@@ -12,6 +12,7 @@ namespace elastocal {
 /// What is left of the errors of a calibration, and why.
 struct Diagnosis {
   CauseReport report;
+  std::string calibration_fingerprint;
   std::string recording;
   std::vector<std::filesystem::path> inputs;
   double seconds = 0.0;

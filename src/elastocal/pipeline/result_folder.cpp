@@ -11,6 +11,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/checksums.hpp"
+#include "elastocal/report/json_reader.hpp"
 #include "elastocal/report/page.hpp"
 
 namespace elastocal {
@@ -85,11 +86,24 @@ std::optional<LabelledCalibration> CalibrationOf(const fs::path& folder, const F
   return calibration;
 }
 
+/// Takes away what tells of another calibration than the folder's.
+void RemoveOutdated(const std::string& calibration, ReportSources& sources) {
+  for (const char* name : {"deployment.json", "diagnosis.json", "validation.json"}) {
+    const auto file = sources.files.find(name);
+    if (file == sources.files.end()) continue;
+    const auto json = ParseJsonObject(name, file->second);
+    const auto of = json.find("calibration_fingerprint");
+    if (of == json.end() || *of == CalibrationFingerprint(calibration)) continue;
+    sources.outdated.push_back(name);
+    sources.files.erase(file);
+  }
+}
+
 /// The page of a folder with files of these names.
 std::string MakePageOf(const fs::path& folder, const std::set<std::string>& names,
                        const FolderAfter& after, const std::string& version,
                        const std::vector<fs::path>& earlier) {
-  ReportSources sources{folder.lexically_normal().string(), version, {}, {}};
+  ReportSources sources{folder.lexically_normal().string(), version, {}, {}, {}};
   for (const std::string& name : ReportFiles({names.begin(), names.end()})) {
     if (auto text = after.Text(name)) sources.files[name] = std::move(*text);
   }
@@ -97,6 +111,9 @@ std::string MakePageOf(const fs::path& folder, const std::set<std::string>& name
     throw InputError(folder.string() +
                      ": nothing to report in this folder; expected summary.json of calibrate -o, "
                      "or what design or plan write");
+  }
+  if (const auto calibration = after.Text("calibration.yaml")) {
+    RemoveOutdated(*calibration, sources);
   }
   for (const fs::path& given : earlier) {
     sources.calibrations.push_back(

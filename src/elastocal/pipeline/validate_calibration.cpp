@@ -128,6 +128,7 @@ std::string MakeValidationJson(const ValidationRun& run) {
   Json json;
   json["status"] = ValidationStatus(run);
   json["calibration"] = run.calibration_file;
+  json["calibration_fingerprint"] = run.calibration.fingerprint;
   json["frozen"] = run.frozen;
   json["recording"] = run.recording.source;
   json["postures"] = run.recording.posture_count();

@@ -298,8 +298,10 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
   return executions;
 }
 
-std::string FormatExecutions(const RobotTree& tree, const std::vector<Execution>& executions) {
+std::string FormatExecutions(const RobotTree& tree, const std::string& calibration_fingerprint,
+                             const std::vector<Execution>& executions) {
   Json json;
+  json["calibration_fingerprint"] = calibration_fingerprint;
   json["executions"] = Json::array();
   std::vector<NamedPlayback> playbacks;
   for (const Execution& one : executions) {

@@ -67,7 +67,8 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
                                       const Progress& progress = {});
 
 /// As JSON, with what the report's page needs to play the robots side by side. `tree`: the nominal
-/// one.
-std::string FormatExecutions(const RobotTree& tree, const std::vector<Execution>& executions);
+/// one. `calibration_fingerprint`: of the calibration that the controllers know.
+std::string FormatExecutions(const RobotTree& tree, const std::string& calibration_fingerprint,
+                             const std::vector<Execution>& executions);
 
 }  // namespace elastocal

@@ -85,12 +85,27 @@ Json MotionsJson(const ReportSources& sources) {
   return json;
 }
 
+bool IsOutdated(const ReportSources& sources, const std::string& name) {
+  return std::find(sources.outdated.begin(), sources.outdated.end(), name) !=
+         sources.outdated.end();
+}
+
 /// What the page lacks, and the command that makes it.
-Json MissingJson(const Json& report, const std::string& folder) {
+Json MissingJson(const Json& report, const ReportSources& sources) {
+  const std::string& folder = sources.folder;
   Json missing = Json::array();
   const auto add = [&](const std::string& what, const std::string& command) {
     missing.push_back({{"what", what}, {"command", command}});
   };
+  for (const std::string& name : sources.outdated) {
+    add(name + " is of another calibration than calibration.yaml",
+        name == "deployment.json"
+            ? "elastocal simulate PROJECT --deploy " + folder + " --motion MOTION.csv -o " + folder
+        : name == "diagnosis.json"
+            ? "elastocal diagnose " + folder + " --json " + folder + "/" + name
+            : "elastocal validate PROJECT --calibration " + folder +
+                  "/calibration.yaml --recording RECORDING -o " + folder);
+  }
   const Json data = report.value("data", Json::object());
   if (!report.contains("summary") || !report.contains("data")) {
     add("Calibration", "elastocal calibrate PROJECT --recording RECORDING -o " + folder);
@@ -104,7 +119,7 @@ Json MissingJson(const Json& report, const std::string& folder) {
       add("Filtered signals", "elastocal calibrate, with a recording folder instead of a table");
     }
   }
-  if (!report.contains("validation")) {
+  if (!report.contains("validation") && !IsOutdated(sources, "validation.json")) {
     add("Another recording", "elastocal validate PROJECT --calibration " + folder +
                                  "/calibration.yaml --recording RECORDING -o " + folder);
   }
@@ -165,7 +180,7 @@ std::string MakeReportJson(const ReportSources& sources) {
   }
   if (Json design = DesignJson(sources); !design.is_null()) report["design"] = std::move(design);
   report["motions"] = MotionsJson(sources);
-  report["missing"] = MissingJson(report, sources.folder);
+  report["missing"] = MissingJson(report, sources);
   return report.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -22,6 +22,7 @@ struct ReportSources {
   std::string version;                            ///< of the program
   std::map<std::string, std::string> files;       ///< texts of ReportFiles, by their names
   std::vector<LabelledCalibration> calibrations;  ///< in the order of time; this folder's one last
+  std::vector<std::string> outdated = {};  ///< files that are not shown: of another calibration
 };
 
 /// Those of the files of a folder, by name, that a page shows: summary.json, report_data.json,

@@ -59,7 +59,9 @@ std::string UpdateRuns(const std::string& runs, const RunRecord& record) {
   } catch (const InputError&) {
     // Records that cannot be read are no reason to lose a result.
   }
-  Json item = {{"command_line", record.command_line}, {"version", record.version}};
+  Json item = {{"command_line", record.command_line},
+               {"folder", record.folder},
+               {"version", record.version}};
   item["seed"] = record.seed ? Json(*record.seed) : Json(nullptr);
   item["inputs"] = Json::array();
   for (const InputRecord& input : record.inputs) {

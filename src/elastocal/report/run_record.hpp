@@ -23,6 +23,7 @@ struct RunRecord {
   std::string version;                ///< of the program
   std::optional<std::uint64_t> seed;  ///< none: the project's, or the default
   std::vector<InputRecord> inputs;
+  std::string folder = {};  ///< in which it was typed: relative names start there
 };
 
 /// Size and checksum of files, in their order; those that cannot be read are left out.

@@ -20,9 +20,10 @@ TEST(RunRecord, KeepsOtherCommandsAndReplacesItsOwn) {
   const std::string first = UpdateRuns("", {"design", "elastocal design p", "1.0", 7, {}});
   const std::string second = UpdateRuns(first, {"calibrate", "old", "1.0", {}, {}});
   const auto json = nlohmann::json::parse(
-      UpdateRuns(second, {"calibrate", "new", "1.1", {}, {{"a.csv", 3, "00"}}}));
+      UpdateRuns(second, {"calibrate", "new", "1.1", {}, {{"a.csv", 3, "00"}}, "/b"}));
   EXPECT_EQ(json["design"]["seed"], 7);
   EXPECT_EQ(json["calibrate"]["command_line"], "new");
+  EXPECT_EQ(json["calibrate"]["folder"], "/b");
   EXPECT_TRUE(json["calibrate"]["seed"].is_null());
   EXPECT_EQ(json["calibrate"]["inputs"][0]["sha256"], "00");
 }
