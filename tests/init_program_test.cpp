@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command init as its users run it.
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -22,6 +24,23 @@ TEST(InitProgram, WritesAProjectThatInspectAndDesignTakeAsItIs) {
   const auto json = nlohmann::json::parse(ReadFile(out + "/init.json"));
   EXPECT_EQ(json["chains"][0]["tip"], "tool");
   EXPECT_FALSE(json["stands"]);
+#ifdef ELASTOCAL_HAS_PAGE
+  // The page shows the draft and, made again, what somebody has corrected in it.
+  const auto radius_on_page = [&] {
+    const std::string page = ReadFile(out + "/report.html");
+    const std::string key = "\"radius_m\":";
+    return std::stod(page.substr(page.find(key) + key.size(), 20));
+  };
+  EXPECT_NE(ReadFile(out + "/report.html").find("\"position_m\":"), std::string::npos);
+  std::string yaml = ReadFile(out + "/project.yaml");
+  const std::string key = "radius_mm: ";
+  const std::size_t at = yaml.find(key) + key.size();
+  yaml.replace(at, yaml.find('}', at) - at, "77");
+  EXPECT_NE(radius_on_page(), 0.077);
+  std::ofstream(out + "/project.yaml") << yaml;
+  EXPECT_EQ(RunProgram("report " + out).exit_code, 0);
+  EXPECT_EQ(radius_on_page(), 0.077);
+#endif
   const ProgramResult inspected = RunProgram("inspect " + out + "/project.yaml");
   EXPECT_EQ(inspected.exit_code, 0) << inspected.err;
   const std::string postures = out + "/postures.yaml", motion = out + "/motion.csv";

@@ -9,6 +9,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/option_checks.hpp"
+#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/drafting/draft.hpp"
@@ -16,6 +17,8 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/report/page.hpp"
+#include "elastocal/report/version.hpp"
 #include "elastocal/tables/read_file.hpp"
 
 namespace elastocal::cli {
@@ -89,6 +92,19 @@ std::string ChainTable(const ProjectDraft& draft) {
   return table.Render();
 }
 
+/// The page that shows the draft. Returns why there is none; empty where there is one.
+std::string WritePage(const std::filesystem::path& folder) {
+  if (PageTemplate().empty()) return kNoPage;
+  const std::filesystem::path page = folder / "report.html";
+  OutputSet outputs;
+  outputs.Protect(PageInputs(folder, {}));
+  DeclarePage(folder, page, outputs);
+  outputs.Prepare();
+  SetPage(folder, page, MakeFolderPage(folder, ProgramVersion()), outputs);
+  outputs.Publish();
+  return {};
+}
+
 int Init(const InitCommand& command) {
   const std::filesystem::path folder = command.output;
   const std::filesystem::path project = folder / "project.yaml";
@@ -117,10 +133,12 @@ int Init(const InitCommand& command) {
                            draft.tree.name, draft.tree.joints.size(), draft.shapes.meshes,
                            3 * draft.clusters.size(), draft.spheres.size(), ChainTable(draft)));
   Print(quiet, "Posture of rest: " + draft.rest.source + "\n");
-  Print(quiet, fmt::format("Wrote {}{}\nLook at it, correct what is wrong, then: elastocal inspect "
-                           "{}\n",
-                           project.string(), copy.empty() ? "" : " and " + copy.string(),
-                           project.string()));
+  Print(quiet,
+        fmt::format("Wrote {}{}\n", project.string(), copy.empty() ? "" : " and " + copy.string()));
+  PrintReportPlace(folder, WritePage(folder), quiet);
+  Print(quiet, fmt::format("Look at it, correct project.yaml where it is wrong, then: elastocal "
+                           "inspect {0}\n(elastocal report {1} draws the corrected one)\n",
+                           project.string(), folder.string()));
   PrintWarnings(draft.warnings, command.common.verbose);
   return kFine;
 }

@@ -56,7 +56,9 @@ void AddReport(CLI::App& app, Action& action) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* command = app.add_subcommand(
       "report", "One page with all results of a folder: HTML that needs no network");
-  command->add_option("folder", options->folder, "Folder that calibrate, design or plan wrote to")
+  command
+      ->add_option("folder", options->folder,
+                   "Folder that init, design, plan or calibrate wrote to")
       ->required();
   command
       ->add_option("-o,--output", options->output, "The page; default: report.html in the folder")

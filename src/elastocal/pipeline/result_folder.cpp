@@ -11,6 +11,8 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/checksums.hpp"
+#include "elastocal/pipeline/robot_views.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/report/json_reader.hpp"
 #include "elastocal/report/page.hpp"
 
@@ -21,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRuns = "runs.json";
 constexpr const char* kPage = "report.html";
+constexpr const char* kProject = "project.yaml";  // as init writes it
 
 /// The files of a folder as they are after the publication of `outputs` (null: as they are).
 class FolderAfter {
@@ -107,10 +110,15 @@ std::string MakePageOf(const fs::path& folder, const std::set<std::string>& name
   for (const std::string& name : ReportFiles({names.begin(), names.end()})) {
     if (auto text = after.Text(name)) sources.files[name] = std::move(*text);
   }
+  if (sources.files.empty() && names.contains(kProject)) {
+    std::vector<std::string> warnings;  // the view lacks a mesh: it can be seen
+    sources.files["robot_data.json"] =
+        MakeRobotDataJson(MakeRobotView(ReadProject(folder / kProject), warnings));
+  }
   if (sources.files.empty()) {
     throw InputError(folder.string() +
                      ": nothing to report in this folder; expected summary.json of calibrate -o, "
-                     "or what design or plan write");
+                     "or what init, design or plan write");
   }
   if (const auto calibration = after.Text("calibration.yaml")) {
     RemoveOutdated(*calibration, sources);

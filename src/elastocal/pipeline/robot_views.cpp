@@ -89,7 +89,8 @@ std::vector<ClusterView> MakeClusterViews(const Project& project) {
 }
 
 RobotView MakeRobotView(const Project& project, std::vector<std::string>& warnings) {
-  RobotView view{project.tree, ReadFile(project.urdf), {}, {}, {}, {}};
+  RobotView view{project.tree,        ReadFile(project.urdf), {}, {}, {}, {},
+                 project.motion.rest, project.markers,        {}};
   view.meshes = FindMeshes(view.urdf, project.urdf, warnings);
   for (const Chain& chain : project.chains) {
     view.chains.push_back(MakeChainView(chain, project.tree));
@@ -102,6 +103,9 @@ RobotView MakeRobotView(const Project& project, std::vector<std::string>& warnin
     if (!setup.box) continue;
     view.workspaces.push_back(
         {setup.name, project.tree.links[0].name, setup.box->lower, setup.box->upper});
+  }
+  for (const Sole& sole : project.soles) {
+    view.soles.push_back({project.tree.links[sole.link].name, sole.lower, sole.upper});
   }
   return view;
 }

@@ -108,11 +108,30 @@ void AddRobot(const RobotView& view, Json& json) {
   }
 }
 
+/// What the project says of the robot, where nothing was measured.
+Json ProjectJson(const RobotView& view) {
+  Json json = {{"rest", std::vector<double>(view.rest.begin(), view.rest.end())},
+               {"markers", Json::array()},
+               {"soles", Json::array()}};
+  for (const Marker& marker : view.markers) {
+    json["markers"].push_back({{"name", marker.name},
+                               {"link", view.tree.links[marker.link].name},
+                               {"position_m", Point(marker.p_link_marker)}});
+  }
+  for (const SoleView& sole : view.soles) {
+    json["soles"].push_back({{"link", sole.link},
+                             {"min_m", {sole.min.x(), sole.min.y()}},
+                             {"max_m", {sole.max.x(), sole.max.y()}}});
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string MakeRobotDataJson(const RobotView& view) {
   Json json = {{"format", "elastocal-report-data-1"}};
   AddRobot(view, json);
+  json["project"] = ProjectJson(view);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

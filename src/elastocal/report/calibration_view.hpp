@@ -39,6 +39,12 @@ struct WorkspaceView {
   Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();
 };
 
+/// The underside of a foot: a rectangle in the plane z = 0 of a link, m.
+struct SoleView {
+  std::string link;
+  Eigen::Vector2d min = Eigen::Vector2d::Zero(), max = Eigen::Vector2d::Zero();
+};
+
 /// What the 3-D view draws without any measurement.
 struct RobotView {
   const RobotTree& tree;
@@ -47,9 +53,13 @@ struct RobotView {
   std::vector<ChainView> chains;
   std::vector<SphereView> spheres;
   std::vector<WorkspaceView> workspaces;
+  Eigen::VectorXd rest;         ///< the posture of rest, by coordinate, rad or m
+  std::vector<Marker> markers;  ///< where the project has them
+  std::vector<SoleView> soles;
 };
 
-/// robot_data.json: for folders without a calibration, so that a planned motion can be played.
+/// robot_data.json: for folders without a calibration, so that a project can be looked at and a
+/// planned motion played.
 std::string MakeRobotDataJson(const RobotView& view);
 
 /// All of a calibration that a page can show beyond summary.json. Keeps references to results that

@@ -46,6 +46,7 @@ class Panel {
         (which) => { viewer.shown = residuals[which]; this.go(viewer.index); }),
       models.length > 0 && this.magnification.row,
       (data.clusters ?? []).length > 0 && toggle('Colour by cluster', true, (on) => { viewer.byCluster = on; this.go(viewer.index); }),
+      viewer.drafted.length > 0 && toggle('Markers', true, (on) => show(viewer.drafted, on)),
       viewer.spheres.length > 0 && toggle('Collision spheres', false, (on) => show(viewer.spheres, on)),
       viewer.workspaces.length > 0 && toggle('Workspaces', false, (on) => show(viewer.workspaces, on)),
     ];
@@ -104,7 +105,13 @@ function cannotDraw(error) {
   return h('p', {class: 'notice'}, `The robot cannot be drawn here: ${error.message}. All figures below are complete without it.`);
 }
 
-/** The robot with measured and predicted markers. */
+function wordsOf(report, measured) {
+  if (measured) return 'The balls are the measured markers. From each ball a rod leads to where the nominal robot (orange) and the calibrated robot (blue) predict the marker; the rods are longer than the residuals by the factor of magnification. A foot that stands on the floor is green.';
+  if ((report.motions ?? []).length > 0) return 'The view shows the planned motion. A foot that stands on the floor is green; the orange disc is the zero-moment point.';
+  return 'The view shows the posture of rest with what the project file says: markers (orange balls), soles (green), and, switched on below, the spheres that stand for the body and the workspaces of hands and feet. Where one is wrong, correct it in the project file and make this page again.';
+}
+
+/** The robot with measured and predicted markers, or as the project has it. */
 export function robotSection(report) {
   if (!report.data?.robot?.urdf) return null;
   const canvas = h('canvas', {tabindex: '0', role: 'img', 'aria-label': 'The robot in 3-D. Arrow keys turn the view, plus and minus bring it nearer, 0 takes it back.'});
@@ -112,7 +119,7 @@ export function robotSection(report) {
   const clusters = (report.data.clusters ?? []).length > 0;
   const measured = (report.data.markers ?? []).length > 0;
   const result = section('robot', 'Robot', measured ? 'The robot and its residuals' : 'The robot',
-    !measured ? 'The view shows the planned motion. A foot that stands on the floor is green; the orange disc is the zero-moment point.' : 'The balls are the measured markers. From each ball a rod leads to where the nominal robot (orange) and the calibrated robot (blue) predict the marker; the rods are longer than the residuals by the factor of magnification. A foot that stands on the floor is green.', frame);
+    wordsOf(report, measured), frame);
   // Once the page stands and has its width.
   queueMicrotask(() => {
     try {
@@ -121,7 +128,7 @@ export function robotSection(report) {
       frame.after(clusters ? colourBar(viewer.scaleEnd) : '', panel.element);
       viewer.setSize(frame.clientWidth, frame.clientHeight);
       if (viewer.clips.length > 0) panel.choose(viewer.firstClip()); else viewer.show(0);
-      panel.play.disabled = viewer.clips.length === 0;
+      panel.play.disabled = !(viewer.clip?.count > 1);
       viewer.stage.draw();
       new ResizeObserver(() => viewer.setSize(frame.clientWidth, frame.clientHeight)).observe(frame);
       frame.dataset.ready = String(Math.round(performance.now()));

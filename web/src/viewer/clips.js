@@ -72,11 +72,28 @@ function plannedClip(motion, robot, scenes) {
   };
 }
 
-/** All that the viewer can show, one after the other: recorded trials, then planned motions. */
+/** The posture of rest, of a project with which nothing was done yet. */
+function restClip(project, data) {
+  return {
+    name: 'posture of rest',
+    group: 'project',
+    count: 1,
+    total: 1,
+    markers: 0,
+    moving: false,
+    time: [],
+    joints: data.robot.coordinates,
+    at: () => ({q: project.rest, root: null, support: project.soles.map((sole) => sole.link)}),
+  };
+}
+
+/** All that the viewer can show: recorded trials, then planned motions; of a project alone, its posture of rest. */
 export function makeClips(report, robot) {
   const recorded = (report.data?.scenes ?? []).map((scene) => recordedClip(scene, report.data));
   const planned = (report.motions ?? []).map((motion) => plannedClip(motion, robot, report.data?.scenes ?? []));
-  return [...recorded, ...planned].filter((clip) => clip.count > 0);
+  const clips = [...recorded, ...planned].filter((clip) => clip.count > 0);
+  const project = report.data?.project;
+  return clips.length === 0 && project ? [restClip(project, report.data)] : clips;
 }
 
 /** Where the clip is after `seconds` more of playing, from `position` (a real number of frames). */

@@ -14,6 +14,35 @@ export function addSpheres(robot, spheres, colour) {
   });
 }
 
+/** Markers as the project has them: [{link, position_m}]. */
+export function addMarkers(robot, markers, colour) {
+  const material = new THREE.MeshLambertMaterial({color: colour});
+  const size = Math.max(...robot.bounds().getSize(new THREE.Vector3()).toArray());
+  const ball = new THREE.SphereGeometry(0.007 * size, 12, 8);
+  return markers.flatMap((marker) => {
+    const link = robot.links[marker.link];
+    if (!link) return [];
+    const mesh = new THREE.Mesh(ball, material);
+    mesh.position.fromArray(marker.position_m);
+    link.add(mesh);
+    return [mesh];
+  });
+}
+
+/** Undersides of feet: [{link, min_m, max_m}], rectangles in the plane z = 0 of the link. */
+export function addSoles(robot, soles, colour) {
+  const material = new THREE.MeshBasicMaterial({color: colour, side: THREE.DoubleSide, transparent: true, opacity: 0.6, depthTest: false});  // seen through the foot
+  return soles.flatMap((sole) => {
+    const link = robot.links[sole.link];
+    if (!link) return [];
+    const [length, width] = [0, 1].map((k) => sole.max_m[k] - sole.min_m[k]);
+    const mesh = new THREE.Mesh(new THREE.PlaneGeometry(length, width), material);
+    mesh.position.set(...[0, 1].map((k) => 0.5 * (sole.max_m[k] + sole.min_m[k])), 0);
+    link.add(mesh);
+    return [mesh];
+  });
+}
+
 /** Workspaces as boxes in the frame of a link, the root's by default: [{link, min_m, max_m}]. */
 export function addWorkspaces(robot, workspaces, colour) {
   return workspaces.map((workspace) => {

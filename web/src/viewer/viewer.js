@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 
 import {css, MODEL_COLOURS, OKABE_ITO, sequential} from '../lib/colours.js';
-import {addSpheres, addWorkspaces, makeZmp} from './extras.js';
+import {addMarkers, addSoles, addSpheres, addWorkspaces, makeZmp} from './extras.js';
 import {makeClips} from './clips.js';
 import {MarkerCloud} from './markers.js';
 import {Robot} from './robot.js';
@@ -25,6 +25,8 @@ export class Viewer {
     this.stage.scene.add(this.markers.object);
     this.spheres = addSpheres(this.robot, this.data.spheres ?? [], OKABE_ITO.sky);
     this.workspaces = addWorkspaces(this.robot, this.data.workspaces ?? [], OKABE_ITO.purple);
+    this.drafted = addMarkers(this.robot, this.data.project?.markers ?? [], OKABE_ITO.orange);
+    this.soles = addSoles(this.robot, this.data.project?.soles ?? [], OKABE_ITO.green);
     this.zmp = makeZmp(OKABE_ITO.vermillion);
     this.stage.scene.add(this.zmp);
     this.clips = makeClips(report, this.robot);

@@ -353,6 +353,27 @@ test('meshes are drawn where they came along, and a robot without any is drawn b
   for (const {opaque, pixels} of pictures) assert.ok(opaque > 0.005 * pixels, `${opaque}`);
 });
 
+test('a project alone is drawn in its posture of rest, with markers and soles', async () => {
+  const {data: {robot, spheres, workspaces}} = sampleReport();
+  const link = robot.urdf.match(/<link name="([^"]+)"/)[1];
+  const rest = robot.coordinates.map(() => 0);
+  const marker = {name: 'M', link, position_m: [0.2, 0, 0.1]};
+  const sole = {link, min_m: [-0.1, -0.1], max_m: [0.1, 0.1]};
+  const pictures = [];
+  for (const project of [{rest, markers: [], soles: []}, {rest, markers: [marker], soles: []}, {rest, markers: [marker], soles: [sole]}, {rest: rest.map(() => 0.4), markers: [marker], soles: [sole]}]) {
+    const file = join(folder, `project${pictures.length}.html`);
+    writeFileSync(file, fill(readFileSync(template, 'utf8'), {format: 'elastocal-report-1', folder: 'my_robot', data: {robot, chains: [], spheres, workspaces, project}, motions: [], calibrations: [], missing: []}));
+    const {page, problems} = await openPage(browser, file);
+    await waitForViewer(page);
+    pictures.push(await picture(page));
+    assert.ok((await page.textContent('#robot')).includes('correct it in the project file'));
+    assert.equal(await page.isDisabled('.play'), true);
+    assert.deepEqual(problems, []);
+    await page.close();
+  }
+  assert.equal(new Set(pictures.map((p) => p.hash)).size, 4);
+});
+
 test('a report with nothing but a summary says what is missing', async () => {
   const {summary, missing} = sampleReport();
   const file = join(folder, 'poor.html');
