@@ -219,6 +219,8 @@ bool CanBalance(const RobotTree& tree, const Limbs& limbs) {
 }
 
 void WarnOfGuesses(ProjectDraft& draft) {
+  draft.warnings.insert(draft.warnings.end(), draft.rest.warnings.begin(),
+                        draft.rest.warnings.end());
   int guessed = 0;
   for (const BodyShape& body : draft.shapes.bodies) guessed += body.guessed ? 1 : 0;
   if (guessed > 0) {
@@ -236,13 +238,12 @@ void WarnOfGuesses(ProjectDraft& draft) {
   }
   if (!draft.soles.empty() && !draft.rest.stands) {
     draft.warnings.push_back(
-        "no posture of rest was found in which the soles are flat on one floor");
-  }
-  if (!draft.soles.empty() && !draft.stands) {
+        "no posture of rest was found in which the soles are flat on one floor: the draft takes "
+        "the root link to be held still, for instance on a stand");
+  } else if (!draft.soles.empty() && !draft.stands) {
     draft.warnings.push_back(
         "the robot does not balance on one or two legs of five joints or more each: the draft "
-        "takes its "
-        "root link to be held still, for instance on a stand");
+        "takes its root link to be held still, for instance on a stand");
   }
   for (const Joint& joint : draft.tree.joints) {
     if (joint.mimic || joint.limits.lower < joint.limits.upper) continue;

@@ -15,6 +15,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/tables/read_file.hpp"
+#include "elastocal/tables/text.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
@@ -274,9 +275,26 @@ TEST(Draft, NamesRestAndPairsComeFromTheSrdf) {
   EXPECT_EQ(draft.rest.q[1], 0.5);
   EXPECT_EQ(draft.rest.source, "the state 'home' of the SRDF");
   EXPECT_EQ(semantics.apart.count({"l2", "pole"}), 1U);
+  EXPECT_TRUE(draft.rest.warnings.empty());
   EXPECT_THROW(ParseSemantics("<robot><group/></robot>", "x.srdf"), InputError);
   EXPECT_THROW(ParseSemantics("<srdf/>", "x.srdf"), InputError);
   EXPECT_THROW(ParseSemantics(urdf, "a URDF"), InputError);
+}
+
+TEST(Draft, SaysWhereTheSrdfBreaksLimitsOfTheUrdf) {
+  const Semantics semantics = ParseSemantics(
+      "<robot name='pole'><group_state name='home' group='all'><joint name='l1_joint' value='0.1'/>"
+      "<joint name='l2_joint' value='40'/></group_state></robot>",
+      "pole.srdf");
+  const ProjectDraft draft =
+      DraftProject(PoleUrdf("<sphere radius='0.1'/>", "10"), "pole", semantics);
+  ASSERT_EQ(draft.rest.warnings.size(), 1U);
+  EXPECT_EQ(draft.rest.warnings[0],
+            "the state 'home' of the SRDF has joint " + Quote("l2_joint") +
+                " at 2291.8 deg, outside the limits of the URDF, -57.3 to 57.3; one of the two is "
+                "wrong");
+  const auto& all = draft.warnings;
+  EXPECT_EQ(std::count(all.begin(), all.end(), draft.rest.warnings[0]), 1);
 }
 
 TEST(Draft, TheSameTextGivesTheSameDraft) {

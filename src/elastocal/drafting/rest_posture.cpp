@@ -7,10 +7,12 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/statics.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -193,6 +195,17 @@ const std::pair<std::string, std::map<std::string, double>>* UsualState(
   return semantics.states.empty() ? nullptr : &semantics.states.front();
 }
 
+std::string OutsideLimits(const std::string& state, const Joint& joint, double value) {
+  const bool turns = joint.type == JointType::kRevolute;
+  const double unit = turns ? kRadiansPerDegree : kMetresPerMm;
+  return fmt::format(
+      "the state '{}' of the SRDF has joint {} at {:.1f} {}, outside the limits of the URDF, "
+      "{:.1f} "
+      "to {:.1f}; one of the two is wrong",
+      state, Quote(joint.name), value / unit, turns ? "deg" : "mm", joint.limits.lower / unit,
+      joint.limits.upper / unit);
+}
+
 }  // namespace
 
 RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
@@ -206,6 +219,9 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
     for (const Joint& joint : tree.joints) {
       const auto value = state->second.find(joint.name);
       if (value == state->second.end() || joint.mimic) continue;
+      if (!(value->second >= joint.limits.lower && value->second <= joint.limits.upper)) {
+        rest.warnings.push_back(OutsideLimits(state->first, joint, value->second));
+      }
       q[joint.coordinate] =
           std::clamp(value->second, lower[joint.coordinate], upper[joint.coordinate]);
     }

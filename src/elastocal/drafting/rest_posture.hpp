@@ -15,6 +15,7 @@ struct RestPosture {
   std::string source;        ///< in words: "the state 'half_sitting' of the SRDF"
   bool stands = false;       ///< all soles lie flat on one floor
   double root_height = 0.0;  ///< of the root link above the soles, m; 0 without soles
+  std::vector<std::string> warnings = {};  ///< where the state of the SRDF breaks limits
 };
 
 /// Chooses a posture of rest: a state of the SRDF (half sitting, standing, home, ...) if the robot
