@@ -9,6 +9,7 @@
 #include "elastocal/drafting/workspaces.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/motion/standing_robot.hpp"
 #include "elastocal/posture/chain_problem.hpp"
 #include "elastocal/posture/mirror.hpp"
 #include "elastocal/robot/moving_chain.hpp"
@@ -164,12 +165,41 @@ void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
   if (held) draft.rest.source += ", the hands ahead";
 }
 
+/// The posture of rest and, of a robot that balances, those in which it stands on its feet with the
+/// weight over all and over each of them: its parts do not touch in them, whatever the spheres that
+/// cover them do.
+std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft) {
+  std::vector<Eigen::VectorXd> postures = {draft.rest.q};
+  if (!draft.stands) return postures;
+  std::vector<Sole> soles;
+  for (const DraftedSole& sole : draft.soles) {
+    soles.push_back({FindLink(draft.tree, sole.link), sole.lower, sole.upper});
+  }
+  StandingRobot robot(draft.tree, std::move(soles), {});
+  StandOptions options;
+  options.stance = draft.stance;
+  try {
+    StandUp(robot, draft.rest.q, options);
+  } catch (const InputError&) {
+    return postures;  // `plan` will say why
+  }
+  postures.push_back(robot.rest);
+  for (const int foot : robot.AllFeet()) {
+    PlacedPosture over_one{robot.rest, robot.T_world_root};
+    if (BalanceAtRest(robot, robot.AllFeet(), SupportCentre(robot, {foot}), over_one)) {
+      postures.push_back(over_one.q);
+    }
+  }
+  return postures;
+}
+
 void AddContacts(ProjectDraft& draft, const Semantics& semantics) {
+  const std::vector<Eigen::VectorXd> rests = RestingPostures(draft);
   int touching = 0;
   for (ChainSetup& setup : draft.designs) {
     const auto candidates = PairsMovedBy(draft.tree, draft.spheres, setup.coordinates, semantics);
-    ContactSearch search = FindContacts(draft.tree, draft.spheres, candidates, draft.rest.q, setup,
-                                        draft.sphere_margin);
+    ContactSearch search =
+        FindContacts(draft.tree, draft.spheres, candidates, rests, setup, draft.sphere_margin);
     setup.contacts = std::move(search.pairs);
     touching = std::max(touching, search.touching_at_rest);
   }

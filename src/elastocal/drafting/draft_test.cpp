@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/project/project.hpp"
@@ -279,6 +280,25 @@ TEST(Draft, NamesRestAndPairsComeFromTheSrdf) {
   EXPECT_THROW(ParseSemantics("<robot><group/></robot>", "x.srdf"), InputError);
   EXPECT_THROW(ParseSemantics("<srdf/>", "x.srdf"), InputError);
   EXPECT_THROW(ParseSemantics(urdf, "a URDF"), InputError);
+}
+
+TEST(Draft, PairsThatTouchInAnyPostureOfRestAreNotChecked) {
+  const RobotTree tree = ParseUrdf(PoleUrdf("<sphere radius='0.1'/>", "10"), "pole");
+  // Side by side at 2 mm in the zero posture, further apart where one arm is raised.
+  const std::vector<CollisionSphere> spheres = {{"L", FindLink(tree, "l1"), {0.2, 0, 0}, 0.199},
+                                                {"R", FindLink(tree, "r1"), {0.2, 0, 0}, 0.199}};
+  ChainSetup chain;
+  chain.tip_link = FindLink(tree, "l2");
+  chain.coordinates = {0, 1};
+  Eigen::VectorXd raised = Eigen::VectorXd::Zero(tree.coordinate_count());
+  raised[0] = 0.8;
+  const ContactSearch one = FindContacts(tree, spheres, {{0, 1}}, {raised}, chain, 0.005);
+  EXPECT_EQ(one.pairs.size(), 1U);
+  EXPECT_EQ(one.touching_at_rest, 0);
+  const ContactSearch two =
+      FindContacts(tree, spheres, {{0, 1}}, {raised, 0.0 * raised}, chain, 0.005);
+  EXPECT_TRUE(two.pairs.empty());
+  EXPECT_EQ(two.touching_at_rest, 1);
 }
 
 TEST(Draft, SaysWhereTheSrdfBreaksLimitsOfTheUrdf) {

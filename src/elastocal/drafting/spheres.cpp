@@ -192,12 +192,17 @@ std::vector<SpherePair> PairsMovedBy(const RobotTree& tree,
 }
 
 ContactSearch FindContacts(const RobotTree& tree, const std::vector<CollisionSphere>& spheres,
-                           const std::vector<SpherePair>& candidates, const Eigen::VectorXd& rest,
-                           const ChainSetup& chain, double margin) {
+                           const std::vector<SpherePair>& candidates,
+                           const std::vector<Eigen::VectorXd>& rests, const ChainSetup& chain,
+                           double margin) {
   constexpr int kPostures = 1500, kDraws = 20000;
   constexpr double kNearlyAlways = 0.9;
   ContactSearch found;
-  const Eigen::VectorXd at_rest = SphereDistances(spheres, candidates, LinkTransforms(tree, rest));
+  Eigen::ArrayXd at_rest = Eigen::ArrayXd::Constant(static_cast<Eigen::Index>(candidates.size()),
+                                                    std::numeric_limits<double>::infinity());
+  for (const Eigen::VectorXd& rest : rests) {
+    at_rest = at_rest.min(SphereDistances(spheres, candidates, LinkTransforms(tree, rest)).array());
+  }
   std::vector<SpherePair> apart;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const bool touches = at_rest[static_cast<Eigen::Index>(i)] < margin;
@@ -209,7 +214,7 @@ ContactSearch FindContacts(const RobotTree& tree, const std::vector<CollisionSph
   Random random(1);
   int postures = 0;
   for (int n = 0; n < kDraws && postures < kPostures; ++n) {
-    Eigen::VectorXd q = rest;
+    Eigen::VectorXd q = rests.front();
     for (const int c : chain.coordinates) q[c] = random.Uniform(range.first[c], range.second[c]);
     const std::vector<Transform> poses = LinkTransforms(tree, q);
     if (!NearBox(chain, poses[Size(chain.tip_link)].translation())) continue;

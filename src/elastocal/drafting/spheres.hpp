@@ -32,14 +32,16 @@ std::vector<SpherePair> PairsMovedBy(const RobotTree& tree,
 
 struct ContactSearch {
   std::vector<SpherePair> pairs;  ///< that can touch, the most frequent first
-  int touching_at_rest = 0;       ///< pairs that touch in the posture of rest, left out
+  int touching_at_rest = 0;       ///< pairs that touch in a posture of rest, left out
 };
 
 /// Of `candidates`, the pairs that can touch while the chain moves over its ranges, or over its box
-/// made wider by a quarter, and all else rests: found in 1500 random postures. Left out are those
-/// that touch at rest or nearly always, and those that never do.
+/// made wider by a quarter, and all else is in the first posture of `rests`: found in 1500 random
+/// postures. Left out are those that touch in one of `rests` or nearly always, and those that never
+/// do.
 ContactSearch FindContacts(const RobotTree& tree, const std::vector<CollisionSphere>& spheres,
-                           const std::vector<SpherePair>& candidates, const Eigen::VectorXd& rest,
-                           const ChainSetup& chain, double margin);
+                           const std::vector<SpherePair>& candidates,
+                           const std::vector<Eigen::VectorXd>& rests, const ChainSetup& chain,
+                           double margin);
 
 }  // namespace elastocal
