@@ -96,12 +96,16 @@ std::string ChainTable(const ProjectDraft& draft) {
 std::string WritePage(const std::filesystem::path& folder) {
   if (PageTemplate().empty()) return kNoPage;
   const std::filesystem::path page = folder / "report.html";
-  OutputSet outputs;
-  outputs.Protect(PageInputs(folder, {}));
-  DeclarePage(folder, page, outputs);
-  outputs.Prepare();
-  SetPage(folder, page, MakeFolderPage(folder, ProgramVersion()), outputs);
-  outputs.Publish();
+  try {
+    OutputSet outputs;
+    outputs.Protect(PageInputs(folder, {}));
+    DeclarePage(folder, page, outputs);
+    outputs.Prepare();
+    SetPage(folder, page, MakeFolderPage(folder, ProgramVersion()), outputs);
+    outputs.Publish();
+  } catch (const InputError& error) {
+    return std::string("no report.html: ") + error.what();  // the draft itself is written
+  }
   return {};
 }
 

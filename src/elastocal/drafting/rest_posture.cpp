@@ -200,8 +200,7 @@ std::string OutsideLimits(const std::string& state, const Joint& joint, double v
   const double unit = turns ? kRadiansPerDegree : kMetresPerMm;
   return fmt::format(
       "the state '{}' of the SRDF has joint {} at {:.1f} {}, outside the limits of the URDF, "
-      "{:.1f} "
-      "to {:.1f}; one of the two is wrong",
+      "{:.1f} to {:.1f}; one of the two is wrong",
       state, Quote(joint.name), value / unit, turns ? "deg" : "mm", joint.limits.lower / unit,
       joint.limits.upper / unit);
 }

@@ -69,31 +69,34 @@ TEST(LegChain, OfSevenJointsWithAPreferenceGoesByThePoseAlone) {
   }
 }
 
-TEST(LegChain, OfFiveJointsReachesWhatIsParallelToTheRoot) {
-  const RobotTree tree = OneLeg("xyyyx");
-  const LegChain leg(tree, FindLink(tree, "sole"));
-  Eigen::VectorXd q(5);
-  q << 0, kHip, kKnee, kHip, 0;
-  Transform wanted = leg.SolePose(q);
-  wanted.translation() += Eigen::Vector3d(0.03, -0.05, 0.02);
-  ASSERT_TRUE(leg.Place(wanted, q));
-  EXPECT_LT((leg.SolePose(q).matrix() - wanted.matrix()).norm(), 1e-10);
-  wanted.linear() = RotAxis({0, 0, 1}, 0.2).linear();
-  EXPECT_FALSE(leg.Place(wanted, q));
+/// A leg of five joints with a bent knee, and a place nearby for its sole.
+class FiveJointLeg : public testing::Test {
+ protected:
+  FiveJointLeg() : tree_(OneLeg("xyyyx")), leg_(tree_, FindLink(tree_, "sole")), q_(5) {
+    q_ << 0, kHip, kKnee, kHip, 0;
+    wanted_ = leg_.SolePose(q_);
+    wanted_.translation() += Eigen::Vector3d(0.03, -0.05, 0.02);
+  }
+
+  const RobotTree tree_;
+  const LegChain leg_;
+  Eigen::VectorXd q_;
+  Transform wanted_;
+};
+
+TEST_F(FiveJointLeg, ReachesWhatIsParallelToTheRoot) {
+  ASSERT_TRUE(leg_.Place(wanted_, q_));
+  EXPECT_LT((leg_.SolePose(q_).matrix() - wanted_.matrix()).norm(), 1e-10);
+  wanted_.linear() = RotAxis({0, 0, 1}, 0.2).linear();
+  EXPECT_FALSE(leg_.Place(wanted_, q_));
 }
 
-TEST(LegChain, OfFiveJointsPutsItsSoleFlatWhateverItsHeading) {
-  const RobotTree tree = OneLeg("xyyyx");
-  const LegChain leg(tree, FindLink(tree, "sole"));
-  Eigen::VectorXd q(5);
-  q << 0, kHip, kKnee, kHip, 0;
-  Transform wanted = leg.SolePose(q);
-  wanted.translation() += Eigen::Vector3d(0.03, -0.05, 0.02);
-  wanted.linear() = (RotAxis({0, 0, 1}, 0.2) * RotAxis({0.6, 0.8, 0}, 0.1)).linear();
-  ASSERT_TRUE(leg.PlaceFlat(wanted, q));
-  const Transform found = leg.SolePose(q);
-  EXPECT_LT((found.translation() - wanted.translation()).norm(), 1e-10);
-  EXPECT_LT((found.linear().col(2) - wanted.linear().col(2)).norm(), 1e-10);
+TEST_F(FiveJointLeg, PutsItsSoleFlatWhateverItsHeading) {
+  wanted_.linear() = (RotAxis({0, 0, 1}, 0.2) * RotAxis({0.6, 0.8, 0}, 0.1)).linear();
+  ASSERT_TRUE(leg_.PlaceFlat(wanted_, q_));
+  const Transform found = leg_.SolePose(q_);
+  EXPECT_LT((found.translation() - wanted_.translation()).norm(), 1e-10);
+  EXPECT_LT((found.linear().col(2) - wanted_.linear().col(2)).norm(), 1e-10);
 }
 
 TEST(LegChain, JointsOfALegMayFollowEachOtherButNoOthers) {

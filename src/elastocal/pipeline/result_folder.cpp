@@ -31,6 +31,8 @@ class FolderAfter {
   FolderAfter(const fs::path& folder, const OutputSet* outputs)
       : folder_(folder), outputs_(outputs) {}
 
+  bool IsChanging() const { return outputs_ != nullptr; }
+
   /// Nothing where there is no such file.
   std::optional<std::string> Text(const std::string& name) const {
     const fs::path file = folder_ / name;
@@ -110,7 +112,8 @@ std::string MakePageOf(const fs::path& folder, const std::set<std::string>& name
   for (const std::string& name : ReportFiles({names.begin(), names.end()})) {
     if (auto text = after.Text(name)) sources.files[name] = std::move(*text);
   }
-  if (sources.files.empty() && names.contains(kProject)) {
+  if (names.contains(kProject) && !after.IsChanging() && !sources.files.contains("summary.json") &&
+      !sources.files.contains("validation.json")) {
     std::vector<std::string> warnings;  // the view lacks a mesh: it can be seen
     sources.files["robot_data.json"] =
         MakeRobotDataJson(MakeRobotView(ReadProject(folder / kProject), warnings));

@@ -45,9 +45,10 @@ void SetPage(const std::filesystem::path& folder, const std::filesystem::path& p
 /// there, or a result of another command. Call it after DeclareResults.
 void DeclareJson(const std::filesystem::path& file, OutputSet& outputs);
 
-/// The page of a folder as it is; of one that holds nothing but project.yaml, the project's robot
-/// with markers, soles, spheres and workspaces. `version`: of the program that makes it. `earlier`:
-/// folders of earlier calibrations of this robot, or calibration.yaml files, the oldest first.
+/// The page of a folder as it is. Where nothing was calibrated or validated yet and project.yaml is
+/// there, it draws the robot as that has it now. `version`: of the program that makes it.
+/// `earlier`: folders of earlier calibrations of this robot, or calibration.yaml files, the oldest
+/// first.
 ///
 /// Throws InputError where there is nothing to show, or something that cannot be read, and for a
 /// folder of two runs (CheckChecksums).
