@@ -114,7 +114,7 @@ TEST_F(Report, TakesMeshesAlong) {
   std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
   urdf.insert(
       urdf.rfind("</robot>"),
-      "<!-- filename=\"package://my_robot/meshes/a.stl\" filename=\"package://other/b.stl\" -->");
+      R"(<!-- filename="package://my_robot/meshes/a.stl" filename="package://other/b.stl" -->)");
   std::filesystem::create_directories(scratch_.path() / "my_robot" / "meshes");
   std::filesystem::create_directories(scratch_.path() / "my_robot" / "urdf");
   scratch_.Write("my_robot/meshes/a.stl", "abc");

@@ -78,7 +78,7 @@ MeshPlaces FindPlaces(const InitCommand& command) {
 std::string ChainTable(const ProjectDraft& draft) {
   TextTable table({"chain", "from", "tip", "postures designed", "contacts checked"});
   for (const DraftedChain& chain : draft.chains) {
-    std::string designed = "", contacts = "";
+    std::string designed, contacts;
     for (const ChainSetup& setup : draft.designs) {
       if (setup.name == chain.name) {
         designed = "yes";

@@ -99,7 +99,7 @@ void RemoveOutdated(const std::string& calibration, ReportSources& sources) {
     const auto json = ParseJsonObject(name, file->second);
     const auto of = json.find("calibration_fingerprint");
     if (of == json.end() || *of == CalibrationFingerprint(calibration)) continue;
-    sources.outdated.push_back(name);
+    sources.outdated.emplace_back(name);
     sources.files.erase(file);
   }
 }
