@@ -9,6 +9,7 @@
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/covariance_file.hpp"
+#include "elastocal/io/fingerprint.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "elastocal/io/calibration_file.hpp"
+#include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/project/project.hpp"
 

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
@@ -13,16 +12,6 @@
 #include "elastocal/validation/common_parameters.hpp"
 
 namespace elastocal {
-
-/// Tells nominal robots apart: the errors of a calibration are deviations from one of them and mean
-/// nothing on another. 16 hexadecimal digits (FNV-1a, 64 bit) over every joint's name, type,
-/// parent, mimicking and placement (radians and metres, rounded to 1e-9). Links, limits, inertia,
-/// visuals, comments and markers do not count.
-std::string NominalFingerprint(const ErrorModel& model);
-
-/// A number for the text of a calibration.yaml. What is measured or studied with a calibration
-/// names it by that, and is not shown beside another one.
-std::string CalibrationFingerprint(std::string_view text);
 
 /// calibration.yaml: every parameter with unit, value, standard deviation and status, and what is
 /// needed to judge them (docs/formats.md).

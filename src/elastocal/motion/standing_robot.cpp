@@ -126,7 +126,8 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
     const std::string& name = robot.tree.links[Size(robot.soles[i].link)].name;
     if (!Bend(robot.legs[i], robot.tree, pose.T_world_root.inverse() * T_world_sole,
               robot.limits.position_margin, pose.q)) {
-      throw InputError("the leg of '" + name + "' cannot stand bent on a level floor");
+      throw InputError("the leg of '" + name + "' cannot stand bent on a level floor" +
+                       (options.stance ? ", its feet as far apart as the stance asks" : ""));
     }
     robot.legs[i].Prefer(pose.q);
   }

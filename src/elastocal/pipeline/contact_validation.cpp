@@ -9,6 +9,7 @@
 
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/contact_file.hpp"
+#include "elastocal/io/fingerprint.hpp"
 #include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/observation/standing_robot.hpp"

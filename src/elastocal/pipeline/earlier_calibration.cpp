@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"

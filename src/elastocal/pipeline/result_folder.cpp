@@ -8,6 +8,7 @@
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
+#include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/checksums.hpp"

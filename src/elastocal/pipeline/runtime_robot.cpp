@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/legs.hpp"

@@ -20,8 +20,7 @@ namespace elastocal {
 struct RuntimeModel {
   std::string robot;        ///< name in the URDF
   std::string calibration;  ///< where the errors come from, for people
-  std::string
-      fingerprint;  ///< of the nominal robot (NominalFingerprint in io/calibration_file.hpp)
+  std::string fingerprint;  ///< of the nominal robot (NominalFingerprint in io/fingerprint.hpp)
   std::vector<std::string> joint_names, coordinate_names, link_names, foot_names, tip_names;
   std::vector<ec_joint> nominal, calibrated;  ///< by joint
   std::vector<double> mass, moment;           ///< by body; three moments a body

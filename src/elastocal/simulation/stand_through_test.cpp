@@ -28,6 +28,12 @@ class BipedStandsThrough : public testing::Test {
     return motion;
   }
 
+  /// A trunk heavier in front than described.
+  void PutWeightAhead(double distance) {
+    RobotTree& tree = robot_.tree;
+    tree.links[static_cast<std::size_t>(tree.joints[1].child_link)].com.x() += distance;
+  }
+
   Biped biped_ = MakeBiped();
   TrueRobot robot_;
   Eigen::VectorXd stand_;
@@ -61,10 +67,8 @@ TEST_F(BipedStandsThrough, FallsWhereItBowsTooFar) {
 }
 
 TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
-  // A trunk heavier in front than described: what is planned to stay 4 cm inside goes out.
-  RobotTree& tree = robot_.tree;
-  const int trunk = tree.joints[1].child_link;
-  tree.links[static_cast<std::size_t>(trunk)].com.x() += 0.1;
+  // What is planned to stay 4 cm inside goes out.
+  PutWeightAhead(0.1);
   JointMotion motion = Bow(0.0);
   motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 24.0);
   for (int i = 0; i < 31; ++i) motion.q(i, 1) += 0.5 * std::clamp((i - 15) / 10.0, 0.0, 1.0);
@@ -78,9 +82,7 @@ TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
 // A centre of mass ahead of the toes: the robot falls as soon as it is put down, unless hands hold
 // it until the stabiliser has shifted it back.
 TEST_F(BipedStandsThrough, HandsHoldItWhileItIsPutDown) {
-  RobotTree& tree = robot_.tree;
-  const int trunk = tree.joints[1].child_link;
-  tree.links[static_cast<std::size_t>(trunk)].com.x() += 0.16;
+  PutWeightAhead(0.16);
   JointMotion motion = Bow(0.0);
   motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 6.0);
   const StandingRun alone = StandThrough(robot_, soles_, motion, {});

@@ -54,6 +54,13 @@ function plannedClip(motion, robot, scenes) {
   const joints = Object.keys(columns).filter((name) => robot.object.joints[name]);
   const time = columns.time ?? columns.t ?? [];
   const all = knownFeet(columns.support, scenes);
+  const frame = (i) => ({
+    q: joints.map((name) => columns[name][i]),
+    root: null,
+    support: feet(columns.support?.[i], all),
+    zmp: columns.zmp_x ? [columns.zmp_x[i], columns.zmp_y[i]] : undefined,
+  });
+  const both = time.findIndex((_, i) => feet(columns.support?.[i], all).length > 1);
   return {
     name: motion.name,
     group: 'planned motion',
@@ -63,12 +70,8 @@ function plannedClip(motion, robot, scenes) {
     moving: true,
     time,
     joints,
-    at: (i) => ({
-      q: joints.map((name) => columns[name][i]),
-      root: null,
-      support: feet(columns.support?.[i], all),
-      zmp: columns.zmp_x ? [columns.zmp_x[i], columns.zmp_y[i]] : undefined,
-    }),
+    standing: both < 0 ? null : frame(both),  // how far apart the feet stand
+    at: frame,
   };
 }
 

@@ -76,9 +76,28 @@ export class Robot {
   }
 
   /**
-   * Puts the robot so that a foot is where it is in the zero posture, the root link above the origin
-   * and the foot on the ground: where planned motions have their feet. Without a foot the root
-   * link stays at the origin.
+   * Where the feet of a motion stand, by a frame in which all of them do: apart as they are there,
+   * around the middle of where they are in the zero posture.
+   */
+  placeFeet(joints, standing) {
+    this.zero = new Map();
+    const feet = (standing?.support ?? []).filter((name) => this.links[name]);
+    if (feet.length < 2) return;
+    this.setPosture(joints, standing.q);
+    this.standOn(feet[0]);
+    const places = feet.map((name) => this.links[name].matrixWorld.clone());
+    const position = (pose) => new THREE.Vector3().setFromMatrixPosition(pose);
+    const shift = new THREE.Vector3();
+    feet.forEach((name, k) => shift.add(position(this.zeroPose(name))).sub(position(places[k])));
+    shift.divideScalar(feet.length);
+    const move = new THREE.Matrix4().makeTranslation(shift.x, shift.y, 0);
+    feet.forEach((name, k) => this.zero.set(name, places[k].premultiply(move)));
+  }
+
+  /**
+   * Puts the robot so that a foot is where it stands (placeFeet), else where it is in the zero
+   * posture, the root link above the origin and the foot on the ground. Without a foot the root link
+   * stays at the origin.
    */
   standOn(linkName) {
     this.setRoot([0, 0, 0], [0, 0, 0, 1]);

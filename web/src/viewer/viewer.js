@@ -43,6 +43,7 @@ export class Viewer {
 
   setClip(index) {
     this.clip = this.clips[index];
+    this.robot.placeFeet(this.clip.joints, this.clip.standing);
     this.framed = null;
     this.show(0);
   }

@@ -353,6 +353,29 @@ test('meshes are drawn where they came along, and a robot without any is drawn b
   for (const {opaque, pixels} of pictures) assert.ok(opaque > 0.005 * pixels, `${opaque}`);
 });
 
+test('a robot that stands with its feet apart does not jump when the weight goes to the other foot', async () => {
+  const speck = '<visual><geometry><box size="1e-6 1e-6 1e-6"/></geometry></visual>';  // the green of a foot is not seen
+  const leg = (side, y) => `<link name="${side}">${speck}</link><joint name="${side}_hip" type="revolute"><parent link="root"/><child link="${side}"/><origin xyz="0 ${y} 0"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+    <link name="${side}_sole">${speck}</link><joint name="${side}_fixed" type="fixed"><parent link="${side}"/><child link="${side}_sole"/><origin xyz="0 0 -0.8"/></joint>`;
+  const urdf = `<robot name="r"><link name="root"><visual><geometry><box size="0.3 0.3 0.3"/></geometry></visual></link>${leg('left', 0.1)}${leg('right', -0.1)}</robot>`;
+  const spread = [0.3, 0.3, 0.3];
+  const columns = {time: [0, 1, 2], support: ['left_sole+right_sole', 'left_sole', 'right_sole'], left_hip: spread, right_hip: spread.map((q) => -q)};
+  const data = {robot: {name: 'r', urdf, coordinates: ['left_hip', 'right_hip'], meshes: {}}, spheres: [], workspaces: []};
+  const file = join(folder, 'feet.html');
+  writeFileSync(file, fill(readFileSync(template, 'utf8'), {format: 'elastocal-report-1', folder: 'out', data, motions: [{name: 'm', rows: 3, columns}], calibrations: [], missing: []}));
+  const {page, problems} = await openPage(browser, file);
+  await waitForViewer(page);
+  await page.focus('#posture');
+  const hashes = [];
+  for (let i = 0; i < 2; ++i) {
+    await page.keyboard.press('ArrowRight');
+    hashes.push((await picture(page)).hash);
+  }
+  assert.equal(hashes[0], hashes[1]);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
 test('a project alone is drawn in its posture of rest, with markers and soles', async () => {
   const {data: {robot, spheres, workspaces}} = sampleReport();
   const link = robot.urdf.match(/<link name="([^"]+)"/)[1];
