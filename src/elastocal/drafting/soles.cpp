@@ -72,7 +72,7 @@ void MeasureSole(const FootPoints& foot, const Transform& T_root_sole, double th
 DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& limb,
                      const std::vector<Transform>& T_root_link) {
   constexpr double kThickness = 0.005, kSamePlane = 0.003;
-  const Transform T_root_body = T_root_link[Size(BodyLink(tree, limb.tip_body))];
+  const Transform& T_root_body = T_root_link[Size(BodyLink(tree, limb.tip_body))];
   const Transform& T_root_hip = T_root_link[Size(tree.joints[Size(limb.joints[0])].child_link)];
   const double ankle = T_root_body.translation().z();
   const double length = (T_root_hip.translation().z() - ankle) * (1.0 + kFootHeight);
