@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/io/observation_table.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "tests/test_files.hpp"
 
@@ -55,6 +56,25 @@ TEST_F(TalosTable, TouchesThatAreLeftOutArePredicted) {
                    1e3 * figures.all.height);
   EXPECT_EQ(summary["contact"]["kfold"]["by_side"]["right"]["touches"], 29);
   EXPECT_EQ(summary["contact"]["kfold"]["of_touches"].size(), 50u);
+}
+
+TEST_F(TalosTable, TheEncodersTellTheStartsOfTheRobot) {
+  const ObservationTables by_counts = ReadObservationTables(files_, project_);
+  project_.contact->sessions = {};
+  project_.contact->sessions.from_encoders = true;
+  for (const char* gripper : {"gripper_left_joint", "gripper_right_joint"}) {
+    project_.recording.ignore.emplace_back(gripper);
+  }
+  const ObservationTables found = ReadObservationTables(files_, project_);
+  ASSERT_EQ(found.observations.effects.size(), 9u);
+  for (int i = 0; i < found.observations.count(); ++i) {
+    EXPECT_EQ(found.observations.all[i].effects, by_counts.observations.all[i].effects) << i;
+  }
+  ASSERT_EQ(found.warnings.size(), 2u);
+  EXPECT_NE(found.warnings[0].find("5 starts of the robot"), std::string::npos)
+      << found.warnings[0];
+  EXPECT_NE(found.warnings[1].find("4 starts of the robot"), std::string::npos)
+      << found.warnings[1];
 }
 
 TEST_F(TalosTable, EachSideAloneFindsTheComplianceOfTheHips) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fstream>
 #include <functional>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "elastocal/io/contact_file.hpp"
 #include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/tables/text.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -60,7 +62,10 @@ TEST(ContactInput, TheProjectSaysWhatIsWrong) {
         "[0, 0, 0]");
   error(std::string(kFeet) + "plates: [{name: a, link: gripper_left_base_link, normal: [0, 0, 0]}]",
         "a direction");
-  error(std::string(kFeet) + kPlates + ", sessions: {}", "either column or counts");
+  error(std::string(kFeet) + kPlates + ", sessions: {}", "either column, counts or from_encoders");
+  error(std::string(kFeet) + kPlates + ", sessions: {column: a, from_encoders: true}",
+        "either column, counts or from_encoders");
+  error(std::string(kFeet) + kPlates + ", sessions: {from_encoders: 1}", "from_encoders");
   error(
       std::string(kFeet) + kPlates + ", sessions: {counts: {columns: [a], quantum: 0, modulo: 64}}",
       "quantum");
@@ -159,6 +164,39 @@ TEST_F(ObservationTableInput, SessionsAreToldByCountsOfEncoders) {
   EXPECT_EQ(session(1), std::vector<int>{0});  // -27 is 37 modulo 64
   EXPECT_EQ(session(2), std::vector<int>{1});
   EXPECT_EQ(session(3), std::vector<int>{0});  // a whole turn of the other
+}
+
+TEST_F(ObservationTableInput, SessionsAreProposedWhereEncodersTellThem) {
+  std::string text;
+  std::istringstream lines(TableText(project_, 24, "", "gripper"));
+  std::string line;
+  std::getline(lines, text);
+  text += "\n";
+  Random random(2);
+  for (int row = 0; std::getline(lines, line); ++row) {
+    const double step = 4e-5;
+    const double homed = row < 10 ? 0.2 : 0.83;
+    text += line.substr(0, line.size() - 1) + FormatNumber(step * (random.Index(4) + homed)) + "\n";
+  }
+  const char* const ignore = "recording: {ignore: [gripper]}\n";
+  const auto proposals = [](const ObservationTables& tables) {  // others are of limits
+    std::vector<std::string> found;
+    for (const std::string& warning : tables.warnings) {
+      if (warning.find("from_encoders") != std::string::npos) found.push_back(warning);
+    }
+    return found;
+  };
+  const ObservationTables proposed = Read(text, "", ignore);
+  EXPECT_EQ(proposed.observations.effects.size(), 1u);
+  ASSERT_EQ(proposals(proposed).size(), 1u);
+  for (const char* part : {"t.csv", "2 starts", "gripper", "4e-05", "from_encoders: true"}) {
+    EXPECT_NE(proposals(proposed)[0].find(part), std::string::npos) << proposals(proposed)[0];
+  }
+  const ObservationTables told = Read(text, ", sessions: {from_encoders: true}", ignore);
+  ASSERT_EQ(told.observations.effects.size(), 2u);
+  EXPECT_EQ(told.observations.all[9].effects, std::vector<int>{0});
+  EXPECT_EQ(told.observations.all[10].effects, std::vector<int>{1});
+  EXPECT_TRUE(proposals(Read(text, ", sessions: {from_encoders: false}", ignore)).empty());
 }
 
 TEST(ContactFile, IsReadAsItWasWritten) {

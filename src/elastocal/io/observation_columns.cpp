@@ -124,6 +124,11 @@ ObservationColumns FindObservationColumns(const Table& table, const Project& pro
   for (const std::string& column : contact.sessions.columns) {
     columns.sessions.push_back(FindSessionColumn(table, column, project));
   }
+  for (std::size_t c = 0; c < table.header().size(); ++c) {
+    const std::vector<std::string>& ignored = project.recording.ignore;
+    if (std::find(ignored.begin(), ignored.end(), table.header()[c]) == ignored.end()) continue;
+    columns.ignored.push_back(static_cast<int>(c));
+  }
   if (contact.setup.plates.empty() && !columns.measures()) {
     const std::vector<std::string>& of = contact.columns.front();
     table.Fail("there is no column of any instrument of " + project.file.string() + "; " +

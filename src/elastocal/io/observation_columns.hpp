@@ -14,6 +14,7 @@ namespace elastocal {
 struct ObservationColumns {
   std::vector<int> coordinates;  // by coordinate of the robot
   std::vector<int> sessions;     // all are there
+  std::vector<int> ignored;      // that the project names in recording.ignore
   int plate = -1, frame = -1;
   std::vector<std::vector<int>> instruments;  // of plates, and of those that are absent: empty
 

@@ -8,6 +8,7 @@
 #include "elastocal/io/detections.hpp"
 #include "elastocal/io/measured_cells.hpp"
 #include "elastocal/io/observation_columns.hpp"
+#include "elastocal/io/observation_sessions.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/observation/standing_robot.hpp"
@@ -18,7 +19,6 @@ namespace elastocal {
 namespace {
 
 constexpr int kMostRows = 20000;
-constexpr double kMostCounts = 1e15;  // counts beyond are no whole numbers
 
 /// What an instrument showed in a row.
 struct MeasuredRow {
@@ -28,32 +28,13 @@ struct MeasuredRow {
 
 /// One table as it was read.
 struct ObservationFile {
-  Recording postures;  // no markers
-  std::vector<std::string> sessions;
+  Recording postures;                 // no markers
+  std::vector<std::string> sessions;  // by row
+  std::vector<std::string> warnings;
   std::vector<std::string> plates;  // by row, where there is a column for them
   std::vector<std::string> frames;  // likewise for images
   std::vector<MeasuredRow> measured;
 };
-
-/// What the row read last has for its session.
-std::string SessionKey(const Table& table, const ObservationColumns& columns,
-                       const SessionRule& rule) {
-  std::string key;
-  for (int column : columns.sessions) {
-    if (!key.empty()) key += "/";
-    if (rule.quantum <= 0.0) {
-      key += std::string(table.Cell(column));
-      continue;
-    }
-    const double steps = std::round(table.Number(column) / rule.quantum);
-    if (!(std::abs(steps) < kMostCounts)) {
-      table.FailCell(column, "this is no number of steps of contact.sessions.counts.quantum");
-    }
-    const std::int64_t count = static_cast<std::int64_t>(steps) % rule.modulo;
-    key += std::to_string(count < 0 ? count + rule.modulo : count);
-  }
-  return key;
-}
 
 ObservationFile ReadObservationFile(const std::filesystem::path& file, const Project& project) {
   std::istringstream stream = OpenTable(file);
@@ -64,6 +45,7 @@ ObservationFile ReadObservationFile(const std::filesystem::path& file, const Pro
   ObservationFile result;
   Recording& postures = result.postures;
   postures.source = file.string();
+  SessionReader sessions(table, columns, project);
   std::vector<double> q;
   while (table.Next()) {
     if (table.row_count() > kMostRows) table.Fail("more than 20000 rows; one a posture expected");
@@ -74,7 +56,7 @@ ObservationFile ReadObservationFile(const std::filesystem::path& file, const Pro
       const double elsewhere = given == project.recording.not_recorded.end() ? 0.0 : given->second;
       q.push_back(columns.coordinates[c] < 0 ? elsewhere : table.Number(columns.coordinates[c]));
     }
-    result.sessions.push_back(SessionKey(table, columns, project.contact->sessions));
+    sessions.Take();
     if (columns.plate >= 0) result.plates.emplace_back(table.Cell(columns.plate));
     if (columns.frame >= 0) result.frames.emplace_back(table.Cell(columns.frame));
     for (std::size_t i = 0; i < instruments.size(); ++i) {
@@ -88,6 +70,7 @@ ObservationFile ReadObservationFile(const std::filesystem::path& file, const Pro
     throw InputError(table.source() + ": no row below the header; postures expected");
   }
   postures.q = StackRows(q, postures.line.size());
+  result.sessions = sessions.Sessions(postures.q, result.warnings);
   postures.markers.resize(postures.q.rows(), 0);
   for (int c = 0; c < tree.coordinate_count(); ++c) {
     if (columns.coordinates[c] < 0) {
@@ -169,16 +152,12 @@ void AddFile(const ObservationFile& file, const Project& project, int index,
   std::vector<PosturePlace>& postures = tables.observations.postures;
   const int first = static_cast<int>(postures.size());
   for (int line : file.postures.line) postures.push_back({index, line});
-  const bool by_file = project.contact->sessions.columns.empty();
-  const auto session = [&](int row) {
-    return by_file ? file.postures.source : file.sessions[static_cast<std::size_t>(row)];
-  };
   const std::vector<int> plates = PlatesOf(file, project, tables.setup);
   for (int row = 0; row < static_cast<int>(plates.size()); ++row) {
-    if (plates[row] >= 0) collector.Add({first + row, plates[row], {}, {}}, session(row));
+    if (plates[row] >= 0) collector.Add({first + row, plates[row], {}, {}}, file.sessions[row]);
   }
   for (const MeasuredRow& of : file.measured) {
-    collector.Add({first + of.row, of.instrument, of.measured, {}}, session(of.row));
+    collector.Add({first + of.row, of.instrument, of.measured, {}}, file.sessions[of.row]);
   }
 }
 
@@ -281,6 +260,7 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
     for (std::string& warning : LimitWarnings(read[f].postures, project.tree)) {
       tables.warnings.push_back(std::move(warning));
     }
+    for (std::string& warning : read[f].warnings) tables.warnings.push_back(std::move(warning));
   }
   AddDetections(detections, project, PosturesOfFrames(read), tables);
   if (observations.all.empty()) {

@@ -199,7 +199,7 @@ TEST(PostureTable, RefusesALargeFileOfZeros) {
     stream << head;
     std::string block;
     while (block.size() < 1 << 20) block += piece;
-    for (int i = 0; i < 200; ++i) stream << block;
+    for (int i = 0; i < 8; ++i) stream << block;
   };
   const auto read = [&] { ReadPostureTable(file, TableProject()); };
   write("", "0");

@@ -126,8 +126,9 @@ double UpdateWeights(const ObservationResiduals& residuals, const ObservedRobot&
   return change;
 }
 
-void TakeCovariance(const ObservedRobot& model, const ObservationResiduals& residuals,
-                    const Eigen::MatrixXd& covariance, ObservationFit& fit) {
+void TakeCovariance(const ObservedRobot& model, const Observations& observations,
+                    const ObservationResiduals& residuals, const Eigen::MatrixXd& covariance,
+                    ObservationFit& fit) {
   fit.covariance = residuals.scale().asDiagonal() * covariance * residuals.scale().asDiagonal();
   fit.entry_of_unknown.clear();
   for (int u = 0; u < model.unknown_count; ++u) {
@@ -136,6 +137,10 @@ void TakeCovariance(const ObservedRobot& model, const ObservationResiduals& resi
   fit.entry_of_quantity.clear();
   for (int q = 0; q < static_cast<int>(model.setup.quantities.size()); ++q) {
     fit.entry_of_quantity.push_back(residuals.QuantityEntry(q));
+  }
+  fit.entry_of_effect.clear();
+  for (int e = 0; e < static_cast<int>(observations.effects.size()); ++e) {
+    fit.entry_of_effect.push_back(residuals.EffectEntry(e));
   }
 }
 
@@ -221,7 +226,7 @@ bool UpdateFit(const ObservedRobot& model, const Observations& observations,
                  fit.degrees_of_freedom, covariance);
     change = UpdateSpread(sums, model.setup.sources, options.robust, fit.spread);
   }
-  TakeCovariance(model, residuals, covariance, fit);
+  TakeCovariance(model, observations, residuals, covariance, fit);
   change = std::max(change, UpdateWeights(residuals, model, observations, fit.spread, fit.weights));
   return options.robust ? change < kRoughlySettled : change < kSettled && small;
 }

@@ -21,12 +21,12 @@ struct ObservationFit {
   /// included; infinite where it is fixed.
   std::vector<double> spread_freedom;
   /// Posterior covariance of the unknowns, SI, and where they stand in it (-1: not estimated): each
-  /// unknown of the robot, the first number of each quantity. Where the spread is estimated,
-  /// standard deviations are those whose multiple by Student's t with `degrees_of_freedom` is the
-  /// half width of the interval. An unknown that hangs on a source of which few numbers tell has a
-  /// t of its own, by Satterthwaite (docs/algorithms.md).
+  /// unknown of the robot, the first number of each quantity and of each session's effect. Where
+  /// the spread is estimated, standard deviations are those whose multiple by Student's t with
+  /// `degrees_of_freedom` is the half width of the interval. An unknown that hangs on a source of
+  /// which few numbers tell has a t of its own, by Satterthwaite (docs/algorithms.md).
   Eigen::MatrixXd covariance;
-  std::vector<int> entry_of_unknown, entry_of_quantity;
+  std::vector<int> entry_of_unknown, entry_of_quantity, entry_of_effect;
   double effective_parameters = 0.0;  ///< numbers that the observations determine
   double degrees_of_freedom = 1.0;    ///< of the uncertainty: numbers left over for the noise
   bool settled = false;               ///< whether the variances came to rest

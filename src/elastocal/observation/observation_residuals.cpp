@@ -92,10 +92,6 @@ void ObservationResiduals::AddRobotBlocks() {
   }
 }
 
-int ObservationResiduals::QuantityEntry(int quantity) const {
-  return quantity_block_[quantity] < 0 ? -1 : first_entry_[quantity_block_[quantity]];
-}
-
 std::vector<ObservationResiduals::Column> ObservationResiduals::ColumnsOf(
     int leg, const std::vector<int>& first_column) const {
   std::vector<Column> columns;

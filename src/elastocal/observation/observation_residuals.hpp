@@ -34,9 +34,11 @@ class ObservationResiduals : public LeastSquaresProblem {
 
   Eigen::VectorXd Start() const;
   ObservedValues ToValues(const Eigen::VectorXd& x) const;
-  /// Entry of x of an unknown of the robot, first entry of a quantity; -1: it is not free.
+  /// Entry of x of an unknown of the robot, first entry of a quantity or of the effect of a
+  /// session; -1: it is not free.
   int RobotEntry(int unknown) const { return free_.robot ? robot_entry_[unknown] : -1; }
-  int QuantityEntry(int quantity) const;
+  int QuantityEntry(int quantity) const { return FirstEntry(quantity_block_[quantity]); }
+  int EffectEntry(int effect) const { return FirstEntry(effect_block_[effect]); }
   /// Value of one in each entry of x, SI.
   const Eigen::VectorXd& scale() const { return scale_; }
 
@@ -62,6 +64,7 @@ class ObservationResiduals : public LeastSquaresProblem {
     std::vector<std::vector<Column>> of_links;
     int width = 0;  // columns of the robot
   };
+  int FirstEntry(int block) const { return block < 0 ? -1 : first_entry_[block]; }
   void AddRobotBlocks();
   int AddBlock(int size);
   void AddPrior(int block, const std::vector<int>& sources, const std::vector<double>& units);

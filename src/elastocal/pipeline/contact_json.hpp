@@ -7,6 +7,8 @@
 
 namespace elastocal {
 
+struct ContactRun;
+
 /// How numbers of a unit are shown: 1e3 mm for 1 m.
 struct ShownUnit {
   const char* name;
@@ -18,5 +20,8 @@ ShownUnit ShownUnitOf(SourceUnit unit);
 /// tilt_y_deg, max_height_mm; by_side the same for each plate that touched.
 /// `instruments[]`: name, kind, observations, and rms by row with its unit (position_mm).
 nlohmann::ordered_json FiguresJson(const ObservedRobot& model, const ObservationFigures& figures);
+
+/// The section `contact` of summary.json (docs/formats.md).
+nlohmann::ordered_json ContactJson(const ContactRun& run);
 
 }  // namespace elastocal

@@ -64,10 +64,12 @@ struct ElasticityChoice {
   std::optional<double> hours = {};
 };
 
-/// How touches of one start of the robot are told from those of another.
+/// How touches of one start of the robot are told from those of another. By default each file is
+/// one session.
 struct SessionRule {
-  /// Columns of a touch table; touches with the same texts in all of them are of one session. None:
-  /// each file is one session.
+  /// The encoders tell (FindEncoderStarts); unset: they are only asked for a proposal.
+  std::optional<bool> from_encoders = {};
+  /// Columns of a touch table; touches with the same texts in all of them are of one session.
   std::vector<std::string> columns;
   /// Above 0: the columns are numbers, of which round(number / quantum) modulo `modulo` counts.
   double quantum = 0.0;

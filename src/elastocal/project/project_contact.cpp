@@ -74,10 +74,13 @@ std::vector<std::string> Texts(const YamlValue& list) {
 }
 
 void ReadSessions(const YamlValue& section, SessionRule& rule) {
-  section.ExpectKeys({"column", "counts"});
+  section.ExpectKeys({"column", "counts", "from_encoders"});
   const auto column = section.Find("column");
   const auto counts = section.Find("counts");
-  section.Expect(column.has_value() != counts.has_value(), "either column or counts");
+  const auto encoders = section.Find("from_encoders");
+  const int given = int{column.has_value()} + int{counts.has_value()} + int{encoders.has_value()};
+  section.Expect(given == 1, "either column, counts or from_encoders");
+  if (encoders) rule.from_encoders = encoders->Boolean();
   if (column) rule.columns = {column->Text()};
   if (!counts) return;
   counts->ExpectKeys({"columns", "quantum", "modulo"});

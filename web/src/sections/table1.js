@@ -68,7 +68,7 @@ function elasticTable(joints, shown, {root}) {
   const columns = [{text: 'Joint'}, ...kinds.flatMap(({symbol, what}) => [
     {text: h('abbr', {title: what}, symbol), unit: 'µrad/(N·m)', number: true},
     {text: h('abbr', {title: `stiffness: inverse of the ${what}`}, symbol.replace('c', 'K')), unit: 'N·m/rad', number: true}])];
-  const has = (parameters) => !root || kinds.some(({kind}) => parameters.has(kind));
+  const has = (parameters) => kinds.some(({kind}) => parameters.has(kind));
   const rows = [...joints].filter(([joint, parameters]) => shown(joint) && has(parameters)).map(([joint, parameters]) =>
     [h('span', {title: joint}, pretty(joint)), ...kinds.flatMap(({kind}) => [valueCell(parameters.get(kind)), stiffnessCell(parameters.get(kind))])]);
   if (rows.length === 0) return null;

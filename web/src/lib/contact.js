@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the observations of a calibration without a tracker come to.
+import {fixed, significant} from './format.js';
+
+export const judged = (contact) => contact.kfold ?? contact.fit;
+export const thing = (contact) => contact.touches > 0 ? 'touches' : 'observations';
+export const where = (contact) => contact.kfold ? `on ${thing(contact)} that were left out` : `on the ${thing(contact)} of the fit`;
+
+/** What the errors are before and after, in a clause: of touches, or of the instrument that gained most. */
+function errorClause(contact) {
+  const after = judged(contact);
+  const before = after.uncalibrated;
+  if (contact.touches > 0) {
+    return `The height of touches went from ${fixed(before.height_mm)} to ${fixed(after.height_mm)}\u00a0mm and their tilt from ${fixed(before.tilt_deg)} to ${fixed(after.tilt_deg)}\u00a0degrees, ${where(contact)}`;
+  }
+  const gains = instrumentErrors(contact).sort((a, b) => a.after / a.before - b.after / b.before);
+  if (gains.length === 0) return 'The robot was calibrated';
+  const [best] = gains;
+  return `What ${best.name} shows (${best.what}) went from ${significant(best.before)} to ${significant(best.after)}\u00a0${best.unit}, ${where(contact)}`;
+}
+
+/** {state, word, sentence}: what the observations say of the calibration. */
+export function contactVerdict(summary) {
+  const {contact} = summary;
+  const errors = errorClause(contact);
+  if (summary.status !== 'converged' || summary.objections?.length) {
+    return {state: 'reject', word: 'Do not deploy', sentence: `${errors}, but the result must not be trusted.`, rest: summary.objections?.[0] ?? summary.status};
+  }
+  const rest = summary.model === 'full' ? 'These figures hold for a controller that compensates elasticity.' : '';
+  if (!contact.kfold) return {state: 'check', word: 'Validate first', sentence: `${errors}.`, rest};
+  return {state: 'deploy', word: 'Deploy', sentence: `${errors}.`, rest};
+}
+
+/** Errors by instrument before and after the calibration: [{name, kind, what, unit, observations, before, after}]. */
+export function instrumentErrors(contact) {
+  const after = judged(contact);
+  const before = new Map((after.uncalibrated?.instruments ?? []).map((of) => [of.name, of]));
+  return (after.instruments ?? []).flatMap(({name, kind, observations, ...rows}) => Object.entries(rows).map(([key, rms]) => {
+    const [what, ...unit] = key.split('_');
+    return {name, kind, what, unit: unit.join('_').replace('m_per_s2', 'm/s²'), observations, before: before.get(name)?.[key], after: rms};
+  }));
+}
+
+/** Ranges of touches that follow each other in every second session, for the bands behind a plot. */
+export function sessionBands(touches) {
+  const runs = [];
+  touches.forEach((touch, i) => {
+    if (i === 0 || touch.session !== touches[i - 1].session || touch.plate !== touches[i - 1].plate) runs.push([i + 0.5, i + 0.5]);
+    runs.at(-1)[1] = i + 1.5;
+  });
+  return runs.filter((_, i) => i % 2 === 1);
+}
