@@ -8,15 +8,16 @@ import {count, significant, withSd} from '../lib/format.js';
 import {plot} from '../lib/plot.js';
 import {table} from '../lib/table.js';
 
-/** An estimate with its standard deviation, or two of them. */
+/** An estimate with its standard deviation. */
 function estimate(value, sd, digits = 2) {
   const text = withSd(value, sd, digits);
   return h('span', {class: 'estimate'}, h('span', {class: 'value'}, text.value), h('span', {class: 'sd'}, typeof sd === 'number' ? ` ±${text.sd}` : ''));
 }
-const estimates = (values, sds) => h('span', {}, ...values.flatMap((value, i) => [i > 0 && ', ', estimate(value, sds?.[i])].filter(Boolean)));
+const estimates = (values, sds) => values.map((value, i) => estimate(value, sds?.[i]));
+const tilts = (of) => ['x', 'y'].map((axis) => ({text: `${of} ${axis}`.trim(), unit: 'deg', number: true}));
 
-/** A file's name without its folders, which only make a table wide. */
-const short = (session) => session.replace(/^.*\//, '');
+/** The name of a file without its folders, which only make a table wide; other names stay. */
+const short = (session) => session.replace(/^.*\/(?=[^/]*\.\w+)/, '');
 
 /** Height and tilt of each touch, in the order of the recording. */
 export function touchPlots(contact) {
@@ -51,8 +52,8 @@ export function instrumentErrorsFigure(errors) {
 
 export function platesFigure(contact) {
   return figure({title: 'Plates and tables', note: 'A plate\u2019s tilt on its link and the plane of its table, seen from the first foot, with standard deviations.', body: table({caption: 'Plates and tables',
-    columns: [{text: 'Plate'}, {text: 'Touches', number: true}, {text: 'Tilts of the plate', unit: 'deg', number: true}, {text: 'Height of the table', unit: 'mm', number: true}, {text: 'Tilts of the table', unit: 'deg', number: true}],
-    rows: contact.plates.map((p) => [p.name, count(p.touches), estimates(p.tilts_deg, p.tilts_sd_deg), estimate(p.table_height_mm, p.table_height_sd_mm, 1), estimates(p.table_tilts_deg, p.table_tilts_sd_deg)])})});
+    columns: [{text: 'Plate'}, {text: 'Touches', number: true}, ...tilts('Plate: tilt'), {text: 'Table: height', unit: 'mm', number: true}, ...tilts('Table: tilt')],
+    rows: contact.plates.map((p) => [p.name, count(p.touches), ...estimates(p.tilts_deg, p.tilts_sd_deg), estimate(p.table_height_mm, p.table_height_sd_mm, 1), ...estimates(p.table_tilts_deg, p.table_tilts_sd_deg)])})});
 }
 
 const SHOWN = {m: [1e3, 'mm'], rad: [180 / Math.PI, 'deg']};
@@ -80,8 +81,8 @@ export function sessionsFigure(contact) {
   const planes = effects.filter((e) => 'height_mm' in e);
   if (planes.length === 0) return null;
   return figure({title: 'Sessions', note: 'How far the table lies from its mean in each session, as seen from the feet. A robot that is homed anew sees it elsewhere.',
-    body: table({caption: 'Sessions', columns: [{text: 'Session'}, {text: 'Of'}, {text: 'Touches', number: true}, {text: 'Height', unit: 'mm', number: true}, {text: 'Tilts', unit: 'deg', number: true}],
-      rows: planes.map((e) => [h('span', {title: e.session}, short(e.session)), e.quantity.replaceAll('.', ' '), count(e.observations), estimate(e.height_mm, e.height_sd_mm), estimates(e.tilts_deg, e.tilts_sd_deg)])}),
+    body: table({caption: 'Sessions', columns: [{text: 'Session'}, {text: 'Of'}, {text: 'Touches', number: true}, {text: 'Height', unit: 'mm', number: true}, ...tilts('Tilt')],
+      rows: planes.map((e) => [h('span', {title: e.session}, short(e.session)), e.quantity.replaceAll('.', ' '), count(e.observations), estimate(e.height_mm, e.height_sd_mm), ...estimates(e.tilts_deg, e.tilts_sd_deg)])}),
     data: {name: 'sessions.csv', text: () => toCsv(['session', 'quantity', 'observations', 'height_mm', 'height_sd_mm', 'tilt_x_deg', 'tilt_y_deg', 'tilt_x_sd_deg', 'tilt_y_sd_deg'],
       planes.map((e) => [e.session, e.quantity, e.observations, e.height_mm, e.height_sd_mm, ...e.tilts_deg, ...e.tilts_sd_deg]))}});
 }
