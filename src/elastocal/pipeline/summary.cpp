@@ -267,6 +267,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
     json["noise"].push_back(noise);
   }
   json["cluster_factor"] = result.posterior.cluster_factor;
+  json["gauge"] = GaugeText(result.gauge);
   if (run.common_scale) {
     json["common_scale"] = {{"size", run.common_scale->size}, {"sd", run.common_scale->sd}};
   }
@@ -292,6 +293,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
                       &ErrorMetrics::rmse_3d);
     json["kfold"]["unconverged"] = run.cross_validation.unconverged;
     json["kfold"]["not_predicted"] = run.cross_validation.not_predicted;
+    json["kfold"]["decided_once"] = run.decided_once;
   }
   AddTrials(run, json);
   json["outliers"] = Outliers(run);
