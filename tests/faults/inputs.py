@@ -28,7 +28,7 @@ class Base:
                  "--random-postures", "1", "--repetitions", "1", "--least-lag-s", "0",
                  "--largest-lag-s", "0", "--drift-ppm", "0")
         self.experiment = {"trials": [{
-            "name": "arm", "kind": "calibration", "chains": ["arm"], "support": [],
+            "name": "arm", "kind": "calibration", "samples": "rests", "chains": ["arm"], "support": [],
             "markers": str(self.recording / "arm.tsv"), "joints": str(self.recording / "arm.csv"),
             "expected_lag_s": 0, "truth": str(self.recording / "arm_waist.csv")}]}
         self.table = good / "table.csv"

@@ -80,10 +80,12 @@ Progress OfStep(const StepProgress& progress, const std::string& step) {
   return [progress, step](int done, int total) { progress(step, done, total); };
 }
 
-/// Ten for a table of postures, unless it is small or very large.
+/// Ten for a table of postures, unless it is small or very large; of a short motion fewer.
 int UsualFolds(const Recording& recording) {
   const int postures = recording.posture_count();
-  return recording.trials.empty() && postures >= 10 && postures <= 2000 ? 10 : 0;
+  if (!recording.trials.empty() || postures < 10 || postures > 2000) return 0;
+  const int folds = FoldsFor(recording, 10);
+  return folds < 2 ? 0 : folds;
 }
 
 void Append(const std::vector<std::string>& more, std::vector<std::string>& warnings) {

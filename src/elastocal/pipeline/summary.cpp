@@ -264,6 +264,10 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
       noise[name + (angle ? "_sd_mrad" : "_sd_mm")] =
           1e3 * result.noise.sd(static_cast<Eigen::Index>(g), source);
     }
+    if (g < result.noise.motion.size()) {
+      noise["motion_correlation"] = result.noise.motion[g].lag_one;
+      noise["motion_samples_each"] = result.noise.motion[g].samples_each;
+    }
     json["noise"].push_back(noise);
   }
   json["cluster_factor"] = result.posterior.cluster_factor;

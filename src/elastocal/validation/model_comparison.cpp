@@ -12,11 +12,30 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/measurement/moments.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr double kSamePosture = 0.02;  // rad or m, of every joint
+constexpr double kStretch_s = 5.0;     // of a motion, that is left out together
+
+void Unite(int a, int b, std::vector<int>& units) {
+  if (a != b) std::replace(units.begin(), units.end(), std::max(a, b), std::min(a, b));
+}
+
+/// Moments of a motion that are of one stretch of it.
+void UniteMoments(const Recording& recording, std::vector<int>& units) {
+  const std::vector<int> motion = MotionOfPostures(recording);
+  double begin = recording.time_s.size() > 0 ? recording.time_s[0] : 0.0;
+  for (int i = 1; i < recording.posture_count(); ++i) {
+    if (motion[i] < 0) continue;
+    const double time = recording.time_s[i];
+    const bool first = motion[i - 1] != motion[i];
+    if (first || time - begin > kStretch_s) begin = time;
+    if (begin < time) Unite(units[i - 1], units[i], units);
+  }
+}
 
 /// The unit of each posture: those that are left out together.
 std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
@@ -35,11 +54,17 @@ std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
       if (l - k > 200) break;
       const auto apart = (recording.q.row(order[k]) - recording.q.row(order[l])).cwiseAbs();
       if (apart.maxCoeff() > kSamePosture) continue;
-      const int from = std::max(units[order[k]], units[order[l]]);
-      const int to = std::min(units[order[k]], units[order[l]]);
-      if (from != to) std::replace(units.begin(), units.end(), from, to);
+      Unite(units[order[k]], units[order[l]], units);
     }
   }
+  UniteMoments(recording, units);
+  return units;
+}
+
+std::vector<int> DistinctUnits(const std::vector<int>& unit_of) {
+  std::vector<int> units = unit_of;
+  std::sort(units.begin(), units.end());
+  units.erase(std::unique(units.begin(), units.end()), units.end());
   return units;
 }
 
@@ -111,11 +136,16 @@ ObservationMask Judged(const ErrorModel& model, const Recording& recording) {
 
 }  // namespace
 
+int FoldsFor(const Recording& recording, int wanted) {
+  const std::vector<int> motion = MotionOfPostures(recording);
+  if (std::all_of(motion.begin(), motion.end(), [](int of) { return of < 0; })) return wanted;
+  const auto units = DistinctUnits(UnitOfPosture(recording, FoldUnit::kPosture)).size();
+  return std::min(wanted, static_cast<int>(units));
+}
+
 std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options) {
   const std::vector<int> unit_of = UnitOfPosture(recording, options.unit);
-  std::vector<int> units = unit_of;
-  std::sort(units.begin(), units.end());
-  units.erase(std::unique(units.begin(), units.end()), units.end());
+  std::vector<int> units = DistinctUnits(unit_of);
   const int count = static_cast<int>(units.size());
   if (count == 0) {
     throw InputError(recording.source +

@@ -43,7 +43,7 @@ ModelComparison CompareModels(const ErrorModel& model, const Recording& recordin
 
 /// What is left out together.
 enum class FoldUnit {
-  kPosture,  ///< postures, nearly equal ones together
+  kPosture,  ///< postures, nearly equal ones and neighbours in a motion together
   kTrial,    ///< whole trials
 };
 
@@ -53,6 +53,10 @@ struct FoldOptions {
   std::uint64_t seed = 1;  ///< deals the units to the folds at random
   int threads = 1;
 };
+
+/// `wanted` folds, or as many as a short motion allows: its moments (MotionOfPostures) are left out
+/// in stretches of five seconds.
+int FoldsFor(const Recording& recording, int wanted);
 
 /// The fold of each posture: a random permutation of the units is cut into equal parts. Throws
 /// InputError for a number of folds that the recording does not allow.
