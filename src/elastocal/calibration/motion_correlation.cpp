@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kLeastPairs = 10;
+constexpr int kLeastMotionPairs = 10;
 constexpr double kLeastShare = 0.05;  // of the displacement's variance that bodies share
 
 /// Mean displacement of the markers of one body, m, by posture.
@@ -42,7 +42,7 @@ MotionCorrelation Correlate(const std::vector<const BodyTrack*>& tracks,
   MotionCorrelation found;
   for (int lag = 1;; ++lag) {
     const LagSum sum = SumAtLag(tracks, motion, lag);
-    if (sum.pairs < kLeastPairs) break;
+    if (sum.pairs < kLeastMotionPairs) break;
     const double correlation = std::min(1.0, sum.products / sum.pairs / shared);
     if (lag == 1) found.lag_one = correlation;
     if (!(correlation > 0.0)) break;
