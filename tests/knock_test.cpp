@@ -6,6 +6,7 @@
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/knocks.hpp"
+#include "elastocal/pipeline/cross_validate.hpp"
 #include "tests/standing_robot.hpp"
 
 namespace elastocal {
@@ -162,6 +163,81 @@ TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {
         << parameter.name;
   }
   EXPECT_GT(compared, 100);
+}
+
+/// Held-out distances of the full model, m, as `calibrate --kfold 5` finds them.
+Eigen::MatrixXd HeldOutDistances(const KnockExperiment& experiment, const Recording& recording,
+                                 int knocks_of_all) {
+  const Project& project = experiment.robot.project;
+  Measurements measured;
+  measured.calibration = recording;
+  const RecordedModel robot = MakeRecordedModel(project, {}, measured);
+  EXPECT_EQ(static_cast<int>(robot.knocks.size()), knocks_of_all);
+  ModelComparison comparison;
+  comparison.kinds = {ModelKind::kFull};
+  comparison.results[static_cast<int>(ModelKind::kFull)] =
+      Calibrate(robot.model, measured.calibration, robot.base, ModelKind::kFull, {});
+  const CrossValidation folds = CrossValidateExperiment({project, recording, {}, {}}, robot,
+                                                        comparison, {.folds = 5, .threads = 2});
+  const auto full = static_cast<int>(ModelKind::kFull);
+  EXPECT_EQ(folds.distances[full].cols(), recording.marker_count());
+  EXPECT_LE(folds.metrics_without_outliers[full].observations, folds.metrics[full].observations);
+  return folds.distances[full];
+}
+
+// The same robot, postures and noise with knocks and without.
+class KnockFolds : public testing::Test {
+ protected:
+  static const KnockExperiment& Experiment() {
+    static const KnockExperiment experiment(16);
+    return experiment;
+  }
+  static const Eigen::MatrixXd& Clean() {
+    static const Eigen::MatrixXd clean = HeldOutDistances(Experiment(), Experiment().Clean(), 0);
+    return clean;
+  }
+  static Eigen::MatrixXd WithKnockAt(int posture) {
+    Recording recording = Experiment().Clean();
+    Experiment().Push("LHAND", posture, recording);
+    return HeldOutDistances(Experiment(), recording, 1);
+  }
+  /// Whether posture i is between the last posture before a knock and the first one after it that
+  /// its fold is estimated from.
+  bool Between(int i, int knock) const {
+    int before = knock - 1;
+    int after = knock;
+    while (fold_of_[before] == fold_of_[i]) --before;
+    while (fold_of_[after] == fold_of_[i]) ++after;
+    return before < i && i < after;
+  }
+
+  const std::vector<int>& hand_ = Experiment().Cluster("LHAND").markers;
+  const std::vector<int> fold_of_ = DealFolds(Experiment().Clean(), {.folds = 5});
+};
+
+// Each fold finds the knock by itself, and predicts the cluster before and after it as if it had
+// not been; not in postures around it, which could be on either side.
+TEST_F(KnockFolds, EachFindsTheKnockInItsOwnTrainingPostures) {
+  const int middle = kPostures + kPostures / 2;
+  const Eigen::MatrixXd distances = WithKnockAt(middle);
+  EXPECT_TRUE(Between(middle, middle));
+  for (int m : hand_) {
+    for (int i = kPostures; i < 2 * kPostures; ++i) {
+      EXPECT_EQ(std::isnan(distances(i, m)), Between(i, middle)) << i;
+      if (Between(i, middle)) continue;
+      EXPECT_NEAR(distances(i, m), Clean()(i, m), 1e-3) << i;  // a half of the push is 2.5 mm
+    }
+  }
+}
+
+// Only three postures follow the knock, as few as it can be found from: a fold that holds one of
+// them does not know of it, and errs by it. Folds to which all postures had told it would not.
+TEST_F(KnockFolds, ErrByAKnockThatTheirTrainingPosturesDoNotShow) {
+  const int knock = 2 * kPostures - 3;  // the hand is seen until the end of this trial only
+  const Eigen::MatrixXd distances = WithKnockAt(knock);
+  for (int m : hand_) {
+    for (int i = knock; i < knock + 3; ++i) EXPECT_GT(distances(i, m), Clean()(i, m) + 2e-3) << i;
+  }
 }
 
 }  // namespace

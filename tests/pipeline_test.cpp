@@ -122,7 +122,7 @@ TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
     return recording;
   };
   const auto contradictions = [&](const Recording& recording, const Recording& held_out) {
-    const RecordedModel robot{model, base, {}};
+    const RecordedModel robot{model, base};
     const ModelComparison comparison = CompareModels(
         Calibrate(model, recording, base, ModelKind::kGeometric, {}), model, recording, base, {});
     const HeldOut judged = JudgeOnTrials(comparison, held_out, {});

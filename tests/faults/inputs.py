@@ -28,7 +28,7 @@ class Base:
                  "--random-postures", "1", "--repetitions", "1", "--least-lag-s", "0",
                  "--largest-lag-s", "0", "--drift-ppm", "0")
         self.experiment = {"trials": [{
-            "name": "arm", "kind": "calibration", "chains": ["arm"], "support": [],
+            "name": "arm", "kind": "calibration", "samples": "rests", "chains": ["arm"], "support": [],
             "markers": str(self.recording / "arm.tsv"), "joints": str(self.recording / "arm.csv"),
             "expected_lag_s": 0, "truth": str(self.recording / "arm_waist.csv")}]}
         self.table = good / "table.csv"
@@ -131,7 +131,7 @@ def full_project(urdf):
         "calibration": {
             "marker_sd_mm": 0, "plausible_marker_sd_mm": 5, "widen_prior": True, "outliers": "remove",
             "outlier_probability": 0.01, "support_threshold": 0.9, "correlation_threshold": 0.9,
-            "max_iterations": 100, "support": "nuisance", "load": "torques", "slip_mm": 1,
+            "max_iterations": 100, "support": "nuisance", "load": "torques", "slip_mm": 1, "gauge": "prior",
             "prior": {"theta_deg": 0.5, "gamma_deg": 0.5, "alpha_deg": 0.5, "beta_deg": 0.5, "r_mm": 1,
                       "d_mm": 1, "b_mm": 1, "marker_mm": 1000, "deflection_mrad": 10,
                       "torsion_urad_per_Nm": 50, "bending_urad_per_Nm": 50,

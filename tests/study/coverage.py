@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How often the true value of a parameter lies in its 95 % interval, on virtual humanoids.
 
-    coverage.py PROGRAM PROJECT [--robots 50] [--first 1] [--work DIR]
+    coverage.py PROGRAM PROJECT [--robots 50] [--first 1] [--motions] [--work DIR]
 
 Each robot (`simulate`) has springs in all joints and links, friction, wrong masses, wrong torque
 sensors and imperfect cameras, which the estimator models in part; its axes are where the URDF has
@@ -10,7 +10,8 @@ them, and its zero offsets are not. So the truth of every parameter of a joint i
 truth.yaml, all lengths and other angles zero. The recording is calibrated with the default settings.
 Prints, for each robot and in all, the share of intervals with the truth in them and the root mean
 square of errors in standard deviations; then how many intervals of the legs' stiffness hold the
-simulator's own (a known wrench on the waist), by axis. Everything follows from the seeds. PyYAML is needed.
+simulator's own (a known wrench on the waist), by axis. With `--motions` the sine trials, moments of which
+share their model error with their neighbours in time, are calibrated from as well. Everything follows from the seeds. PyYAML is needed.
 """
 
 import argparse
@@ -24,6 +25,8 @@ import yaml
 
 from compare_pairs import DESIGN, run
 
+# All trials, of those for validation that are not sines as little as can be.
+WITH_SINES = ["--random-postures", "1", "--repetitions", "1", *DESIGN[2:]]
 LIMBS = {"leg": "legs", "arm": "arms"}
 
 
@@ -47,11 +50,24 @@ def stiffness_of_legs(summary, truth):
     return found
 
 
+def calibrate_from_motions(folder):
+    """Sine trials are for the estimate; other trials for validation are left out."""
+    file = folder / "experiment.yaml"
+    experiment = yaml.safe_load(file.read_text())
+    trials = [trial for trial in experiment["trials"] if trial["kind"] in ("calibration", "sine")]
+    for trial in trials:
+        if trial["kind"] == "sine":
+            trial.update(kind="calibration", samples="motion")
+    file.write_text(yaml.safe_dump({**experiment, "trials": trials}))
+
+
 def errors(arguments, seed, work, stiffness):
     """Kind, error in sds and interval factor of each parameter of geometry; None: refused."""
     folder = work / f"robot_{seed}"
     run(arguments.program, "simulate", arguments.project, "-o", folder, "--threads", 1, "--seed", seed,
-        "--length-mm", 0, "--angle-deg", 0, *DESIGN)
+        "--length-mm", 0, "--angle-deg", 0, *(WITH_SINES if arguments.motions else DESIGN))
+    if arguments.motions:
+        calibrate_from_motions(folder)
     run(arguments.program, "calibrate", arguments.project, "--recording", folder, "--kfold", 0, "-o",
         work / "out", may_fail=True)
     if not (work / "out" / "calibration.yaml").exists():
@@ -84,6 +100,7 @@ def main():
     parser.add_argument("project", type=pathlib.Path)
     parser.add_argument("--robots", type=int, default=50)
     parser.add_argument("--first", type=int, default=1)
+    parser.add_argument("--motions", action="store_true")
     parser.add_argument("--work", type=pathlib.Path)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:

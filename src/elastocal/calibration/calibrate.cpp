@@ -175,6 +175,13 @@ void FillResult(const BaseParameters& base, const CalibrationOptions& options, F
   result.posterior = std::move(fit.posterior);
 }
 
+/// Outliers of single moments of a motion, by the noise that each has by itself.
+OutlierVerdict JudgeOutliers(const FitProblem& problem, const Selection& selection,
+                             const std::vector<int>& free, Fit fit) {
+  fit.noise.motion.clear();
+  return FindOutliers(problem, selection, free, fit, problem.options.outlier_probability);
+}
+
 /// Fits without the outliers of a verdict and judges anew, until the verdict stands. An observation
 /// at the edge may be left out and taken back by turns: it stays out then.
 OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& base,
@@ -192,8 +199,7 @@ OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& b
   std::vector<OutlierVerdict> earlier;
   for (;;) {
     fit_to(verdict);
-    OutlierVerdict next =
-        FindOutliers(problem, selection, free, fit, problem.options.outlier_probability);
+    OutlierVerdict next = JudgeOutliers(problem, selection, free, fit);
     if (problem.options.outliers == OutlierPolicy::kKeep || Same(next, verdict)) return next;
     if (earlier.size() == kMaxVerdicts) {
       fit.settled = false;
@@ -215,13 +221,12 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
                  const std::vector<int>& free, const Selection* fixed, Fit fit,
                  CalibrationResult& result) {
   const Recording& recording = problem.recording;
-  const double probability = problem.options.outlier_probability;
   Selection selection = fixed != nullptr ? *fixed : SelectAll(problem.model, recording);
   OutlierVerdict verdict;
   CheckEquations(problem, fit.placement, selection, base, free, 0);
   if (fixed == nullptr) {
     fit = FitParameters(problem, selection, free, fit, Robustness::kMedians);
-    verdict = FindOutliers(problem, selection, free, fit, probability);
+    verdict = JudgeOutliers(problem, selection, free, fit);
   }
   if (fixed != nullptr) {
     fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);

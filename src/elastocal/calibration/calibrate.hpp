@@ -51,6 +51,7 @@ struct CalibrationResult {
   /// registration), in the reference frame of the recording.
   ErrorModel model;
   Eigen::VectorXd delta;                ///< errors, one a parameter of `model`; SI units
+  Gauge gauge;                          ///< who says where the root link's frame is
   Placement placement;                  ///< where the robot stood; empty for a table of postures
   std::vector<Slip> slips;              ///< of feet
   std::vector<ParameterStatus> status;  ///< one a parameter

@@ -60,8 +60,12 @@ Linearised Linearise(const FitProblem& problem, const Selection& selection,
   linear.factor.compute(equations.information());
   linear.gradient = equations.gradient();
   linear.squares = 2.0 * CostOf(residuals.body);
-  for (const auto& block : residuals.body.residual_blocks) {
-    if (block.active) linear.freedom += block.size;
+  const int counted =
+      residuals.body.body_count() + static_cast<int>(residuals.body.tied_postures().size());
+  for (int b = 0; b < static_cast<int>(residuals.body.residual_blocks.size()); ++b) {
+    const auto& block = residuals.body.residual_blocks[b];
+    if (!block.active) continue;
+    linear.freedom += block.size * (b < counted ? residuals.body.Count(b) : 1.0);
   }
   for (int size : residuals.body.parameter_blocks) linear.freedom -= size;
   for (int b = 0; b < residuals.body.body_count(); ++b) {

@@ -6,8 +6,10 @@
 
 #include <Eigen/SparseCore>
 
+#include "elastocal/calibration/motion_correlation.hpp"
 #include "elastocal/calibration/variances.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/measurement/moments.hpp"
 
 namespace elastocal {
 namespace {
@@ -17,9 +19,10 @@ namespace {
 constexpr double kStepTolerance = 1e-2;      // of an unknown's standard deviation, on average
 constexpr double kVarianceTolerance = 1e-2;  // relative, of a standard deviation, by its share
 constexpr double kWeightTolerance = 1e-2;
-constexpr double kRoughly = 10.0;    // times these
-constexpr int kRoughIterations = 5;  // of a solve whose weights will change anyway
-constexpr double kLeastLeft = 0.05;  // of the variance of a row
+constexpr double kMotionTolerance = 0.1;  // relative, of samples: where their sum ends is uncertain
+constexpr double kRoughly = 10.0;         // times these
+constexpr int kRoughIterations = 5;       // of a solve whose weights will change anyway
+constexpr double kLeastLeft = 0.05;       // of the variance of a row
 constexpr int kMaxPolishing = 6;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 
@@ -96,6 +99,17 @@ double WeightChange(const RobustWeights& before, const RobustWeights& after) {
   return change;
 }
 
+/// The largest relative change of what a moment of a motion counts.
+double MotionChange(const Noise& before, const Noise& after) {
+  if (before.motion.size() != after.motion.size()) return 1.0;
+  double change = 0.0;
+  for (std::size_t g = 0; g < after.motion.size(); ++g) {
+    change = std::max(
+        change, std::abs(std::log(after.motion[g].samples_each / before.motion[g].samples_each)));
+  }
+  return change;
+}
+
 /// One Gauss-Newton step and, from the same linearisation, noise, weights and prior scale: they
 /// converge together, instead of the one waiting for the other. Whether they have. What the fit
 /// explains of each row, by residual block, takes most of the time: where it is not empty, it is
@@ -134,27 +148,48 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   const VarianceComponents components =
       CollectComponents(problem, selection, fit.noise, body, explained);
   fit.degrees_of_freedom = DegreesOfFreedom(problem.options, components);
-  const Noise noise = EstimateNoise(problem.options, fit.noise, components, robustness);
+  Noise noise = EstimateNoise(problem.options, fit.noise, components, robustness);
+  if (anew && robustness == Robustness::kMoments) {
+    noise.motion = FindMotionCorrelation(problem, selection, noise, body);
+  }
   const RobustWeights weights = EstimateWeights(problem, selection, noise, body, robustness);
   PriorScale scale = fit.prior_scale;
   if (anew && problem.options.widen_prior) scale = EstimatePriorScale(problem, fit);
   const bool settled = small &&
                        NoiseChange(fit.noise, noise, components) < tolerance * kVarianceTolerance &&
                        ScaleChange(fit.prior_scale, scale) < tolerance * kVarianceTolerance &&
-                       WeightChange(fit.weights, weights) < tolerance * kWeightTolerance;
+                       WeightChange(fit.weights, weights) < tolerance * kWeightTolerance &&
+                       MotionChange(fit.noise, noise) < kMotionTolerance;
   fit.noise = noise;
   fit.weights = weights;
   fit.prior_scale = scale;
   return settled;
 }
 
-/// The posture of each residual block; -1 of priors.
-std::vector<int> PostureOfBlocks(const Selection& selection, const BodyResiduals& body) {
-  std::vector<int> posture;
-  for (const BodyObservation& of : selection.bodies) posture.push_back(of.posture);
-  for (int i : body.tied_postures()) posture.push_back(i);
-  posture.resize(body.residual_blocks.size(), -1);
-  return posture;
+/// The cluster of each posture: one each, but of a motion as many moments together as twice those
+/// that tell as much as one posture.
+std::vector<int> ClusterOfPostures(const FitProblem& problem, const Noise& noise) {
+  const std::vector<int> motion = MotionOfPostures(problem.recording);
+  std::vector<int> cluster(motion.size());
+  int size = 0;
+  for (int i = 0; i < static_cast<int>(motion.size()); ++i) {
+    const bool joins = i > 0 && !noise.motion.empty() && motion[i] >= 0 &&
+                       motion[i] == motion[i - 1] &&
+                       size < 2.0 * noise.motion[problem.group[i]].samples_each;
+    cluster[i] = i == 0 ? 0 : cluster[i - 1] + (joins ? 0 : 1);
+    size = joins ? size + 1 : 1;
+  }
+  return cluster;
+}
+
+/// The cluster of each residual block; -1 of priors.
+std::vector<int> ClusterOfBlocks(const std::vector<int>& cluster, const Selection& selection,
+                                 const BodyResiduals& body) {
+  std::vector<int> of_block;
+  for (const BodyObservation& of : selection.bodies) of_block.push_back(cluster[of.posture]);
+  for (int i : body.tied_postures()) of_block.push_back(cluster[i]);
+  of_block.resize(body.residual_blocks.size(), -1);
+  return of_block;
 }
 
 /// Information of the prior on the unknowns in the units of the solver: of the parameters, then of
@@ -181,9 +216,10 @@ Eigen::SparseMatrix<double> PriorInformation(const FitProblem& problem, const Pr
 }
 
 /// Compares the covariance with that of the cluster-robust (sandwich) estimator, whose clusters are
-/// the postures: residuals r over the root of what the fit leaves of their variance (HC2), and
-/// C (sum J' r r' J) C beside C J' J C. Where the postures scatter more than the noise model says,
-/// on average over the robot's parameters, the data's part of the covariance is widened.
+/// the postures (ClusterOfPostures): residuals r over the root of what the fit leaves of their
+/// variance (HC2), and C (sum J' r r' J) C beside C J' J C. Where the postures scatter more than
+/// the noise model says, on average over the robot's parameters, the data's part of the covariance
+/// is widened.
 void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
                      const Selection& selection, const NormalEquations& equations,
                      const Eigen::MatrixXd& covariance,
@@ -194,8 +230,9 @@ void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
     const Eigen::ArrayXd left = (1.0 - explained[block].array()).max(kLeastLeft);
     raised.emplace_back(body.Residual(static_cast<int>(block)).array() / left.sqrt());
   }
-  const Eigen::MatrixXd scores =
-      equations.Scores(raised, PostureOfBlocks(selection, body), problem.recording.posture_count());
+  const std::vector<int> cluster = ClusterOfPostures(problem, residuals.noise);
+  const Eigen::MatrixXd scores = equations.Scores(raised, ClusterOfBlocks(cluster, selection, body),
+                                                  cluster.empty() ? 0 : cluster.back() + 1);
   const std::vector<int>& parameters = fit.posterior.parameters;
   const auto count = static_cast<Eigen::Index>(parameters.size());
   const Eigen::MatrixXd by_prior =

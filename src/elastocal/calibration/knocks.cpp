@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "elastocal/calibration/displacement_step.hpp"
 #include "elastocal/calibration/fit.hpp"
@@ -44,31 +45,33 @@ std::string NameBefore(const std::string& name, const std::vector<std::string>& 
   }
 }
 
-/// Of each new marker: that which it was split from.
-std::vector<int> SplitOne(const Knock& knock, ErrorModel& model, Recording& recording) {
-  std::vector<int> origins;
+/// What was seen of a marker in the first `before` postures goes to a new one; it keeps what was
+/// seen from posture `after` on.
+void SplitColumns(int marker, const std::string& name, Eigen::Index before, Eigen::Index after,
+                  Recording& recording) {
+  Eigen::MatrixXd column = recording.markers.middleCols<3>(3 * marker);
+  column.bottomRows(column.rows() - before).setConstant(std::numeric_limits<double>::quiet_NaN());
+  recording.markers.middleCols<3>(3 * marker)
+      .topRows(after)
+      .setConstant(std::numeric_limits<double>::quiet_NaN());
+  recording.markers.conservativeResize(Eigen::NoChange, recording.markers.cols() + 3);
+  recording.markers.rightCols<3>() = column;
+  recording.marker_names.push_back(name);
+}
+
+void SplitOne(const Knock& knock, ErrorModel& model, Recording& recording) {
   ErrorModel extended = model;
   for (int m : knock.markers) {
-    if (!SeenOnBothSides(recording, m, knock.posture)) continue;
-    origins.push_back(m);
     extended.markers.push_back(model.markers[m]);
     Marker& before = extended.markers.back();
     before.name = NameBefore(before.name, recording.marker_names);
-    recording.marker_names.push_back(before.name);
-    Eigen::MatrixXd column = recording.markers.middleCols<3>(3 * m);
-    const Eigen::Index after = recording.posture_count() - knock.posture;
-    column.bottomRows(after).setConstant(std::numeric_limits<double>::quiet_NaN());
-    recording.markers.middleCols<3>(3 * m)
-        .topRows(knock.posture)
-        .setConstant(std::numeric_limits<double>::quiet_NaN());
-    recording.markers.conservativeResize(Eigen::NoChange, recording.markers.cols() + 3);
-    recording.markers.rightCols<3>() = column;
+    SplitColumns(m, before.name, knock.posture, knock.posture, recording);
   }
   model = SelectMarkers(extended, recording.marker_names);
-  return origins;
 }
 
 /// The fit with the markers split: each new one where its other half was before the knock.
+/// `origins`: of each new one, that which it was split from.
 void SplitFit(const ErrorModel& model, const std::vector<int>& origins, std::vector<int>& free,
               Fit& fit) {
   const auto first = fit.delta.size();
@@ -115,11 +118,13 @@ std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recordin
     const DisplacementStep step =
         FindLargestStep(problem, selection, free, fit, sets, options.outlier_probability);
     if (!IsKnock(step)) break;
-    knocks.push_back({sets[step.cluster].name, sets[step.cluster].markers, step.posture,
-                      step.last_before, step.displacement.norm(), step.significance});
+    std::vector<int> origins = sets[step.cluster].markers;
+    std::erase_if(origins, [&](int m) { return !SeenOnBothSides(split, m, step.posture); });
+    knocks.push_back({sets[step.cluster].name, origins, step.posture, step.last_before,
+                      step.displacement.norm(), step.significance});
     if (static_cast<int>(knocks.size()) == kMaxKnocks) break;
     const int first_new = split_model.marker_count();
-    const std::vector<int> origins = SplitOne(knocks.back(), split_model, split);
+    SplitOne(knocks.back(), split_model, split);
     SplitFit(split_model, origins, free, fit);
     SplitCluster(step, origins, first_new, sets);
   }
@@ -128,6 +133,29 @@ std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recordin
 
 void SplitMarkers(const std::vector<Knock>& knocks, ErrorModel& model, Recording& recording) {
   for (const Knock& knock : knocks) SplitOne(knock, model, recording);
+}
+
+void SplitLeftOut(const std::vector<Knock>& knocks, const ErrorModel& model,
+                  const std::vector<int>& searched, const std::vector<int>& left_out,
+                  Recording& recording) {
+  for (const Knock& knock : knocks) {
+    const auto before =
+        std::upper_bound(left_out.begin(), left_out.end(), searched[knock.last_before]);
+    const auto after = std::lower_bound(left_out.begin(), left_out.end(), searched[knock.posture]);
+    for (int m : knock.markers) {
+      SplitColumns(m, model.markers[recording.marker_count()].name, before - left_out.begin(),
+                   after - left_out.begin(), recording);
+    }
+  }
+}
+
+std::vector<int> MarkersBeforeSplit(const std::vector<Knock>& knocks, int marker_count) {
+  std::vector<int> origins(marker_count);
+  std::iota(origins.begin(), origins.end(), 0);
+  for (const Knock& knock : knocks) {
+    for (int m : knock.markers) origins.push_back(origins[m]);
+  }
+  return origins;
 }
 
 void AddUnseenMarkers(const ErrorModel& model, Recording& recording) {

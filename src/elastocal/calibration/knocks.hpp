@@ -16,7 +16,8 @@ namespace elastocal {
 /// carries it. Distances within the cluster stay, so that only the model of the robot can tell.
 struct Knock {
   std::string cluster;
-  /// Of the recording, as split by the knocks before this one (SplitMarkers).
+  /// Those seen on both sides of it, which become two (SplitMarkers). Of the recording, as split by
+  /// the knocks before this one.
   std::vector<int> markers;
   int posture = 0;            ///< the first one after it in which the cluster was seen
   int last_before = 0;        ///< the last one before it in which the cluster was seen
@@ -46,8 +47,19 @@ std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recordin
 /// Makes two of each marker of a knocked cluster. The name stays with the data after the knock:
 /// that is where later recordings see it. What was seen before goes to a new marker on the same
 /// link, `NAME(before)`. The new ones come last, so that earlier markers keep their indices and all
-/// parameters theirs. A marker that was seen on one side only stays as it is.
+/// parameters theirs.
 void SplitMarkers(const std::vector<Knock>& knocks, ErrorModel& model, Recording& recording);
+
+/// Splits the markers of postures that were left out of the search as SplitMarkers has split those
+/// of `model`, by the order of time. `searched`, `left_out`: the places of both in the whole
+/// recording, ascending. Between the last posture before a knock and the first one after it, nobody
+/// knows where the cluster was: there, its markers are not seen.
+void SplitLeftOut(const std::vector<Knock>& knocks, const ErrorModel& model,
+                  const std::vector<int>& searched, const std::vector<int>& left_out,
+                  Recording& recording);
+
+/// By marker of a recording that was split: which of the `marker_count` before it is.
+std::vector<int> MarkersBeforeSplit(const std::vector<Knock>& knocks, int marker_count);
 
 /// For a recording of the model's first markers: those that it lacks, never seen.
 void AddUnseenMarkers(const ErrorModel& model, Recording& recording);

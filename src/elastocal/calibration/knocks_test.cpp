@@ -37,6 +37,7 @@ class SplitTest : public ::testing::Test {
 Knock At(int posture, const std::vector<int>& markers) {
   Knock knock;
   knock.posture = posture;
+  knock.last_before = posture - 1;
   knock.markers = markers;
   return knock;
 }
@@ -56,10 +57,28 @@ TEST_F(SplitTest, TheNameStaysWithTheDataAfterTheKnock) {
   }
 }
 
-TEST_F(SplitTest, AMarkerSeenOnOneSideOnlyStaysAsItIs) {
-  SplitMarkers({At(2, {0, 2})}, model_, recording_);
-  EXPECT_EQ(recording_.marker_names, (std::vector<std::string>{"A", "B", "C", "A(before)"}));
-  EXPECT_TRUE(Seen(recording_, 5, 2));
+// Five postures were searched; the one that was left out is told by the order of time.
+TEST_F(SplitTest, LeftOutPosturesHaveTheMarkerThatTheOrderSays) {
+  const std::vector<int> searched = {0, 1, 2, 4, 5}, left_out = {3};
+  for (const auto& [at, seen] : {std::pair(4, 3), {3, -1}, {2, 0}}) {  // of those searched
+    ErrorModel model = model_;
+    Recording training = SelectPostures(recording_, searched);
+    Recording rest = SelectPostures(recording_, left_out);
+    const std::vector<Knock> knocks = {At(at, {0})};
+    SplitMarkers(knocks, model, training);
+    SplitLeftOut(knocks, model, searched, left_out, rest);
+    EXPECT_EQ(rest.marker_names, training.marker_names);
+    EXPECT_EQ(Seen(rest, 0, 3), seen == 3) << at;
+    EXPECT_EQ(Seen(rest, 0, 0), seen == 0) << at;  // between both sides, neither
+    EXPECT_TRUE(Seen(rest, 0, 1));
+    if (seen < 0) continue;
+    EXPECT_EQ(MarkerPosition(rest, 0, seen), Eigen::Vector3d(0.0, 3.0, 0.0));
+  }
+}
+
+TEST_F(SplitTest, MarkersAreTracedBackThroughTwoKnocks) {
+  EXPECT_EQ(MarkersBeforeSplit({At(4, {0, 1}), At(2, {3})}, 3),
+            (std::vector<int>{0, 1, 2, 0, 1, 0}));
 }
 
 TEST_F(SplitTest, AClusterMayBeKnockedAgain) {

@@ -24,13 +24,20 @@ inline constexpr int kNoiseSourceCount = 4;
 /// marker, body_position, waist_position, waist_rotation
 const char* NoiseSourceName(NoiseSource source);
 
+/// How much neighbouring moments of a motion tell (FindMotionCorrelation).
+struct MotionCorrelation {
+  double lag_one = 0.0;       ///< correlation of what bodies share, from one moment to the next
+  double samples_each = 1.0;  ///< so many moments tell as much as one posture by itself
+};
+
 /// Standard deviations by group of postures and source: chains differ in how well the model fits
 /// them, and a badly fitting leg shall not blur an arm. Errors of the model, which all markers of a
 /// body share, are told from the noise of the cameras, which averages out: on real robots they are
 /// most of what is left, and counting the markers of a body as independent would make standard
 /// deviations too small.
 struct Noise {
-  Eigen::ArrayXXd sd;  ///< groups x sources
+  Eigen::ArrayXXd sd;                          ///< groups x sources
+  std::vector<MotionCorrelation> motion = {};  ///< by group; empty: no posture is of a motion
 
   double& operator()(int group, NoiseSource source) { return sd(group, static_cast<int>(source)); }
   double operator()(int group, NoiseSource source) const {

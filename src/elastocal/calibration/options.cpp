@@ -87,4 +87,15 @@ double ParameterScale(const Parameter& parameter) {
   return IsExternal(parameter.kind) ? kExternalScale : TypicalError(parameter.kind);
 }
 
+std::string GaugeText(const Gauge& gauge) {
+  switch (gauge.rule) {
+    case GaugeRule::kPrior:
+      return "prior";
+    case GaugeRule::kNominalMarkers:
+      return "nominal_markers";
+    default:
+      return "link " + gauge.link;
+  }
+}
+
 }  // namespace elastocal

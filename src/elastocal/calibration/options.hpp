@@ -85,6 +85,21 @@ enum class OutlierPolicy {
   kKeep,    ///< they are named and kept, at the weight that heavy tails give them
 };
 
+/// Who says where the root link's frame is, which no measurement tells (gauge.hpp).
+enum class GaugeRule {
+  kPrior,           ///< the prior, by corrections that are small together
+  kNominalMarkers,  ///< the nominal positions of the root's markers
+  kLink,            ///< a link that a joint on the root carries: it is at its nominal place
+};
+
+struct Gauge {
+  GaugeRule rule = GaugeRule::kPrior;
+  std::string link = {};  ///< of kLink
+};
+
+/// prior, nominal_markers, link NAME
+std::string GaugeText(const Gauge& gauge);
+
 /// Which causes beyond geometry and springs are estimated (corrections.hpp).
 struct ExtraCauses {
   bool automatic = true;           ///< those that held-out errors ask for; else:
@@ -127,6 +142,7 @@ struct CalibrationOptions {
   double floor_tilt_sd = 0.1 * M_PI / 180.0, floor_height_sd = 1e-3;
   LoadOptions load = {};
   ExtraCauses extra = {};
+  Gauge gauge = {};  ///< that a result is given at the end (ApplyGauge)
   int max_iterations = 100;
 };
 

@@ -7,6 +7,7 @@
 
 #include "elastocal/calibration/floor.hpp"
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/measurement/moments.hpp"
 
 namespace elastocal {
 namespace {
@@ -25,7 +26,8 @@ BodyResiduals::BodyResiduals(const ResidualInputs& inputs, const std::vector<int
     : in_(inputs),
       placement_(placement),
       unknowns_(inputs.model, free, delta, placement),
-      jacobian_(inputs.model) {
+      jacobian_(inputs.model),
+      motion_(MotionOfPostures(inputs.recording)) {
   parameter_blocks = unknowns_.block_sizes();
   nuisance_blocks = unknowns_.WaistBlocks();
   nonnegative = unknowns_.nonnegative();
@@ -170,7 +172,7 @@ Eigen::VectorXd BodyResiduals::BodySds(std::size_t body) const {
     variances.head(shared) /= weight.shared;
     variances.tail(variances.size() - shared) /= weight.own;
   }
-  return variances.sqrt();
+  return (variances / CountOfPosture(of.posture)).sqrt();
 }
 
 Vector6d BodyResiduals::TieSds(int posture) const {
@@ -180,7 +182,18 @@ Vector6d BodyResiduals::TieSds(int posture) const {
   sds.tail<3>().setConstant(in_.noise(group, NoiseSource::kWaistRotation));
   if (in_.options.support_form == SupportForm::kFootRooted) sds.setConstant(kExactLeg);
   if (!in_.weights.ties.empty()) sds /= std::sqrt(in_.weights.ties[posture]);
-  return sds;
+  return sds / std::sqrt(CountOfPosture(posture));
+}
+
+double BodyResiduals::CountOfPosture(int posture) const {
+  if (motion_[posture] < 0 || in_.noise.motion.empty()) return 1.0;
+  return 1.0 / in_.noise.motion[in_.group[posture]].samples_each;
+}
+
+double BodyResiduals::Count(int block) const {
+  const bool body = block < body_count();
+  return CountOfPosture(body ? in_.selection.bodies[block].posture
+                             : tied_postures_[block - body_count()]);
 }
 
 bool BodyResiduals::IsStandingFoot(int posture, int body) const {

@@ -70,6 +70,11 @@ class BodyResiduals : public LeastSquaresProblem {
   const std::vector<int>& tied_postures() const { return tied_postures_; }
   int TieBlock(int tie) const { return body_count() + tie; }
 
+  /// As how many postures the one of a body or constraint counts: 1, or less where it is a moment
+  /// of a motion, whose neighbours tell the same (Noise::motion). Standard deviations are larger by
+  /// the root of its inverse.
+  double Count(int block) const;
+
   /// Rows in units of the residual's standard deviation of what would displace the markers of a
   /// body by the columns of `displacement` (3 markers x any, m).
   Eigen::MatrixXd Whiten(int body, const Eigen::MatrixXd& displacement) const;
@@ -89,6 +94,7 @@ class BodyResiduals : public LeastSquaresProblem {
   void MakeEarlierBlock(const EarlierPart& earlier);
   Eigen::VectorXd BodySds(std::size_t body) const;
   Vector6d TieSds(int posture) const;
+  double CountOfPosture(int posture) const;
   /// Whether the body is the foot that the posture stands on.
   bool IsStandingFoot(int posture, int body) const;
   void EvaluateBody(int block, bool with_jacobians);
@@ -102,6 +108,7 @@ class BodyResiduals : public LeastSquaresProblem {
   const Placement& placement_;
   BodyUnknowns unknowns_;
   GeneralizedJacobian jacobian_;
+  std::vector<int> motion_;                                         // of each posture
   std::vector<std::vector<BodyUnknowns::Columns>> marker_columns_;  // by marker
   std::vector<std::vector<BodyUnknowns::Columns>> leg_columns_;     // by leg
   std::vector<BodyUnknowns::Deflection> deflections_;               // by leg

@@ -16,15 +16,16 @@ constexpr double kLeastRowsLeft = 0.01;  // of the rows is left over where it is
 constexpr double kHuberQuantile = 0.99;  // of the distance of a body within which it counts whole
 constexpr double kLeastSharedSd = 1e-3;  // of the marker noise [m, rad]: as good as none
 
+/// `postures`: as how many the residuals count.
 void Add(const Eigen::ArrayXd& shares, const Eigen::VectorXd& residual,
-         const Eigen::VectorXd& explained, VarianceComponent& component) {
-  const double rows = shares.sum();
+         const Eigen::VectorXd& explained, double postures, VarianceComponent& component) {
+  const double rows = postures * shares.sum();
   if (rows <= 0.0) return;
   const double squares = (shares * residual.array().square()).sum();
   component.squares += squares;
   component.rows += rows;
   component.explained += (shares * explained.array()).sum();
-  component.weight += shares.square().sum();
+  component.weight += postures * shares.square().sum();
   component.means.push_back(squares / rows);
 }
 
@@ -66,7 +67,7 @@ VarianceComponents CollectComponents(const FitProblem& problem, const Selection&
     const int group = problem.group[body.posture];
     for (NoiseSource source : {NoiseSource::kMarker, NoiseSource::kBodyPosition}) {
       Add(body.Shares(noise, group, source), residuals.Residual(b), explained[b],
-          components[group][static_cast<int>(source)]);
+          residuals.Count(b), components[group][static_cast<int>(source)]);
     }
   }
   for (std::size_t t = 0; t < residuals.tied_postures().size(); ++t) {
@@ -77,7 +78,8 @@ VarianceComponents CollectComponents(const FitProblem& problem, const Selection&
     for (NoiseSource source : {NoiseSource::kWaistPosition, NoiseSource::kWaistRotation}) {
       Eigen::ArrayXd shares = Eigen::ArrayXd::Zero(6);
       shares.segment<3>(source == NoiseSource::kWaistPosition ? 0 : 3).setOnes();
-      Add(shares, residuals.Residual(block), explained[block], of_group[static_cast<int>(source)]);
+      Add(shares, residuals.Residual(block), explained[block], residuals.Count(block),
+          of_group[static_cast<int>(source)]);
     }
   }
   return components;

@@ -177,6 +177,8 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   yaml << YAML::Key << "zero_offsets" << YAML::Value
        << (zero_offsets == ZeroOffsets::kOrigin ? "origin" : "encoder")
        << YAML::Comment("where the calibrated URDF has the joints' zero offsets");
+  yaml << YAML::Key << "gauge" << YAML::Value << GaugeText(result.gauge)
+       << YAML::Comment("who says where the root link's frame is");
   yaml << YAML::Key << "termination" << YAML::Value << TerminationName(result.termination);
   yaml << YAML::Key << "marker_sd_mm" << YAML::Value << FormatNumber(1e3 * result.marker_sd);
   yaml << YAML::Key << "prior_scale" << YAML::Value << YAML::Flow << YAML::BeginMap;
@@ -253,6 +255,7 @@ CalibrationEstimate ParseEstimate(const std::string& text, const std::string& so
     }
   }
   estimate.model = root.Get("model").Text();
+  if (const auto gauge = root.Find("gauge")) estimate.gauge = gauge->Text();
   const YamlValue factor = root.Get("interval_95_in_sd");
   estimate.interval_factor = factor.Number();
   factor.Expect(estimate.interval_factor >= 1.95 && estimate.interval_factor <= 12.8,

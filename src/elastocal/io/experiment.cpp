@@ -91,12 +91,17 @@ fs::path ReadFileName(const YamlValue& value, const fs::path& folder, std::vecto
 
 TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Project& project,
                      std::vector<fs::path>& used) {
-  value.ExpectKeys({"name", "kind", "chain", "chains", "support", "markers", "joints",
+  value.ExpectKeys({"name", "kind", "samples", "chain", "chains", "support", "markers", "joints",
                     "markers_unit", "joints_topic", "expected_lag_s", "truth"});
   TrialFiles trial;
   CheckFileName(value.Get("name"));
   trial.name = value.Get("name").Text();
   if (const auto kind = value.Find("kind")) trial.kind = ReadKind(*kind);
+  if (const auto samples = value.Find("samples")) {
+    trial.moments = samples->Text() == "motion";
+    samples->Expect(trial.moments || samples->Text() == "rests", "rests or motion");
+    samples->Expect(trial.moments || trial.kind != TrialKind::kSine, "motion, as in every sine");
+  }
   trial.chains = ReadChains(value, project);
   if (const auto support = value.Find("support")) ReadSupport(*support, project, trial);
   trial.markers = ReadFileName(value.Get("markers"), folder, used);
@@ -138,6 +143,7 @@ void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& p
   yaml << YAML::BeginMap;
   emit("name", trial.name);
   emit("kind", TrialKindName(trial.kind));
+  if (trial.moments) emit("samples", "motion");
   yaml << YAML::Key << "chains" << YAML::Value << YAML::Flow << YAML::BeginSeq;
   for (int chain : trial.chains) yaml << project.chains[chain].name;
   yaml << YAML::EndSeq;

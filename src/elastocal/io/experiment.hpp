@@ -25,6 +25,7 @@ struct TrialFiles {
   std::vector<int>
       support;  ///< links that stand on the floor, of the tree; empty: the root is held ...
   bool free_root = false;  ///< ... unless it is free
+  bool moments = false;    ///< samples are moments of the motion (of a sine they always are)
   /// Of cameras and robot, in any format that is read; the same file where a bag has both.
   std::filesystem::path markers, joints;
   ReaderOptions reading = {};  ///< what these files do not say by themselves

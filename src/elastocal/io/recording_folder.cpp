@@ -48,7 +48,8 @@ Trial TrialOf(const TrialFiles& files, const Project& project) {
               .kind = files.kind,
               .chains = {},
               .support = files.support,
-              .free_root = files.free_root};
+              .free_root = files.free_root,
+              .moments = files.moments};
   for (int chain : files.chains) trial.chains.push_back(project.chains[chain].name);
   return trial;
 }

@@ -21,6 +21,9 @@ struct Trial {
   /// root link is held still, unless it is free.
   std::vector<int> support = {};
   bool free_root = false;  ///< nothing ties the robot to the floor
+  bool moments = false;  ///< its samples are moments of a motion, as those of a sine are, not rests
+
+  bool of_motion() const { return moments || kind == TrialKind::kSine; }
 };
 
 /// Static postures of one robot with the marker positions measured in each. Real and simulated

@@ -138,7 +138,7 @@ class TrialSampler {
 
   ClockOptions ClockSettings() const {
     ClockOptions options = options_.clock;
-    if (trial_.kind != TrialKind::kSine) options.largest_sd_s = options_.largest_rest_lag_sd_s;
+    if (!trial_.of_motion()) options.largest_sd_s = options_.largest_rest_lag_sd_s;
     return options;
   }
 
@@ -177,8 +177,8 @@ class TrialSampler {
     summary().rests = FindStableSamples(speeds, all, trajectories_.rate_hz, options_.rest);
     const StableSamples& rests = *summary().rests;
     const TimedTrial timed{trajectories_, smoothed_log_, summary().clock};
-    return trial_.kind == TrialKind::kSine ? MotionPostures(timed, rests, options_.sine_rate_hz)
-                                           : RestPostures(timed, rests);
+    return trial_.of_motion() ? MotionPostures(timed, rests, options_.sine_rate_hz)
+                              : RestPostures(timed, rests);
   }
 
   void Average(const PostureFrames& postures) {

@@ -58,7 +58,8 @@ struct TrialSamples {
 ///    SmoothLog);
 /// 3. estimate lag and drift of the robot's clock (EstimateTrialClock); the first support foot or,
 ///    without one, the root link is at rest in the laboratory;
-/// 4. find stable samples (FindStableSamples) or, in a sine trial, take moments at a constant rate
+/// 4. find stable samples (FindStableSamples) or, in a trial of motion, take moments at a constant
+/// rate
 ///    from the first motion to the last, both only where the robot's log covers the frame;
 /// 5. average the samples of each rest to one posture: marker positions, and joint positions and
 ///    torques at the corresponding robot times. A marker that is not seen in all samples of a rest

@@ -63,9 +63,10 @@ struct CalibrationRun {
   /// Causes beyond geometry and springs that were estimated, and what the search for them found.
   std::vector<std::string> extra;
   std::optional<CauseReport> causes;
-  CrossValidation cross_validation;  ///< folds 0: none
-  std::vector<TrialSummary> trials;  ///< of recording folders: what was used of each trial
-  std::vector<Knock> knocks;         ///< clusters that were knocked, and are taken as two
+  CrossValidation cross_validation;       ///< folds 0: none
+  std::vector<std::string> decided_once;  ///< what its folds did not decide anew (DecidedOnce)
+  std::vector<TrialSummary> trials;       ///< of recording folders: what was used of each trial
+  std::vector<Knock> knocks;              ///< clusters that were knocked, and are taken as two
   Recording validation;              ///< trials that took no part in the estimate; may be empty
   std::optional<HeldOut> held_out;   ///< errors on them, where there are any
   ByModel<double> waist_error = {};  ///< m, see WaistError; NaN where the truth is unknown

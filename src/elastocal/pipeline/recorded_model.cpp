@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/placing_markers.hpp"
-#include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/parameter_names.hpp"
@@ -48,9 +47,10 @@ void WarnOfLostRank(const ErrorModel& model, const IdentifiabilityOptions& optio
 }
 
 /// Torque sensors that contradict statics are not used.
-void CheckTorques(const ErrorModel& model, const CalibrationOptions& options,
-                  Measurements& measured) {
-  const std::vector<ContradictoryTorque> found =
+std::vector<ContradictoryTorque> CheckTorques(const ErrorModel& model,
+                                              const CalibrationOptions& options,
+                                              Measurements& measured) {
+  std::vector<ContradictoryTorque> found =
       FindContradictoryTorques(model, measured.calibration, options.slip);
   for (const ContradictoryTorque& one : found) {
     measured.warnings.push_back(Describe(one, model.tree) +
@@ -64,6 +64,7 @@ void CheckTorques(const ErrorModel& model, const CalibrationOptions& options,
   }
   HideTorques(found, measured.calibration);
   HideTorques(found, measured.validation);
+  return found;
 }
 
 /// On two feet, and in trials that no leg ties to the floor, the markers on the root link are all
@@ -131,7 +132,7 @@ RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint6
   RecordedModel result;
   result.model = SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
   if (free_root) CheckFreeRoot(result.model, recording);
-  CheckTorques(result.model, project.calibration, measured);
+  result.contradictory = CheckTorques(result.model, project.calibration, measured);
   result.base = FindBaseParameters(result.model, options);
   if (!recording.trials.empty() && search == KnockSearch::kAll) {
     result.knocks = FindKnocks(result.model, recording, result.base,

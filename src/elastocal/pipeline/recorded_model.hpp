@@ -7,15 +7,17 @@
 #include <vector>
 
 #include "elastocal/calibration/knocks.hpp"
+#include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 
 namespace elastocal {
 
 /// The model of a robot as a recording shows it.
 struct RecordedModel {
-  ErrorModel model;           ///< with the recording's markers
-  BaseParameters base;        ///< of these
-  std::vector<Knock> knocks;  ///< found in the recording; their clusters are taken as two
+  ErrorModel model;                ///< with the recording's markers
+  BaseParameters base;             ///< of these
+  std::vector<Knock> knocks = {};  ///< found in the recording; their clusters are taken as two
+  std::vector<ContradictoryTorque> contradictory = {};  ///< sensors that are not used
 };
 
 /// The project's clusters as far as their markers are in the recording, by its columns.

@@ -264,9 +264,14 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
       noise[name + (angle ? "_sd_mrad" : "_sd_mm")] =
           1e3 * result.noise.sd(static_cast<Eigen::Index>(g), source);
     }
+    if (g < result.noise.motion.size()) {
+      noise["motion_correlation"] = result.noise.motion[g].lag_one;
+      noise["motion_samples_each"] = result.noise.motion[g].samples_each;
+    }
     json["noise"].push_back(noise);
   }
   json["cluster_factor"] = result.posterior.cluster_factor;
+  json["gauge"] = GaugeText(result.gauge);
   if (run.common_scale) {
     json["common_scale"] = {{"size", run.common_scale->size}, {"sd", run.common_scale->sd}};
   }
@@ -292,6 +297,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
                       &ErrorMetrics::rmse_3d);
     json["kfold"]["unconverged"] = run.cross_validation.unconverged;
     json["kfold"]["not_predicted"] = run.cross_validation.not_predicted;
+    json["kfold"]["decided_once"] = run.decided_once;
   }
   AddTrials(run, json);
   json["outliers"] = Outliers(run);

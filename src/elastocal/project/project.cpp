@@ -86,7 +86,7 @@ void ReadSettings(const YamlValue& root, Project& project) {
   if (const auto section = root.Find("elasticity")) ReadElasticity(*section, project);
   if (const auto section = root.Find("standing")) ReadStanding(*section, project);
   if (const auto section = root.Find("calibration")) {
-    ReadCalibrationOptions(*section, project.calibration);
+    ReadCalibrationOptions(*section, project.tree, project.calibration);
   }
   SetMotionDefaults(project);
   if (const auto section = root.Find("collision")) ReadCollision(*section, project);

@@ -85,6 +85,23 @@ void ReadExtra(const YamlValue& value, ExtraCauses& extra) {
   value.Expect(extra.automatic || value.Text() == "none", "auto, none or a list of causes");
 }
 
+/// prior, nominal_markers, or "link NAME" with a link that a joint on the root link carries.
+void ReadGauge(const YamlValue& value, const RobotTree& tree, Gauge& gauge) {
+  constexpr std::string_view kLinkWord = "link ";
+  const std::string text = value.Text();
+  if (text.starts_with(kLinkWord)) {
+    gauge = {GaugeRule::kLink, text.substr(kLinkWord.size())};
+    const int body =
+        tree.links[FindNamedBy(value, [&] { return FindLink(tree, gauge.link); })].body;
+    value.Expect(body > 0 && tree.joints[body - 1].parent_body == 0,
+                 "a link that a joint on the root link carries");
+    return;
+  }
+  value.Expect(text == "prior" || text == "nominal_markers",
+               "prior, nominal_markers, or link and the name of a link on the root link");
+  gauge.rule = text == "prior" ? GaugeRule::kPrior : GaugeRule::kNominalMarkers;
+}
+
 }  // namespace
 
 std::vector<int> MatchingJoints(const RobotTree& tree, const std::vector<std::string>& patterns) {
@@ -139,11 +156,12 @@ void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions
   }
 }
 
-void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options) {
+void ReadCalibrationOptions(const YamlValue& section, const RobotTree& tree,
+                            CalibrationOptions& options) {
   section.ExpectKeys({"prior", "widen_prior", "marker_sd_mm", "plausible_marker_sd_mm",
                       "outlier_probability", "support_threshold", "correlation_threshold",
                       "max_iterations", "support", "load", "extra", "slip_mm", "outliers",
-                      "floor_tilt_deg", "floor_height_mm", "drift"});
+                      "floor_tilt_deg", "floor_height_mm", "drift", "gauge"});
   if (const auto prior = section.Find("prior")) ReadPrior(*prior, options.prior);
   section.Read("widen_prior", options.widen_prior);
   section.ReadBounded("marker_sd_mm", options.marker_sd, kOneMm);
@@ -162,6 +180,7 @@ void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& option
                           {"wrench", LoadSource::kWrench},
                           {"statics", LoadSource::kStatics}});
   if (const auto extra = section.Find("extra")) ReadExtra(*extra, options.extra);
+  if (const auto gauge = section.Find("gauge")) ReadGauge(*gauge, tree, options.gauge);
   section.ReadBounded("slip_mm", options.slip, kOneMm);
   section.ReadBounded("floor_tilt_deg", options.floor_tilt_sd, kOneDegree);
   section.ReadBounded("floor_height_mm", options.floor_height_sd, kOneMm);

@@ -36,7 +36,8 @@ void ReadInstruments(const YamlValue& section, Project& project);
 void ReadCameras(const YamlValue& section, Project& project);
 /// Makes the markers, whose columns have been read, instruments like others.
 void ObserveMarkers(Project& project);
-void ReadCalibrationOptions(const YamlValue& section, CalibrationOptions& options);
+void ReadCalibrationOptions(const YamlValue& section, const RobotTree& tree,
+                            CalibrationOptions& options);
 
 constexpr double kOneDegree = M_PI / 180.0;  // rad
 constexpr double kOneMm = 1e-3;              // m

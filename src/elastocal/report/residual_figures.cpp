@@ -141,7 +141,7 @@ Json Trace(const CalibrationView& view, const Distances& distances, int trial) {
   }
   const std::size_t step = (rows.size() + kMostMoments - 1) / kMostMoments;
   Json json = {{"trial", recording.trials[trial].name},
-               {"kind", recording.trials[trial].kind == TrialKind::kSine ? "sine" : "postures"},
+               {"kind", recording.trials[trial].of_motion() ? "sine" : "postures"},
                {"time_s", Json::array()},
                {"rms_mm", Json::object()}};
   for (std::size_t k = 0; k < rows.size(); k += step) {

@@ -106,7 +106,7 @@ const char* KindText(TrialKind kind) {
 Json MakeScene(const CalibrationView& view, const Predicted& predicted, const Trial& trial,
                const std::vector<int>& all, const Transform& T_view_ref) {
   const Recording& recording = predicted.recording;
-  const bool motion = trial.kind == TrialKind::kSine;
+  const bool motion = trial.of_motion();
   const std::vector<int> postures = Thinned(all, motion ? kMostPlayedMoments : kMostPostures);
   const std::vector<int> markers = MarkersSeen(recording, postures);
   const ModelKind best = view.comparison.largest_kind();

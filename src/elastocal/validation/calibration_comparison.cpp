@@ -146,10 +146,15 @@ void Judge(const Differences& all, double level, CalibrationComparison& comparis
 }
 
 void CheckSameRobot(const CalibrationEstimate& a, const CalibrationEstimate& b) {
-  if (a.nominal == b.nominal) return;
-  throw InputError(a.source + " is of robot '" + a.robot + "' and " + b.source + " of robot '" +
-                   b.robot + "' with other nominal geometry: only two calibrations of one URDF " +
-                   "can be compared");
+  if (a.nominal != b.nominal) {
+    throw InputError(a.source + " is of robot '" + a.robot + "' and " + b.source + " of robot '" +
+                     b.robot + "' with other nominal geometry: only two calibrations of one URDF " +
+                     "can be compared");
+  }
+  if (a.gauge == b.gauge) return;
+  throw InputError(a.source + " has the gauge '" + a.gauge + "' and " + b.source + " '" + b.gauge +
+                   "': the frame of the root link is elsewhere, and with it the errors of all "
+                   "joints on it; two calibrations with one gauge were expected");
 }
 
 /// Adds to `names` the parameters that are held in `holder` and estimated in `other`.

@@ -28,6 +28,7 @@ struct CalibrationEstimate {
   std::string nominal;            ///< fingerprint of the nominal robot
   std::string recording;          ///< from which it was made
   std::string model;              ///< ModelKindName
+  std::string gauge = "prior";    ///< GaugeText
   double interval_factor = 1.96;  ///< half width of a 95 % interval in standard deviations
   std::vector<ParameterEstimate> parameters;
   /// Names of the parameters in `covariance`, among them all estimated ones. Empty if the

@@ -12,11 +12,30 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/measurement/moments.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr double kSamePosture = 0.02;  // rad or m, of every joint
+constexpr double kStretch_s = 5.0;     // of a motion, that is left out together
+
+void Unite(int a, int b, std::vector<int>& units) {
+  if (a != b) std::replace(units.begin(), units.end(), std::max(a, b), std::min(a, b));
+}
+
+/// Moments of a motion that are of one stretch of it.
+void UniteMoments(const Recording& recording, std::vector<int>& units) {
+  const std::vector<int> motion = MotionOfPostures(recording);
+  double begin = recording.time_s.size() > 0 ? recording.time_s[0] : 0.0;
+  for (int i = 1; i < recording.posture_count(); ++i) {
+    if (motion[i] < 0) continue;
+    const double time = recording.time_s[i];
+    const bool first = motion[i - 1] != motion[i];
+    if (first || time - begin > kStretch_s) begin = time;
+    if (begin < time) Unite(units[i - 1], units[i], units);
+  }
+}
 
 /// The unit of each posture: those that are left out together.
 std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
@@ -35,11 +54,17 @@ std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
       if (l - k > 200) break;
       const auto apart = (recording.q.row(order[k]) - recording.q.row(order[l])).cwiseAbs();
       if (apart.maxCoeff() > kSamePosture) continue;
-      const int from = std::max(units[order[k]], units[order[l]]);
-      const int to = std::min(units[order[k]], units[order[l]]);
-      if (from != to) std::replace(units.begin(), units.end(), from, to);
+      Unite(units[order[k]], units[order[l]], units);
     }
   }
+  UniteMoments(recording, units);
+  return units;
+}
+
+std::vector<int> DistinctUnits(const std::vector<int>& unit_of) {
+  std::vector<int> units = unit_of;
+  std::sort(units.begin(), units.end());
+  units.erase(std::unique(units.begin(), units.end()), units.end());
   return units;
 }
 
@@ -50,41 +75,49 @@ struct FoldResult {
   int unconverged = 0;
 };
 
-FoldResult PredictFold(const std::vector<ModelKind>& kinds, const ErrorModel& model,
-                       const Recording& recording, const BaseParameters& base,
-                       const CalibrationOptions& options, const std::vector<int>& fold_of,
-                       int fold) {
-  FoldResult result;
-  std::vector<int> training;
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    (fold_of[i] == fold ? result.held_out : training).push_back(i);
+/// Of the markers of the whole recording: each is seen as at most one of the fold's in a posture.
+Eigen::MatrixXd InWholeRecording(const Eigen::MatrixXd& distances, const std::vector<int>& marker,
+                                 int marker_count) {
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Constant(distances.rows(), marker_count, kNaN);
+  for (Eigen::Index m = 0; m < distances.cols(); ++m) {
+    auto column = whole.col(marker[static_cast<std::size_t>(m)]);
+    column = distances.col(m).array().isFinite().select(distances.col(m), column);
   }
-  const Recording training_data = SelectPostures(recording, training);
-  const Recording held_out_data = SelectPostures(recording, result.held_out);
+  return whole;
+}
+
+void PredictFold(const std::vector<ModelKind>& kinds, const FoldData& fold,
+                 const CalibrationOptions& options, int marker_count, FoldResult& result) {
   // The largest model decides what is an outlier of the other postures; each model its own weights.
   std::optional<Selection> selection;
   std::optional<CalibrationResult> largest;
+  const std::vector<ModelKind> possible = ModelKinds(fold.model);
   const std::vector<ModelKind> largest_first(kinds.rbegin(), kinds.rend());
   for (ModelKind kind : largest_first) {
+    Eigen::MatrixXd& distances = result.distances[static_cast<int>(kind)];
+    if (std::find(possible.begin(), possible.end(), kind) == possible.end()) continue;
     const CalibrationResult estimate =
         kind == ModelKind::kRigid
-            ? WithoutSprings(*largest, model, training_data, base, options, *selection)
-            : Calibrate(model, training_data, base, kind, options,
+            ? WithoutSprings(*largest, fold.model, fold.training, fold.base, options, *selection)
+            : Calibrate(fold.model, fold.training, fold.base, kind, options,
                         selection ? &*selection : nullptr);
     if (!selection) {
-      selection = Select(model, training_data, estimate.used, estimate.tied);
+      selection = Select(fold.model, fold.training, estimate.used, estimate.tied);
       largest = estimate;
     }
     result.unconverged += estimate.termination == Termination::kConverged ? 0 : 1;
-    Eigen::MatrixXd& distances = result.distances[static_cast<int>(kind)];
-    distances = Predict(estimate.model, estimate.delta, held_out_data, options, &estimate.placement)
+    distances = Predict(estimate.model, estimate.delta, fold.held_out, options, &estimate.placement)
                     .distances;
     // A marker that is in no other fold has no estimated position.
-    for (int m = 0; m < recording.marker_count(); ++m) {
+    for (int m = 0; m < fold.model.marker_count(); ++m) {
       if (!estimate.used.col(m).any()) distances.col(m).setConstant(kNaN);
     }
+    distances = InWholeRecording(distances, fold.marker, marker_count);
   }
-  return result;
+  for (ModelKind kind : kinds) {  // what the fold's model does not have
+    Eigen::MatrixXd& distances = result.distances[static_cast<int>(kind)];
+    if (distances.size() == 0) distances = result.distances[static_cast<int>(largest->kind)];
+  }
 }
 
 /// Observations that a prediction can be judged by: on two feet, and where the root is free, not by
@@ -103,11 +136,16 @@ ObservationMask Judged(const ErrorModel& model, const Recording& recording) {
 
 }  // namespace
 
+int FoldsFor(const Recording& recording, int wanted) {
+  const std::vector<int> motion = MotionOfPostures(recording);
+  if (std::all_of(motion.begin(), motion.end(), [](int of) { return of < 0; })) return wanted;
+  const auto units = DistinctUnits(UnitOfPosture(recording, FoldUnit::kPosture)).size();
+  return std::min(wanted, static_cast<int>(units));
+}
+
 std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options) {
   const std::vector<int> unit_of = UnitOfPosture(recording, options.unit);
-  std::vector<int> units = unit_of;
-  std::sort(units.begin(), units.end());
-  units.erase(std::unique(units.begin(), units.end()), units.end());
+  std::vector<int> units = DistinctUnits(unit_of);
   const int count = static_cast<int>(units.size());
   if (count == 0) {
     throw InputError(recording.source +
@@ -169,17 +207,34 @@ CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorMode
                               const Progress& progress) {
   CrossValidation validation =
       CrossValidate(comparison.kinds, model, recording, base, options, folds, progress);
-  for (ModelKind kind : comparison.kinds) {
-    const auto k = static_cast<int>(kind);
-    validation.metrics_without_outliers[k] =
-        ComputeMetrics(validation.distances[k], comparison.largest().used);
-  }
+  JudgeWithout(comparison.largest().used, comparison.kinds, validation);
   return validation;
+}
+
+void JudgeWithout(const ObservationMask& used, const std::vector<ModelKind>& kinds,
+                  CrossValidation& validation) {
+  for (ModelKind kind : kinds) {
+    const auto k = static_cast<int>(kind);
+    validation.metrics_without_outliers[k] = ComputeMetrics(validation.distances[k], used);
+  }
 }
 
 CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
                               const CalibrationOptions& options, const FoldOptions& folds,
+                              const Progress& progress) {
+  std::vector<int> marker(recording.marker_count());
+  std::iota(marker.begin(), marker.end(), 0);
+  const auto make = [&](const std::vector<int>& training, const std::vector<int>& held_out) {
+    return FoldData{model, base, SelectPostures(recording, training),
+                    SelectPostures(recording, held_out), marker};
+  };
+  return CrossValidate(kinds, model, recording, options, folds, make, progress);
+}
+
+CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
+                              const Recording& recording, const CalibrationOptions& options,
+                              const FoldOptions& folds, const MakeFold& make,
                               const Progress& progress) {
   const std::vector<int> fold_of = DealFolds(recording, folds);
   std::vector<FoldResult> results(static_cast<std::size_t>(folds.folds));
@@ -187,8 +242,13 @@ CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorMo
       results.size(), folds.threads,
       [&](std::size_t fold) {
         try {
-          results[fold] =
-              PredictFold(kinds, model, recording, base, options, fold_of, static_cast<int>(fold));
+          std::vector<int> training;
+          for (int i = 0; i < recording.posture_count(); ++i) {
+            const bool out = fold_of[i] == static_cast<int>(fold);
+            (out ? results[fold].held_out : training).push_back(i);
+          }
+          PredictFold(kinds, make(training, results[fold].held_out), options,
+                      recording.marker_count(), results[fold]);
         } catch (const InputError& error) {
           throw InputError("cross-validation, without fold " + std::to_string(fold + 1) + " of " +
                            std::to_string(folds.folds) + ": " + error.what());

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/prediction.hpp"
@@ -42,7 +43,7 @@ ModelComparison CompareModels(const ErrorModel& model, const Recording& recordin
 
 /// What is left out together.
 enum class FoldUnit {
-  kPosture,  ///< postures, nearly equal ones together
+  kPosture,  ///< postures, nearly equal ones and neighbours in a motion together
   kTrial,    ///< whole trials
 };
 
@@ -53,6 +54,10 @@ struct FoldOptions {
   int threads = 1;
 };
 
+/// `wanted` folds, or as many as a short motion allows: its moments (MotionOfPostures) are left out
+/// in stretches of five seconds.
+int FoldsFor(const Recording& recording, int wanted);
+
 /// The fold of each posture: a random permutation of the units is cut into equal parts. Throws
 /// InputError for a number of folds that the recording does not allow.
 std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options);
@@ -62,24 +67,50 @@ struct CrossValidation {
   /// Over all held-out observations that could be predicted. Of a posture on two feet, the waist's
   /// own markers are not counted: they place it.
   ByModel<ErrorMetrics> metrics;
-  /// Over those of them that the estimate from all postures does not call outliers.
+  /// Over those of them that the estimate from all postures does not call outliers (JudgeWithout).
   ByModel<ErrorMetrics> metrics_without_outliers;
   int unconverged = 0;  ///< fits that did not converge
-  /// Held-out observations that no model could predict: their marker is in no other fold, or the
-  /// waist could not be placed.
+  /// Held-out observations that no model could predict: their marker is in no other fold, the waist
+  /// could not be placed, or their cluster was knocked between the other folds' postures around.
   int not_predicted = 0;
   ByModel<Eigen::MatrixXd> distances;  ///< postures x markers, m; NaN where not counted
 };
 
+/// What a fold is estimated from and judged on.
+struct FoldData {
+  ErrorModel model;  ///< as the training postures show the robot
+  BaseParameters base;
+  Recording training, held_out;  ///< with the markers of `model`
+  /// By marker of `model`: which of the whole recording it is.
+  std::vector<int> marker;
+};
+
+/// Decides on a fold, from its training postures alone, what is decided before an estimate. Both
+/// lists are ascending indices of postures. Called from several threads.
+using MakeFold =
+    std::function<FoldData(const std::vector<int>& training, const std::vector<int>& held_out)>;
+
 /// k-fold cross-validation. Every posture is predicted once, by models estimated without it; with
-/// it everything is decided anew that an estimate decides (outliers, priors, noise, footings).
+/// it everything is decided anew that an estimate decides (outliers, priors, noise, footings) and
+/// that `make` does. A kind that a fold's model does not have (it is not elastic) is the largest
+/// that it has. `model`: of the whole recording.
 /// Throws InputError for a number of folds that the recording does not allow.
+CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
+                              const Recording& recording, const CalibrationOptions& options,
+                              const FoldOptions& folds, const MakeFold& make,
+                              const Progress& progress = {});
+
+/// The same with one model for all folds.
 CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
                               const CalibrationOptions& options, const FoldOptions& folds,
                               const Progress& progress = {});
 
-/// The same for the kinds of a comparison, whose largest model says what is an outlier.
+/// Fills `metrics_without_outliers`: over the observations in `used`.
+void JudgeWithout(const ObservationMask& used, const std::vector<ModelKind>& kinds,
+                  CrossValidation& validation);
+
+/// With one model for the kinds of a comparison, whose largest model says what is an outlier.
 CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
                               const CalibrationOptions& options, const FoldOptions& folds,

@@ -125,8 +125,8 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
     if (validation.not_predicted > 0) {
       verdict.remarks.push_back(
           std::to_string(validation.not_predicted) +
-          " held-out observations could not be predicted: their marker is in no other fold, or the "
-          "waist could not be placed");
+          " held-out observations could not be predicted: their marker is in no other fold, the "
+          "waist could not be placed, or their cluster was knocked next to them");
     }
   }
   if (!verdict.objections.empty()) NameLargest(result, options.prior, verdict);

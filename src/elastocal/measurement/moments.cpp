@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/measurement/moments.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kNextMoment_s = 0.5;
+
+bool Follows(const Recording& recording, int posture) {
+  if (recording.time_s.size() == 0) return false;
+  if (!recording.trials.empty()) {
+    const int trial = recording.trial[posture];
+    if (trial != recording.trial[posture - 1] || !recording.trials[trial].of_motion()) return false;
+  }
+  const double step = recording.time_s[posture] - recording.time_s[posture - 1];
+  return step > 0.0 && step < kNextMoment_s;
+}
+
+}  // namespace
+
+std::vector<int> MotionOfPostures(const Recording& recording) {
+  std::vector<int> motion(recording.posture_count(), -1);
+  int last = -1;
+  for (int i = 1; i < recording.posture_count(); ++i) {
+    if (!Follows(recording, i)) continue;
+    if (motion[i - 1] < 0) motion[i - 1] = ++last;
+    motion[i] = last;
+  }
+  return motion;
+}
+
+}  // namespace elastocal

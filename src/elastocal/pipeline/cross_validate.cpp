@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/cross_validate.hpp"
+
+#include <utility>
+
+#include "elastocal/pipeline/choose_elasticity.hpp"
+
+namespace elastocal {
+namespace {
+
+bool ChoosesElasticity(const ExperimentData& data) {
+  return data.open_elasticity.has_value() && data.as_recorded.posture_count() <= kMostNested;
+}
+
+/// The project with the elastic joints that these postures choose.
+Project ProjectOfFold(const ExperimentData& data, const Recording& training) {
+  Project project = data.project;
+  if (!ChoosesElasticity(data)) return project;
+  ElasticityChoice chosen = project.elasticity;
+  project.elasticity = *data.open_elasticity;
+  ChooseElasticity(training, data.seed, 1, project);
+  chosen.torsion = project.elasticity.torsion;
+  chosen.bending = project.elasticity.bending;
+  project.elasticity = std::move(chosen);
+  return project;
+}
+
+FoldData MakeExperimentFold(const ExperimentData& data, const std::vector<int>& training,
+                            const std::vector<int>& held_out) {
+  Measurements measured;
+  measured.calibration = SelectPostures(data.as_recorded, training);
+  const Project project = ProjectOfFold(data, measured.calibration);
+  RecordedModel robot = MakeRecordedModel(project, data.seed, measured);
+  FoldData fold;
+  fold.held_out = SelectPostures(data.as_recorded, held_out);
+  HideTorques(robot.contradictory, fold.held_out);
+  SplitLeftOut(robot.knocks, robot.model, training, held_out, fold.held_out);
+  fold.marker = MarkersBeforeSplit(robot.knocks, data.as_recorded.marker_count());
+  fold.training = std::move(measured.calibration);
+  fold.model = std::move(robot.model);
+  fold.base = std::move(robot.base);
+  return fold;
+}
+
+/// Of the markers as recorded.
+ObservationMask UsedAsRecorded(const RecordedModel& robot, const ModelComparison& comparison,
+                               const Recording& as_recorded) {
+  const ObservationMask& used = comparison.largest().used;
+  const std::vector<int> marker = MarkersBeforeSplit(robot.knocks, as_recorded.marker_count());
+  ObservationMask joined = used.leftCols(as_recorded.marker_count());
+  for (Eigen::Index m = as_recorded.marker_count(); m < used.cols(); ++m) {
+    joined.col(marker[static_cast<std::size_t>(m)]) =
+        joined.col(marker[static_cast<std::size_t>(m)]) || used.col(m);
+  }
+  return joined;
+}
+
+}  // namespace
+
+CrossValidation CrossValidateExperiment(const ExperimentData& data, const RecordedModel& robot,
+                                        const ModelComparison& comparison, const FoldOptions& folds,
+                                        const Progress& progress) {
+  const auto make = [&](const std::vector<int>& training, const std::vector<int>& held_out) {
+    return MakeExperimentFold(data, training, held_out);
+  };
+  const ErrorModel whole = SelectMarkers(MakeProjectModel(data.project, data.as_recorded.trials),
+                                         data.as_recorded.marker_names);
+  CrossValidation validation = CrossValidate(comparison.kinds, whole, data.as_recorded,
+                                             data.project.calibration, folds, make, progress);
+  JudgeWithout(UsedAsRecorded(robot, comparison, data.as_recorded), comparison.kinds, validation);
+  return validation;
+}
+
+std::vector<std::string> DecidedOnce(const ExperimentData& data, bool causes_chosen) {
+  std::vector<std::string> decided;
+  if (data.open_elasticity && !ChoosesElasticity(data)) decided.emplace_back("elasticity");
+  if (causes_chosen) decided.emplace_back("causes");
+  return decided;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+
+namespace elastocal {
+
+/// What is needed to decide on an experiment anew, from a part of its postures.
+struct ExperimentData {
+  const Project& project;        ///< as the calibration used it
+  const Recording& as_recorded;  ///< before torque sensors and knocks were decided on
+  std::optional<std::uint64_t> seed;
+  /// What the project says of elastic joints, where the data chose them (ChooseElasticity).
+  std::optional<ElasticityChoice> open_elasticity;
+};
+
+/// Cross-validation that decides on each fold, from its training postures alone: torque sensors
+/// that contradict statics, clusters that were knocked and, in a table of at most kMostNested
+/// postures, elastic joints where the project leaves them open; beside all that an estimate decides
+/// (CrossValidate). A left-out posture has a knocked cluster where the order of time says; between
+/// the last training posture before a knock and the first one after it, the cluster is not
+/// predicted. `robot`, `comparison`: of all postures.
+CrossValidation CrossValidateExperiment(const ExperimentData& data, const RecordedModel& robot,
+                                        const ModelComparison& comparison, const FoldOptions& folds,
+                                        const Progress& progress = {});
+
+inline constexpr int kMostNested = 300;
+
+/// What the folds take as all postures together decided it: "elasticity", "causes".
+std::vector<std::string> DecidedOnce(const ExperimentData& data, bool causes_chosen);
+
+}  // namespace elastocal

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the root link's frame is: chosen by the prior, by nominal markers or by a link.
+
+#include "elastocal/calibration/gauge.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/calibration/placing_markers.hpp"
+#include "elastocal/calibration/prediction.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/robot/kinematics.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/standing_robot.hpp"
+
+namespace elastocal {
+namespace {
+
+/// The humanoid, calibrated whole: without springs, so that all is exact, or with them.
+struct GaugedRobot {
+  StandingRobot robot{12};
+  Recording recording;
+  CalibrationResult result;
+
+  explicit GaugedRobot(bool elastic) {
+    if (!elastic) {
+      Elasticity rigid = robot.model.elasticity;
+      rigid.torsion.clear();
+      rigid.base = false;
+      robot.model =
+          MakeErrorModel(robot.project.tree, robot.project.markers, robot.project.placement, rigid);
+      robot.base = FindBaseParameters(robot.model, robot.project.identifiability);
+    }
+    recording = robot.Record(robot.DrawTruth(5),
+                             {.marker_sd = 1e-4, .torque_sensors = robot.project.torque_sensors});
+    result = Calibrate(robot.model, recording, robot.base,
+                       elastic ? ModelKind::kFull : ModelKind::kGeometric, {});
+  }
+
+  static const GaugedRobot& Rigid() {
+    static const GaugedRobot rigid(false);
+    return rigid;
+  }
+  static const GaugedRobot& Elastic() {
+    static const GaugedRobot elastic(true);
+    return elastic;
+  }
+
+  CalibrationResult In(const Gauge& gauge) const {
+    CalibrationResult displaced = result;
+    ApplyGauge(gauge, {}, displaced);
+    return displaced;
+  }
+};
+
+const Gauge kByMarkers{GaugeRule::kNominalMarkers, {}};
+const Gauge kByLink{GaugeRule::kLink, "torso_1_link"};
+
+/// Poses of hands and feet against each other, in some posture.
+Eigen::VectorXd EndsAgainstEachOther(const ErrorModel& model, const Eigen::VectorXd& delta) {
+  Random random(9);
+  const Eigen::VectorXd q = 0.5 * RandomPosture(model.tree, random);
+  const auto links = CalibratedLinkTransforms(model, ApplyErrors(model, delta), q);
+  const Transform& hand = links[FindLink(model.tree, "gripper_left_base_link")];
+  Eigen::VectorXd ends(24);
+  Eigen::Index at = 0;
+  for (const char* name : {"left_sole_link", "right_sole_link"}) {
+    const Transform T = hand.inverse() * links[FindLink(model.tree, name)];
+    ends.segment<12>(at) = T.matrix().topRows<3>().reshaped();
+    at += 12;
+  }
+  return ends;
+}
+
+double PriorCost(const CalibrationResult& result, const Eigen::VectorXd& delta) {
+  Prior prior;
+  prior.scale = result.prior_scale;
+  double cost = 0.0;
+  for (int i : result.posterior.parameters) {
+    cost += std::pow(delta[i] / prior.Of(result.model.tree, result.model.parameters[i]), 2);
+  }
+  return cost;
+}
+
+// The estimate's own gauge: along each of the six displacements of the root's frame, which no
+// measurement sees, the cost of the corrections is at its minimum.
+TEST(Gauge, ThePriorMakesTheCorrectionsAtAllBranchesSmallTogether) {
+  const CalibrationResult& result = GaugedRobot::Rigid().result;
+  const double cost = PriorCost(result, result.delta);
+  constexpr double kStep = 1e-4;  // m, rad
+  for (int direction = 0; direction < 6; ++direction) {
+    const auto displaced = [&](double step) {
+      Transform T = Transform::Identity();
+      if (direction < 3) {
+        T.translation()[direction] = step;
+      } else {
+        T.linear() = Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(direction - 3)).matrix();
+      }
+      return PriorCost(result, DisplaceRoot(result.model, result.delta, T)) - cost;
+    };
+    const double plus = displaced(kStep);
+    const double minus = displaced(-kStep);
+    EXPECT_GT(plus, 0.0) << direction;
+    EXPECT_GT(minus, 0.0) << direction;
+    // Where the parabola through the three has its minimum: within a micrometre, a microradian.
+    EXPECT_NEAR(kStep * (minus - plus) / (plus + minus) / 2.0, 0.0, 1e-6) << direction;
+  }
+}
+
+TEST(Gauge, OfNominalMarkersPutsThemWhereTheProjectSays) {
+  const CalibrationResult result = GaugedRobot::Rigid().In(kByMarkers);
+  const Geometry geometry = ApplyErrors(result.model, result.delta);
+  const Eigen::Matrix3Xd nominal = MarkersOnBody(result.model, 0);
+  Eigen::Matrix3Xd estimated(3, nominal.cols());
+  Eigen::Index count = 0;
+  for (int m = 0; m < result.model.marker_count(); ++m) {
+    if (result.model.tree.links[result.model.markers[m].link].body == 0) {
+      estimated.col(count++) = geometry.p_joint_marker[m];
+    }
+  }
+  ASSERT_GE(count, 3);
+  EXPECT_LT((FitRigid(nominal, estimated).matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-12);
+  EXPECT_GT((result.delta - GaugedRobot::Rigid().result.delta).norm(), 1e-3);
+  EXPECT_EQ(GaugeText(result.gauge), "nominal_markers");
+}
+
+TEST(Gauge, OfALinkLeavesItWhereTheUrdfHasIt) {
+  const CalibrationResult result = GaugedRobot::Rigid().In(kByLink);
+  int held = 0;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    if (!result.model.parameters[i].name.starts_with("torso_1_joint.")) continue;
+    EXPECT_EQ(result.delta[i], 0.0);
+    EXPECT_EQ(result.status[i], ParameterStatus::kHeld);
+    ++held;
+  }
+  EXPECT_EQ(held, 6);
+  EXPECT_EQ(result.posterior.parameters.size() + 6,
+            GaugedRobot::Rigid().result.posterior.parameters.size());
+  EXPECT_EQ(GaugeText(result.gauge), "link torso_1_link");
+}
+
+// Nothing changes that can be measured, nor what is known of it.
+TEST(Gauge, LeavesLinksMarkersAndTheirUncertaintyAsTheyAre) {
+  const GaugedRobot& robot = GaugedRobot::Rigid();
+  const CalibrationResult& before = robot.result;
+  const Prediction predicted = Predict(before.model, before.delta, robot.recording, {});
+  const Eigen::VectorXd ends = EndsAgainstEachOther(before.model, before.delta);
+  const auto derivative = [](const CalibrationResult& of) {
+    Eigen::MatrixXd J(24, static_cast<Eigen::Index>(of.posterior.parameters.size()));
+    for (Eigen::Index k = 0; k < J.cols(); ++k) {
+      Eigen::VectorXd plus = of.delta;
+      Eigen::VectorXd minus = of.delta;
+      plus[of.posterior.parameters[static_cast<std::size_t>(k)]] += 1e-5;
+      minus[of.posterior.parameters[static_cast<std::size_t>(k)]] -= 1e-5;
+      J.col(k) =
+          (EndsAgainstEachOther(of.model, plus) - EndsAgainstEachOther(of.model, minus)) / 2e-5;
+    }
+    return J;
+  };
+  const auto variances = [&](const CalibrationResult& of) -> Eigen::VectorXd {
+    const Eigen::MatrixXd J = derivative(of);
+    return (J * of.posterior.covariance * J.transpose()).diagonal();
+  };
+  const Eigen::VectorXd known = variances(before);
+  for (const Gauge& gauge : {kByMarkers, kByLink}) {
+    const CalibrationResult after = robot.In(gauge);
+    EXPECT_LT((EndsAgainstEachOther(after.model, after.delta) - ends).cwiseAbs().maxCoeff(), 1e-9);
+    const Prediction again = Predict(after.model, after.delta, robot.recording, {});
+    EXPECT_LT((again.positions - predicted.positions).cwiseAbs().maxCoeff(), 1e-9);
+    // The placement of the estimate goes along.
+    const Geometry geometry = ApplyErrors(before.model, before.delta);
+    const Geometry displaced = ApplyErrors(after.model, after.delta);
+    Geometry here = geometry;
+    Geometry there = displaced;
+    const Eigen::VectorXd q = robot.recording.q.row(3).transpose();
+    PlaceWaist(before.placement.T_ref_waist[3], Vector6d::Zero(), here);
+    PlaceWaist(after.placement.T_ref_waist[3], Vector6d::Zero(), there);
+    EXPECT_LT((MarkerPositions(before.model, here, q) - MarkerPositions(after.model, there, q))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-9);
+    const Eigen::VectorXd still_known = variances(after);
+    for (Eigen::Index k = 0; k < known.size(); ++k) {
+      EXPECT_NEAR(still_known[k], known[k], 1e-5 * known.maxCoeff()) << k;
+    }
+  }
+}
+
+// A leg's compliance refers to the root's origin and axes: what a displacement by millimetres and
+// milliradians changes is far below what the markers show.
+TEST(Gauge, ChangesWhatLegsGiveWayByMicrometres) {
+  const GaugedRobot& robot = GaugedRobot::Elastic();
+  const Prediction predicted = Predict(robot.result.model, robot.result.delta, robot.recording, {});
+  for (const Gauge& gauge : {kByMarkers, kByLink}) {
+    const CalibrationResult after = robot.In(gauge);
+    const Prediction again = Predict(after.model, after.delta, robot.recording, {});
+    const double largest = (again.positions - predicted.positions).cwiseAbs().maxCoeff();
+    std::printf("%s: %.2g mm\n", GaugeText(gauge).c_str(), 1e3 * largest);
+    EXPECT_LT(largest, 50e-6);
+    EXPECT_GT(largest, 0.0);
+  }
+}
+
+TEST(Gauge, IsRefusedWhereItCannotBeHad) {
+  const StandingRobot& robot = GaugedRobot::Rigid().robot;
+  EXPECT_NO_THROW(CheckGauge(kByLink, robot.model, robot.base));
+  EXPECT_NO_THROW(CheckGauge(kByMarkers, robot.model, robot.base));
+  BaseParameters held = robot.base;
+  held.held = MatchParameters(robot.model.parameters, {"torso_1_joint.alpha"});
+  ExpectInputError([&] { CheckGauge(kByLink, robot.model, held); },
+                   {"link torso_1_link", "holds torso_1_joint.alpha"});
+  const ErrorModel hand = SelectMarkers(robot.model, {"LHAND_1", "LHAND_2"});
+  ExpectInputError([&] { CheckGauge(kByMarkers, hand, {}); }, {"three or more"});
+}
+
+}  // namespace
+}  // namespace elastocal
