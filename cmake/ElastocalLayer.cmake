@@ -105,6 +105,24 @@ function(elastocal_layer name)
   endif()
 endfunction()
 
+# The kernels of math/dense.hpp: for any processor, and once more for x86-64-v3.
+function(elastocal_dense_kernels)
+  set(source ${PROJECT_SOURCE_DIR}/src/elastocal/math/kernels/dense_kernels.cpp)
+  target_sources(elastocal_math PRIVATE ${source})
+  if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    return()
+  endif()
+  add_library(elastocal_kernels_v3 OBJECT ${source})
+  set_target_properties(elastocal_kernels_v3 PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(elastocal_kernels_v3 PRIVATE cxx_std_20)
+  target_compile_options(elastocal_kernels_v3 PRIVATE -march=x86-64-v3)
+  target_compile_definitions(elastocal_kernels_v3 PRIVATE ELASTOCAL_FOR_V3)
+  target_include_directories(elastocal_kernels_v3 PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(elastocal_kernels_v3 PRIVATE Eigen3::Eigen elastocal_warnings)
+  target_sources(elastocal_math PRIVATE $<TARGET_OBJECTS:elastocal_kernels_v3>)
+  target_compile_definitions(elastocal_math PRIVATE ELASTOCAL_KERNELS_V3)
+endfunction()
+
 # Statistical and simulated tests, and those that run the program many times: minutes each.
 option(ELASTOCAL_SLOW_TESTS "Build the slow tests; they add nothing under the sanitizers" ON)
 

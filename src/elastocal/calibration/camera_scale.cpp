@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "elastocal/calibration/posterior.hpp"
+#include "elastocal/math/dense.hpp"
 
 namespace elastocal {
 namespace {
@@ -39,41 +39,51 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
   // In units of the prior.
   const Eigen::VectorXd unit = result.prior_sd(fitted);
   Eigen::VectorXd pattern = Eigen::VectorXd::Zero(count);
-  std::vector<Eigen::Index> lengths;
+  std::vector<Eigen::Index> lengths, others;
   int told = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Parameter& parameter = model.parameters[fitted[static_cast<std::size_t>(i)]];
-    if (parameter.joint < 0 || GroupOf(parameter.kind) != PriorGroup::kLengths) continue;
+    if (parameter.joint < 0 || GroupOf(parameter.kind) != PriorGroup::kLengths) {
+      others.push_back(i);
+      continue;
+    }
     lengths.push_back(i);
     const double length = NominalLength(model.placements[parameter.joint], parameter.kind);
     pattern[i] = length / unit[i];
     told += std::abs(length) > kLeastLength ? 1 : 0;
   }
   if (told < kFewestLengths || !options.earlier.empty()) return std::nullopt;
-  const Eigen::MatrixXd A =
-      unit.asDiagonal() * result.posterior.data_information * unit.asDiagonal();
   const Eigen::VectorXd x = result.delta(fitted).cwiseQuotient(unit);
+  Eigen::MatrixXd A = unit.asDiagonal() * result.posterior.data_information * unit.asDiagonal();
   const Eigen::VectorXd b = A * x + x;  // of the data alone
+  // All but the lengths have their own prior, whatever that of the lengths, and are eliminated.
+  A.diagonal() += Eigen::VectorXd::Ones(count);
+  const Eigen::MatrixXd across = A(others, lengths);
+  Eigen::MatrixXd both(across.rows(), across.cols() + 1);
+  both << across, b(others);
+  const Eigen::MatrixXd eliminated =
+      across.transpose() * SolvePositive(Eigen::MatrixXd(A(others, others)), both);
+  Eigen::MatrixXd own_information = A(lengths, lengths);
+  own_information.diagonal().array() -= 1.0;
+  own_information -= eliminated.leftCols(across.cols());
+  const Eigen::VectorXd own_b = b(lengths) - eliminated.rightCols<1>();
+  const Eigen::VectorXd own_pattern = pattern(lengths);
   // The prior was widened with the pattern in it; how wide it has to be beside the pattern:
   const double narrowest = 1.0 / result.prior_scale[PriorGroup::kLengths];
   double width = narrowest;
   CommonScale scale;
   for (int round = 0; round < kRounds; ++round) {
-    Eigen::VectorXd weight = Eigen::VectorXd::Ones(count);
-    for (Eigen::Index i : lengths) weight[i] = 1.0 / (width * width);
-    Eigen::MatrixXd information = A;
-    information.diagonal() += weight;
-    const Eigen::MatrixXd covariance = InverseOfInformation(information);
-    const Eigen::VectorXd pull = weight.cwiseProduct(pattern);
-    const double known = pull.dot(pattern) - pull.dot(covariance * pull);
+    const double weight = 1.0 / (width * width);
+    Eigen::MatrixXd information = own_information;
+    information.diagonal().array() += weight;
+    const Eigen::MatrixXd covariance = InverseOfPositive(information);
+    const Eigen::VectorXd pull = weight * own_pattern;
+    const double known = pull.dot(own_pattern) - pull.dot(covariance * pull);
     if (!(known > 0.0)) return std::nullopt;
-    scale = {pull.dot(covariance * b) / known, 1.0 / std::sqrt(known)};
-    const Eigen::VectorXd own = covariance * (b + scale.size * pull) - scale.size * pattern;
-    double squares = 0.0, determined = 0.0;
-    for (Eigen::Index i : lengths) {
-      squares += own[i] * own[i] * weight[i];
-      determined += 1.0 - covariance(i, i) * weight[i];
-    }
+    scale = {pull.dot(covariance * own_b) / known, 1.0 / std::sqrt(known)};
+    const Eigen::VectorXd own = covariance * (own_b + scale.size * pull) - scale.size * own_pattern;
+    const double squares = weight * own.squaredNorm();
+    const double determined = (1.0 - weight * covariance.diagonal().array()).sum();
     if (determined < 1.0) break;
     width = std::max(narrowest, width * std::sqrt(squares / determined));
   }

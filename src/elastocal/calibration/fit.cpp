@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
 
 #include <Eigen/SparseCore>
 
@@ -23,8 +26,9 @@ constexpr double kMotionTolerance = 0.1;  // relative, of samples: where their s
 constexpr double kRoughly = 10.0;         // times these
 constexpr int kRoughIterations = 5;       // of a solve whose weights will change anyway
 constexpr double kLeastLeft = 0.05;       // of the variance of a row
-constexpr int kMaxPolishing = 6;
+constexpr int kMaxPolishing = 20;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
+constexpr double kSlow = 0.3;             // of the step before
 
 /// Whether any elastic parameter is estimated or known: else loads do not matter.
 bool IsElasticFit(const ErrorModel& model, const std::vector<int>& free,
@@ -164,6 +168,39 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   fit.weights = weights;
   fit.prior_scale = scale;
   return settled;
+}
+
+/// From a solution for loads as they were: steps after each of which the loads follow it. The
+/// information hardly changes any more, so that one linearisation serves them all, unless they fall
+/// slowly.
+void FollowLoads(const FitProblem& problem, const Selection& selection,
+                 const std::vector<int>& free, Fit& fit) {
+  FitResiduals residuals(problem, selection, free, fit);
+  BodyResiduals& body = residuals.body;
+  Eigen::VectorXd x = body.Start();
+  body.Evaluate(x, true);
+  std::optional<NormalEquations> equations(std::in_place, body);
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMaxPolishing; ++round) {
+    const Eigen::VectorXd step =
+        BoundedStep(equations->information(), equations->gradient(), x(equations->unknowns()),
+                    equations->Positions(body.nonnegative));
+    x += equations->Expand(step);
+    ++fit.iterations;
+    residuals.loads = ComputeLoads(problem.model, problem.recording, body.ToErrors(x),
+                                   body.ToPlacement(x), problem.options.load);
+    body.Evaluate(x, true);
+    const double change = step.cwiseAbs().maxCoeff();
+    if (change < kLoadTolerance) break;
+    if (change < kSlow * before) {
+      equations->UpdateGradient();
+    } else {
+      equations.emplace(body);
+    }
+    before = change;
+  }
+  Take(body, x, fit);
+  fit.final_cost = CostOf(body);
 }
 
 /// The cluster of each posture: one each, but of a motion as many moments together as twice those
@@ -348,13 +385,9 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
 
 void Polish(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
             Fit& fit) {
-  Eigen::VectorXd scale(problem.model.parameter_count());
-  for (int i = 0; i < scale.size(); ++i) scale[i] = ParameterScale(problem.model.parameters[i]);
-  for (int round = 0; round < kMaxPolishing; ++round) {
-    const Eigen::VectorXd before = fit.delta;
-    SolveOnce(problem, selection, free, {.max_iterations = problem.options.max_iterations}, fit);
-    const double change = (fit.delta - before).cwiseQuotient(scale).cwiseAbs().maxCoeff();
-    if (!IsElasticFit(problem.model, free, fit.delta) || change < kLoadTolerance) break;
+  SolveOnce(problem, selection, free, {.max_iterations = problem.options.max_iterations}, fit);
+  if (fit.termination == Termination::kConverged && IsElasticFit(problem.model, free, fit.delta)) {
+    FollowLoads(problem, selection, free, fit);
   }
   if (!fit.settled && problem.options.max_iterations < kMaxUpdates &&
       fit.termination == Termination::kConverged) {

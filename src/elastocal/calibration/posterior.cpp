@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "elastocal/calibration/body_unknowns.hpp"
+#include "elastocal/math/dense.hpp"
 
 namespace elastocal {
 
 Eigen::MatrixXd InverseOfInformation(const Eigen::MatrixXd& information) {
-  return Eigen::LLT<Eigen::MatrixXd>(information)
-      .solve(Eigen::MatrixXd::Identity(information.rows(), information.rows()));
+  return InverseOfPositive(information);
 }
 
 Eigen::MatrixXd ParameterCovariance(const ErrorModel& model, const std::vector<int>& parameters,

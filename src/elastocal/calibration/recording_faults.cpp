@@ -104,28 +104,37 @@ class FaultSearch {
     return coordinates;
   }
 
-  /// The derivative with each posture's part times a factor of its own.
+  /// What is tried: a fault, whose effect is a derivative times a factor of each posture.
+  struct Trial {
+    RecordingFault fault;
+    Eigen::VectorXd factor;
+  };
+
   template <typename Factor>
-  Blocks Weighted(const Blocks& derivative, const Factor& factor) const {
-    Blocks weighted(derivative.size());
-    for (std::size_t b = 0; b < derivative.size(); ++b) {
-      const double by = posture_[b] < 0 ? 0.0 : factor(posture_[b]);
-      if (by != 0.0) weighted[b] = by * derivative[b];
-    }
-    return weighted;
+  Trial MakeTrial(const RecordingFault& fault, const Factor& factor) const {
+    Trial trial{fault, Eigen::VectorXd(recording_.posture_count())};
+    for (int i = 0; i < recording_.posture_count(); ++i) trial.factor[i] = factor(i);
+    return trial;
   }
 
   void Try(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
-           const Blocks& derivative, RecordingFault fault, bool slides) {
-    const NormalEquations::Addition addition = equations.Add(derivative, covariance);
-    // What has to be added to the recording is what it lacks.
-    fault.size = -addition.value;
-    fault.sd = std::sqrt(addition.variance * std::max(1.0, result_.posterior.cluster_factor));
-    fault.share = addition.gain / squares_;
-    const bool certain = std::abs(fault.size) > kLeastSds * fault.sd;
-    const bool matters =
-        std::abs(fault.size) > LeastSize(fault.kind, slides) && fault.share > kLeastExplained;
-    if (certain && matters) found_.push_back(fault);
+           const Blocks& derivative, const std::vector<Trial>& trials, bool slides) {
+    Eigen::MatrixXd factors(recording_.posture_count(), static_cast<Eigen::Index>(trials.size()));
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      factors.col(static_cast<Eigen::Index>(k)) = trials[k].factor;
+    }
+    const auto additions = equations.Add(derivative, posture_, factors, covariance);
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      RecordingFault fault = trials[k].fault;
+      // What has to be added to the recording is what it lacks.
+      fault.size = -additions[k].value;
+      fault.sd = std::sqrt(additions[k].variance * std::max(1.0, result_.posterior.cluster_factor));
+      fault.share = additions[k].gain / squares_;
+      const bool certain = std::abs(fault.size) > kLeastSds * fault.sd;
+      const bool matters =
+          std::abs(fault.size) > LeastSize(fault.kind, slides) && fault.share > kLeastExplained;
+      if (certain && matters) found_.push_back(fault);
+    }
   }
 
   void TryJoint(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
@@ -137,11 +146,15 @@ class FaultSearch {
         std::find_if(result_.model.tree.joints.begin(), result_.model.tree.joints.end(),
                      [&](const Joint& candidate) { return candidate.coordinate == coordinate; });
     const bool slides = joint->type == JointType::kPrismatic;
+    std::vector<Trial> trials;
     const auto add = [&](RecordingFault fault, const auto& factor) {
       fault.coordinate = coordinate;
-      Try(equations, covariance, Weighted(derivative, factor), fault, slides);
+      trials.push_back(MakeTrial(fault, factor));
     };
-    add({FaultKind::kJointGain}, [&](int i) { return recording_.q(i, coordinate); });
+    const auto try_all = [&] {
+      Try(equations, covariance, derivative, trials, slides);
+      trials.clear();
+    };
     const int count = recording_.posture_count();
     const int stride = std::max(1, count / kSplits);
     const auto add_split = [&](int split) {
@@ -149,8 +162,11 @@ class FaultSearch {
       add({.kind = FaultKind::kJointOffset, .posture = split},
           [&](int i) { return i >= split ? 1.0 : 0.0; });
     };
+    add({FaultKind::kJointGain}, [&](int i) { return recording_.q(i, coordinate); });
+    try_all();
     const std::size_t before = found_.size();
     for (int split = stride; split < count; split += stride) add_split(split);
+    try_all();
     if (found_.size() > before) {  // between the best of these and its neighbours
       const auto best = std::max_element(
           found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
@@ -168,6 +184,7 @@ class FaultSearch {
       add({.kind = FaultKind::kJointOffset, .trial = trial, .posture = posture},
           [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; });
     }
+    try_all();
   }
 
   /// Of one trial. A scale of all of them is what a robot with other lengths shows as well.
@@ -176,11 +193,12 @@ class FaultSearch {
     Recording changed = recording_;
     changed.markers *= 1.0 + kStep;
     const Blocks derivative = Derivative(changed);
+    std::vector<Trial> trials;
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
-      Try(equations, covariance,
-          Weighted(derivative, [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; }),
-          {.kind = FaultKind::kCameraScale, .trial = trial}, false);
+      trials.push_back(MakeTrial({.kind = FaultKind::kCameraScale, .trial = trial},
+                                 [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; }));
     }
+    Try(equations, covariance, derivative, trials, false);
   }
 
   const CalibrationResult& result_;

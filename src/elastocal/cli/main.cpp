@@ -14,6 +14,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -214,6 +215,9 @@ class MessageSink : public spdlog::sinks::stderr_color_sink_mt {
 };
 
 int main(int argc, char** argv) {
+  // Memory that a matrix has left is kept for the next: new pages of the system take time.
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("elastocal", std::make_shared<MessageSink>()));
   spdlog::set_pattern("elastocal: %^%l%$: %v");

@@ -5,6 +5,8 @@
 #include <map>
 #include <numeric>
 
+#include "elastocal/math/dense.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -22,10 +24,10 @@ NormalEquations::NormalEquations(const LeastSquaresProblem& problem) : problem_(
   LayOut();
   const auto size = static_cast<Eigen::Index>(unknowns_.size());
   information_.setZero(size, size);
-  gradient_.setZero(size);
   for (const std::vector<int>& blocks : alike_) AddBlocks(blocks);
   EliminateNuisance();
   information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
+  UpdateGradient();
 }
 
 void NormalEquations::LayOut() {
@@ -100,17 +102,19 @@ NormalEquations::Columns NormalEquations::NuisanceJacobian(int block) const {
   return problem_.Jacobian(block).middleCols(layout.nuisance, layout.width);
 }
 
-Eigen::MatrixXd NormalEquations::OwnJacobians(const std::vector<int>& blocks) const {
+/// The Jacobians of blocks of the same unknowns, transposed: unknowns x rows.
+Eigen::MatrixXd NormalEquations::OwnGradients(const std::vector<int>& blocks) const {
   Eigen::Index rows = 0;
   for (int block : blocks) rows += problem_.Residual(block).size();
-  Eigen::MatrixXd J(rows, static_cast<Eigen::Index>(layout_[blocks.front()].unknowns.size()));
+  Eigen::MatrixXd gradients(static_cast<Eigen::Index>(layout_[blocks.front()].unknowns.size()),
+                            rows);
   rows = 0;
   for (int block : blocks) {
     const Columns own = OwnJacobian(block);
-    J.middleRows(rows, own.rows()) = own;
+    gradients.middleCols(rows, own.rows()) = own.transpose();
     rows += own.rows();
   }
-  return J;
+  return gradients;
 }
 
 void NormalEquations::AddBlocks(const std::vector<int>& blocks) {
@@ -120,21 +124,12 @@ void NormalEquations::AddBlocks(const std::vector<int>& blocks) {
   }
   if (active.empty()) return;
   const std::vector<int>& to = layout_[active.front()].unknowns;
-  const Eigen::MatrixXd J = OwnJacobians(active);
-  Eigen::VectorXd residual(J.rows());
-  Eigen::Index row = 0;
-  for (int block : active) {
-    const auto& of = problem_.Residual(block);
-    residual.segment(row, of.size()) = of;
-    row += of.size();
-  }
-  Eigen::MatrixXd part = Eigen::MatrixXd::Zero(J.cols(), J.cols());
-  part.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
+  const Eigen::MatrixXd gradients = OwnGradients(active);
+  Eigen::MatrixXd part = Eigen::MatrixXd::Zero(gradients.rows(), gradients.rows());
+  AddSquare(1.0, gradients, part);
   part.triangularView<Eigen::StrictlyUpper>() = part.transpose();
-  const Eigen::VectorXd slope = J.transpose() * residual;
   for (std::size_t c = 0; c < to.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);
-    gradient_[to[c]] += slope[column];
     for (std::size_t r = 0; r < to.size(); ++r) {
       if (to[r] >= to[c]) information_(to[r], to[c]) += part(static_cast<Eigen::Index>(r), column);
     }
@@ -142,14 +137,14 @@ void NormalEquations::AddBlocks(const std::vector<int>& blocks) {
 }
 
 void NormalEquations::EliminateNuisance() {
-  gains_.setZero(nuisance_rows_, information_.rows());
+  gains_.setZero(information_.rows(), nuisance_rows_);
   for (const std::vector<Group*>& batch : Batches()) {
-    Rows reduced = Rows::Zero(batch.back()->row + batch.back()->size - batch.front()->row,
-                              information_.rows());
+    const Eigen::Index first = batch.front()->row;
+    Eigen::MatrixXd reduced =
+        Eigen::MatrixXd::Zero(information_.rows(), batch.back()->row + batch.back()->size - first);
     for (Group* group : batch) {
-      auto rows = reduced.middleRows(group->row - batch.front()->row, group->size);
+      auto columns = reduced.middleCols(group->row - first, group->size);
       Eigen::MatrixXd D = kRidge * Eigen::MatrixXd::Identity(group->size, group->size);
-      Eigen::VectorXd own_gradient = Eigen::VectorXd::Zero(group->size);
       for (int block : group->blocks) {
         if (!problem_.residual_blocks[block].active) continue;
         const std::vector<int>& to = layout_[block].unknowns;
@@ -157,20 +152,44 @@ void NormalEquations::EliminateNuisance() {
         const Rows part = E.transpose().lazyProduct(OwnJacobian(block));
         for (Eigen::Index r = 0; r < part.rows(); ++r) {
           for (std::size_t c = 0; c < to.size(); ++c) {
-            rows(r, to[c]) += part(r, static_cast<Eigen::Index>(c));
+            columns(to[c], r) += part(r, static_cast<Eigen::Index>(c));
           }
         }
         D.noalias() += E.transpose() * E;
-        own_gradient.noalias() += E.transpose() * problem_.Residual(block);
       }
       group->factor.compute(D);
-      group->own = group->factor.solve(own_gradient);
-      nuisance_decrease_ += 0.5 * own_gradient.dot(group->own);
-      gradient_.noalias() -= rows.transpose() * group->own;
-      group->factor.matrixL().solveInPlace(rows);
-      gains_.middleRows(group->row, group->size) = group->factor.matrixU().solve(rows);
+      // Six columns or so are too few for what Eigen does before larger products.
+      const Eigen::MatrixXd root =
+          group->factor.matrixL().solve(Eigen::MatrixXd::Identity(group->size, group->size));
+      const Eigen::MatrixXd scaled = columns.lazyProduct(root.transpose());
+      gains_.middleCols(group->row, group->size) = scaled.lazyProduct(root);
+      columns = scaled;
     }
-    information_.selfadjointView<Eigen::Lower>().rankUpdate(reduced.transpose(), -1.0);
+    AddSquare(-1.0, reduced, information_);
+  }
+}
+
+void NormalEquations::UpdateGradient() {
+  gradient_.setZero(information_.rows());
+  const auto is_active = [&](int block) { return problem_.residual_blocks[block].active; };
+  for (int block = 0; block < static_cast<int>(layout_.size()); ++block) {
+    if (!is_active(block)) continue;
+    const std::vector<int>& to = layout_[block].unknowns;
+    const Eigen::VectorXd slope = OwnJacobian(block).transpose() * problem_.Residual(block);
+    for (std::size_t c = 0; c < to.size(); ++c) {
+      gradient_[to[c]] += slope[static_cast<Eigen::Index>(c)];
+    }
+  }
+  nuisance_decrease_ = 0.0;
+  for (Group& group : groups_) {
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(group.size);
+    for (int block : group.blocks) {
+      if (!is_active(block)) continue;
+      slope.noalias() += NuisanceJacobian(block).transpose() * problem_.Residual(block);
+    }
+    group.own = group.factor.solve(slope);
+    nuisance_decrease_ += 0.5 * slope.dot(group.own);
+    gradient_.noalias() -= Gain(group).transpose() * slope;
   }
 }
 
@@ -223,33 +242,26 @@ std::vector<Eigen::VectorXd> NormalEquations::ExplainedVariances(
   std::vector<Eigen::VectorXd> variances(layout_.size());
   for (const std::vector<int>& blocks : alike_) {
     const std::vector<int>& at = layout_[blocks.front()].unknowns;
-    const Eigen::MatrixXd J = OwnJacobians(blocks);
-    const Eigen::MatrixXd spread = J * Eigen::MatrixXd(covariance(at, at));
-    const Eigen::VectorXd all = spread.cwiseProduct(J).rowwise().sum();
+    const Eigen::MatrixXd gradients = OwnGradients(blocks);
+    const Eigen::MatrixXd spread = Product(Eigen::MatrixXd(covariance(at, at)), gradients);
+    const Eigen::VectorXd all = spread.cwiseProduct(gradients).colwise().sum().transpose();
     Eigen::Index row = 0;
     for (int block : blocks) {
       variances[block] = all.segment(row, problem_.Residual(block).size());
       row += variances[block].size();
     }
   }
-  // gain C, of many groups at once.
-  Rows reach;
-  Eigen::Index begin = 0;
+  // C gain', of all groups at once.
+  const Eigen::MatrixXd reach = Product(covariance, gains_);
   for (const Group& group : groups_) {
-    if (group.row + group.size > begin + reach.rows()) {
-      begin = group.row;
-      const Eigen::Index rows = std::min(std::max(kBatchRows, group.size), nuisance_rows_ - begin);
-      reach.noalias() = gains_.middleRows(begin, rows) * covariance;
-    }
-    const Eigen::MatrixXd own = reach.middleRows(group.row - begin, group.size);
+    const auto own = reach.middleCols(group.row, group.size);
     const Eigen::MatrixXd spread =
-        own * Gain(group).transpose() +
+        Gain(group).lazyProduct(own) +
         group.factor.solve(Eigen::MatrixXd::Identity(group.size, group.size));
     for (int block : group.blocks) {
       const Columns E = NuisanceJacobian(block);
-      const Eigen::MatrixXd across =
-          OwnJacobian(block) *
-          Eigen::MatrixXd(own(Eigen::all, layout_[block].unknowns)).transpose();
+      const Eigen::MatrixXd of_block = own(layout_[block].unknowns, Eigen::all);
+      const Eigen::MatrixXd across = OwnJacobian(block).lazyProduct(of_block);
       variances[block] += (E * spread - 2.0 * across).cwiseProduct(E).rowwise().sum();
     }
   }
@@ -305,35 +317,44 @@ NormalEquations::Score NormalEquations::Project(int block, const Eigen::MatrixXd
   return score;
 }
 
-NormalEquations::Addition NormalEquations::Add(const std::vector<Eigen::VectorXd>& derivative,
-                                               const Eigen::MatrixXd& covariance) const {
-  double score = 0.0;
-  double information = 0.0;
-  Eigen::VectorXd cross = Eigen::VectorXd::Zero(information_.rows());
+std::vector<NormalEquations::Addition> NormalEquations::Add(
+    const std::vector<Eigen::VectorXd>& derivative, const std::vector<int>& cluster,
+    const Eigen::MatrixXd& factors, const Eigen::MatrixXd& covariance) const {
+  // The derivative's part in each cluster, the nuisance taken out.
+  Eigen::VectorXd score = Eigen::VectorXd::Zero(factors.rows());
+  Eigen::VectorXd information = score;
   const auto takes_part = [&](int block) {
-    return derivative[block].size() > 0 && problem_.residual_blocks[block].active;
+    return cluster[block] >= 0 && problem_.residual_blocks[block].active;
   };
   for (int block = 0; block < static_cast<int>(layout_.size()); ++block) {
     if (!takes_part(block)) continue;
-    score += derivative[block].dot(problem_.Residual(block));
-    information += derivative[block].squaredNorm();
-    cross(layout_[block].unknowns) += OwnJacobian(block).transpose() * derivative[block];
+    score[cluster[block]] += derivative[block].dot(problem_.Residual(block));
+    information[cluster[block]] += derivative[block].squaredNorm();
   }
   for (const Group& group : groups_) {
     Eigen::VectorXd own = Eigen::VectorXd::Zero(group.size);
+    int of = -1;
     for (int block : group.blocks) {
-      if (takes_part(block)) own += NuisanceJacobian(block).transpose() * derivative[block];
+      if (!takes_part(block)) continue;
+      of = cluster[block];
+      own += NuisanceJacobian(block).transpose() * derivative[block];
     }
-    if (own.isZero(0.0)) continue;
-    score -= own.dot(group.own);
-    information -= own.dot(group.factor.solve(own));
-    cross -= Gain(group).transpose() * own;
+    if (of < 0) continue;
+    score[of] -= own.dot(group.own);
+    information[of] -= own.dot(group.factor.solve(own));
   }
-  const Eigen::VectorXd by_unknowns = covariance * cross;
-  const double left = information - cross.dot(by_unknowns);
-  if (!(left > kLeastLeft * information)) return {};
-  const double slope = score - by_unknowns.dot(gradient_);
-  return {-slope / left, 1.0 / left, slope * slope / left};
+  const auto clusters = static_cast<int>(factors.rows());
+  const Eigen::MatrixXd cross = Product(Scores(derivative, cluster, clusters), factors);
+  const Eigen::MatrixXd by_unknowns = Product(covariance, cross);
+  std::vector<Addition> additions(static_cast<std::size_t>(factors.cols()));
+  for (Eigen::Index k = 0; k < factors.cols(); ++k) {
+    const double of_all = factors.col(k).cwiseAbs2().dot(information);
+    const double left = of_all - cross.col(k).dot(by_unknowns.col(k));
+    if (!(left > kLeastLeft * of_all)) continue;
+    const double slope = factors.col(k).dot(score) - by_unknowns.col(k).dot(gradient_);
+    additions[static_cast<std::size_t>(k)] = {-slope / left, 1.0 / left, slope * slope / left};
+  }
+  return additions;
 }
 
 double CostOf(const LeastSquaresProblem& problem) {
@@ -362,7 +383,7 @@ Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& information, const Eigen::Vec
     }
     const Eigen::VectorXd slope = gradient + information * step;
     const Eigen::MatrixXd own = information(free, free);
-    step(free) = -own.llt().solve(slope(free));
+    step(free) = -SolvePositive(own, slope(free));
     bool changed = false;
     for (int i : nonnegative) {
       if (held[i] || x[i] + step[i] >= 0.0) continue;

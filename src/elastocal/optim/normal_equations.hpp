@@ -24,6 +24,9 @@ class NormalEquations {
   const std::vector<int>& unknowns() const { return unknowns_; }       ///< entries of x, ascending
   const Eigen::MatrixXd& information() const { return information_; }  ///< of these
   const Eigen::VectorXd& gradient() const { return gradient_; }        ///< of the cost by these
+  /// Takes the gradient anew, the problem having been evaluated with jacobians at another point:
+  /// near by, the information is much the same.
+  void UpdateGradient();
   /// By how much the cost falls by the nuisance alone, the unknowns staying.
   double NuisanceDecrease() const { return nuisance_decrease_; }
 
@@ -56,15 +59,18 @@ class NormalEquations {
   Score Project(int block, const Eigen::MatrixXd& A) const;
 
   /// How much of one more unknown would explain what the residuals leave, all else being fitted
-  /// beside it (score test, Rao 1948). `derivative`: of the residuals by it, by block (empty:
-  /// none).
+  /// beside it (score test, Rao 1948).
   struct Addition {
     double value = 0.0;     ///< the estimate
     double variance = 0.0;  ///< of it, where residuals have unit variance
     double gain = 0.0;      ///< by which the sum of squares would fall
   };
-  Addition Add(const std::vector<Eigen::VectorXd>& derivative,
-               const Eigen::MatrixXd& covariance) const;
+  /// Of unknowns that are tried one by one. The derivative of the residuals by each is the same
+  /// one, `derivative` (by block), times a factor of its own in every cluster of residual blocks:
+  /// `factors`, clusters x unknowns tried. Clusters are those of Scores.
+  std::vector<Addition> Add(const std::vector<Eigen::VectorXd>& derivative,
+                            const std::vector<int>& cluster, const Eigen::MatrixXd& factors,
+                            const Eigen::MatrixXd& covariance) const;
 
  private:
   /// The residual blocks that share a nuisance block.
@@ -91,9 +97,11 @@ class NormalEquations {
   void AddBlocks(const std::vector<int>& blocks);
   void EliminateNuisance();
   std::vector<std::vector<Group*>> Batches();
-  auto Gain(const Group& group) const { return gains_.middleRows(group.row, group.size); }
+  auto Gain(const Group& group) const {
+    return gains_.middleCols(group.row, group.size).transpose();
+  }
   Columns OwnJacobian(int block) const;
-  Eigen::MatrixXd OwnJacobians(const std::vector<int>& blocks) const;
+  Eigen::MatrixXd OwnGradients(const std::vector<int>& blocks) const;
   Columns NuisanceJacobian(int block) const;
 
   const LeastSquaresProblem& problem_;
@@ -104,7 +112,7 @@ class NormalEquations {
   std::vector<std::vector<int>> alike_;
   std::vector<Group> groups_;
   Eigen::Index nuisance_rows_ = 0;
-  Rows gains_;  // of all groups x unknowns
+  Eigen::MatrixXd gains_;  // unknowns x nuisance of all groups: each Gain, transposed
   Eigen::MatrixXd information_;
   Eigen::VectorXd gradient_;
   double nuisance_decrease_ = 0.0;

@@ -97,6 +97,40 @@ TEST_F(NormalEquationsTest, ScoresOfAllClustersAddUpToTheGradient) {
   EXPECT_GT(scores.col(1).norm(), 1e-3);
 }
 
+// One more unknown is what the whole problem, with a column more, has to say of it.
+TEST_F(NormalEquationsTest, AdditionIsThatOfTheWholeProblem) {
+  const NormalEquations equations = At(Eigen::VectorXd::LinSpaced(9, -1.0, 2.0));
+  std::vector<Eigen::VectorXd> derivative;
+  std::vector<int> cluster;
+  for (int block = 0; block < blocks(); ++block) {
+    const Eigen::Index rows = problem_.Residual(block).size();
+    derivative.push_back(Eigen::VectorXd::LinSpaced(rows, 0.2 * block, 1.0));
+    cluster.push_back(block < 15 ? block / 5 : -1);
+  }
+  const Eigen::MatrixXd factors = (Eigen::MatrixXd(3, 2) << 1, 0, 1, 2, 1, -1).finished();
+  const auto additions =
+      equations.Add(derivative, cluster, factors, equations.information().inverse());
+  ASSERT_EQ(additions.size(), 2u);
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(10, 10);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(10);
+    for (int block = 0; block < blocks(); ++block) {
+      if (!problem_.residual_blocks[block].active) continue;
+      const double factor = cluster[block] < 0 ? 0.0 : factors(cluster[block], k);
+      Eigen::MatrixXd J(Rows(block).rows(), 10);
+      J << Rows(block), factor * derivative[block];
+      H += J.transpose() * J;
+      g += J.transpose() * problem_.Residual(block);
+    }
+    const Eigen::MatrixXd covariance = H.inverse();
+    const double value = -(covariance * g)[9];
+    const NormalEquations::Addition& found = additions[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(found.value, value, 1e-8 * std::abs(value)) << k;
+    EXPECT_NEAR(found.variance, covariance(9, 9), 1e-8 * covariance(9, 9)) << k;
+    EXPECT_NEAR(found.gain, value * value / covariance(9, 9), 1e-8 * found.gain) << k;
+  }
+}
+
 TEST_F(NormalEquationsTest, WithoutNuisanceTheyAreTheWholeProblem) {
   problem_.nuisance_blocks.clear();
   const Eigen::VectorXd x = Eigen::VectorXd::Ones(9);

@@ -15,8 +15,10 @@ namespace {
 
 constexpr double kAxisLength = 0.1;  // m
 constexpr int kBodyPoints = 4;
-constexpr std::size_t kBlock = 3 << 16;  // numbers, 1.5 MiB
+constexpr std::size_t kBlock = 3 << 12;  // numbers, 96 KiB
 constexpr int kPointNumbers = 3 * kBodyPoints;
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 std::vector<std::string> PointNames(const std::string& body) {
   std::vector<std::string> points;
@@ -55,12 +57,11 @@ void MarkerRows::Add(double x, double y, double z) {
 void MarkerRows::AddGap() { Append(kNaN, kNaN, kNaN); }
 
 void MarkerRows::Append(double x, double y, double z) {
-  if (blocks_.empty()) {
-    blocks_.emplace_back();
-  } else if (blocks_.back().size() == kBlock) {
-    blocks_.emplace_back().reserve(kBlock);
-  }
-  blocks_.back().insert(blocks_.back().end(), {x, y, z});
+  if (blocks_.empty() || blocks_.back().size() == kBlock) blocks_.emplace_back().reserve(kBlock);
+  std::vector<double>& block = blocks_.back();
+  block.push_back(x);
+  block.push_back(y);
+  block.push_back(z);
 }
 
 MarkerTrajectories MarkerRows::Take(std::string source, std::vector<std::string> names,
@@ -68,21 +69,24 @@ MarkerTrajectories MarkerRows::Take(std::string source, std::vector<std::string>
   MarkerTrajectories markers;
   markers.source = std::move(source);
   markers.rate_hz = rate_hz;
-  const auto columns = static_cast<Eigen::Index>(3 * names.size());
+  const std::size_t columns = 3 * names.size();
   std::size_t count = 0;
   for (const std::vector<double>& block : blocks_) count += block.size();
-  markers.positions.resize(columns == 0 ? 0 : static_cast<Eigen::Index>(count) / columns, columns);
-  Eigen::Index row = 0, column = 0;
+  const std::size_t rows = columns == 0 ? 0 : count / columns;
+  markers.positions.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+  // The rows of one block at a time stay in the cache while they become columns.
+  std::vector<double> read;
+  Eigen::Index row = 0;
   for (std::vector<double>& block : blocks_) {
-    for (const double number : block) {
-      if (row == markers.positions.rows()) break;
-      markers.positions(row, column) = number;
-      if (++column == columns) {
-        column = 0;
-        ++row;
-      }
-    }
+    read.insert(read.end(), block.begin(), block.end());
     block = std::vector<double>();
+    const std::size_t whole = columns == 0 ? 0 : read.size() / columns;
+    if (whole == 0) continue;
+    const Eigen::Map<const RowMajor> frames(read.data(), static_cast<Eigen::Index>(whole),
+                                            markers.positions.cols());
+    markers.positions.middleRows(row, frames.rows()) = frames;
+    row += frames.rows();
+    read.erase(read.begin(), read.begin() + static_cast<std::ptrdiff_t>(whole * columns));
   }
   markers.names = std::move(names);
   blocks_.clear();
