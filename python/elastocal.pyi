@@ -93,7 +93,8 @@ class Calibration:
         """What a user should know, a sentence each."""
     @property
     def urdf_rmse_mm(self) -> float:
-        """Root mean square of the markers' distances to what the calibrated URDF alone predicts."""
+        """Root mean square of the markers' distances to what the calibrated URDF alone predicts; NaN of a project with
+        contact or instruments (its errors: summary['contact'])."""
     @property
     def parameters(self) -> list[str]:
         """Names, in the order of `values`."""
@@ -203,20 +204,23 @@ def calibrate(
     accept: Sequence[str] = ...,
     progress: Optional[Callable[[str, int, int], None]] = None,
 ) -> Calibration:
-    """Calibrates from a posture table or from recording folders (a path or several), like the command of that name.
-    folds: of the cross-validation, 0 for none; None: ten for a table. prior: the folder of an earlier calibration,
-    `days` ago. accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
+    """Calibrates from a posture table or from recording folders (a path or several), like the command of that name;
+    with contact or instruments, from tables of observations. folds: of the cross-validation, 0 for none; None: ten
+    for a table. prior: the folder of an earlier calibration, `days` ago. accept: mistakes of the recording to undo.
+    progress: called with (step, done, total)."""
 def validate(
     project: Project,
     calibration: _Path,
-    recording: _Path,
+    recording: Union[_Path, Sequence[_Path]],
     *,
     frozen: bool = False,
+    refit: Optional[str] = None,
     seed: Optional[int] = None,
     accept: Sequence[str] = ...,
 ) -> dict[str, Any]:
-    """Applies a saved calibration to another recording: the dict of validation.json. frozen: waist and markers are
-    not fitted anew."""
+    """Applies a saved calibration to another recording (with contact or instruments, tables of observations): the
+    dict of validation.json. frozen: waist and markers are not fitted anew. refit: 'table' registers tables and
+    trackers anew, for each posture by the others."""
 def check(
     project: Project,
     calibration: _Path,

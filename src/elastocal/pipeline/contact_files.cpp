@@ -235,11 +235,14 @@ nlohmann::ordered_json FiguresJson(const ObservedRobot& model, const Observation
   return json;
 }
 
+std::string RunStatus(const ContactRun& run) {
+  if (run.deployable()) return "converged";
+  return run.calibrated.estimate.fit.settled ? "implausible" : "not converged";
+}
+
 std::string MakeContactSummary(const ContactRun& run) {
   Json json;
-  json["status"] = run.deployable()                      ? "converged"
-                   : run.calibrated.estimate.fit.settled ? "implausible"
-                                                         : "not converged";
+  json["status"] = RunStatus(run);
   json["settled"] = run.calibrated.estimate.fit.settled;
   json["objections"] = run.verdict.objections;
   json["remarks"] = run.verdict.remarks;
