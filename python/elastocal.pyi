@@ -237,11 +237,16 @@ def check(
 def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]:
     """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'suspects',
     'warnings' and 'parameters' (values in SI units)."""
-def read(file: _Path, *, unit: str = "", topic: str = "") -> _Recording:
+def read(
+    file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...
+) -> _Recording:
     """Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, NaN where not seen, and
     'joints' with time_s (samples), positions (samples, joints), rad or m, and torques (samples, joints), N.m or N.
-    unit: of lengths, where the file does not say it ('mm'). topic: of the joints, in a bag with several."""
-def info(file: _Path, *, unit: str = "", topic: str = "") -> dict[str, Any]:
+    unit: of lengths, where the file does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame:
+    the cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all that move in it."""
+def info(
+    file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...
+) -> dict[str, Any]:
     """What is in a recording: the dict of `elastocal info --json`."""
 def write_table(
     project: Project,
