@@ -19,6 +19,9 @@ inline int FuzzRecording(const std::uint8_t* data, std::size_t size,
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     ReaderOptions options;
     if (size % 2 == 1) options.unit = "mm";
+    if (size % 3 == 1) options.tf_frame = "room";
+    if (size % 3 == 2) options.tf_frame = "cameras";
+    if (size % 5 == 1) options.tf_bodies = {"tool"};
     const RecordingFile file = read(ByteSource::OfMemory(bytes, "fuzz"), options);
     if (file.markers) {
       const MarkerTrajectories& markers = *file.markers;

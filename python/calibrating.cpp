@@ -1,25 +1,89 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
 #include "bindings.hpp"
 #include "elastocal/elastocal.hpp"
+#include "elastocal/pipeline/contact_run.hpp"
+#include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/planning/next_postures.hpp"
 
 namespace elastocal::python {
 namespace {
 
-/// A calibration that was made in this process.
+/// For a project with contact or instruments.
+void Expect(bool usual, const char* argument, const std::string& why) {
+  if (usual) return;
+  throw InputError(std::string(argument) + ": not with contact or instruments: " + why);
+}
+
+/// A calibration that was made in this process, from markers or from touches and instruments.
 struct PyCalibration {
   Project project;
-  CalibrationRun run;
+  bool deployable;
+  std::string status;
+  Names objections, warnings;
+  double urdf_rmse;  ///< m; NaN without markers
+  CalibrationResult result;
   std::map<std::string, std::string> files;
-
-  const CalibrationResult& result() const { return run.comparison.largest(); }
 };
 
-void RefuseInstruments(const Project& project) {
-  if (!project.contact) return;
-  throw InputError(project.file.string() +
-                   ": a project with contact or instruments is calibrated by the program "
-                   "(elastocal calibrate); here, one with markers was expected");
+/// What calibrate() was told.
+struct CalibrateArguments {
+  std::optional<int> folds;
+  std::string fold_by;
+  std::optional<std::uint64_t> seed;
+  int threads;
+  ZeroOffsets zero_offsets;
+  Path prior;
+  double days;
+  Names accept;
+  StepProgress progress;
+};
+
+PyCalibration CalibrateMarkers(const Project& project, const Paths& files,
+                               const CalibrateArguments& given) {
+  CalibrationRun run = CalibrateExperiment(
+      project, files,
+      {.folds = given.folds,
+       .fold_unit = Named<FoldUnit>("fold_by", given.fold_by,
+                                    {{"posture", FoldUnit::kPosture}, {"trial", FoldUnit::kTrial}}),
+       .threads = given.threads,
+       .zero_offsets = given.zero_offsets,
+       .seed = given.seed,
+       .accept = given.accept,
+       .prior = given.prior,
+       .days = given.days,
+       .progress = given.progress});
+  auto texts = MakeCalibrationFiles(project, run);
+  const int in_urdf = static_cast<int>(run.deployment.urdf_kind);
+  return {project,
+          run.deployable(),
+          RunStatus(run),
+          run.verdict.objections,
+          run.warnings,
+          run.comparison.metrics[in_urdf].rmse_3d,
+          run.comparison.largest(),
+          std::move(texts)};
+}
+
+PyCalibration CalibrateInstruments(const Project& project, const Paths& files,
+                                   const CalibrateArguments& given) {
+  Expect(given.fold_by == "posture", "fold_by", "a fold leaves out postures");
+  Expect(given.prior.empty(), "prior", "an earlier calibration is used with markers only");
+  Expect(given.accept.empty(), "accept", "it is about recordings of trials");
+  ContactRunOptions options{
+      .folds = given.folds, .threads = given.threads, .zero_offsets = given.zero_offsets};
+  if (given.progress) {
+    options.progress = [&](int done, int total) {
+      given.progress("cross-validation", done, total);
+    };
+  }
+  ContactRun run = CalibrateContacts(project, files, options);
+  auto texts = MakeContactFiles(project, run);
+  return {project,        run.deployable(),
+          RunStatus(run), run.verdict.objections,
+          run.warnings,   std::numeric_limits<double>::quiet_NaN(),
+          run.result,     std::move(texts)};
 }
 
 PyCalibration CalibrateFiles(const Project& project, const py::object& recordings,
@@ -27,27 +91,23 @@ PyCalibration CalibrateFiles(const Project& project, const py::object& recording
                              std::optional<std::uint64_t> seed, int threads,
                              const std::string& zero_offsets, const Path& prior, double days,
                              const Names& accept, const StepProgress& progress) {
-  RefuseInstruments(project);
   ExpectWithin("threads", threads, 1, 64);
   ExpectBounded("calibrate --days", days);
   const Paths files = PathsOf(recordings);
-  const ExperimentOptions options{
-      .folds = folds,
-      .fold_unit = Named<FoldUnit>("fold_by", fold_by,
-                                   {{"posture", FoldUnit::kPosture}, {"trial", FoldUnit::kTrial}}),
-      .threads = threads,
-      .zero_offsets = Named<ZeroOffsets>(
-          "zero_offsets", zero_offsets,
-          {{"origin", ZeroOffsets::kOrigin}, {"encoder", ZeroOffsets::kEncoder}}),
-      .seed = seed,
-      .accept = accept,
-      .prior = prior,
-      .days = days,
-      .progress = progress};
+  const CalibrateArguments given{
+      folds,
+      fold_by,
+      seed,
+      threads,
+      Named<ZeroOffsets>("zero_offsets", zero_offsets,
+                         {{"origin", ZeroOffsets::kOrigin}, {"encoder", ZeroOffsets::kEncoder}}),
+      prior,
+      days,
+      accept,
+      progress};
   return Unlocked([&] {
-    PyCalibration calibration{project, CalibrateExperiment(project, files, options), {}};
-    calibration.files = MakeCalibrationFiles(project, calibration.run);
-    return calibration;
+    return project.contact ? CalibrateInstruments(project, files, given)
+                           : CalibrateMarkers(project, files, given);
   });
 }
 
@@ -65,25 +125,43 @@ void Save(const PyCalibration& calibration, const Path& folder) {
 
 Names ParameterNames(const PyCalibration& calibration) {
   Names names;
-  for (const Parameter& parameter : calibration.result().model.parameters) {
+  for (const Parameter& parameter : calibration.result.model.parameters) {
     names.push_back(parameter.name);
   }
   return names;
 }
 
-py::object Validate(const Project& project, const Path& calibration, const Path& recording,
-                    bool frozen, std::optional<std::uint64_t> seed, const Names& accept) {
-  RefuseInstruments(project);
+py::object Validate(const Project& project, const Path& calibration, const py::object& recording,
+                    bool frozen, const std::optional<std::string>& refit,
+                    std::optional<std::uint64_t> seed, const Names& accept) {
+  const Paths files = PathsOf(recording);
+  const bool refit_table = refit && Named<bool>("refit", *refit, {{"table", true}});
+  if (project.contact) {
+    Expect(!frozen, "frozen", "it is about markers; touches have refit='table'");
+    Expect(accept.empty(), "accept", "it is about recordings of trials");
+    return FromJson(Unlocked([&] {
+      return MakeContactValidationJson(ValidateContacts(project, calibration, files, refit_table));
+    }));
+  }
+  if (refit_table) throw InputError("refit: 'table' is about touches of a table");
+  if (files.size() != 1) {
+    throw InputError("recording: " + std::to_string(files.size()) +
+                     " files; one was expected, because the project has neither contact nor "
+                     "instruments");
+  }
   return FromJson(Unlocked([&] {
     return MakeValidationJson(ValidateCalibration(
-        project, calibration, recording, {.frozen = frozen, .seed = seed, .accept = accept}));
+        project, calibration, files.front(), {.frozen = frozen, .seed = seed, .accept = accept}));
   }));
 }
 
 py::object Check(const Project& project, const Path& calibration, const Path& recording,
                  double level, double days, std::optional<std::uint64_t> seed,
                  const Names& accept) {
-  RefuseInstruments(project);
+  if (project.contact) {
+    throw InputError(project.file.string() +
+                     ": check is about markers, and the project has contact or instruments");
+  }
   ExpectBounded("check --level", level);
   ExpectBounded("check --days", days);
   const CheckOptions options{
@@ -118,31 +196,24 @@ py::dict Compare(const Path& a, const Path& b, double level) {
 
 void AddCalibrationClass(py::module_& module) {
   py::class_<PyCalibration>(module, "Calibration", "What calibrate() found.")
+      .def_readonly("deployable", &PyCalibration::deployable,
+                    "Whether the calibration can be trusted; if not, see `objections`.")
+      .def_readonly("status", &PyCalibration::status,
+                    "'converged', 'not converged', 'failed' or 'implausible'.")
+      .def_readonly("objections", &PyCalibration::objections,
+                    "Why it cannot be trusted, a sentence each.")
+      .def_readonly("warnings", &PyCalibration::warnings,
+                    "What a user should know, a sentence each.")
       .def_property_readonly(
-          "deployable", [](const PyCalibration& c) { return c.run.deployable(); },
-          "Whether the calibration can be trusted; if not, see `objections`.")
-      .def_property_readonly(
-          "status", [](const PyCalibration& c) { return RunStatus(c.run); },
-          "'converged', 'not converged', 'failed' or 'implausible'.")
-      .def_property_readonly(
-          "objections", [](const PyCalibration& c) { return c.run.verdict.objections; },
-          "Why it cannot be trusted, a sentence each.")
-      .def_property_readonly(
-          "warnings", [](const PyCalibration& c) { return c.run.warnings; },
-          "What a user should know, a sentence each.")
-      .def_property_readonly(
-          "urdf_rmse_mm",
-          [](const PyCalibration& c) {
-            const int kind = static_cast<int>(c.run.deployment.urdf_kind);
-            return 1e3 * c.run.comparison.metrics[kind].rmse_3d;
-          },
-          "Root mean square of the markers' distances to what the calibrated URDF alone predicts.")
+          "urdf_rmse_mm", [](const PyCalibration& c) { return 1e3 * c.urdf_rmse; },
+          "Root mean square of the markers' distances to what the calibrated URDF alone predicts; "
+          "NaN of a project with contact or instruments (its errors: summary['contact']).")
       .def_property_readonly("parameters", ParameterNames, "Names, in the order of `values`.")
       .def_property_readonly(
-          "values", [](const PyCalibration& c) { return c.result().delta; },
+          "values", [](const PyCalibration& c) { return c.result.delta; },
           "Errors (parameters,), rad, m and their ratios.")
       .def_property_readonly(
-          "sd", [](const PyCalibration& c) { return c.result().sd; },
+          "sd", [](const PyCalibration& c) { return c.result.sd; },
           "Standard deviations (parameters,); NaN where none applies.")
       .def_property_readonly(
           "summary", [](const PyCalibration& c) { return FromJson(c.files.at("summary.json")); },
@@ -163,14 +234,16 @@ void AddCalibrating(py::module_& module) {
       "zero_offsets"_a = "origin", "prior"_a = "", "days"_a = 1.0, "accept"_a = Names(),
       "progress"_a = StepProgress(),
       "Calibrates from a posture table or from recording folders (a path or several), like the "
-      "command of that name. folds: of the cross-validation, 0 for none; None: ten for a table. "
+      "command of that name; with contact or instruments, from tables of observations. folds: of "
+      "the cross-validation, 0 for none; None: ten for a table. "
       "prior: the folder of an earlier calibration, `days` ago. accept: mistakes of the recording "
       "to undo. progress: called with (step, done, total).");
   module.def(
       "validate", Validate, "project"_a, "calibration"_a, "recording"_a, py::kw_only(),
-      "frozen"_a = false, "seed"_a = std::nullopt, "accept"_a = Names(),
-      "Applies a saved calibration to another recording: the dict of validation.json. frozen: "
-      "waist and markers are not fitted anew.");
+      "frozen"_a = false, "refit"_a = std::nullopt, "seed"_a = std::nullopt, "accept"_a = Names(),
+      "Applies a saved calibration to another recording (with contact or instruments, tables of "
+      "observations): the dict of validation.json. frozen: waist and markers are not fitted anew. "
+      "refit: 'table' registers tables and trackers anew, for each posture by the others.");
   module.def(
       "check", Check, "project"_a, "calibration"_a, "recording"_a, py::kw_only(), "level"_a = 0.05,
       "days"_a = 1.0, "seed"_a = std::nullopt, "accept"_a = Names(),

@@ -93,7 +93,8 @@ class Calibration:
         """What a user should know, a sentence each."""
     @property
     def urdf_rmse_mm(self) -> float:
-        """Root mean square of the markers' distances to what the calibrated URDF alone predicts."""
+        """Root mean square of the markers' distances to what the calibrated URDF alone predicts; NaN of a project with
+        contact or instruments (its errors: summary['contact'])."""
     @property
     def parameters(self) -> list[str]:
         """Names, in the order of `values`."""
@@ -203,20 +204,23 @@ def calibrate(
     accept: Sequence[str] = ...,
     progress: Optional[Callable[[str, int, int], None]] = None,
 ) -> Calibration:
-    """Calibrates from a posture table or from recording folders (a path or several), like the command of that name.
-    folds: of the cross-validation, 0 for none; None: ten for a table. prior: the folder of an earlier calibration,
-    `days` ago. accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
+    """Calibrates from a posture table or from recording folders (a path or several), like the command of that name;
+    with contact or instruments, from tables of observations. folds: of the cross-validation, 0 for none; None: ten
+    for a table. prior: the folder of an earlier calibration, `days` ago. accept: mistakes of the recording to undo.
+    progress: called with (step, done, total)."""
 def validate(
     project: Project,
     calibration: _Path,
-    recording: _Path,
+    recording: Union[_Path, Sequence[_Path]],
     *,
     frozen: bool = False,
+    refit: Optional[str] = None,
     seed: Optional[int] = None,
     accept: Sequence[str] = ...,
 ) -> dict[str, Any]:
-    """Applies a saved calibration to another recording: the dict of validation.json. frozen: waist and markers are
-    not fitted anew."""
+    """Applies a saved calibration to another recording (with contact or instruments, tables of observations): the
+    dict of validation.json. frozen: waist and markers are not fitted anew. refit: 'table' registers tables and
+    trackers anew, for each posture by the others."""
 def check(
     project: Project,
     calibration: _Path,
@@ -233,11 +237,16 @@ def check(
 def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]:
     """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'suspects',
     'warnings' and 'parameters' (values in SI units)."""
-def read(file: _Path, *, unit: str = "", topic: str = "") -> _Recording:
+def read(
+    file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...
+) -> _Recording:
     """Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, NaN where not seen, and
     'joints' with time_s (samples), positions (samples, joints), rad or m, and torques (samples, joints), N.m or N.
-    unit: of lengths, where the file does not say it ('mm'). topic: of the joints, in a bag with several."""
-def info(file: _Path, *, unit: str = "", topic: str = "") -> dict[str, Any]:
+    unit: of lengths, where the file does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame:
+    the cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all that move in it."""
+def info(
+    file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...
+) -> dict[str, Any]:
     """What is in a recording: the dict of `elastocal info --json`."""
 def write_table(
     project: Project,

@@ -23,9 +23,10 @@ py::dict ToDict(const MarkerTrajectories& markers, const RecordingFile& file) {
 }
 
 /// What the file holds, under its own names.
-py::dict Read(const Path& path, const std::string& unit, const std::string& topic) {
-  RecordingFile file =
-      Unlocked([&] { return ReadAnyRecording(path, {.unit = unit, .joints_topic = topic}); });
+py::dict Read(const Path& path, const std::string& unit, const std::string& topic,
+              const std::string& tf_frame, const Names& tf_bodies) {
+  const ReaderOptions options{unit, topic, tf_frame, tf_bodies};
+  RecordingFile file = Unlocked([&] { return ReadAnyRecording(path, options); });
   py::dict result;
   result["format"] = file.format;
   result["markers"] = py::none();
@@ -43,11 +44,12 @@ py::dict Read(const Path& path, const std::string& unit, const std::string& topi
   return result;
 }
 
-py::object Info(const Path& file, const std::string& unit, const std::string& topic) {
+py::object Info(const Path& file, const std::string& unit, const std::string& topic,
+                const std::string& tf_frame, const Names& tf_bodies) {
   constexpr int kPictureColumns = 48;
   return FromJson(Unlocked([&] {
     return MakeInfoJson(
-        DescribeRecording(file.string(), {.unit = unit, .joints_topic = topic}, kPictureColumns));
+        DescribeRecording(file.string(), {unit, topic, tf_frame, tf_bodies}, kPictureColumns));
   }));
 }
 
@@ -82,11 +84,15 @@ void WriteTable(const Project& project, const Path& file, const RowMajor& positi
 
 void AddRecordings(py::module_& module) {
   module.def("read", Read, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
+             "tf_frame"_a = "", "tf_bodies"_a = Names(),
              "Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, "
              "NaN where not seen, and 'joints' with time_s (samples), positions (samples, joints), "
              "rad or m, and torques (samples, joints), N.m or N. unit: of lengths, where the file "
-             "does not say it ('mm'). topic: of the joints, in a bag with several.");
+             "does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame: the "
+             "cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all "
+             "that move in it.");
   module.def("info", Info, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
+             "tf_frame"_a = "", "tf_bodies"_a = Names(),
              "What is in a recording: the dict of `elastocal info --json`.");
   module.def("write_table", WriteTable, "project"_a, "file"_a, "positions"_a, "markers"_a,
              py::kw_only(), "marker_names"_a = std::nullopt,

@@ -140,6 +140,9 @@ class Files(unittest.TestCase):
         np.testing.assert_array_equal(bag["joints"]["positions"][:, 0], 0.25 * np.arange(10))
         self.assertEqual(bag["joints"]["torques"].shape, (10, 2))
         self.assertIsNone(bag["markers"]["up"])
+        moved = elastocal.read(SOURCE / "tests/recordings/tf.mcap", tf_frame="cameras", tf_bodies=["cameras/LHAND"])
+        np.testing.assert_array_equal(moved["markers"]["positions"], bag["markers"]["positions"])
+        self.assertIsNone(elastocal.info(SOURCE / "tests/recordings/tf.mcap", tf_frame="camera")["markers"])
         log = SOURCE / "tests/recordings/joints_matrix.npz"
         np.testing.assert_array_equal(elastocal.read(log)["joints"]["positions"], np.load(log)["q"])
         self.assertEqual(elastocal.info(log)["joints"]["samples"], 6)

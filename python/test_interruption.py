@@ -12,6 +12,7 @@ import unittest
 import numpy as np
 
 import elastocal
+from test_contact import measured_project
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 TALOS = SOURCE / "models/talos/project.yaml"
@@ -61,6 +62,15 @@ class Interruption(unittest.TestCase):
             for call in ("calibrate(project, folder + '/large.csv', folds=20, threads=2)",
                          "validate(project, folder + '/out', folder + '/large.csv')",
                          "check(project, folder + '/out', folder + '/large.csv')"):
+                self.interrupt("elastocal." + call, project.file, name)
+
+    def test_calibrate_and_validate_with_instruments(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            project = measured_project(folder, {"small.csv": 20, "large.csv": 400})
+            elastocal.calibrate(project, folder / "small.csv", folds=0).save(folder / "out")
+            for call in ("calibrate(project, folder + '/large.csv', folds=100, threads=2)",
+                         "validate(project, folder + '/out', folder + '/large.csv', refit='table')"):
                 self.interrupt("elastocal." + call, project.file, name)
 
     def test_other_threads_run_meanwhile(self):

@@ -286,10 +286,18 @@ inline std::string JointStateCdr(const JointLog& log, int sample) {
   return bytes.text;
 }
 
+/// The body whose first point is marker 4 `body`.
+inline std::string BodyOf(const MarkerTrajectories& markers, int body) {
+  const std::string& name = markers.names[static_cast<std::size_t>(4 * body)];
+  return name.substr(0, name.size() - 2);  // without "_1"
+}
+
 /// Poses of bodies whose points are the markers, four each (RecordingFile::markers), stamped by the
-/// clock of a log that begins at `start_s`; `add` gets (channel, message).
+/// clock of a log that begins at `start_s`, or transforms (tf) in frame world; `add` gets (channel,
+/// message).
 template <typename AddMessage>
-void AddPoses(const MarkerTrajectories& markers, double start_s, const AddMessage& add) {
+void AddPoses(const MarkerTrajectories& markers, double start_s, bool as_transforms,
+              const AddMessage& add) {
   for (int frame = 0; frame < markers.frame_count(); ++frame) {
     const auto ns = static_cast<std::int64_t>(std::llround(1e9 * (frame / markers.rate_hz)) +
                                               std::llround(1e9 * start_s));
@@ -303,18 +311,21 @@ void AddPoses(const MarkerTrajectories& markers, double start_s, const AddMessag
       const Eigen::Quaterniond q(axes);
       Bytes bytes;
       bytes.text = std::string("\0\1\0\0", 4);
+      if (as_transforms) bytes.U(1, 4);  // one in the message
       bytes.U(static_cast<std::uint64_t>(ns / 1000000000), 4);
-      bytes.U(static_cast<std::uint64_t>(ns % 1000000000), 4).CdrText("world").Align(8);
+      bytes.U(static_cast<std::uint64_t>(ns % 1000000000), 4).CdrText("world");
+      if (as_transforms) bytes.CdrText(BodyOf(markers, body));
+      bytes.Align(8);
       for (const double number : {point(0).x(), point(0).y(), point(0).z()}) bytes.F64(number);
       for (const double number : {q.x(), q.y(), q.z(), q.w()}) bytes.F64(number);
-      add(1 + body, bytes.text);
+      add(as_transforms ? 1 : 1 + body, bytes.text);
     }
   }
 }
 
-/// A bag of joint states, and of poses of bodies where they are given, without chunks.
+/// A bag of joint states, and of poses of bodies where they are given (or of tf), without chunks.
 inline std::string McapBytes(const JointLog& log, const MarkerTrajectories* bodies = nullptr,
-                             double bodies_start_s = 0.0) {
+                             double bodies_start_s = 0.0, bool as_transforms = false) {
   const std::string magic("\x89MCAP0\r\n", 8);
   std::string file = magic;
   const auto add = [&](int kind, const Bytes& record) {
@@ -331,18 +342,17 @@ inline std::string McapBytes(const JointLog& log, const MarkerTrajectories* bodi
     add(5, message);
   }
   if (bodies) {
-    add(3, Bytes().U(2, 2).Text("geometry_msgs/msg/PoseStamped").Text("ros2msg").Text(""));
-    for (int body = 0; body < bodies->marker_count() / 4; ++body) {
-      std::string name = bodies->names[static_cast<std::size_t>(4 * body)];
-      name.resize(name.size() - 2);  // without "_1"
-      add(4, Bytes()
-                 .U(static_cast<std::uint64_t>(1 + body), 2)
-                 .U(2, 2)
-                 .Text("/mocap/" + name + "/pose")
-                 .Text("cdr")
-                 .U(0, 4));
+    const char* const type =
+        as_transforms ? "tf2_msgs/msg/TFMessage" : "geometry_msgs/msg/PoseStamped";
+    add(3, Bytes().U(2, 2).Text(type).Text("ros2msg").Text(""));
+    const int topics = as_transforms ? 1 : bodies->marker_count() / 4;
+    for (int i = 0; i < topics; ++i) {
+      Bytes channel;
+      channel.U(static_cast<std::uint64_t>(1 + i), 2).U(2, 2);
+      channel.Text(as_transforms ? "/tf" : "/mocap/" + BodyOf(*bodies, i) + "/pose");
+      add(4, channel.Text("cdr").U(0, 4));
     }
-    AddPoses(*bodies, bodies_start_s, [&](int channel, const std::string& text) {
+    AddPoses(*bodies, bodies_start_s, as_transforms, [&](int channel, const std::string& text) {
       Bytes message;
       message.U(static_cast<std::uint64_t>(channel), 2).U(0, 4).U(7, 8).U(7, 8);
       message.text += text;

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes bag.db3 with the messages of make_bags.mjs (messages.json), in the tables of rosbag2."""
+"""Writes bag.db3 or tf.db3 with the messages of make_bags.mjs (messages.json or transforms.json), in the tables of
+rosbag2: make_db3.py JSON DB3."""
 import json
 import pathlib
 import sqlite3
 import sys
 
 messages = json.loads(pathlib.Path(sys.argv[1]).read_text())
-pathlib.Path("bag.db3").unlink(missing_ok=True)
-bag = sqlite3.connect("bag.db3")
+pathlib.Path(sys.argv[2]).unlink(missing_ok=True)
+bag = sqlite3.connect(sys.argv[2])
 bag.execute("PRAGMA page_size=1024")
 bag.execute(
     "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,"

@@ -17,6 +17,8 @@ import tempfile
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / "python"))
+from test_contact import elastocal, measured_project
 CALLS = {
     "project": "elastocal.Project(talos)",
     "design": "elastocal.design(project, elastic=True)",
@@ -30,6 +32,8 @@ CALLS = {
     "calibrate folds": "elastocal.calibrate(project, recording, folds=10, threads=2)",
     "validate": "elastocal.validate(project, calibration, recording)",
     "check": "elastocal.check(project, calibration, recording)",
+    "calibrate instruments": "elastocal.calibrate(measured, table, folds=20, threads=2)",
+    "validate instruments": "elastocal.validate(measured, scratch + '_measured/out', table, refit='table')",
     "compare": "elastocal.compare(calibration, calibration)",
     "read": "elastocal.read(pathlib.Path(recording) / 'leg_left.tsv')",
     "runtime": "elastocal.Runtime(calibration, talos)",
@@ -39,6 +43,7 @@ import pathlib, sys, time
 import elastocal
 talos, recording, calibration, scratch, other = sys.argv[1:6]
 project, instruments = elastocal.Project(talos), elastocal.Project(other)
+measured, table = elastocal.Project(scratch + "_measured/project.yaml"), scratch + "_measured/large.csv"
 print("ready", flush=True)
 begin = time.monotonic()
 {call}
@@ -82,6 +87,10 @@ def main() -> None:
             words = [str(SOURCE / "models/talos/project.yaml"), args.recording, args.calibration,
                      str(pathlib.Path(scratch) / "simulated"),
                      str(SOURCE / "examples/talos_touch/project.yaml")]
+            measured = pathlib.Path(words[3] + "_measured")
+            measured.mkdir()
+            project = measured_project(measured, {"small.csv": 20, "large.csv": 400})
+            elastocal.calibrate(project, measured / "small.csv", folds=0).save(measured / "out")
             child = start(CALLS[name], words)
             try:
                 out, errors = child.communicate(timeout=args.longest)

@@ -12,6 +12,7 @@
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 
@@ -23,7 +24,13 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
                                                       options.recordings.end());
   const Project project = ReadProject(options.project);
-  if (project.contact) return RunContactCalibration(options, project);
+  if (project.contact) {
+    if (!options.prior.empty()) throw InputError("--prior is about markers, not touches");
+    if (!options.accept.empty()) throw InputError("--accept is about recordings of trials");
+    if (options.fold_by == "trial")
+      throw InputError("--fold-by trial is about recordings of trials");
+    return RunContactCalibration(options, project);
+  }
   std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   OutputSet outputs;
   if (!options.prior.empty()) {

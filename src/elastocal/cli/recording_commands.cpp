@@ -123,6 +123,14 @@ void AddRecording(CLI::App& command, RecordingCommand& options) {
       .add_option("--topic", options.reading.joints_topic,
                   "Topic of the joint states, where a bag has several")
       ->type_name("NAME");
+  command
+      .add_option("--tf-frame", options.reading.tf_frame,
+                  "Frame of the cameras in the tf of a bag: bodies are what moves in it")
+      ->type_name("NAME");
+  command
+      .add_option("--tf-bodies", options.reading.tf_bodies,
+                  "Frames of tf that are bodies (default: all that move in the cameras' frame)")
+      ->type_name("NAME");
 }
 
 }  // namespace

@@ -92,7 +92,8 @@ fs::path ReadFileName(const YamlValue& value, const fs::path& folder, std::vecto
 TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Project& project,
                      std::vector<fs::path>& used) {
   value.ExpectKeys({"name", "kind", "samples", "chain", "chains", "support", "markers", "joints",
-                    "markers_unit", "joints_topic", "expected_lag_s", "truth"});
+                    "markers_unit", "joints_topic", "tf_frame", "tf_bodies", "expected_lag_s",
+                    "truth"});
   TrialFiles trial;
   CheckFileName(value.Get("name"));
   trial.name = value.Get("name").Text();
@@ -114,6 +115,10 @@ TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Proje
     unit->Expect(MetresIn(trial.reading.unit) > 0.0, "mm, cm, m or in");
   }
   if (const auto topic = value.Find("joints_topic")) trial.reading.joints_topic = topic->Text();
+  if (const auto frame = value.Find("tf_frame")) trial.reading.tf_frame = frame->Text();
+  if (const auto bodies = value.Find("tf_bodies")) {
+    for (const YamlValue& body : bodies->Items()) trial.reading.tf_bodies.push_back(body.Text());
+  }
   if (const auto lag = value.Find("expected_lag_s")) trial.expected_lag_s = lag->Bounded();
   if (const auto truth = value.Find("truth")) trial.truth = ReadFileName(*truth, folder, used);
   return trial;
@@ -161,6 +166,10 @@ void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& p
   emit_file("joints", trial.joints);
   if (!trial.reading.unit.empty()) emit("markers_unit", trial.reading.unit);
   if (!trial.reading.joints_topic.empty()) emit("joints_topic", trial.reading.joints_topic);
+  if (!trial.reading.tf_frame.empty()) emit("tf_frame", trial.reading.tf_frame);
+  if (!trial.reading.tf_bodies.empty()) {
+    yaml << YAML::Key << "tf_bodies" << YAML::Value << YAML::Flow << trial.reading.tf_bodies;
+  }
   if (trial.expected_lag_s) {
     yaml << YAML::Key << "expected_lag_s" << YAML::Value << FormatNumber(*trial.expected_lag_s);
   }

@@ -84,6 +84,17 @@ TEST_F(ExperimentTest, ReadsTheAxisThatIsUpAndTheExpectedLag) {
   EXPECT_EQ(read.trials[0].expected_lag_s, -2.5);
 }
 
+TEST_F(ExperimentTest, ReadsFramesOfTransforms) {
+  const Experiment experiment = Parse(
+      "trials: [{name: a, chain: head, markers: a.tsv, joints: a.csv, tf_frame: world, "
+      "tf_bodies: [cameras/HEAD, WAIST]}]");
+  WriteExperiment(folder_, experiment, project_);
+  for (const Experiment& one : {experiment, ReadExperiment(folder_, project_)}) {
+    EXPECT_EQ(one.trials[0].reading.tf_frame, "world");
+    EXPECT_EQ(one.trials[0].reading.tf_bodies, (std::vector<std::string>{"cameras/HEAD", "WAIST"}));
+  }
+}
+
 TEST_F(ExperimentTest, NamesWrongKeys) {
   ExpectError("", {"experiment.yaml:1: ", "'trials' is missing"});
   ExpectError("trails: []", {"experiment.yaml:1: ", "'trails'", "did you mean 'trials'"});

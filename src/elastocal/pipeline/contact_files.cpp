@@ -33,11 +33,14 @@ Json ParameterList(const CalibrationResult& result) {
 
 }  // namespace
 
+std::string RunStatus(const ContactRun& run) {
+  if (run.deployable()) return "converged";
+  return run.calibrated.estimate.fit.settled ? "implausible" : "not converged";
+}
+
 std::string MakeContactSummary(const ContactRun& run) {
   Json json;
-  json["status"] = run.deployable()                      ? "converged"
-                   : run.calibrated.estimate.fit.settled ? "implausible"
-                                                         : "not converged";
+  json["status"] = RunStatus(run);
   json["settled"] = run.calibrated.estimate.fit.settled;
   json["objections"] = run.verdict.objections;
   json["remarks"] = run.verdict.remarks;

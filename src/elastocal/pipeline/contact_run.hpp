@@ -66,6 +66,9 @@ ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options);
 
+/// "converged", "not converged", or "implausible" where it settled on what cannot be trusted.
+std::string RunStatus(const ContactRun& run);
+
 /// What the observations that are left out, and how far they are off, are called: "left.csv:7:
 /// ...", one sentence each.
 std::vector<std::string> DescribeOutliers(const ContactRun& run);

@@ -138,6 +138,12 @@ TEST_F(ForeignRecordingsTest, OneBagHoldsBoth) {
   folder_.Write("a.mcap", McapBytes(stamped, &played.markers, kStart - 0.75));
   ExpectSame(Read("a.mcap", "a.mcap"), 1e-6);
   ExpectInputError([&] { Read("a.mcap", "a.mcap", ""); }, {"a.mcap", "points up"});
+  folder_.Write("b.mcap", McapBytes(stamped, &played.markers, kStart - 0.75, true));
+  const Measurements poses = Read("a.mcap", "a.mcap");
+  const Measurements transforms = Read("b.mcap", "b.mcap", "up: z\n", ", tf_frame: world");
+  EXPECT_EQ(transforms.calibration.q, poses.calibration.q);  // every bit
+  ExpectInputError([&] { Read("b.mcap", "b.mcap", "up: z\n", ", tf_frame: word"); },
+                   {"b.mcap", "no frame 'word'", "did you mean 'world'"});
 }
 
 TEST_F(ForeignRecordingsTest, LabelsOfOthersAreNamedInTheProject) {

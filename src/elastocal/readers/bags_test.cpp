@@ -72,6 +72,30 @@ TEST(BagsTest, DatabaseOfSqlite) {
   ExpectMadeBag(ReadBag(ReadFile(file)));
 }
 
+/// The same poses as transforms, beside those of a robot, by the same libraries.
+TEST(BagsTest, TransformsAreThePosesOfBodies) {
+  const RecordingFile poses = ReadRecordingFile(SourceFile("tests/recordings/bag_none.mcap"), {});
+  for (const char* name : {"tf.mcap", "tf.db3", "tf1.bag"}) {
+    SCOPED_TRACE(name);
+    const std::filesystem::path path = SourceFile(std::string("tests/recordings/") + name);
+    const RecordingFile file = ReadRecordingFile(path, {.tf_frame = "cameras"});
+    ExpectMadeBag(file);
+    const auto bits = [](const RecordingFile& of) {
+      return of.markers->positions.unaryExpr([](double x) { return std::isnan(x) ? -1.0 : x; });
+    };
+    EXPECT_EQ(bits(file), bits(poses));
+    EXPECT_EQ(file.markers_start_s, poses.markers_start_s);
+    const RecordingFile unasked = ReadRecordingFile(path, {});
+    EXPECT_FALSE(unasked.markers.has_value());
+    EXPECT_TRUE(unasked.joints.has_value());
+    EXPECT_NE(unasked.why_no_markers.find("base_link, cameras, room; give"), std::string::npos)
+        << unasked.why_no_markers;
+    EXPECT_NE(ReadRecordingFile(path, {.tf_frame = "camera"})
+                  .why_no_markers.find("no frame 'camera'; did you mean 'cameras'"),
+              std::string::npos);
+  }
+}
+
 JointLog SomeLog() {
   JointLog log;
   log.names = {"elbow", "wrist"};

@@ -34,6 +34,15 @@ class MessageFields {
     return value;
   }
 
+  /// The length of a list whose items have at least so many bytes.
+  std::uint32_t Count(std::size_t least_bytes) {
+    const std::uint32_t count = U32();
+    if (count > (bytes_.size() - at_) / least_bytes) {
+      Fail("a list of " + std::to_string(count) + " items is longer than the message");
+    }
+    return count;
+  }
+
   std::vector<std::string> Texts() {
     const std::uint32_t count = Count(4);
     std::vector<std::string> texts;
@@ -60,15 +69,6 @@ class MessageFields {
     widest_ = kind >= 6 ? 4 : 8;
     bytes_ = bytes_.subspan(4);
     at_ = 0;
-  }
-
-  /// The length of a list whose items have at least so many bytes.
-  std::uint32_t Count(std::size_t least_bytes) {
-    const std::uint32_t count = U32();
-    if (count > (bytes_.size() - at_) / least_bytes) {
-      Fail("a list of " + std::to_string(count) + " items is longer than the message");
-    }
-    return count;
   }
 
   std::uint64_t Bits(std::size_t width) {

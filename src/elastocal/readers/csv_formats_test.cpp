@@ -139,10 +139,68 @@ TEST(MotiveTest, MistakesAreNamed) {
   ExpectInputError([&] { ReadCsv(Replaced(text, "Global", "Local")); }, {"file:1", "Local"});
   ExpectInputError([&] { ReadCsv(Replaced(text, "0.6,0.7", "0.6,x")); }, {"file:8", "'x'"});
   ExpectInputError([&] { ReadCsv(text.substr(0, text.find("\n4,"))); }, {"no frame"});
-  // Euler's angles have a dozen orders: the body is left out, and the file says so.
-  const RecordingFile euler = ReadCsv(Replaced(text, "Quaternion", "XYZ"));
-  EXPECT_EQ(euler.markers->names, std::vector<std::string>{"Unlabeled 7"});
-  EXPECT_EQ(euler.notes.size(), 2u);
+  ExpectInputError([&] { ReadCsv(Replaced(text, "Quaternion", "XYX")); },
+                   {"file:1", "Rotation Type: found 'XYX'", "Quaternion, XYZ, XZY, YXZ, YZX, ZXY"});
+  ExpectInputError([&] { ReadCsv(Replaced(text, "Rotation Type,Quaternion,", "")); },
+                   {"file:1", "Rotation Type: found ''"});
+  ExpectInputError([&] { ReadCsv(Replaced(text, "Quaternion", "XYZ")); },
+                   {"file:7", "column 3", "'hand'", "X, Y, Z of Rotation Type XYZ"});
+}
+
+/// The body of kBodyTake with Euler angles of X, Y and Z, degrees.
+std::string EulerTake(const std::string& order, const std::string& angles) {
+  std::string text = Replaced(kBodyTake, "Quaternion", order);
+  text = Replaced(text, ",Type,Rigid Body,", ",Type,");
+  text = Replaced(text, ",Name,hand,", ",Name,");
+  text = Replaced(text, ",ID,1,", ",ID,");
+  text = Replaced(text, ",,Rotation,", ",,");
+  text = Replaced(text, "X,Y,Z,W,", "X,Y,Z,");
+  text = Replaced(text, "0,0,0.70710678,0.70710678", angles);
+  return Replaced(text, "5,0.050000,,", "5,0.050000,");
+}
+
+TEST(MotiveTest, EulerAnglesTurnAboutAxesThatTurned) {
+  // X then Z, of which X has made -Y: the body's x comes to lie along z. About fixed axes it would
+  // be along y.
+  Eigen::RowVectorXd expected(15);
+  expected << 0.5, 0.6, 0.7, 1, 2, 3, 1, 2, 3.1, 0.9, 2, 3, 1, 1.9, 3;
+  const RecordingFile file = ReadCsv(EulerTake("XYZ", "90,0,90"));
+  EXPECT_LT((file.markers->positions.row(0) - expected).norm(), 1e-9);
+  EXPECT_TRUE(file.markers->positions.row(1).array().isNaN().all());
+  expected << 0.5, 0.6, 0.7, 1, 2, 3, 1, 2.1, 3, 1, 2, 3.1, 1.1, 2, 3;
+  EXPECT_LT((ReadCsv(EulerTake("ZYX", "90,0,90")).markers->positions.row(0) - expected).norm(),
+            1e-9);
+  ExpectInputError([&] { ReadCsv(EulerTake("XYZ", "90,,90")); }, {"file:8", "X, Y and Z"});
+  ExpectInputError([&] { ReadCsv(EulerTake("Quaternion", "90,0,90")); },
+                   {"file:7", "X, Y, Z, W of Rotation Type Quaternion"});
+}
+
+TEST(MotiveTest, EveryOrderOfEulerAngles) {
+  const Eigen::Vector3d angles(0.4, -1.1, 2.3);
+  const Eigen::Vector3d degrees = angles * 180.0 / M_PI;
+  const std::string cells =
+      FormatNumber(degrees.x()) + "," + FormatNumber(degrees.y()) + "," + FormatNumber(degrees.z());
+  for (const std::string order : {"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}) {
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+    for (const char axis : order) {
+      const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis - 'X');
+      R *= Eigen::AngleAxisd(angles[axis - 'X'], unit).toRotationMatrix();
+    }
+    const auto row = ReadCsv(EulerTake(order, cells)).markers->positions.row(0).eval();
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d axis = (row.segment<3>(6 + 3 * k) - row.segment<3>(3)).transpose();
+      EXPECT_LT((axis - 0.1 * R.col(k)).norm(), 1e-9) << order << k;
+    }
+  }
+}
+
+TEST(MotiveTest, MarkersAloneNeedNoRotationType) {
+  const std::string text = MotiveText(ThreeMarkers());
+  const std::size_t at = text.find("Rotation Type,");
+  ASSERT_NE(at, std::string::npos);
+  std::string other = text;
+  other.replace(at, text.find(',', at + 14) - at, "Rotation Type,Odd");
+  ExpectMade(ReadCsv(other));
 }
 
 /// Two lines of a recording of QTM itself (shiplab/dt_cv, M510A-IRR-EKFPID-020019_6D.tsv), and one

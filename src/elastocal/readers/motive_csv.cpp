@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+
+#include <Eigen/Geometry>
 
 #include "elastocal/readers/csv_lines.hpp"
 #include "elastocal/readers/formats.hpp"
@@ -21,10 +24,25 @@ struct MotiveColumn {
 struct MotiveBody {
   std::string name;
   std::size_t rotation = 0, position = 0;  ///< 0: not found yet (column 0 is the frame's number)
+  std::string axes;                        ///< of the columns of rotation: "XYZW", "XYZ", "ZYX" ..
 };
 
-/// Exports of OptiTrack Motive: measured markers (type Marker) and rigid bodies with quaternions.
-/// Markers as a rigid body's model expects them, bones and qualities are passed over.
+constexpr std::string_view kRotationTypes = "Quaternion, XYZ, XZY, YXZ, YZX, ZXY or ZYX";
+
+/// Of angles [deg] by axis: about the first axis of `order`, then about the second as the first has
+/// turned it, then about the third. Motive 1.6 and later have Euler angles so (relative,
+/// right-handed).
+Eigen::Quaterniond FromEulerAngles(const std::string& order, const Eigen::Vector3d& angles_deg) {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  for (const char axis : order) {
+    const int k = axis - 'X';
+    rotation = rotation * Eigen::AngleAxisd(angles_deg[k] * M_PI / 180.0, Eigen::Vector3d::Unit(k));
+  }
+  return rotation;
+}
+
+/// Exports of OptiTrack Motive: measured markers (type Marker) and rigid bodies with quaternions or
+/// Euler angles. Markers as a rigid body's model expects them, bones and qualities are passed over.
 class MotiveReader {
  public:
   MotiveReader(const ByteSource& source, const ReaderOptions& options)
@@ -100,7 +118,6 @@ class MotiveReader {
   }
 
   void FindColumns() {
-    const bool quaternions = take_["Rotation Type"] == "Quaternion";
     std::map<std::string, MotiveBody> bodies;
     std::vector<std::string> order;
     std::size_t modelled = 0;
@@ -116,13 +133,14 @@ class MotiveReader {
       if (!bodies.contains(column.name)) order.push_back(column.name);
       MotiveBody& body = bodies[column.name];
       body.name = column.name;
-      if (HasAxes(i, "XYZW", "Rotation")) body.rotation = i;
+      if (body.rotation == 0) FindRotation(i, body);
       if (HasAxes(i, "XYZ", "Position")) body.position = i;
     }
     for (const std::string& name : order) {
       const MotiveBody& body = bodies[name];
-      if (body.position == 0 || body.rotation == 0 || !quaternions) {
-        notes_.push_back("the rigid body " + name + " is left out: it has no quaternions");
+      if (body.position == 0 || body.rotation == 0) {
+        notes_.push_back("the rigid body " + name + " is left out: it has no " +
+                         (body.position == 0 ? "position" : "rotation"));
         continue;
       }
       bodies_.push_back(body);
@@ -132,6 +150,30 @@ class MotiveReader {
                        " rigid body markers, which are of the model and not measured, are passed "
                        "over");
     }
+  }
+
+  /// Takes the rotation that begins in column i, if one does. Throws InputError where it is not of
+  /// the take's rotation type.
+  void FindRotation(std::size_t i, MotiveBody& body) {
+    if (columns_[i].quantity != "Rotation") return;
+    const std::string& type = take_["Rotation Type"];
+    std::string sorted = type;
+    std::sort(sorted.begin(), sorted.end());
+    const bool angles = sorted == "XYZ";
+    if (type != "Quaternion" && !angles) {
+      throw InputError(Place(source_.name(), 1) + "Rotation Type: found " + Quote(type) + "; " +
+                       std::string(kRotationTypes) + " was expected");
+    }
+    const bool fourth = HasAxes(i + 3, "W", "Rotation") && columns_[i + 3].name == body.name;
+    for (const std::string& axes : {std::string("XYZ"), type}) {
+      if (angles == fourth || !HasAxes(i, angles ? axes : "XYZW", "Rotation")) continue;
+      body.rotation = i;
+      body.axes = angles ? axes : "XYZW";
+      return;
+    }
+    lines_.Fail("column " + std::to_string(i + 1) + ": the rotation of rigid body " +
+                Quote(body.name) + " is not in the columns " + (angles ? "X, Y, Z" : "X, Y, Z, W") +
+                " of Rotation Type " + type);
   }
 
   [[noreturn]] void FailColumns(std::size_t i) const {
@@ -168,9 +210,17 @@ class MotiveReader {
   void AddBody(const MotiveBody& body) {
     const auto position = lines_.Position(body.position);
     for (const double x : position) body_positions_.push_back(unit_ * x);
-    for (std::size_t k = 0; k < 4; ++k) {
-      body_rotations_.push_back(lines_.NumberOrGap(body.rotation + k));
+    if (body.axes == "XYZW") {
+      for (std::size_t k = 0; k < 4; ++k) {
+        body_rotations_.push_back(lines_.NumberOrGap(body.rotation + k));
+      }
+      return;
     }
+    const auto cells = lines_.Position(body.rotation);
+    Eigen::Vector3d angles;
+    for (std::size_t k = 0; k < 3; ++k) angles[body.axes[k] - 'X'] = cells[k];
+    const Eigen::Vector4d rotation = FromEulerAngles(take_["Rotation Type"], angles).coeffs();
+    body_rotations_.insert(body_rotations_.end(), rotation.begin(), rotation.end());
   }
 
   MarkerTrajectories TakeMarkers() {

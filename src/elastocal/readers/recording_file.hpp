@@ -15,6 +15,8 @@ namespace elastocal {
 struct ReaderOptions {
   std::string unit = {};          ///< of lengths: mm, cm, m, in; empty: the file has to say
   std::string joints_topic = {};  ///< of a bag with several topics of joint states
+  std::string tf_frame = {};      ///< of a bag's tf: the cameras' frame
+  std::vector<std::string> tf_bodies = {};  ///< frames that are bodies; empty: all that move in it
 };
 
 /// What a recording in any format holds, as far as a calibration can use it.

@@ -20,13 +20,14 @@ namespace {
 constexpr std::int64_t kSecond = 1000000000;
 constexpr double kLongestHole = 0.1;  // s: positions are not interpolated over more
 
-/// The stamp of a header, ns; 0 where nobody set it.
-std::int64_t ReadStamp(MessageFields& fields, RosEncoding encoding) {
+/// The stamp of a header, ns; 0 where nobody set it. `frame` gets the name of its frame.
+std::int64_t ReadStamp(MessageFields& fields, RosEncoding encoding, std::string* frame = nullptr) {
   if (encoding == RosEncoding::kRos1) fields.U32();  // the sequence number
   const std::int64_t seconds =
       encoding == RosEncoding::kRos1 ? static_cast<std::int64_t>(fields.U32()) : fields.I32();
   const std::int64_t stamp = seconds * kSecond + fields.U32();
-  fields.Text();  // the frame's name
+  std::string name = fields.Text();
+  if (frame != nullptr) *frame = std::move(name);
   return stamp;
 }
 
@@ -64,7 +65,9 @@ double ValueAt(const JointSeries& series, const Eigen::MatrixXd& values, Eigen::
 }  // namespace
 
 RosMessages::RosMessages(std::string source, const ReaderOptions& options)
-    : source_(std::move(source)), wanted_topic_(options.joints_topic) {}
+    : source_(std::move(source)),
+      wanted_topic_(options.joints_topic),
+      transforms_(options.tf_frame, options.tf_bodies) {}
 
 bool RosMessages::AddTopic(std::uint64_t id, const std::string& name, const std::string& type,
                            RosEncoding encoding) {
@@ -83,6 +86,9 @@ bool RosMessages::AddTopic(std::uint64_t id, const std::string& name, const std:
   if (type == "geometry_msgs/msg/PoseStamped" || type == "geometry_msgs/PoseStamped") {
     topic.kind = Kind::kPose;
   }
+  if (type == "tf2_msgs/msg/TFMessage" || type == "tf2_msgs/TFMessage" || type == "tf/tfMessage") {
+    topic.kind = Kind::kTransforms;
+  }
   return topic.kind != Kind::kOther;
 }
 
@@ -98,6 +104,7 @@ void RosMessages::Add(std::uint64_t id, std::span<const char> message, std::int6
   const std::string where = source_ + ": " + place + "message of " + Quote(topic.name) + ": ";
   if (topic.kind == Kind::kJointState) AddJointState(topic, message, received_ns, where);
   if (topic.kind == Kind::kPose) AddPose(topic, message, received_ns, where);
+  if (topic.kind == Kind::kTransforms) AddTransforms(topic, message, received_ns, where);
 }
 
 void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
@@ -144,6 +151,22 @@ void RosMessages::AddPose(Topic& topic, std::span<const char> message, std::int6
   topic.stamps_ns.push_back(stamp);
   topic.received_ns.push_back(received_ns);
   for (int i = 0; i < 7; ++i) topic.poses.push_back(fields.F64());
+}
+
+void RosMessages::AddTransforms(const Topic& topic, std::span<const char> message,
+                                std::int64_t received_ns, const std::string& place) {
+  constexpr std::size_t kLeastBytes = 70;  // of one: stamp, two names, seven numbers
+  MessageFields fields(message, topic.encoding == RosEncoding::kCdr, place);
+  const bool is_static = topic.name.ends_with("tf_static");
+  for (std::uint32_t left = fields.Count(kLeastBytes); left > 0; --left) {
+    StampedTransform transform;
+    transform.received_ns = received_ns;
+    transform.stamp_ns = ReadStamp(fields, topic.encoding, &transform.parent);
+    transform.child = fields.Text();
+    for (double& number : transform.pose) number = fields.F64();
+    RequireUtf8(transform.parent + transform.child, source_);
+    transforms_.Add(transform, is_static, place);
+  }
 }
 
 namespace {
@@ -289,7 +312,7 @@ void RosMessages::TakeJoints(RecordingFile& file) {
   CheckJointLog(*file.joints);
 }
 
-void RosMessages::TakePoses(RecordingFile& file) {
+std::vector<BodyTrack> RosMessages::PoseTracks() {
   std::vector<BodyTrack> tracks;
   std::multiset<std::string> short_names;
   for (const auto& [id, topic] : topics_) {
@@ -301,10 +324,21 @@ void RosMessages::TakePoses(RecordingFile& file) {
     tracks.push_back({short_names.count(name) == 1 ? name : topic.name, std::move(topic.stamps_ns),
                       std::move(topic.poses)});
   }
-  if (tracks.empty()) {
-    file.why_no_markers = "it has no poses (geometry_msgs/PoseStamped)";
-    return;
+  return tracks;
+}
+
+void RosMessages::TakePoses(RecordingFile& file) {
+  std::vector<BodyTrack> tracks = PoseTracks();
+  if (!transforms_.empty() && (transforms_.asked() || tracks.empty())) {
+    tracks = transforms_.Take(source_, file.why_no_markers);
+  } else if (!transforms_.empty()) {
+    file.notes.emplace_back(
+        "its tf is not read, because it has geometry_msgs/PoseStamped (to read "
+        "it: tf_frame)");
+  } else if (tracks.empty()) {
+    file.why_no_markers = "it has no poses (geometry_msgs/PoseStamped, tf2_msgs/TFMessage)";
   }
+  if (tracks.empty()) return;
   const RegularPoses regular = ResampleTracks(source_, std::move(tracks));
   file.markers = MarkerTrajectories{source_, {}, regular.rate_hz, {}};
   AddBodies(regular.poses, *file.markers, file.notes);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/readers/frame_transforms.hpp"
 #include "elastocal/readers/recording_file.hpp"
 
 namespace elastocal {
@@ -14,8 +15,9 @@ namespace elastocal {
 /// How the fields of messages stand one after the other.
 enum class RosEncoding { kCdr, kRos1 };
 
-/// The messages of a bag that a calibration can use: joint states, and stamped poses of bodies. Any
-/// kind of bag adds them in the order of the file.
+/// The messages of a bag that a calibration can use: joint states, and poses of bodies, stamped or
+/// as transforms (tf). Any kind of bag adds them in the order of the file. Of tf, bodies are taken
+/// where there are no stamped poses, or where the options name a frame.
 class RosMessages {
  public:
   /// `source` names the bag in messages.
@@ -35,7 +37,7 @@ class RosMessages {
   RecordingFile Take();
 
  private:
-  enum class Kind { kOther, kJointState, kPose };
+  enum class Kind { kOther, kJointState, kPose, kTransforms };
 
   /// Messages of one topic with the same names of joints.
   struct JointGroup {
@@ -58,14 +60,18 @@ class RosMessages {
                      const std::string& place);
   void AddPose(Topic& topic, std::span<const char> message, std::int64_t received_ns,
                const std::string& place);
+  void AddTransforms(const Topic& topic, std::span<const char> message, std::int64_t received_ns,
+                     const std::string& place);
   /// Of a topic that nobody stamped, the times when it was received.
   void TakeTimes(Topic& topic, std::vector<std::string>& notes) const;
   void TakeJoints(RecordingFile& file);
   void TakePoses(RecordingFile& file);
+  std::vector<BodyTrack> PoseTracks();
 
   std::string source_;
   std::string wanted_topic_;
   std::map<std::uint64_t, Topic> topics_;
+  FrameTransforms transforms_;
 };
 
 }  // namespace elastocal
