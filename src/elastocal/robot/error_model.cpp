@@ -96,8 +96,9 @@ void AddCorrections(const ErrorModel& model, CorrectionTarget target, int joint,
     if (TargetOf(corrections[i]) != target || corrections[i].joint != joint) continue;
     if (target == CorrectionTarget::kMarker && corrections[i].marker < 0) continue;
     if (target == CorrectionTarget::kLoads && !ActsThroughLoads(model, corrections[i])) continue;
-    parameters.push_back({corrections[i].name, Kind::kCorrection, corrections[i].unit, joint, -1,
-                          -1, -1, static_cast<int>(i), corrections[i].typical});
+    parameters.push_back({corrections[i].name, Kind::kCorrection, corrections[i].unit, joint,
+                          corrections[i].marker, -1, -1, static_cast<int>(i),
+                          corrections[i].typical});
   }
 }
 
