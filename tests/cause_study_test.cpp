@@ -43,6 +43,7 @@ struct Injected {
   const char* cause;
   const char* parameter;
   double size;
+  bool soft = false;  ///< of a robot whose springs are soft, and whose masses are known
 };
 
 // On a joint that turns far, with a long lever, under loads of both signs.
@@ -53,16 +54,27 @@ constexpr Injected kInjected[] = {
     {"arm_left_3_joint.gear", "arm_left_3_joint.gear", 1e-3},
     {"waist.suspension", "waist.suspension_rx", 1e-5},
     {"waist.drift", "waist.drift_x", 0.5e-3},
+    {"marker.A.creep", "marker.A.creep_x", 1e-3},
+    {"arm_left_7_link.mass", "arm_left_7_link.mass", 0.15, true},  // 10 %
+    {"arm_left_4_link.moment", "arm_left_4_link.moment_x", 0.03, true},
+    {"gravity.tilt", "gravity.tilt_x", M_PI / 180.0, true},
 };
+
+/// How many times softer than TALOS that robot is (compliances of 0.2 to 1 mrad/(N.m)), and how
+/// well masses are known. With the compliances of TALOS, 0.02 to 0.1 mrad/(N.m), a mass that is off
+/// by 10 % moves the hand by a hundredth of the noise beside what springs explain.
+constexpr double kSoftness = 10.0, kUsualMassSd = 0.05, kKnownMassSd = 0.01;
 
 Project ArmProject() { return ParseProject(kProject, SourceFile("project.yaml")); }
 
 /// Sixty postures in two hours of a robot with errors of geometry, springs, masses and `injected`
-/// (null: nothing else), and where they are to be found.
-Measurements Record(const Project& project, const Injected* injected, std::uint64_t seed) {
+/// (null: nothing else), and where they are to be found. `soft`: see kSoftness.
+Measurements Record(const Project& project, const Injected* injected, bool soft,
+                    std::uint64_t seed) {
   Random random(seed);
   Project real = project;
-  for (Link& link : real.tree.links) link.mass *= 1.0 + random.Normal(0.05);
+  const double mass_sd = soft ? kKnownMassSd : kUsualMassSd;
+  for (Link& link : real.tree.links) link.mass *= 1.0 + random.Normal(mass_sd);
   real.elasticity.torsion = {"torso*", "arm_left*"};
   real.elasticity.hours = 1.0;
   if (injected != nullptr) real.elasticity.extra = {injected->cause};
@@ -74,7 +86,7 @@ Measurements Record(const Project& project, const Injected* injected, std::uint6
     if (IsAngle(kind)) delta[i] = random.Normal(0.005);
     if (kind == Kind::kR || kind == Kind::kD || kind == Kind::kB) delta[i] = random.Normal(1e-3);
     if (kind == Kind::kMarker) delta[i] = random.Normal(5e-3);
-    if (kind == Kind::kTorsion) delta[i] = random.Uniform(2e-5, 1e-4);
+    if (kind == Kind::kTorsion) delta[i] = (soft ? kSoftness : 1.0) * random.Uniform(2e-5, 1e-4);
   }
   if (injected != nullptr) {
     delta[FindParameter(model.parameters, injected->parameter)] = injected->size;
@@ -103,13 +115,15 @@ int Seeds() {
 }
 
 /// The estimate is the injected size, within four standard deviations and what springs, which are
-/// fitted beside it, may take of it.
+/// fitted beside it, may take of it: of what acts through springs half, because the size is one
+/// step from springs that were estimated without it.
 void ExpectSize(const CauseReport& report, const CauseFinding& finding, const Injected& injected) {
+  const double share = injected.soft ? 0.5 : 0.1;
   for (std::size_t i = 0; i < finding.parameters.size(); ++i) {
     const std::string& name =
         report.parameters[static_cast<std::size_t>(finding.parameters[i])].name;
     const double size = name == injected.parameter ? injected.size : 0.0;
-    EXPECT_NEAR(finding.estimate[i], size, 4.0 * finding.sd[i] + 0.1 * injected.size) << name;
+    EXPECT_NEAR(finding.estimate[i], size, 4.0 * finding.sd[i] + share * injected.size) << name;
   }
 }
 
@@ -121,7 +135,7 @@ double InjectedEffect(const Injected& injected, const CausePicture& picture, dou
   if (cause.ends_with("eccentricity")) return injected.size * std::sin(x);
   if (cause.ends_with("backlash")) return std::abs(x) > 2.0 ? std::copysign(injected.size, x) : NAN;
   if (cause.ends_with("hysteresis") || cause.ends_with("suspension")) return injected.size * x;
-  return injected.size * (x - correction.centre);  // gear, drift
+  return injected.size * (x - correction.centre);  // gear, drift, creep
 }
 
 /// The dots show the injected cause, and scatter about it no more than they say; the curve is near
@@ -151,6 +165,21 @@ void ExpectPicture(const CauseReport& report, const Injected& injected) {
   }
 }
 
+/// What acts through springs is a line through zero: the joint's compliance times what the cause
+/// adds to its load. The dots follow it.
+void ExpectLine(const CauseReport& report) {
+  const CausePicture& picture = report.pictures.front();
+  ASSERT_EQ(picture.variable, CauseVariable::kAddedLoad);
+  ASSERT_GT(picture.x.size(), 30);
+  EXPECT_GT(picture.compliance, 0.0);
+  const double slope = picture.curve_y[0] / picture.curve_x[0];
+  EXPECT_LT((picture.curve_y - slope * picture.curve_x).norm(), 1e-12);
+  const Eigen::VectorXd off = picture.y - slope * picture.x;
+  EXPECT_LT(std::sqrt(off.cwiseQuotient(picture.sd).squaredNorm() / 30.0), 3.0)
+      << picture.finding.cause;
+  EXPECT_GT(slope * picture.x.dot(picture.y), 0.0) << picture.finding.cause;
+}
+
 TEST(Causes, TheInjectedOneIsNamedFirst) {
   const Project project = Elastic(ArmProject());
   for (const Injected& injected : kInjected) {
@@ -158,13 +187,15 @@ TEST(Causes, TheInjectedOneIsNamedFirst) {
     double without = 0.0, with = 0.0;
     for (int seed = 1; seed <= Seeds(); ++seed) {
       const auto s = kFirstSeed + static_cast<std::uint64_t>(seed);
-      const CauseReport report = StudyCauses(project, Record(project, &injected, s), s);
+      const CauseReport report =
+          StudyCauses(project, Record(project, &injected, injected.soft, s), s);
       const CauseSearch& search = report.search;
       const std::string named = search.chosen.empty() ? "nothing" : search.chosen.front().cause;
       if (search.accepted && named == injected.cause) {
         ++first;
         ExpectSize(report, search.chosen.front(), injected);
-        ExpectPicture(report, injected);
+        if (!injected.soft) ExpectPicture(report, injected);
+        if (injected.soft) ExpectLine(report);
       } else {
         std::printf("  seed %d: %s%s (best %s, p %.2g)\n", seed, named.c_str(),
                     search.accepted ? "" : " not accepted", search.findings.front().cause.c_str(),
@@ -179,21 +210,26 @@ TEST(Causes, TheInjectedOneIsNamedFirst) {
   }
 }
 
-TEST(Causes, NothingIsNamedWhereNothingIs) {
+/// Of how many robots without a cause one is named.
+int NamedWithoutCause(bool soft) {
   const Project project = Elastic(ArmProject());
   int named = 0;
   double error = 0.0;
   for (int seed = 1; seed <= Seeds(); ++seed) {
     const auto s = kFirstSeed + static_cast<std::uint64_t>(seed);
-    const CauseReport report = StudyCauses(project, Record(project, nullptr, 100 + s), s);
+    const CauseReport report = StudyCauses(project, Record(project, nullptr, soft, 100 + s), s);
     error += report.search.error / Seeds();
     if (!report.search.accepted) continue;
     ++named;
     std::printf("  seed %d: %s\n", seed, report.search.chosen.front().cause.c_str());
   }
-  std::printf("nothing injected: named in %d of %d; held-out error %.3f mm\n", named, Seeds(),
-              1e3 * error);
-  EXPECT_LE(named, 1 + Seeds() / 20);
+  std::printf("nothing injected, %s: named in %d of %d; held-out error %.3f mm\n",
+              soft ? "soft springs" : "usual springs", named, Seeds(), 1e3 * error);
+  return named;
+}
+
+TEST(Causes, NothingIsNamedWhereNothingIs) {
+  for (const bool soft : {false, true}) EXPECT_LE(NamedWithoutCause(soft), 1 + Seeds() / 20);
 }
 
 TEST(Causes, ProjectsSayWhichAreEstimated) {
@@ -210,7 +246,7 @@ TEST(Causes, ProjectsSayWhichAreEstimated) {
   ExpectInputError([&] { extra("some"); }, {"extra", "some", "auto, none or a list"});
   Project wrong = ArmProject();
   wrong.calibration.extra = {false, {"torso_1_joint.gearing"}};
-  const Measurements measured = Record(Elastic(ArmProject()), nullptr, 1);
+  const Measurements measured = Record(Elastic(ArmProject()), nullptr, false, 1);
   ExpectInputError([&] { ChooseCauses(measured, {}, wrong); },
                    {"torso_1_joint.gearing", "torso_1_joint.gear"});
 }

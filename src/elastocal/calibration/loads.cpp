@@ -56,7 +56,7 @@ void AddShapes(const ErrorModel& model, const Geometry& geometry, const Recordin
   const Eigen::VectorXd q = recording.q.row(posture).transpose();
   history.root_moment = RootMoment(model, geometry, q, recording.gravity);
   loads.shapes = EvaluateShapes(model.tree, model.elasticity.corrections, q,
-                                loads.row(2).transpose(), history);
+                                CorrectedLoads(geometry, loads).row(2).transpose(), history);
 }
 
 }  // namespace

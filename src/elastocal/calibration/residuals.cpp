@@ -59,9 +59,10 @@ void BodyResiduals::MakeBodyBlock(const BodyObservation& body) {
     }
   }
   for (int m : body.markers) {
-    if (marker_columns_[m].empty()) continue;
-    const int last = marker_columns_[m].back().block;
-    if (unknowns_.IsMarkerBlock(last)) block.parameter_blocks.push_back(last);
+    for (const BodyUnknowns::Columns& columns : marker_columns_[m]) {
+      if (!unknowns_.IsMarkerBlock(columns.block)) continue;
+      block.parameter_blocks.push_back(columns.block);
+    }
   }
   blocks_of_posture_[body.posture].push_back(static_cast<int>(residual_blocks.size()));
   sds_.push_back(BodySds(residual_blocks.size()));
@@ -318,14 +319,17 @@ void BodyResiduals::EvaluateFoot(int block, bool with_jacobians) {
     by_foot << Eigen::Matrix3d::Identity(), -Skew(on_foot.position);
     raw_jacobian_.block<3, 6>(row, 0) =
         -T_ref_foot.linear() * by_foot * unknowns_.FootingChart(x_, footing);
-    const BodyUnknowns::Columns& own = marker_columns_[marker].back();
-    if (!unknowns_.IsMarkerBlock(own.block)) continue;
-    // The marker's own coordinates are the last three columns of its block.
+    // The marker's own coordinates are its last three columns; corrections, which come before them,
+    // are not applied on a foot that stands (PlaceMarker).
     const Eigen::Matrix3d by_marker = T_ref_foot.linear() * on_foot.axes;
     const auto first = static_cast<int>(jacobian_.Columns(marker).size()) - 3;
-    for (Eigen::Index c = 0; c < own.scale.size(); ++c) {
-      raw_jacobian_.block<3, 1>(row, at++) =
-          -own.scale[c] * by_marker.col(own.source[static_cast<std::size_t>(c)] - first);
+    for (const BodyUnknowns::Columns& own : marker_columns_[marker]) {
+      if (!unknowns_.IsMarkerBlock(own.block)) continue;
+      for (Eigen::Index c = 0; c < own.scale.size(); ++c, ++at) {
+        const int axis = own.source[static_cast<std::size_t>(c)] - first;
+        if (axis < 0) continue;
+        raw_jacobian_.block<3, 1>(row, at) = -own.scale[c] * by_marker.col(axis);
+      }
     }
   }
   residuals_[block] = (body.basis.transpose() * raw_).cwiseQuotient(sds_[block]);

@@ -33,14 +33,16 @@ struct NamedUnits {
 
 NamedUnits UnitsOf(const std::string& parameter) {
   const std::string suffix = parameter.substr(parameter.rfind('.') + 1);
-  for (const char* angle : {"theta", "alpha", "beta", "gamma", "zero"}) {
+  for (const char* angle : {"theta", "alpha", "beta", "gamma", "zero", "tilt_x", "tilt_y"}) {
     if (suffix == angle) return {{"rad", "rad"}, M_PI};
   }
   if (suffix == "torque_bias") return {{"N.m", "N"}};
   if (suffix == "gear" || suffix.starts_with("coupling_")) return {{"1", "1"}, 1.0};
   if (suffix.starts_with("suspension_r")) return {{"rad/(N.m)", "rad/(N.m)"}};
   if (suffix.starts_with("suspension_")) return {{"1/N", "1/N"}};
-  if (suffix.starts_with("drift_")) return {{"m/h", "m/h"}};
+  if (suffix.starts_with("drift_") || suffix.starts_with("creep_")) return {{"m/h", "m/h"}};
+  if (suffix == "mass") return {{"kg", "kg"}};
+  if (suffix.starts_with("moment_")) return {{"kg.m", "kg.m"}};
   for (const char* correction : {"eccentricity_sin", "eccentricity_cos", "ellipticity_sin",
                                  "ellipticity_cos", "backlash", "hysteresis", "stiffening"}) {
     if (suffix == correction) return {{"rad", "m"}, M_PI};
@@ -310,7 +312,8 @@ StoredCalibration AsInUrdf(StoredCalibration stored) {
 void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
                      const std::vector<std::string>& chains) {
   std::set<std::string> owners(chains.begin(), chains.end());
-  owners.insert("waist");  // of corrections of the root link
+  owners.insert({"waist", "gravity"});  // of corrections
+  for (const Link& link : model.tree.links) owners.insert(link.name);
   for (const Joint& joint : model.tree.joints) owners.insert(joint.name);
   for (const Linkage& linkage : model.tree.linkages) {
     for (const Rod& rod : linkage.rods) owners.insert(rod.motor);

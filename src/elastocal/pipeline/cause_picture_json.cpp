@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/cause_picture_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,20 @@ struct Axis {
   double factor;
 };
 
+/// One unit of a cause that loads joints.
+std::string UnitOfLoad(const Correction& correction) {
+  const std::string link = correction.name.substr(0, correction.name.rfind('.'));
+  const std::string axis(1, "xyz"[std::max(0, correction.axis)]);
+  switch (correction.shape) {
+    case CorrectionShape::kMass:
+      return "1 kg of " + link;
+    case CorrectionShape::kFirstMoment:
+      return "1 kg.m along " + axis + " of " + link;
+    default:
+      return "gravity turned by 1 rad about " + axis + " of the root link";
+  }
+}
+
 Axis VariableAxis(const CausePicture& picture, const Correction& correction) {
   const std::string& joint = picture.driver;
   const bool turns = picture.is_angle;
@@ -38,14 +53,22 @@ Axis VariableAxis(const CausePicture& picture, const Correction& correction) {
                   ? "moment of the weight about x of the root link"
                   : "moment of the weight about y of the root link",
               "N.m", 1.0};
+    case CauseVariable::kAddedLoad:
+      return {"load on " + joint + " by " + UnitOfLoad(correction), turns ? "N.m" : "N", 1.0};
     default:
       return {"time", "h", 1.0};
   }
 }
 
-std::string Displaced(const Correction& correction, const std::string& owner) {
-  if (correction.joint >= 0) return "displacement of " + owner;
+std::string Displaced(const Correction& correction, const CausePicture& picture) {
+  if (correction.joint >= 0) return "displacement of " + picture.owner;
+  if (picture.variable == CauseVariable::kAddedLoad) {
+    return std::string(picture.axis == 2 ? "deflection of " : "bending of ") + picture.owner;
+  }
   const std::string axis(1, "xyz"[correction.axis % 3]);
+  if (correction.marker >= 0) {
+    return "displacement of marker " + picture.owner + " along " + axis + " of its link";
+  }
   return (correction.axis < 3 ? "displacement of the root link along "
                               : "rotation of the root link about ") +
          axis;
@@ -67,7 +90,7 @@ Json PictureJson(const CauseReport& report, const CausePicture& picture) {
   json["p_adjusted"] = picture.finding.p_adjusted;
   json["against"] = x.what;
   json["against_unit"] = x.unit;
-  json["displaced"] = Displaced(correction, picture.owner);
+  json["displaced"] = Displaced(correction, picture);
   json["unit"] = picture.is_angle ? "mrad" : "mm";
   json["postures"] = picture.postures;
   json["x"] = Numbers(picture.x, x.factor);

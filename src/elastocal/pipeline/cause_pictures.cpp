@@ -30,6 +30,10 @@ CauseVariable VariableOf(CorrectionShape shape) {
       return CauseVariable::kMoment;
     case CorrectionShape::kHours:
       return CauseVariable::kTime;
+    case CorrectionShape::kMass:
+    case CorrectionShape::kFirstMoment:
+    case CorrectionShape::kGravityTilt:
+      return CauseVariable::kAddedLoad;
     default:
       return CauseVariable::kPosition;
   }
@@ -57,6 +61,7 @@ class Painter {
       const auto value = values.find(wide.parameters[Nth(i)].name);
       if (value != values.end()) delta[i] = value->second;
     }
+    geometry_ = ApplyErrors(model_, delta);
     loads_ = ComputeLoads(model_, recording, delta, result.placement, options.load);
     for (const LinearStudy::Posture& posture : study.postures) sums_.Add(posture, 1.0);
   }
@@ -110,11 +115,47 @@ class Painter {
     picture.correction = model_.parameters[Nth(picture.parameters.front())].correction;
     picture.variable = VariableOf(correction.shape);
     picture.joint = correction.source >= 0 ? correction.source : correction.joint;
+    if (picture.variable == CauseVariable::kAddedLoad) {
+      ChooseJoint(picture);
+      return;
+    }
     if (picture.joint >= 0) picture.driver = model_.tree.joints[Nth(picture.joint)].name;
     if (correction.joint >= 0) picture.owner = model_.tree.joints[Nth(correction.joint)].name;
+    if (correction.marker >= 0) picture.owner = correction.marker_name;
     picture.is_angle = correction.joint < 0
                            ? correction.axis >= 3
                            : model_.tree.joints[Nth(correction.joint)].type == JointType::kRevolute;
+  }
+
+  /// Where the joints give way most by the first parameter of the picture.
+  void ChooseJoint(CausePicture& picture) const {
+    double most = -1.0;
+    for (int joint : model_.active_joints) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double compliance = geometry_.joints[Nth(joint)].compliance[axis];
+        double squares = 0.0;
+        for (const PostureLoads& loads : loads_) {
+          const auto& added = loads.joints.by_correction[Nth(picture.correction)];
+          squares += std::pow(compliance * added(axis, joint), 2);
+        }
+        if (squares <= most) continue;
+        most = squares;
+        picture.joint = joint;
+        picture.axis = axis;
+        picture.compliance = compliance;
+      }
+    }
+    const Joint& joint = model_.tree.joints[Nth(picture.joint)];
+    picture.driver = picture.owner = joint.name;
+    picture.is_angle = joint.type == JointType::kRevolute;
+  }
+
+  /// By how much one unit of a parameter displaces what the picture shows.
+  double ShapeIn(const CausePicture& picture, int parameter, int posture) const {
+    const auto correction = model_.parameters[Nth(parameter)].correction;
+    const JointLoads& loads = loads_[Nth(posture)].joints;
+    if (picture.variable != CauseVariable::kAddedLoad) return loads.shapes[correction];
+    return picture.compliance * loads.by_correction[Nth(correction)](picture.axis, picture.joint);
   }
 
   double Estimate(const CausePicture& picture, int parameter) const {
@@ -132,6 +173,8 @@ class Painter {
                              recording_.q.row(posture).transpose());
       case CauseVariable::kLoad:
         return loads.joints(2, picture.joint);
+      case CauseVariable::kAddedLoad:
+        return loads.joints.by_correction[Nth(picture.correction)](picture.axis, picture.joint);
       case CauseVariable::kTime:
         return shape + model_.elasticity.corrections[Nth(picture.correction)].centre;
       default:
@@ -143,11 +186,10 @@ class Painter {
   /// function; of several parameters, by all of them.
   Point PointOf(int posture, const CausePicture& picture, const BaseFit& fit) const {
     const LinearStudy::Posture& rows = study_.postures[Nth(posture)];
-    const Eigen::VectorXd& shapes = loads_[Nth(posture)].joints.shapes;
     Eigen::VectorXd by_displacement = Eigen::VectorXd::Zero(rows.residual.size());
     double squares = 0.0, displacement = 0.0;
     for (int parameter : picture.parameters) {
-      const double shape = shapes[model_.parameters[Nth(parameter)].correction];
+      const double shape = ShapeIn(picture, parameter, posture);
       const int column = ColumnOf(parameter);
       by_displacement +=
           shape / study_.scale[Nth(column)] * rows.jacobian.col(study_.base + column);
@@ -207,6 +249,11 @@ class Painter {
     if (picture.x.size() == 0) return;
     picture.curve_x =
         Eigen::VectorXd::LinSpaced(kCurvePoints, picture.x.minCoeff(), picture.x.maxCoeff());
+    if (picture.variable == CauseVariable::kAddedLoad) {
+      picture.curve_y =
+          picture.compliance * Estimate(picture, picture.parameters.front()) * picture.curve_x;
+      return;
+    }
     picture.curve_y.setZero(kCurvePoints);
     for (Eigen::Index i = 0; i < kCurvePoints; ++i) {
       const Eigen::VectorXd shapes = ShapesAt(picture, picture.curve_x[i]);
@@ -239,6 +286,9 @@ class Painter {
         break;
       case CauseVariable::kTime:
         history.hours = x;
+        break;
+      case CauseVariable::kAddedLoad:  // a line, see AddCurve
+        break;
     }
     return EvaluateShapes(tree, model_.elasticity.corrections, q, load, history);
   }
@@ -247,6 +297,7 @@ class Painter {
   ErrorModel model_;
   const Recording& recording_;
   StudySums sums_;
+  Geometry geometry_;
   std::vector<PostureLoads> loads_;
 };
 

@@ -16,12 +16,14 @@ enum class CauseVariable {
   kLoad,      ///< of a joint, N.m or N
   kApproach,  ///< direction of the last motion, -1 or 1
   kMoment,    ///< of the weight on the root link, N.m
-  kTime       ///< h
+  kTime,      ///< h
+  kAddedLoad  ///< on a joint, by one unit of the cause, N.m or N
 };
 
-/// What a cause looks like: displacement of the joint (or of the root link) against what drives it.
-/// The points are partial residuals (Larsen and McCleary 1972): the displacement that the cause has
-/// in a posture, and what that posture's own residuals ask for beside it.
+/// What a cause looks like: displacement of the joint (or of the root link, or of a marker) against
+/// what drives it. Of a cause that loads joints, it is the deflection of the joint that gives way
+/// most. The points are partial residuals (Larsen and McCleary 1972): the displacement that the
+/// cause has in a posture, and what that posture's own residuals ask for beside it.
 struct CausePicture {
   CauseFinding finding;
   /// Those of `finding.parameters` that are drawn: with one displacement and one variable.
@@ -31,6 +33,8 @@ struct CausePicture {
   int joint = -1;             ///< whose position, load or motion is the variable; -1: of none
   std::string driver, owner;  ///< name of that joint, and of the one displaced; empty: of none
   bool is_angle = false;      ///< whether the displacement is in rad, and not in m
+  int axis = 2;               ///< of the joint's deflection (JointLoads)
+  double compliance = 0.0;    ///< about it, as estimated, rad/(N.m) or m/N
   std::vector<int> postures;
   /// By posture: variable, displacement, and standard deviation of that by the noise of the
   /// markers.

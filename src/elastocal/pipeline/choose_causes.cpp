@@ -19,9 +19,13 @@ std::optional<double> MeanHours(const Recording& recording) {
   return recording.time_s.mean() / 3600.0;
 }
 
-std::vector<std::string> CausesMatching(const RobotTree& tree, const std::optional<double>& hours,
+/// All causes that a recording may show.
+std::vector<std::string> PossibleCauses(const Project& project, const Recording& recording) {
+  return CausesOf(PossibleCorrections(project.tree, MeanHours(recording), recording.marker_names));
+}
+
+std::vector<std::string> CausesMatching(const std::vector<std::string>& causes,
                                         const std::vector<std::string>& patterns) {
-  const std::vector<std::string> causes = CausesOf(PossibleCorrections(tree, hours));
   std::vector<Parameter> names;
   for (const std::string& cause : causes) {
     names.push_back({cause, ParameterKind::kCorrection, ParameterUnit::kRadian});
@@ -46,7 +50,7 @@ CauseReport StudyCauses(const Project& given, const Measurements& measured,
   const CalibrationResult result = Calibrate(robot.model, recording, robot.base,
                                              ModelKinds(robot.model).back(), project.calibration);
   project.elasticity.hours = MeanHours(recording);
-  project.elasticity.extra = CausesOf(PossibleCorrections(project.tree, project.elasticity.hours));
+  project.elasticity.extra = PossibleCauses(project, recording);
   const ErrorModel wide =
       SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
   const LinearStudy study = MakeLinearStudy(wide, recording, result, project.calibration);
@@ -66,7 +70,7 @@ std::optional<CauseReport> ChooseCauses(const Measurements& measured,
   project.elasticity.hours = MeanHours(recording);
   project.elasticity.extra.clear();
   if (!asked.automatic) {
-    project.elasticity.extra = CausesMatching(project.tree, project.elasticity.hours, asked.names);
+    project.elasticity.extra = CausesMatching(PossibleCauses(project, recording), asked.names);
     return std::nullopt;
   }
   const int postures = recording.posture_count();

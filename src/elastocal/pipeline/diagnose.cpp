@@ -42,6 +42,11 @@ const char* ByWhat(CorrectionShape shape) {
       return "by the square of its load, at its largest torque";
     case CorrectionShape::kHours:
       return "by time";
+    case CorrectionShape::kMass:
+    case CorrectionShape::kFirstMoment:
+      return "by what its weight bends";
+    case CorrectionShape::kGravityTilt:
+      return "by what the weight of all links bends";
     default:
       return "by the moment of the weight on the base";
   }
@@ -75,7 +80,8 @@ const Parameter& ParameterOf(const CauseReport& report, int index) {
   return report.parameters[static_cast<std::size_t>(index)];
 }
 
-/// The estimate that stands for a cause: the amplitude of an eccentricity, else the surest one.
+/// The estimate that stands for a cause: the amplitude of an eccentricity or of a tilt, else the
+/// surest one.
 std::string SizeOf(const CauseReport& report, const CauseFinding& finding) {
   std::size_t surest = 0;
   for (std::size_t i = 0; i < finding.estimate.size(); ++i) {
@@ -88,7 +94,8 @@ std::string SizeOf(const CauseReport& report, const CauseFinding& finding) {
   const auto [factor, unit] = ShownAs(parameter.unit);
   double value = finding.estimate[surest];
   const bool harmonic = parameter.name.ends_with("_sin") || parameter.name.ends_with("_cos");
-  if (harmonic && finding.estimate.size() == 2) {
+  const bool tilt = parameter.name.starts_with("gravity.");
+  if ((harmonic || tilt) && finding.estimate.size() == 2) {
     value = std::hypot(finding.estimate[0], finding.estimate[1]);
   }
   // Both end at the second significant digit of the standard deviation.

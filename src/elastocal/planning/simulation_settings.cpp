@@ -112,20 +112,33 @@ void AddInstruments(InstrumentOptions& of, Settings& list) {
        {i, "touch_force_n", &of.touch.force, 1, 1, 1000, "With which a plate is pressed on"}});
 }
 
-void AddCauses(SensorOptions& sensors, Settings& list) {
+void AddCauses(VirtualExperimentOptions& options, Settings& list) {
   constexpr double kMilli = 1e-3;
+  SensorOptions& sensors = options.sensors;
+  TruthOptions& truth = options.truth;
+  PhysicsOptions& physics = options.physics;
   const std::string c = "Causes beyond geometry and springs (none by default)";
-  list.insert(list.end(), {{c, "cause_joint", &sensors.cause_joint, 1, 0, 0, "Joint that has them"},
-                           {c, "eccentricity_mrad", &sensors.eccentricity, kMilli, -100, 100,
-                            "Its encoder's disc is off centre: amplitude of sin q"},
-                           {c, "gear_error_share", &sensors.gear_error, 1, -0.1, 0.1,
-                            "Error of its gear's ratio"},
-                           {c, "backlash_mrad", &sensors.backlash, kMilli, -100, 100,
-                            "Half width of its play, by the sign of its load"},
-                           {c, "hysteresis_mrad", &sensors.hysteresis, kMilli, -100, 100,
-                            "Half width, by the direction of its last motion"},
-                           {c, "cameras_drift_mm_per_h", &sensors.cameras_drift, kMillimetre, -1000,
-                            1000, "Of all markers along x, in each trial"}});
+  list.insert(
+      list.end(),
+      {{c, "cause_joint", &sensors.cause_joint, 1, 0, 0, "Joint that has them"},
+       {c, "eccentricity_mrad", &sensors.eccentricity, kMilli, -100, 100,
+        "Its encoder's disc is off centre: amplitude of sin q"},
+       {c, "gear_error_share", &sensors.gear_error, 1, -0.1, 0.1, "Error of its gear's ratio"},
+       {c, "backlash_mrad", &sensors.backlash, kMilli, -100, 100,
+        "Half width of its play, by the sign of its load"},
+       {c, "hysteresis_mrad", &sensors.hysteresis, kMilli, -100, 100,
+        "Half width, by the direction of its last motion"},
+       {c, "cameras_drift_mm_per_h", &sensors.cameras_drift, kMillimetre, -1000, 1000,
+        "Of all markers along x, in each trial"},
+       {c, "heavy_link", &truth.heavy_link, 1, 0, 0, "Link that weighs more than described"},
+       {c, "heavy_share", &truth.heavy_share, 1, -0.9, 10, "By this share"},
+       {c, "gravity_tilt_x_deg", &physics.gravity_tilt_x, kRadiansPerDegree, -20, 20,
+        "What the robot stands on is not level: gravity turns about x"},
+       {c, "gravity_tilt_y_deg", &physics.gravity_tilt_y, kRadiansPerDegree, -20, 20,
+        "The same, about y"},
+       {c, "creeping_marker", &truth.creeping_marker, 1, 0, 0,
+        "Marker that creeps along x of its link, in each trial"},
+       {c, "creep_mm_per_h", &truth.creep, kMillimetre, -1000, 1000, "So fast"}});
 }
 
 void AddPlay(PhysicsOptions& physics, MotionOptions& motion, Settings& list) {
@@ -247,7 +260,7 @@ std::vector<SimulationSetting> SimulationSettings(VirtualExperimentOptions& opti
   AddTruth(options.truth, list);
   AddSensors(options.sensors, list);
   AddInstruments(options.instruments, list);
-  AddCauses(options.sensors, list);
+  AddCauses(options, list);
   AddPlay(options.physics, options.motion, list);
   AddFaults(options.faults, list);
   return list;

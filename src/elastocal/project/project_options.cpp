@@ -211,8 +211,11 @@ ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& tr
   elasticity.base = project.elasticity.base;
   elasticity.torque_bias = project.elasticity.torque_bias;
   if (!project.elasticity.extra.empty()) {
-    elasticity.corrections = CorrectionsOf(
-        PossibleCorrections(project.tree, project.elasticity.hours), project.elasticity.extra);
+    std::vector<std::string> markers;
+    for (const Marker& marker : project.markers) markers.push_back(marker.name);
+    elasticity.corrections =
+        CorrectionsOf(PossibleCorrections(project.tree, project.elasticity.hours, markers),
+                      project.elasticity.extra);
   }
   for (const Chain& chain : project.chains) {
     if (!standing.contains(chain.tip_link)) continue;

@@ -14,25 +14,18 @@ constexpr double kLeastLoad = 0.05;  // N.m or N, where the effort is unknown
 constexpr double kTypicalAngle = 2e-3, kTypicalPlay = 3e-3, kTypicalSlide = 2e-4;  // rad, rad, m
 constexpr double kTypicalStiffening = 0.075;  // rad at the effort: 3e-3 at a fifth of it
 constexpr double kTypicalRatio = 3e-3;
-constexpr double kTypicalTilt = 2e-5, kTypicalShift = 1e-5;  // rad/(N.m) and 1/N
-constexpr double kTypicalDrift = 1e-3;                       // m/h
+constexpr double kTypicalTilt = 2e-5, kTypicalShift = 1e-5;            // rad/(N.m) and 1/N
+constexpr double kTypicalDrift = 1e-3;                                 // m/h
+constexpr double kTypicalMassShare = 0.1, kTypicalShiftOfMass = 0.02;  // m
+constexpr double kLeastMass = 0.1;                                     // kg, for these two
+constexpr double kTypicalGravityTilt = 0.01;                           // rad
 
 bool KnowsEffort(const Joint& joint) {
   return std::isfinite(joint.limits.effort) && joint.limits.effort > 0.0;
 }
 
-double Evaluate(const RobotTree& tree, const Correction& correction, const Eigen::VectorXd& q,
-                const Eigen::VectorXd& load_z, const PostureHistory& history) {
-  if (correction.joint < 0) {
-    switch (correction.shape) {
-      case Shape::kSuspensionMx:
-        return history.root_moment.x();
-      case Shape::kSuspensionMy:
-        return history.root_moment.y();
-      default:
-        return history.hours - correction.centre;
-    }
-  }
+double EvaluateJoint(const RobotTree& tree, const Correction& correction, const Eigen::VectorXd& q,
+                     const Eigen::VectorXd& load_z, const PostureHistory& history) {
   const Joint& joint = tree.joints[correction.joint];
   const double position = JointPosition(joint, q);
   const double load = load_z.size() > 0 ? load_z[correction.joint] : 0.0;
@@ -60,6 +53,24 @@ double Evaluate(const RobotTree& tree, const Correction& correction, const Eigen
   }
 }
 
+double Evaluate(const RobotTree& tree, const Correction& correction, const Eigen::VectorXd& q,
+                const Eigen::VectorXd& load_z, const PostureHistory& history) {
+  switch (correction.shape) {
+    case Shape::kSuspensionMx:
+      return history.root_moment.x();
+    case Shape::kSuspensionMy:
+      return history.root_moment.y();
+    case Shape::kHours:
+      return history.hours - correction.centre;
+    case Shape::kMass:
+    case Shape::kFirstMoment:
+    case Shape::kGravityTilt:
+      return 1.0;
+    default:
+      return EvaluateJoint(tree, correction, q, load_z, history);
+  }
+}
+
 /// Middle of a joint's range, or zero where that has no end.
 double Middle(const Joint& joint) {
   const double middle = 0.5 * (joint.limits.lower + joint.limits.upper);
@@ -76,9 +87,15 @@ class Catalogue {
     std::sort(joints_.begin(), joints_.end());
   }
 
-  std::vector<Correction> Of(std::optional<double> hours) && {
+  std::vector<Correction> Of(std::optional<double> hours,
+                             const std::vector<std::string>& markers) && {
     AddRoot(hours);
+    for (int k = 0; k < static_cast<int>(tree_.joints.size()); ++k) AddBody(k);
+    AddGravity();
     for (std::size_t i = 0; i < joints_.size(); ++i) AddJoint(i);
+    if (hours) {
+      for (const std::string& marker : markers) AddMarker(marker, *hours);
+    }
     return std::move(list_);
   }
 
@@ -102,6 +119,41 @@ class Catalogue {
     for (int axis = 0; axis < 3; ++axis) {
       add(names[axis], "drift", Shape::kHours, axis, ParameterUnit::kMetrePerHour, kTypicalDrift,
           *hours);
+    }
+  }
+
+  /// Of the body that a joint moves, which has the name of the link on the joint.
+  void AddBody(int joint) {
+    double mass = 0.0;
+    for (const Link& link : tree_.links) {
+      if (link.body == joint + 1) mass += link.mass;
+    }
+    if (mass <= 0.0) return;
+    mass = std::max(mass, kLeastMass);
+    const std::string& link =
+        tree_.links[static_cast<std::size_t>(tree_.joints[joint].child_link)].name;
+    list_.push_back({link + ".mass", link + ".mass", Shape::kMass, -1, -1, joint, 0.0,
+                     ParameterUnit::kKilogram, kTypicalMassShare * mass});
+    for (int axis = 0; axis < 3; ++axis) {
+      list_.push_back({link + ".moment_" + "xyz"[axis], link + ".moment", Shape::kFirstMoment, -1,
+                       axis, joint, 0.0, ParameterUnit::kKilogramMetre,
+                       kTypicalShiftOfMass * mass});
+    }
+  }
+
+  void AddGravity() {
+    for (int axis = 0; axis < 2; ++axis) {
+      list_.push_back({std::string("gravity.tilt_") + "xy"[axis], "gravity.tilt",
+                       Shape::kGravityTilt, -1, axis, -1, 0.0, ParameterUnit::kRadian,
+                       kTypicalGravityTilt});
+    }
+  }
+
+  void AddMarker(const std::string& marker, double hours) {
+    const std::string cause = "marker." + marker + ".creep";
+    for (int axis = 0; axis < 3; ++axis) {
+      list_.push_back({cause + "_" + "xyz"[axis], cause, Shape::kHours, -1, axis, -1, hours,
+                       ParameterUnit::kMetrePerHour, kTypicalDrift, marker});
     }
   }
 
@@ -157,8 +209,22 @@ Eigen::VectorXd EvaluateShapes(const RobotTree& tree, const std::vector<Correcti
   return shapes;
 }
 
-std::vector<Correction> PossibleCorrections(const RobotTree& tree, std::optional<double> hours) {
-  return Catalogue(tree).Of(hours);
+std::vector<Correction> PossibleCorrections(const RobotTree& tree, std::optional<double> hours,
+                                            const std::vector<std::string>& markers) {
+  return Catalogue(tree).Of(hours, markers);
+}
+
+CorrectionTarget TargetOf(const Correction& correction) {
+  if (correction.joint >= 0) return CorrectionTarget::kJoint;
+  if (!correction.marker_name.empty()) return CorrectionTarget::kMarker;
+  switch (correction.shape) {
+    case Shape::kMass:
+    case Shape::kFirstMoment:
+    case Shape::kGravityTilt:
+      return CorrectionTarget::kLoads;
+    default:
+      return CorrectionTarget::kRoot;
+  }
 }
 
 std::vector<Correction> CorrectionsOf(const std::vector<Correction>& all,

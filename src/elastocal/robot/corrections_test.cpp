@@ -2,10 +2,13 @@
 #include "elastocal/robot/corrections.hpp"
 
 #include <cmath>
+#include <map>
 
 #include <gtest/gtest.h>
 
 #include "elastocal/robot/jacobian.hpp"
+#include "elastocal/robot/posture_loads.hpp"
+#include "elastocal/robot/statics.hpp"
 #include "tests/random_robot.hpp"
 #include "tests/test_robots.hpp"
 
@@ -78,27 +81,115 @@ TEST(Corrections, AGearTurnsTheJointByItsShare) {
       1e-15);
 }
 
+void WeighLinks(RobotTree& tree, Random& random) {
+  for (Link& link : tree.links) {
+    link.mass = random.Uniform(0.5, 2.0);
+    link.com = random.NormalVector(3, 0.1);
+  }
+}
+
+/// Adds mass and first moment (in the link's frame, kg.m) to the link on a joint.
+void AddWeight(RobotTree& tree, int joint, double mass, const Eigen::Vector3d& moment) {
+  Link& link = tree.links[tree.joints[joint].child_link];
+  link.com = (link.mass * link.com + moment) / (link.mass + mass);
+  link.mass += mass;
+}
+
+/// Centre of mass of all that a joint's link carries by fixed joints, in its frame, m.
+Eigen::Vector3d CentreOfBody(const RobotTree& tree, int joint) {
+  double mass = 0.0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (const Link& link : tree.links) {
+    if (link.body != joint + 1) continue;
+    mass += link.mass;
+    moment += link.mass * (link.T_body_link * link.com);
+  }
+  return moment / mass;
+}
+
+/// An elbow that carries more turns the shoulder, and the marker with it.
+TEST(Corrections, MassAndFirstMomentHaveTheirHandValues) {
+  RobotTree tree = PlanarArm();
+  const int shoulder = 0, elbow = 1;
+  tree.links[tree.joints[elbow].child_link].mass = 1.0;
+  tree.links[tree.joints[elbow].child_link].com = {0.1, 0.0, 0.0};
+  Elasticity elasticity;
+  elasticity.torsion = {shoulder};
+  elasticity.corrections = PossibleCorrections(tree, std::nullopt);
+  const ErrorModel model =
+      MakeErrorModel(tree, {{"M", FindLink(tree, "tip"), Eigen::Vector3d::Zero()}}, {}, elasticity);
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
+  const auto set = [&](const std::string& name, double value) {
+    delta[FindParameter(model.parameters, name)] = value;
+  };
+  const std::string link = tree.links[tree.joints[elbow].child_link].name;
+  set(tree.joints[shoulder].name + ".compliance_z", 1e-3);
+  set(link + ".mass", 0.2);
+  set(link + ".moment_x", 0.05);
+  const Geometry geometry = ApplyErrors(model, delta);
+  const Eigen::Vector2d q(0.0, 0.0);
+  const PostureLoads loads = LoadPosture(model, geometry, q, -1, {}, {0.0, -10.0, 0.0}, {});
+  EXPECT_NEAR(loads.joints(2, shoulder), -10.0 * 0.6, 1e-12);
+  const double load = -10.0 * (1.2 * 0.6 + 0.05);
+  EXPECT_NEAR(CorrectedLoads(geometry, loads.joints)(2, shoulder), load, 1e-12);
+  const Eigen::Vector3d found = MarkerPositions(model, geometry, q, loads.joints);
+  const Eigen::Vector3d expected(0.8 * std::cos(1e-3 * load), 0.8 * std::sin(1e-3 * load), 0.0);
+  EXPECT_LT((found - expected).norm(), 1e-14);
+}
+
+// Where nothing gives way, or torques are measured, a mass is nothing that markers show.
+TEST(Corrections, AMassNeedsASpringThatStaticsLoad) {
+  RobotTree tree = PlanarArm();
+  tree.links[tree.joints[1].child_link].mass = 1.0;
+  Elasticity elasticity;
+  elasticity.corrections = PossibleCorrections(tree, std::nullopt);
+  const std::vector<Marker> markers{{"M", FindLink(tree, "tip"), Eigen::Vector3d::Zero()}};
+  for (const Parameter& parameter : MakeErrorModel(tree, markers, {}, elasticity).parameters) {
+    EXPECT_FALSE(parameter.name.ends_with(".mass")) << parameter.name;
+    EXPECT_FALSE(parameter.name.starts_with("gravity")) << parameter.name;
+  }
+  elasticity.torsion = {0, 1};
+  const ErrorModel model = MakeErrorModel(tree, markers, {}, elasticity);
+  const Geometry geometry = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
+  MeasuredLoads measured;
+  measured.torques = Eigen::Vector2d(3.0, NAN);
+  const JointLoads loads =
+      LoadPosture(model, geometry, Eigen::Vector2d(0.1, 0.2), -1, measured, {0.0, -10.0, 0.0}, {})
+          .joints;
+  const int tilt = model.parameters[FindParameter(model.parameters, "gravity.tilt_x")].correction;
+  const int mass = model
+                       .parameters[FindParameter(
+                           model.parameters, tree.links[tree.joints[1].child_link].name + ".mass")]
+                       .correction;
+  EXPECT_EQ(loads.by_correction[mass](2, 0), 0.0);
+  EXPECT_EQ(loads.by_correction[tilt](2, 0), 0.0);
+}
+
 class CorrectionsOfRandomRobots : public testing::TestWithParam<int> {};
 
 // All columns, those of the root link's displacement too, on robots that are bent and corrected.
 TEST_P(CorrectionsOfRandomRobots, ColumnsAgreeWithDifferences) {
   Random random(GetParam());
-  const RobotTree tree = RandomRobot(kUsualRelations, random);
+  RobotTree tree = RandomRobot(kUsualRelations, random);
+  WeighLinks(tree, random);
+  const std::vector<Marker> markers = RandomMarkers(tree, random);
   Elasticity elasticity;
-  elasticity.corrections = PossibleCorrections(tree, 0.0);
+  elasticity.corrections = PossibleCorrections(tree, 0.0, {markers.front().name});
   for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) elasticity.torsion.push_back(k);
-  ErrorModel model = MakeErrorModel(tree, RandomMarkers(tree, random), {}, elasticity);
+  ErrorModel model = MakeErrorModel(tree, markers, {}, elasticity);
   model.T_ref_waist = RandomTransform(random);
   const Eigen::VectorXd delta = random.NormalVector(model.parameter_count(), 0.03);
   const Eigen::VectorXd q = RandomPosture(tree, random);
   JointLoads loads = JointLoads::Zero(3, static_cast<Eigen::Index>(tree.joints.size()));
   loads.shapes = random.NormalVector(static_cast<Eigen::Index>(elasticity.corrections.size()), 1.0);
   for (double& load : loads.reshaped()) load = random.Normal(0.3);
+  const Eigen::Vector3d gravity(0.3, -0.5, 0.8);
+  loads.by_correction = LoadsByCorrections(model, ApplyErrors(model, delta), q, gravity);
   GeneralizedJacobian jacobian(model);
   jacobian.Evaluate(ApplyErrors(model, delta), q, loads);
   const Eigen::MatrixXd J = jacobian.Dense();
   const double step = 1e-5;  // leaves 1e-10, see jacobian_test.cpp
-  int corrections = 0;
+  std::map<CorrectionTarget, int> corrections;
   for (int i = 0; i < model.parameter_count(); ++i) {
     Eigen::VectorXd forward = delta, backward = delta;
     forward[i] += step;
@@ -110,9 +201,54 @@ TEST_P(CorrectionsOfRandomRobots, ColumnsAgreeWithDifferences) {
         (2.0 * step);
     EXPECT_LT((J.col(i) - expected).norm(), 1e-7 * (expected.norm() + 1e-3))
         << model.parameters[i].name;
-    corrections += model.parameters[i].kind == ParameterKind::kCorrection ? 1 : 0;
+    if (model.parameters[i].kind != ParameterKind::kCorrection) continue;
+    ++corrections[TargetOf(elasticity.corrections[model.parameters[i].correction])];
   }
-  EXPECT_GT(corrections, 6);
+  EXPECT_GE(corrections[CorrectionTarget::kRoot], 6);
+  EXPECT_GT(corrections[CorrectionTarget::kLoads], 2);
+  EXPECT_GT(corrections[CorrectionTarget::kJoint], 0);
+  EXPECT_EQ(corrections[CorrectionTarget::kMarker], 3);
+}
+
+// The loads of a robot whose bodies weigh more, or that stands askew.
+TEST_P(CorrectionsOfRandomRobots, LoadsAgreeWithThoseOfTheOtherRobot) {
+  Random random(100 + GetParam());
+  RobotTree tree = RandomRobot(kUsualRelations, random);
+  WeighLinks(tree, random);
+  Elasticity elasticity;
+  elasticity.corrections = PossibleCorrections(tree, std::nullopt);
+  for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) elasticity.torsion.push_back(k);
+  ErrorModel model = MakeErrorModel(tree, RandomMarkers(tree, random), {}, elasticity);
+  model.T_ref_waist = RandomTransform(random);
+  const Geometry geometry = ApplyErrors(model, random.NormalVector(model.parameter_count(), 0.03));
+  const Eigen::VectorXd q = RandomPosture(tree, random);
+  const Eigen::Vector3d gravity(0.3, -5.0, 8.0);
+  const JointLoads loads = GravityLoads(model, geometry, q, gravity, 0);
+  const auto derivatives = LoadsByCorrections(model, geometry, q, gravity);
+  int loaded = 0;
+  for (std::size_t i = 0; i < derivatives.size(); ++i) {
+    if (derivatives[i].cols() == 0) continue;
+    const Correction& correction = elasticity.corrections[i];
+    ErrorModel other = model;
+    Eigen::Matrix3Xd expected;
+    if (correction.shape == CorrectionShape::kGravityTilt) {
+      const Eigen::Vector3d axis = WaistPose(geometry).linear().col(correction.axis);
+      const double step = 1e-4;  // leaves a part of 1e-8
+      expected = (GravityLoads(model, geometry, q, Eigen::AngleAxisd(step, axis) * gravity, 0) -
+                  GravityLoads(model, geometry, q, Eigen::AngleAxisd(-step, axis) * gravity, 0)) /
+                 (2.0 * step);
+    } else {
+      const bool mass = correction.shape == CorrectionShape::kMass;
+      const Eigen::Vector3d moment = mass ? CentreOfBody(tree, correction.source)
+                                          : Eigen::Vector3d(Eigen::Vector3d::Unit(correction.axis));
+      AddWeight(other.tree, correction.source, mass ? 1.0 : 0.0, moment);
+      expected = GravityLoads(other, geometry, q, gravity, 0) - loads;
+    }
+    EXPECT_LT((derivatives[i] - expected).norm(), 1e-7 * (1.0 + expected.norm()))
+        << correction.name;
+    loaded += derivatives[i].norm() > 1e-6 ? 1 : 0;  // a moment loads no joint that slides
+  }
+  EXPECT_GT(loaded, 4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, CorrectionsOfRandomRobots, testing::Range(1, 6));

@@ -75,13 +75,30 @@ void AddJointCompliances(const ErrorModel& model, int k, std::vector<Parameter>&
   }
 }
 
-/// Those of a joint; -1: of the root link.
-void AddCorrections(const ErrorModel& model, int joint, std::vector<Parameter>& parameters) {
+/// Whether the joints that carry the correction's body (of gravity: any) give way to a load.
+bool ActsThroughLoads(const ErrorModel& model, const Correction& correction) {
+  const Elasticity& elasticity = model.elasticity;
+  if (!model.legs.empty() || !elasticity.root_bending.empty()) return false;
+  const int last = correction.source;
+  if (last >= 0 && !Contains(model.active_joints, last)) return false;
+  const std::vector<int> joints =
+      last < 0 ? model.active_joints : JointsToBody(model.tree, last + 1);
+  return std::any_of(joints.begin(), joints.end(), [&](int k) {
+    return Contains(elasticity.torsion, k) || Contains(elasticity.bending, k);
+  });
+}
+
+/// Those of a target; of a joint, its index.
+void AddCorrections(const ErrorModel& model, CorrectionTarget target, int joint,
+                    std::vector<Parameter>& parameters) {
   const std::vector<Correction>& corrections = model.elasticity.corrections;
   for (std::size_t i = 0; i < corrections.size(); ++i) {
-    if (corrections[i].joint != joint) continue;
-    parameters.push_back({corrections[i].name, Kind::kCorrection, corrections[i].unit, joint, -1,
-                          -1, -1, static_cast<int>(i), corrections[i].typical});
+    if (TargetOf(corrections[i]) != target || corrections[i].joint != joint) continue;
+    if (target == CorrectionTarget::kMarker && corrections[i].marker < 0) continue;
+    if (target == CorrectionTarget::kLoads && !ActsThroughLoads(model, corrections[i])) continue;
+    parameters.push_back({corrections[i].name, Kind::kCorrection, corrections[i].unit, joint,
+                          corrections[i].marker, -1, -1, static_cast<int>(i),
+                          corrections[i].typical});
   }
 }
 
@@ -135,6 +152,12 @@ void AddMarkerParameters(const std::vector<Marker>& markers, std::vector<Paramet
   }
 }
 
+int IndexOfMarker(const std::vector<Marker>& markers, const std::string& name) {
+  const auto at = std::find_if(markers.begin(), markers.end(),
+                               [&](const Marker& marker) { return marker.name == name; });
+  return at == markers.end() ? -1 : static_cast<int>(at - markers.begin());
+}
+
 void CheckMarkers(const RobotTree& tree, const std::vector<Marker>& markers) {
   std::set<std::string> names;
   for (const Marker& marker : markers) {
@@ -184,11 +207,15 @@ void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
   model.active_joints = ActiveJoints(model.tree, markers, model.legs);
   model.parameters.clear();
   AddBaseParameters(model.parameters);
-  AddCorrections(model, -1, model.parameters);
+  for (Correction& correction : model.elasticity.corrections) {
+    correction.marker = IndexOfMarker(markers, correction.marker_name);
+  }
+  AddCorrections(model, CorrectionTarget::kRoot, -1, model.parameters);
+  AddCorrections(model, CorrectionTarget::kLoads, -1, model.parameters);
   for (int joint : model.active_joints) {
     AddJointParameters(model.tree, joint, model.placements[joint], model.parameters);
     AddJointCompliances(model, joint, model.parameters);
-    AddCorrections(model, joint, model.parameters);
+    AddCorrections(model, CorrectionTarget::kJoint, joint, model.parameters);
   }
   std::set<int> biased;
   for (int leg = 0; leg < model.leg_count() && model.elasticity.base; ++leg) {
@@ -197,6 +224,7 @@ void SetMarkers(ErrorModel& model, std::vector<Marker> markers) {
   for (int i = 0; i < static_cast<int>(model.tree.linkages.size()); ++i) {
     AddLinkageParameters(model, i, model.parameters);
   }
+  AddCorrections(model, CorrectionTarget::kMarker, -1, model.parameters);
   AddMarkerParameters(markers, model.parameters);
   model.markers = std::move(markers);
 }

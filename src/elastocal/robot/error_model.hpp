@@ -44,7 +44,9 @@ struct Elasticity {
   std::vector<Leg> legs = {};  ///< that the robot stands on alone, be they elastic or not
   bool base = true;          ///< these legs have a lumped compliance from foot to waist, eq. 6 ...
   bool torque_bias = false;  ///< ... and their torque sensors unknown biases
-  /// What is not elastic either; each is a parameter where its joint moves a marker.
+  /// What is not elastic either; each is a parameter where its joint moves a marker. Those of loads
+  /// are parameters where a joint that carries the body is elastic, and the root link, which does
+  /// not bend, stands still: on legs it is not known what loads them.
   std::vector<Correction> corrections = {};
 };
 
@@ -59,10 +61,10 @@ struct ErrorModel {
   Elasticity elasticity;                          ///< as requested
   std::vector<SupportLeg> legs;                   ///< those of `elasticity`, with their joints
   std::vector<int> active_joints;                 ///< joints that have parameters, ascending
-  /// In this order: T0 and corrections of the root link; joints from the waist outwards, each with
-  /// its geometric parameters, then compliance_z, _x, _y, _root_x, _root_y, _root_z, then
-  /// corrections; legs, if `base`, each
-  /// with six compliances and then torque biases; linkages of active joints; markers.
+  /// In this order: T0, corrections of the root link and of loads; joints from the waist outwards,
+  /// each with its geometric parameters, then compliance_z, _x, _y, _root_x, _root_y, _root_z, then
+  /// corrections; legs, if `base`, each with six compliances and then torque biases; linkages of
+  /// active joints; corrections of markers; markers.
   std::vector<Parameter> parameters;
 
   int parameter_count() const { return static_cast<int>(parameters.size()); }

@@ -34,22 +34,26 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
   std::vector<int> parameter_count(model.tree.joints.size(), 0);
   for (int i = screw_count - 1; i >= kWaistParameterCount; --i) {
     const Parameter& parameter = model.parameters[i];
-    if (parameter.leg >= 0 || parameter.linkage >= 0) continue;
-    if (parameter.joint < 0) {
-      ++root_corrections_;
-      continue;
-    }
+    if (parameter.leg >= 0 || parameter.linkage >= 0 || parameter.joint < 0) continue;
     first_parameter_[parameter.joint] = i;
     ++parameter_count[parameter.joint];
     if (IsCompliance(parameter.kind)) ++compliances_[parameter.joint];
     if (parameter.kind == ParameterKind::kCorrection) ++corrections_[parameter.joint];
   }
-  row_count_ = screw_count;
+  CountCorrections(screw_count);
+  first_load_row_ = screw_count;
+  row_count_ = screw_count + load_corrections_ * model.tree.body_count();
 
   Eigen::Index offset = 0;
   for (int m = 0; m < model.marker_count(); ++m) {
     MarkerLayout layout{LayOut(model.tree.links[model.markers[m].link].body, parameter_count),
                         offset};
+    for (int i = first_marker_correction_; i < screw_count; ++i) {
+      const int correction = model.parameters[i].correction;
+      if (model.elasticity.corrections[correction].marker != m) continue;
+      layout.segments.push_back({i, 1});
+      layout.columns.push_back(i);
+    }
     for (int i = 0; i < 3; ++i) layout.columns.push_back(screw_count + 3 * m + i);
     offset += 3 * static_cast<Eigen::Index>(layout.columns.size());
     layout_.push_back(std::move(layout));
@@ -60,6 +64,27 @@ GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
     leg_screws_.emplace_back(6, static_cast<Eigen::Index>(legs_.back().columns.size()));
   }
   screws_.setZero(row_count_, 6);
+}
+
+void GeneralizedJacobian::CountCorrections(int screw_count) {
+  first_marker_correction_ = screw_count;
+  for (int i = kWaistParameterCount; i < screw_count; ++i) {
+    const Parameter& parameter = model_.parameters[i];
+    if (parameter.kind != ParameterKind::kCorrection) continue;
+    switch (TargetOf(model_.elasticity.corrections[parameter.correction])) {
+      case CorrectionTarget::kRoot:
+        ++root_corrections_;
+        break;
+      case CorrectionTarget::kLoads:
+        ++load_corrections_;
+        break;
+      case CorrectionTarget::kMarker:
+        first_marker_correction_ = std::min(first_marker_correction_, i);
+        break;
+      default:
+        break;
+    }
+  }
 }
 
 GeneralizedJacobian::Segment GeneralizedJacobian::LinkageSegment(int linkage,
@@ -82,7 +107,12 @@ GeneralizedJacobian::Segment GeneralizedJacobian::LinkageSegment(int linkage,
 
 GeneralizedJacobian::BodyLayout GeneralizedJacobian::LayOut(
     int body, const std::vector<int>& parameter_count) {
-  BodyLayout layout{body, {{0, kWaistParameterCount + root_corrections_}}, {}};
+  const int first_load = kWaistParameterCount + root_corrections_;
+  BodyLayout layout{body, {{0, first_load}}, {}};
+  if (load_corrections_ > 0) {
+    layout.segments.push_back(
+        {first_load_row_ + body * load_corrections_, load_corrections_, first_load});
+  }
   const std::vector<int> path = JointsToBody(model_.tree, body);
   for (int joint : path) {
     Segment& last = layout.segments.back();
@@ -171,6 +201,47 @@ void GeneralizedJacobian::SetRootCorrections(const Geometry& geometry, const Joi
   }
 }
 
+/// What a correction of loads does to the body that a joint moves: all that it does to the body
+/// before, and the joint's deflection by the load that it adds.
+void GeneralizedJacobian::AddLoadCorrections(int joint, const Geometry::JointConstants& constants,
+                                             const MdhFrame& twisted, const JointLoads& acting,
+                                             const JointLoads& loads) {
+  const int n = load_corrections_;
+  const auto rows_of = [&](int body) { return first_load_row_ + body * n; };
+  const Joint& moved = model_.tree.joints[joint];
+  screws_.middleRows(rows_of(joint + 1), n) = screws_.middleRows(rows_of(moved.parent_body), n);
+  if (loads.by_correction.empty()) return;
+  const bool revolute = moved.type == JointType::kRevolute;
+  Eigen::Matrix3d axes = twisted.R;
+  if (revolute) axes *= LeftJacobian(constants.compliance.cwiseProduct(acting.col(joint)));
+  const Vector3d centre = twisted.p + constants.centre * twisted.R.col(2);
+  const int first = kWaistParameterCount + root_corrections_;
+  for (int i = 0; i < n; ++i) {
+    const auto correction = static_cast<std::size_t>(model_.parameters[first + i].correction);
+    const Vector3d step =
+        axes * constants.compliance.cwiseProduct(loads.by_correction[correction].col(joint));
+    auto row = screws_.row(rows_of(joint + 1) + i);
+    if (revolute) {
+      row.head<3>() += step.transpose().array();
+      row.tail<3>() += centre.cross(step).transpose().array();
+    } else {
+      row.tail<3>() += step.transpose().array();
+    }
+  }
+}
+
+void GeneralizedJacobian::SetMarkerCorrections(const Geometry& geometry, const JointLoads& loads) {
+  const int end = model_.parameter_count() - 3 * model_.marker_count();
+  for (int row = first_marker_correction_; row < end; ++row) {
+    const int index = model_.parameters[row].correction;
+    const Correction& correction = model_.elasticity.corrections[index];
+    const double shape = loads.shapes.size() > 0 ? loads.shapes[index] : 0.0;
+    const MdhFrame& frame = frames_[layout_[correction.marker].body];
+    const Eigen::Matrix3d axes = frame.R * geometry.R_joint_link[correction.marker];
+    SetTranslation(screws_, row, shape * axes.col(correction.axis));
+  }
+}
+
 /// An error of a linkage moves what is beyond its joints as their own motion does.
 void GeneralizedJacobian::SetLinkages(const Geometry& geometry, const Eigen::VectorXd& q) {
   const LinkedPosture posture = PlaceLinkages(model_.tree, geometry.linkage_errors, q);
@@ -191,6 +262,9 @@ void GeneralizedJacobian::SetLinkages(const Geometry& geometry, const Eigen::Vec
 
 void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::VectorXd& q,
                                          const JointLoads& loads) {
+  const bool reloaded = !loads.by_correction.empty();
+  const JointLoads with_corrections = reloaded ? CorrectedLoads(geometry, loads) : JointLoads();
+  const JointLoads& acting = reloaded ? with_corrections : loads;
   // Sets the screws in the order of the parameters of one joint, or of the waist.
   const auto visit = [&](int joint, const Geometry::JointConstants& constants,
                          const MdhFrame& parent, const MdhFrame& twisted,
@@ -212,12 +286,14 @@ void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::
     // An error of r also moves the physical centre, so its direction is the axis before deflection.
     SetTranslation(screws_, row++, twisted.R.col(2));
     if (waist) return;
-    if (compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, loads);
+    if (compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, acting);
+    if (load_corrections_ > 0) AddLoadCorrections(joint, constants, twisted, acting, loads);
     SetCorrections(joint, row + compliances_[joint], deflected, loads);
   };
-  EvaluateMdhFrames(model_, geometry, q, loads, frames_, visit);
+  EvaluateMdhFrames(model_, geometry, q, acting, frames_, visit);
   if (!linkage_rows_.empty()) SetLinkages(geometry, q);
   if (root_corrections_ > 0) SetRootCorrections(geometry, loads);
+  SetMarkerCorrections(geometry, loads);
 }
 
 void GeneralizedJacobian::EvaluateMarker(int marker) {
@@ -272,7 +348,7 @@ void GeneralizedJacobian::Evaluate(const Geometry& geometry, const Eigen::Vector
   for (int leg = 0; leg < model_.leg_count(); ++leg) EvaluateLeg(leg);
   for (int m = 0; m < model_.marker_count(); ++m) {
     const MdhFrame& frame = frames_[layout_[m].body];
-    positions_.col(m) = frame.p + frame.R * geometry.p_joint_marker[m];
+    positions_.col(m) = frame.p + frame.R * MarkerInBody(model_, geometry, loads, m);
     EvaluateMarker(m);
     const auto width = static_cast<Eigen::Index>(layout_[m].columns.size());
     Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> block(

@@ -16,10 +16,10 @@ namespace elastocal {
 ///
 /// A displacement of any parameter moves the bodies beyond it as a screw, so that every column is a
 /// x p + m: for a rotation, a is its axis and m = o x a with o on the axis; for a translation a is
-/// zero and m its direction. Loads, if given, are constants: the columns of compliances are
-/// derivatives under these loads. A torque bias has no column here, because through a joint's
-/// torsion it would be the same as an error of theta. The structure is laid out once; Evaluate
-/// allocates nothing.
+/// zero and m its direction. Loads, if given, are constants but for their corrections: the columns
+/// of compliances are derivatives under the corrected loads. A torque bias has no column here,
+/// because through a joint's torsion it would be the same as an error of theta. The structure is
+/// laid out once; Evaluate allocates nothing.
 class GeneralizedJacobian {
  public:
   /// Keeps a reference: the model must outlive it.
@@ -101,6 +101,11 @@ class GeneralizedJacobian {
   Segment LinkageSegment(int linkage, const std::vector<int>& path);
   void SetLinkages(const Geometry& geometry, const Eigen::VectorXd& q);
   void SetRootCorrections(const Geometry& geometry, const JointLoads& loads);
+  void AddLoadCorrections(int joint, const Geometry::JointConstants& constants,
+                          const MdhFrame& twisted, const JointLoads& acting,
+                          const JointLoads& loads);
+  void SetMarkerCorrections(const Geometry& geometry, const JointLoads& loads);
+  void CountCorrections(int screw_count);
   void EvaluateMarker(int marker);
   void EvaluateLeg(int leg);
 
@@ -109,6 +114,9 @@ class GeneralizedJacobian {
   std::vector<int> compliances_;                    // by joint: how many it has
   std::vector<int> corrections_;                    // likewise
   int root_corrections_ = 0;                        // of the root link, after T0
+  int load_corrections_ = 0;                        // after these
+  int first_load_row_ = 0;                          // of screws_: by body, then by correction
+  int first_marker_correction_ = 0;                 // parameter; those of markers come last
   std::vector<LinkageRows> linkage_rows_;           // one for each set of joints that is needed
   int row_count_ = 0;                               // of screws_
   std::vector<MarkerLayout> layout_;                // by marker

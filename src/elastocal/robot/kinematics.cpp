@@ -93,6 +93,16 @@ Geometry::JointConstants JointWithErrors(const ErrorModel& model, int joint,
   return constants;
 }
 
+/// Applies corrections that are not of a joint, which are in `delta` from index `i` on. Moves `i`
+/// behind them.
+void ApplyCorrections(const ErrorModel& model, const Eigen::VectorXd& delta, int& i,
+                      Geometry& geometry) {
+  for (; i < model.parameter_count() && model.parameters[i].kind == Kind::kCorrection; ++i) {
+    if (model.parameters[i].joint >= 0) break;
+    geometry.corrections[model.parameters[i].correction] = delta[i];
+  }
+}
+
 /// Applies the errors of the legs, which are in `delta` from index `i` on. Moves `i` behind them.
 void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& i,
                     Geometry& geometry) {
@@ -131,15 +141,13 @@ Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta) {
   geometry.joints.resize(model.tree.joints.size());
   geometry.corrections.setZero(static_cast<Eigen::Index>(model.elasticity.corrections.size()));
   int i = kWaistParameterCount;
-  for (; i < model.parameter_count() && model.parameters[i].kind == Kind::kCorrection; ++i) {
-    if (model.parameters[i].joint >= 0) break;
-    geometry.corrections[model.parameters[i].correction] = delta[i];
-  }
+  ApplyCorrections(model, delta, i, geometry);
   for (int k : model.active_joints) {
     geometry.joints[k] = JointWithErrors(model, k, delta, i, geometry.corrections);
   }
   ApplyLegErrors(model, delta, i, geometry);
   ApplyLinkageErrors(model, delta, i, geometry);
+  ApplyCorrections(model, delta, i, geometry);
   geometry.p_joint_marker.reserve(model.markers.size());
   geometry.R_joint_link.reserve(model.markers.size());
   for (const Marker& marker : model.markers) {
@@ -172,9 +180,34 @@ Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geomet
   Eigen::Matrix3Xd positions(3, model.marker_count());
   for (int m = 0; m < model.marker_count(); ++m) {
     const MdhFrame& frame = frames[model.tree.links[model.markers[m].link].body];
-    positions.col(m) = frame.p + frame.R * geometry.p_joint_marker[m];
+    positions.col(m) = frame.p + frame.R * MarkerInBody(model, geometry, loads, m);
   }
   return positions;
+}
+
+JointLoads CorrectedLoads(const Geometry& geometry, const JointLoads& loads) {
+  JointLoads corrected = loads;
+  corrected.by_correction.clear();
+  for (std::size_t i = 0; i < loads.by_correction.size(); ++i) {
+    const Eigen::Matrix3Xd& derivative = loads.by_correction[i];
+    if (derivative.cols() == 0) continue;
+    corrected += geometry.corrections[static_cast<Eigen::Index>(i)] * derivative;
+  }
+  return corrected;
+}
+
+Vector3d MarkerInBody(const ErrorModel& model, const Geometry& geometry, const JointLoads& loads,
+                      int marker) {
+  Vector3d position = geometry.p_joint_marker[marker];
+  if (loads.shapes.size() == 0) return position;
+  const std::vector<Correction>& all = model.elasticity.corrections;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (all[i].marker != marker) continue;
+    position += geometry.corrections[at] * loads.shapes[at] *
+                geometry.R_joint_link[marker].col(all[i].axis);
+  }
+  return position;
 }
 
 MarkerInLink PlaceMarker(const ErrorModel& model, const Geometry& geometry, int marker, int link) {

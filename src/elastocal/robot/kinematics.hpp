@@ -25,6 +25,9 @@ struct JointLoads : Eigen::Matrix3Xd {
   Eigen::Matrix3Xd about_root;
   /// What the model's corrections multiply in this posture (EvaluateShapes); empty: nothing.
   Eigen::VectorXd shapes;
+  /// By correction of the model: derivative of the loads by it, for those of loads (statics.hpp).
+  /// The loads themselves are without these corrections. Empty: there are none.
+  std::vector<Eigen::Matrix3Xd> by_correction;
 };
 
 /// The error model with a vector of errors applied: everything in eq. 1-3 that does not depend on
@@ -87,12 +90,19 @@ Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geomet
                                  const Eigen::VectorXd& q, const JointLoads& loads = {});
 
 /// Position of a marker in the frame of a link of its own body, m, and the axes of its coordinates
-/// there (columns). Both are the same in all postures.
+/// there (columns). Both are the same in all postures: corrections of the marker are left out.
 struct MarkerInLink {
   Eigen::Vector3d position;
   Eigen::Matrix3d axes;
 };
 MarkerInLink PlaceMarker(const ErrorModel& model, const Geometry& geometry, int marker, int link);
+
+/// The loads of the robot with its corrections of loads: what its joints give way to.
+JointLoads CorrectedLoads(const Geometry& geometry, const JointLoads& loads);
+
+/// Position of a marker in its body's MDH frame, with its corrections, m.
+Eigen::Vector3d MarkerInBody(const ErrorModel& model, const Geometry& geometry,
+                             const JointLoads& loads, int marker);
 
 /// Poses of the bodies in the reference frame: that of the root, then those of the bodies that
 /// active joints move (others are identity). Body frames are those of RobotTree.

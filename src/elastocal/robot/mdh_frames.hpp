@@ -57,7 +57,8 @@ inline Vector6d RootCorrection(const ErrorModel& model, const Geometry& geometry
   const std::vector<Correction>& all = model.elasticity.corrections;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (all[i].joint < 0) sum[all[i].axis] += geometry.corrections[at] * loads.shapes[at];
+    if (TargetOf(all[i]) != CorrectionTarget::kRoot) continue;
+    sum[all[i].axis] += geometry.corrections[at] * loads.shapes[at];
   }
   return sum;
 }
@@ -71,13 +72,16 @@ inline Vector6d RootCorrection(const ErrorModel& model, const Geometry& geometry
 /// where the twisted frame is the one after Trx(d) in eq. 1: its x is the axis of alpha and d, its
 /// z the joint's axis. The deflected frame is the same with the joint's elastic rotation under
 /// `loads`, which acts on the fixed side, before the joint's own rotation: its z is the axis of
-/// theta. Forward kinematics and the Jacobian are the same walk. Linkages with errors put their
-/// joints elsewhere than `q` says (PlaceLinkages).
+/// theta. The loads act with their corrections. Forward kinematics and the Jacobian are the same
+/// walk. Linkages with errors put their joints elsewhere than `q` says (PlaceLinkages).
 template <typename Visit>
 inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
                               const Eigen::VectorXd& q, const JointLoads& loads,
                               std::vector<MdhFrame>& frames, const Visit& visit) {
   const bool loaded = loads.cols() > 0;
+  const bool reloaded = !loads.by_correction.empty();
+  const JointLoads with_corrections = reloaded ? CorrectedLoads(geometry, loads) : JointLoads();
+  const JointLoads& acting = reloaded ? with_corrections : loads;
   const bool corrected = geometry.corrections.size() > 0 && loads.shapes.size() > 0;
   const auto place = [&](int joint, const Geometry::JointConstants& constants,
                          const MdhFrame& parent, bool revolute, double position, MdhFrame& frame) {
@@ -86,7 +90,7 @@ inline void EvaluateMdhFrames(const ErrorModel& model, const Geometry& geometry,
     MdhFrame bent;
     const MdhFrame* deflected = &twisted;
     if (loaded && joint != kWaist && !constants.compliance.isZero(0.0)) {
-      bent = Deflected(constants, revolute, loads.col(joint), twisted);
+      bent = Deflected(constants, revolute, acting.col(joint), twisted);
       deflected = &bent;
     }
     visit(joint, constants, parent, twisted, *deflected);

@@ -43,9 +43,11 @@ enum class ParameterUnit {
   kNewton,
   kRatio,
   kPerNewton,
-  kMetrePerHour
+  kMetrePerHour,
+  kKilogram,
+  kKilogramMetre
 };
-inline constexpr int kParameterUnitCount = 9;
+inline constexpr int kParameterUnitCount = 11;
 inline constexpr int kRootAxis = 3;
 
 /// One entry of the vector of errors: a deviation from the nominal model, zero at nominal.
@@ -73,7 +75,7 @@ struct Parameter {
 /// torsion, bending, base_force, base_moment, torque_bias, correction, rod, motor_zero.
 const char* KindName(ParameterKind kind);
 
-/// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N, 1, 1/N, m/h.
+/// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N, 1, 1/N, m/h, kg, kg.m.
 const char* UnitName(ParameterUnit unit);
 
 /// Whether a kind of joint parameter is an angle: theta, alpha, beta, gamma, motor_zero.

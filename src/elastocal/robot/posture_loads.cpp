@@ -45,6 +45,19 @@ void LoadWaist(const ErrorModel& model, const LegPosture& posture, const Measure
   loads.waist_by_bias = -load.wrench_by_torque;
 }
 
+/// A measured torque has its joint's load whatever the masses.
+void AddByCorrections(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
+                      const MeasuredLoads& measured, const Eigen::Vector3d& gravity_ref,
+                      JointLoads& loads) {
+  loads.by_correction = LoadsByCorrections(model, geometry, q, gravity_ref);
+  for (Eigen::Matrix3Xd& derivative : loads.by_correction) {
+    if (derivative.cols() == 0) continue;
+    for (Eigen::Index k = 0; k < measured.torques.size(); ++k) {
+      if (!std::isnan(measured.torques[k])) derivative(2, k) = 0.0;
+    }
+  }
+}
+
 }  // namespace
 
 Vector6d PostureLoads::WaistLoad(const ErrorModel& model, const Geometry& geometry, int leg) const {
@@ -60,7 +73,10 @@ PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
       GravityLoads(model, geometry, q, gravity_ref, leg < 0 ? 0 : model.legs[leg].link);
   loads.joints = gravity;
   if (measured.torques.size() > 0) UseMeasuredTorques(measured.torques, loads.joints);
-  if (leg < 0) return loads;
+  if (leg < 0) {
+    AddByCorrections(model, geometry, q, measured, gravity_ref, loads.joints);
+    return loads;
+  }
   const LegPosture posture = PlaceLeg(model, geometry, q, leg, loads.joints);
   LoadWaist(model, posture, measured, gravity, gravity_ref, options, loads);
   if (loads.joints.about_root.cols() > 0) {  // the waist turns the leg by the opposite

@@ -16,6 +16,17 @@ Vector3d TurningMoment(const CarriedLoad& carried, const Vector3d& point, const 
   return carried.side * (carried.moment - carried.mass * point).cross(gravity);
 }
 
+/// Load of a joint by what it carries, see JointLoads. `centre`: z of the joint's physical centre
+/// in its twisted frame, m.
+Vector3d LoadOn(JointType type, const CarriedLoad& carried, double centre, const MdhFrame& twisted,
+                const Vector3d& gravity) {
+  const Vector3d axis = twisted.R.col(2);
+  if (type == JointType::kPrismatic) {
+    return {0.0, 0.0, carried.side * carried.mass * axis.dot(gravity)};
+  }
+  return twisted.R.transpose() * TurningMoment(carried, twisted.p + centre * axis, gravity);
+}
+
 }  // namespace
 
 std::vector<CarriedLoad> CarriedLoads(const RobotTree& tree,
@@ -79,15 +90,77 @@ JointLoads GravityLoads(const ErrorModel& model, const Geometry& geometry, const
       loads.about_root.col(k) =
           frames[0].R.transpose() * TurningMoment(carried[k], frames[0].p, gravity_ref);
     }
-    if (model.tree.joints[k].type == JointType::kRevolute) {
-      const Vector3d centre = twisted.p + constants.centre * twisted.R.col(2);
-      loads.col(k) = twisted.R.transpose() * TurningMoment(carried[k], centre, gravity_ref);
-    } else {
-      loads(2, k) = carried[k].side * carried[k].mass * twisted.R.col(2).dot(gravity_ref);
-    }
+    loads.col(k) =
+        LoadOn(model.tree.joints[k].type, carried[k], constants.centre, twisted, gravity_ref);
   };
   EvaluateMdhFrames(model, geometry, q, deflected_by, frames, visit);
   return loads;
+}
+
+namespace {
+
+/// Corrections of loads that are parameters of the model.
+std::vector<int> CorrectionsOfLoads(const ErrorModel& model) {
+  std::vector<int> corrections;
+  for (const Parameter& parameter : model.parameters) {
+    if (parameter.kind != ParameterKind::kCorrection) continue;
+    const auto index = static_cast<std::size_t>(parameter.correction);
+    if (TargetOf(model.elasticity.corrections[index]) != CorrectionTarget::kLoads) continue;
+    corrections.push_back(parameter.correction);
+  }
+  return corrections;
+}
+
+/// What one unit of a correction adds to the weight of its body.
+CarriedLoad AddedLoad(const RobotTree& tree, const Correction& correction,
+                      const std::vector<Transform>& T_ref_link) {
+  if (correction.shape == CorrectionShape::kFirstMoment) {
+    const int link = tree.joints[correction.source].child_link;
+    return {0.0, T_ref_link[link].linear().col(correction.axis)};
+  }
+  CarriedLoad body;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const Link& link = tree.links[i];
+    if (link.body != correction.source + 1) continue;
+    body.mass += link.mass;
+    body.moment += link.mass * (T_ref_link[i] * link.com);
+  }
+  return {1.0, body.moment / body.mass};
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix3Xd> LoadsByCorrections(const ErrorModel& model, const Geometry& geometry,
+                                                 const Eigen::VectorXd& q,
+                                                 const Vector3d& gravity_ref) {
+  const std::vector<int> corrections = CorrectionsOfLoads(model);
+  if (corrections.empty()) return {};
+  std::vector<Eigen::Matrix3Xd> derivatives(model.elasticity.corrections.size());
+  const std::vector<Transform> T_ref_link = CalibratedLinkTransforms(model, geometry, q);
+  std::vector<MdhFrame> frames(model.tree.body_count());
+  for (int i : corrections) {
+    const Correction& correction = model.elasticity.corrections[i];
+    const bool tilt = correction.shape == CorrectionShape::kGravityTilt;
+    std::vector<CarriedLoad> carried;
+    std::vector<int> joints = model.active_joints;
+    Vector3d gravity = gravity_ref;
+    if (tilt) {
+      carried = CarriedLoads(model.tree, T_ref_link, 0);
+      gravity = Vector3d(WaistPose(geometry).linear().col(correction.axis)).cross(gravity_ref);
+    } else {
+      carried.assign(model.tree.joints.size(), AddedLoad(model.tree, correction, T_ref_link));
+      joints = JointsToBody(model.tree, correction.source + 1);
+    }
+    derivatives[i].setZero(3, static_cast<Eigen::Index>(model.tree.joints.size()));
+    EvaluateMdhFrames(model, geometry, q, {}, frames,
+                      [&](int k, const Geometry::JointConstants& constants, const MdhFrame&,
+                          const MdhFrame& twisted, const MdhFrame&) {
+                        if (std::find(joints.begin(), joints.end(), k) == joints.end()) return;
+                        derivatives[i].col(k) = LoadOn(model.tree.joints[k].type, carried[k],
+                                                       constants.centre, twisted, gravity);
+                      });
+  }
+  return derivatives;
 }
 
 void UseMeasuredTorques(const Eigen::VectorXd& torques, JointLoads& loads) {

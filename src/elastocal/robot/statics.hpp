@@ -51,6 +51,14 @@ JointLoads GravityLoads(const ErrorModel& model, const Geometry& geometry, const
                         const Eigen::Vector3d& gravity_ref, int fixed_link,
                         const JointLoads& deflected_by = {});
 
+/// Derivatives of GravityLoads, with the root link (0) standing still, by each correction of loads
+/// that is a parameter of the model: masses and first moments of bodies, and the tilt of gravity to
+/// first order. By correction of the model's elasticity; of others empty, and all empty where there
+/// are none.
+std::vector<Eigen::Matrix3Xd> LoadsByCorrections(const ErrorModel& model, const Geometry& geometry,
+                                                 const Eigen::VectorXd& q,
+                                                 const Eigen::Vector3d& gravity_ref);
+
 /// Replaces the load about (along) a joint's axis by the opposite of its measured torque, unless
 /// that is NaN (eq. 5). `torques`: by joint, N.m or N, as the sensors report them, which balance
 /// the load.

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/physical_inertia.hpp"
 
 namespace elastocal {
@@ -302,10 +303,18 @@ std::string Weld(std::size_t sole, const Transform& T_world_sole) {
          " solref=\"0.01 1\" solimp=\"0.999 0.9999 0.001\"/>\n";
 }
 
+std::string GravityOf(const PhysicsOptions& options) {
+  const Eigen::Vector3d turn(options.gravity_tilt_x, options.gravity_tilt_y, 0.0);
+  if (turn.isZero(0.0)) return "0 0 " + Number(-options.gravity);
+  const Eigen::Vector3d gravity =
+      RotationFromVector(turn) * Eigen::Vector3d(0.0, 0.0, -options.gravity);
+  return Numbers(std::array{gravity.x(), gravity.y(), gravity.z()});
+}
+
 std::string Header(const PhysicsOptions& options, bool contact) {
   return std::string("<mujoco><compiler angle=\"radian\"/>\n<option") +
          Attribute("timestep", Number(options.time_step_s)) +
-         Attribute("gravity", "0 0 " + Number(-options.gravity)) +
+         Attribute("gravity", GravityOf(options)) +
          " iterations=\"200\" tolerance=\"1e-12\" solver=\"" + (contact ? "Newton" : "PGS") +
          "\"><flag" + (contact ? "" : " contact=\"disable\"") + "/></option>\n<worldbody>\n";
 }

@@ -27,6 +27,8 @@ struct PhysicsOptions {
   double foot_length = 0.20, foot_width = 0.12;  ///< of soles that stand freely, m
   double floor_friction = 0.8;
   double gravity = 9.81;  ///< m/s^2, downwards
+  /// By which gravity is turned about x and y of the world: what the robot stands on is not level.
+  double gravity_tilt_x = 0.0, gravity_tilt_y = 0.0;  ///< rad
 };
 
 /// A flat square plate of the robot, which a table can carry without friction. Both are a little

@@ -44,7 +44,13 @@ TrueMotion PlayMotion(const TrueRobot& robot, const std::vector<int>& support, c
       body.Command(PostureAt(motion, (steps + 1) * body.time_step_s()));
       body.Step();
     }
-    result.markers.row(i) = (T_camera_world * body.MarkerPositions()).reshaped().transpose();
+    Eigen::Matrix3Xd markers = body.MarkerPositions();
+    if (robot.creeping_marker >= 0) {
+      const int link = robot.markers[static_cast<std::size_t>(robot.creeping_marker)].link;
+      markers.col(robot.creeping_marker) +=
+          robot.creep * time_s / 3600.0 * body.LinkPose(link).linear().col(0);
+    }
+    result.markers.row(i) = (T_camera_world * markers).reshaped().transpose();
     const Eigen::VectorXd encoders = body.Encoders();
     const Eigen::VectorXd torques = body.Torques();
     for (Eigen::Index c = 0; c < joints; ++c) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
@@ -116,6 +117,24 @@ class Drawing {
     }
   }
 
+  void Causes() {
+    if (!options_.heavy_link.empty()) {
+      Link& link = robot_.tree.links[FindLink(robot_.tree, options_.heavy_link)];
+      link.mass *= 1.0 + options_.heavy_share;
+      link.inertia *= 1.0 + options_.heavy_share;
+    }
+    if (options_.creeping_marker.empty()) return;
+    std::vector<std::string> names;
+    for (const Marker& marker : robot_.markers) names.push_back(marker.name);
+    const auto at = std::find(names.begin(), names.end(), options_.creeping_marker);
+    if (at == names.end()) {
+      throw InputError("no marker '" + options_.creeping_marker + "'" +
+                       DidYouMean(options_.creeping_marker, names));
+    }
+    robot_.creeping_marker = static_cast<int>(at - names.begin());
+    robot_.creep = options_.creep;
+  }
+
   void TorqueSensors() {
     constexpr double kLargestBiasShare = 0.02;
     Random random(StreamSeed(options_.seed, "torque sensors"));
@@ -190,6 +209,7 @@ TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options) {
   drawing.Friction();
   drawing.Markers();
   drawing.TorqueSensors();
+  drawing.Causes();
   return robot;
 }
 

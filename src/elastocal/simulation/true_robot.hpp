@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -59,6 +60,12 @@ struct TruthOptions {
   // Torque sensors.
   double torque_gain_sd = 0.02;  ///< relative
   double torque_bias_sd = 0.5;   ///< N.m (at most 2 % of the largest effort)
+
+  // Causes beyond geometry and springs (docs/diagnose.md).
+  std::string heavy_link;       ///< weighs more than it should, whatever mass_sd; empty: none
+  double heavy_share = 0.0;     ///< by this share
+  std::string creeping_marker;  ///< moves along x of its link; empty: none
+  double creep = 0.0;           ///< m/h
 };
 
 /// The true robot, with what its description does not say.
@@ -75,6 +82,8 @@ struct TrueRobot {
   Eigen::VectorXd friction;               ///< by joint, N.m or N
   std::vector<bool> torque_sensor;        ///< by joint: whether it has one
   Eigen::VectorXd torque_gain, torque_bias;  ///< by joint: reading = gain * torque + bias
+  int creeping_marker = -1;                  ///< moves along x of its link; -1: none
+  double creep = 0.0;                        ///< m/h, from the beginning of a trial
   /// As described, where it has linkages. `tree` has the true rods, whose loops close on the true
   /// tree: their joints have no offset.
   RobotTree described;
@@ -86,7 +95,8 @@ TrueRobot NominalRobot(RobotTree tree, std::vector<Marker> markers, std::vector<
                        const std::vector<int>& torque_sensors);
 
 /// A robot with errors drawn as the options say. The same seed draws the same errors for each kind
-/// of imperfection whatever the options of the others.
+/// of imperfection whatever the options of the others. Throws InputError for a link or marker that
+/// does not exist.
 TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options);
 
 /// True joint positions, by joint, without deflection, for encoder positions by coordinate of the

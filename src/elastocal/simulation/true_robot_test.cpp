@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/biped.hpp"
+#include "tests/expect_input_error.hpp"
 
 namespace elastocal {
 namespace {
@@ -96,6 +97,23 @@ TEST(DrawTrueRobot, ScalesAndSwitchesOffWhatTheyName) {
   EXPECT_EQ(after.tree.links[0].com, before.tree.links[0].com);
   EXPECT_EQ(after.torque_bias, before.torque_bias);
   EXPECT_EQ(after.markers[3].p_link_marker, before.markers[3].p_link_marker);
+}
+
+TEST(DrawTrueRobot, OneLinkIsHeavierAndOneMarkerCreeps) {
+  TruthOptions options = Unscaled();
+  const TrueRobot nominal = Nominal();
+  const TrueRobot before = DrawTrueRobot(nominal, options);
+  options.heavy_link = nominal.tree.links[0].name;
+  options.heavy_share = 0.1;
+  options.creeping_marker = nominal.markers[1].name;
+  options.creep = 1e-3;
+  const TrueRobot after = DrawTrueRobot(nominal, options);
+  EXPECT_DOUBLE_EQ(after.tree.links[0].mass, 1.1 * before.tree.links[0].mass);
+  EXPECT_EQ(after.tree.links[1].mass, before.tree.links[1].mass);
+  EXPECT_EQ(after.creeping_marker, 1);
+  EXPECT_EQ(after.creep, 1e-3);
+  options.creeping_marker = "nowhere";
+  ExpectInputError([&] { DrawTrueRobot(nominal, options); }, {"nowhere", "no marker"});
 }
 
 TEST(DrawTrueRobot, LinksOfLegsGiveWayAndNoOthers) {
