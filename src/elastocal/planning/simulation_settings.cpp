@@ -21,20 +21,25 @@ using Settings = std::vector<SimulationSetting>;
 
 void AddTruth(TruthOptions& truth, Settings& list) {
   const std::string g = "True geometry (standard deviations)";
-  list.insert(list.end(), {{g, "upper_offset_deg", &truth.upper_offset_sd, kRadiansPerDegree, 0, 45,
-                            "Joint zeros of head, arms and trunk"},
-                           {g, "leg_offset_deg", &truth.leg_offset_sd, kRadiansPerDegree, 0, 45,
-                            "Joint zeros of the legs"},
-                           {g, "length_mm", &truth.length_sd, kMillimetre, 0, 100,
-                            "Placement of every joint, along each direction"},
-                           {g, "angle_deg", &truth.angle_sd, kRadiansPerDegree, 0, 45,
-                            "Placement of every joint, about each axis"},
-                           {g, "upper_geometry_scale", &truth.upper_geometry_scale, 1, 0, 100,
-                            "Factor on all of these, of head, arms and trunk"},
-                           {g, "leg_geometry_scale", &truth.leg_geometry_scale, 1, 0, 100,
-                            "The same, of the legs"},
-                           {g, "marker_mm", &truth.marker_sd, kMillimetre, 0, 100,
-                            "Markers on their links, each coordinate"}});
+  list.insert(
+      list.end(),
+      {{g, "upper_offset_deg", &truth.upper_offset_sd, kRadiansPerDegree, 0, 45,
+        "Joint zeros of head, arms and trunk"},
+       {g, "leg_offset_deg", &truth.leg_offset_sd, kRadiansPerDegree, 0, 45,
+        "Joint zeros of the legs"},
+       {g, "length_mm", &truth.length_sd, kMillimetre, 0, 100,
+        "Placement of every joint, along each direction"},
+       {g, "angle_deg", &truth.angle_sd, kRadiansPerDegree, 0, 45,
+        "Placement of every joint, about each axis"},
+       {g, "upper_geometry_scale", &truth.upper_geometry_scale, 1, 0, 100,
+        "Factor on all of these, of head, arms and trunk"},
+       {g, "leg_geometry_scale", &truth.leg_geometry_scale, 1, 0, 100, "The same, of the legs"},
+       {g, "series_share", &truth.series.share, 1, 0, 1,
+        "Of the variance of every error of the robot, what all robots of a "
+        "series have in common"},
+       {g, "series_seed", &truth.series.seed, 1, 0, 1e9, "Seed of what they have in common"},
+       {g, "marker_mm", &truth.marker_sd, kMillimetre, 0, 100,
+        "Markers on their links, each coordinate"}});
   const std::string e = "True elasticity";
   list.insert(
       list.end(),

@@ -45,7 +45,7 @@ TrueMotion EmptyMotion(const ErrorModel& model, const Motion& motion) {
 
 /// Draws the value of a parameter. `leg_joint` says whether it belongs to a joint of a leg.
 double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions& options,
-                 Random& random) {
+                 SeriesRandom& random) {
   constexpr double kLeastForce = 2e-6, kMostForce = 9e-6;    // m/N
   constexpr double kLeastMoment = 2e-6, kMostMoment = 5e-5;  // rad/(N.m)
   const double scale = leg_joint ? options.leg_geometry_scale : options.upper_geometry_scale;
@@ -53,7 +53,7 @@ double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions&
     case ParameterKind::kWaistPose:
       return 0.0;
     case ParameterKind::kMarker:
-      return random.Normal(options.marker_sd);
+      return random.own().Normal(options.marker_sd);
     case ParameterKind::kTorsion:
     case ParameterKind::kBending: {
       const double least = leg_joint ? options.leg_stiffness_least : options.upper_stiffness_least;
@@ -84,7 +84,7 @@ double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions&
 
 Eigen::VectorXd DrawMatchedTruth(const ErrorModel& model, const std::vector<int>& identifiable,
                                  const std::vector<Leg>& legs, const TruthOptions& options) {
-  Random random(StreamSeed(options.seed, "matched truth"));
+  SeriesRandom random(options.seed, options.series, "matched truth");
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
   for (int i : identifiable) {
     const Parameter& parameter = model.parameters[i];

@@ -17,7 +17,7 @@ class Drawing {
   Drawing(const TruthOptions& options, TrueRobot& robot) : options_(options), robot_(robot) {}
 
   void Placements() {
-    Random random(StreamSeed(options_.seed, "placement"));
+    SeriesRandom random(options_.seed, options_.series, "placement");
     for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
       Joint& joint = robot_.tree.joints[k];
       const Eigen::Vector3d shift = random.NormalVector(3, 1.0);
@@ -31,7 +31,7 @@ class Drawing {
   }
 
   void Offsets() {
-    Random random(StreamSeed(options_.seed, "offset"));
+    SeriesRandom random(options_.seed, options_.series, "offset");
     for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
       const bool slides = robot_.tree.joints[k].type == JointType::kPrismatic;
       const double sd = slides     ? options_.length_sd
@@ -42,7 +42,7 @@ class Drawing {
   }
 
   void Linkages() {
-    Random random(StreamSeed(options_.seed, "linkages"));
+    SeriesRandom random(options_.seed, options_.series, "linkages");
     for (std::size_t i = 0; i < robot_.described.linkages.size(); ++i) {
       const Linkage& linkage = robot_.described.linkages[i];
       Eigen::VectorXd& errors = robot_.linkage_errors[i];
@@ -59,7 +59,7 @@ class Drawing {
   }
 
   void JointSprings() {
-    Random random(StreamSeed(options_.seed, "joint springs"));
+    SeriesRandom random(options_.seed, options_.series, "joint springs");
     for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
       const double share = random.Uniform(0.0, 1.0);
       const double least = IsLeg(k) ? options_.leg_stiffness_least : options_.upper_stiffness_least;
@@ -71,7 +71,7 @@ class Drawing {
   }
 
   void LinkSprings() {
-    Random random(StreamSeed(options_.seed, "link springs"));
+    SeriesRandom random(options_.seed, options_.series, "link springs");
     const auto draw = [&](Vector6d compliance) {
       for (double& c : compliance) {
         c *= options_.leg_elasticity_scale *
@@ -92,7 +92,7 @@ class Drawing {
   }
 
   void Inertias() {
-    Random random(StreamSeed(options_.seed, "inertia"));
+    SeriesRandom random(options_.seed, options_.series, "inertia");
     for (Link& link : robot_.tree.links) {
       const double factor = std::max(0.5, 1.0 + options_.mass_sd * random.Normal(1.0));
       const Eigen::Vector3d shift = random.NormalVector(3, options_.com_sd);
@@ -137,7 +137,7 @@ class Drawing {
 
   void TorqueSensors() {
     constexpr double kLargestBiasShare = 0.02;
-    Random random(StreamSeed(options_.seed, "torque sensors"));
+    SeriesRandom random(options_.seed, options_.series, "torque sensors");
     for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
       const double limit = kLargestBiasShare * robot_.tree.joints[k].limits.effort;
       robot_.torque_gain[Index(k)] = 1.0 + random.Normal(options_.torque_gain_sd);

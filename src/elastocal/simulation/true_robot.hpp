@@ -10,6 +10,7 @@
 
 #include "elastocal/robot/error_model.hpp"
 #include "elastocal/robot/legs.hpp"
+#include "elastocal/simulation/series_random.hpp"
 
 namespace elastocal {
 
@@ -20,6 +21,8 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 /// docs/accuracy.md says why. "Upper" means head, arms and trunk.
 struct TruthOptions {
   std::uint64_t seed = 1;
+  /// What robots of a series have in common of all their errors but their markers' positions.
+  SeriesOptions series = {};
 
   /// Lengths below, but for those of markers, are of a robot on legs whose root link stands this
   /// high [m]; on a robot that is half as high they are half as large.
