@@ -26,6 +26,7 @@ constexpr double kMotionTolerance = 0.1;  // relative, of samples: where their s
 constexpr double kRoughly = 10.0;         // times these
 constexpr int kRoughIterations = 5;       // of a solve whose weights will change anyway
 constexpr double kLeastLeft = 0.05;       // of the variance of a row
+constexpr int kMaxSolves = 6;  // for the last digits, where the iterations of one do not suffice
 constexpr int kMaxPolishing = 20;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 constexpr double kSlow = 0.3;             // of the step before
@@ -385,7 +386,11 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
 
 void Polish(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
             Fit& fit) {
-  SolveOnce(problem, selection, free, {.max_iterations = problem.options.max_iterations}, fit);
+  for (int round = 0; round < kMaxSolves; ++round) {
+    SolveOnce(problem, selection, free, {.max_iterations = problem.options.max_iterations}, fit);
+    const bool goes_on = fit.termination == Termination::kNoConvergence;
+    if (!goes_on || !IsElasticFit(problem.model, free, fit.delta)) break;
+  }
   if (fit.termination == Termination::kConverged && IsElasticFit(problem.model, free, fit.delta)) {
     FollowLoads(problem, selection, free, fit);
   }

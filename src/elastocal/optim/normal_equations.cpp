@@ -170,16 +170,7 @@ void NormalEquations::EliminateNuisance() {
 }
 
 void NormalEquations::UpdateGradient() {
-  gradient_.setZero(information_.rows());
   const auto is_active = [&](int block) { return problem_.residual_blocks[block].active; };
-  for (int block = 0; block < static_cast<int>(layout_.size()); ++block) {
-    if (!is_active(block)) continue;
-    const std::vector<int>& to = layout_[block].unknowns;
-    const Eigen::VectorXd slope = OwnJacobian(block).transpose() * problem_.Residual(block);
-    for (std::size_t c = 0; c < to.size(); ++c) {
-      gradient_[to[c]] += slope[static_cast<Eigen::Index>(c)];
-    }
-  }
   nuisance_decrease_ = 0.0;
   for (Group& group : groups_) {
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(group.size);
@@ -189,7 +180,19 @@ void NormalEquations::UpdateGradient() {
     }
     group.own = group.factor.solve(slope);
     nuisance_decrease_ += 0.5 * slope.dot(group.own);
-    gradient_.noalias() -= Gain(group).transpose() * slope;
+  }
+  gradient_.setZero(information_.rows());
+  for (int block = 0; block < static_cast<int>(layout_.size()); ++block) {
+    if (!is_active(block)) continue;
+    // What the nuisance leaves of it: of residuals with a tiny standard deviation almost nothing.
+    Eigen::VectorXd left = problem_.Residual(block);
+    const int group = layout_[block].group;
+    if (group >= 0) left.noalias() -= NuisanceJacobian(block) * groups_[group].own;
+    const std::vector<int>& to = layout_[block].unknowns;
+    const Eigen::VectorXd slope = OwnJacobian(block).transpose() * left;
+    for (std::size_t c = 0; c < to.size(); ++c) {
+      gradient_[to[c]] += slope[static_cast<Eigen::Index>(c)];
+    }
   }
 }
 
