@@ -65,10 +65,10 @@ struct TruthOptions {
   double torque_bias_sd = 0.5;   ///< N.m (at most 2 % of the largest effort)
 
   // Causes beyond geometry and springs (docs/diagnose.md).
-  std::string heavy_link;       ///< weighs more than it should, whatever mass_sd; empty: none
-  double heavy_share = 0.0;     ///< by this share
-  std::string creeping_marker;  ///< moves along x of its link; empty: none
-  double creep = 0.0;           ///< m/h
+  std::string heavy_link = {};       ///< weighs more than it should, whatever mass_sd; empty: none
+  double heavy_share = 0.0;          ///< by this share
+  std::string creeping_marker = {};  ///< moves along x of its link; empty: none
+  double creep = 0.0;                ///< m/h
 };
 
 /// The true robot, with what its description does not say.

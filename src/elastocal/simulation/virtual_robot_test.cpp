@@ -43,6 +43,16 @@ TEST(VirtualRobot, SpringOfOneJointGivesWayToItsLoad) {
   EXPECT_NEAR(body.MarkerPositions()(2, 0), -std::sin(angle), 1e-8);
 }
 
+// A pendulum that hangs is loaded only where what it hangs from is not level.
+TEST(VirtualRobot, TiltedGravityPullsAside) {
+  PhysicsOptions options;
+  options.gravity_tilt_y = 0.1;
+  VirtualRobot body(Pendulum(), {}, Eigen::VectorXd::Constant(1, M_PI / 2.0), options);
+  ASSERT_TRUE(body.Settle());
+  const double load = 2.0 * 9.81 * 0.5 * std::sin(0.1);  // towards -x, and so about +y
+  EXPECT_NEAR(body.Torques()[0], -load, 1e-3 * load);    // the servo gives way
+}
+
 TEST(VirtualRobot, OffsetIsWhatTheEncoderDoesNotShow) {
   TrueRobot robot = Pendulum();
   robot.offset[0] = 0.02;
