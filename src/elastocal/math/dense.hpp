@@ -18,8 +18,8 @@ Eigen::MatrixXd Product(const ConstMatrix& A, const ConstMatrix& B);
 /// Adds `factor` A A^T to the lower triangle of a symmetric matrix S; what is above stays.
 void AddSquare(double factor, const ConstMatrix& A, Eigen::MatrixXd& S);
 
-/// S^-1 of a symmetric positive definite matrix, whose lower triangle alone is read. NaN where it
-/// is not positive definite.
+/// S^-1 of a symmetric positive definite matrix, whose lower triangle alone is read: by LL', and by
+/// LDL' where rounding has made it indefinite.
 Eigen::MatrixXd InverseOfPositive(const ConstMatrix& S);
 
 /// S^-1 B, likewise.

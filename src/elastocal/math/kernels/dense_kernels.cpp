@@ -8,7 +8,6 @@
 #endif
 
 #include <algorithm>
-#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -40,7 +39,8 @@ void Invert(ConstMatrixView S, MatrixView to) {
   const Eigen::LLT<Eigen::MatrixXd> factor(Mapped(S));
   auto inverse = Mapped(to);
   if (factor.info() != Eigen::Success) {
-    inverse.setConstant(std::numeric_limits<double>::quiet_NaN());
+    inverse =
+        Eigen::LDLT<Eigen::MatrixXd>(Mapped(S)).solve(Eigen::MatrixXd::Identity(S.rows, S.rows));
     return;
   }
   const Eigen::Index size = S.rows;
@@ -66,9 +66,10 @@ void Invert(ConstMatrixView S, MatrixView to) {
 void Solve(ConstMatrixView S, MatrixView X) {
   const Eigen::LLT<Eigen::MatrixXd> factor(Mapped(S));
   auto solution = Mapped(X);
-  factor.solveInPlace(solution);
-  if (factor.info() != Eigen::Success) {
-    solution.setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (factor.info() == Eigen::Success) {
+    factor.solveInPlace(solution);
+  } else {
+    Eigen::LDLT<Eigen::MatrixXd>(Mapped(S)).solveInPlace(solution);
   }
 }
 
