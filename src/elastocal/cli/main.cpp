@@ -26,6 +26,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/utf8.hpp"
 #include "elastocal/report/version.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal::cli {
 
@@ -122,12 +123,27 @@ int Generate(const CLI::App& app, const std::string& what) {
   return kFine;
 }
 
+/// What the library says of a command line, with words that it does not expect in quotes: an empty
+/// one would not be seen.
+std::string UsageMessage(const CLI::App* app, const CLI::Error& error) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) {
+    return CLI::FailureMessage::simple(app, error);
+  }
+  std::string words;
+  for (const std::string& word : app->remaining(true)) {
+    words += (words.empty() ? "" : ", ") + Quote(word);
+  }
+  return "The following arguments were not expected: " + words +
+         "\nRun with --help for more information.\n";
+}
+
 int Run(int argc, char** argv) {
   SetCommandLine(argc, argv);
   CLI::App app("Elasto-geometric calibration of humanoid robots from marker positions.");
   app.name("elastocal");
   app.set_version_flag("--version", std::string("elastocal ") + ProgramVersion());
   app.require_subcommand(1);
+  app.failure_message(UsageMessage);
   app.footer(
       "Exit codes: 0 fine, 2 usage, 3 bad input, 4 not converged or infeasible.\n"
       "Example: elastocal demo");
