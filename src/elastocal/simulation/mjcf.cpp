@@ -63,7 +63,7 @@ class MjcfWriter {
   void WriteTables() {
     for (std::size_t i = 0; i < plates_.size(); ++i) {
       text += "<body" + Attribute("name", "t" + std::to_string(i)) +
-              " mocap=\"true\" pos=\"0 0 -100\"><geom type=\"plane\" size=\"1 1 0.1\"" +
+              R"( mocap="true" pos="0 0 -100"><geom type="plane" size="1 1 0.1")" +
               ContactOf(i, "contype") + "/></body>\n";
     }
   }
@@ -165,7 +165,7 @@ class MjcfWriter {
     text += "<inertial pos=\"0 0 0\" mass=\"0.1\" diaginertia=\"1e-4 1e-4 1e-4\"/>\n";
     if (options_.standing == Standing::kFree) {
       constexpr double kHalfThickness = 0.01;
-      text += "<geom type=\"box\" pos=\"0 0 " + Number(kHalfThickness) + "\"" +
+      text += R"(<geom type="box" pos="0 0 )" + Number(kHalfThickness) + "\"" +
               Attribute("size", Numbers(std::array{0.5 * options_.foot_length,
                                                    0.5 * options_.foot_width, kHalfThickness})) +
               " mass=\"0\"" + Friction() + "/>\n";
@@ -178,7 +178,7 @@ class MjcfWriter {
     constexpr std::size_t kBits = 29;  // the first is for the floor
     const std::string other = as == "contype" ? "conaffinity" : "contype";
     return Attribute(as, std::to_string(2U << (plate % kBits))) + Attribute(other, "0") +
-           " condim=\"1\" solref=\"0.08 1\" solimp=\"0.5 0.5 0.001\"";
+           R"( condim="1" solref="0.08 1" solimp="0.5 0.5 0.001")";
   }
 
   void Plates(int body) {
@@ -188,7 +188,7 @@ class MjcfWriter {
       const Link& link = tree_.links[static_cast<std::size_t>(plate.link)];
       if (link.body != body) continue;
       const Transform T_box = link.T_body_link * plate.T_link_face * TrZ(kHalfThickness);
-      text += "<geom type=\"box\" mass=\"0\"" + Attribute("name", "p" + std::to_string(i)) +
+      text += R"(<geom type="box" mass="0")" + Attribute("name", "p" + std::to_string(i)) +
               PoseAttributes(T_box) +
               Attribute("size",
                         Numbers(std::array{0.5 * plate.edge, 0.5 * plate.edge, kHalfThickness})) +
@@ -315,7 +315,7 @@ std::string Header(const PhysicsOptions& options, bool contact) {
   return std::string("<mujoco><compiler angle=\"radian\"/>\n<option") +
          Attribute("timestep", Number(options.time_step_s)) +
          Attribute("gravity", GravityOf(options)) +
-         " iterations=\"200\" tolerance=\"1e-12\" solver=\"" + (contact ? "Newton" : "PGS") +
+         R"( iterations="200" tolerance="1e-12" solver=")" + (contact ? "Newton" : "PGS") +
          "\"><flag" + (contact ? "" : " contact=\"disable\"") + "/></option>\n<worldbody>\n";
 }
 
@@ -334,7 +334,7 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
   for (int foot : support) {
     const Transform& T_waist_foot = T_waist_link[static_cast<std::size_t>(foot)];
     if (model.T_world_foot.empty()) {
-      model.T_world_foot.push_back(Transform(LegOf(robot, foot).R_floor_foot));
+      model.T_world_foot.emplace_back(LegOf(robot, foot).R_floor_foot);
       model.T_world_waist = model.T_world_foot[0] * T_waist_foot.inverse();
     } else {
       LegOf(robot, foot);
@@ -345,7 +345,7 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
   if (support.empty()) {
     writer.WriteFromWaist(model.T_world_waist, false);
   } else if (options.standing == Standing::kFree) {
-    writer.text += "<geom type=\"plane\" size=\"5 5 0.1\"" + writer.Friction() + "/>\n";
+    writer.text += R"(<geom type="plane" size="5 5 0.1")" + writer.Friction() + "/>\n";
     writer.WriteFromWaist(model.T_world_waist, true);
   } else {
     writer.WriteFromSole(0, model.T_world_foot[0]);
