@@ -64,11 +64,7 @@ function header(report) {
     h('p', {class: 'source'}, report.summary?.recording ? `from ${report.summary.recording}` : report.folder ?? ''), dark);
 }
 
-function contents(sections) {
-  const items = sections.filter((s) => s.dataset.short).map((s) =>
-    h('li', {}, h('a', {href: `#${s.id}`}, s.dataset.short)));
-  return h('nav', {'aria-label': 'Contents'}, h('ol', {}, ...items));
-}
+const entry = (part) => h('li', {}, h('a', {href: `#${part.id}`}, part.dataset.short));
 
 /** The licences of others' software that is in this page (notices.js puts them into the template). */
 function licences() {
@@ -76,14 +72,26 @@ function licences() {
   return h('details', {id: 'licences'}, h('summary', {}, 'Software of others in this page, and its licences'), h('pre', {}, text));
 }
 
-function show(report) {
-  const sections = sectionsOf(report).map((make) => build(make, report)).filter(Boolean);
+/** After what stands so far has been painted; in a tab that is not seen, nothing is. */
+const painted = () => new Promise((done) => document.hidden ? done() : requestAnimationFrame(() => setTimeout(done)));
+
+/** The robot is seen before the sections below it are made. */
+async function show(report) {
   document.title = `${titleOf(report)} – elastocal report`;
-  document.getElementById('app').append(
-    h('a', {class: 'skip', href: '#main'}, 'Skip to the report'), header(report), contents(sections),
-    h('main', {id: 'main'}, ...sections),
-    h('footer', {}, h('p', {}, `Made by elastocal ${report.version ?? ''}. This file is complete: it needs no network and no other file.`),
-      licences()));
+  const list = h('ol');
+  const main = h('main', {id: 'main'});
+  const app = document.getElementById('app');
+  app.append(h('a', {class: 'skip', href: '#main'}, 'Skip to the report'), header(report), h('nav', {'aria-label': 'Contents'}, list), main);
+  for (const make of sectionsOf(report)) {
+    const part = build(make, report);
+    if (!part) continue;
+    main.append(part);
+    if (part.dataset.short) list.append(entry(part));
+    if (make === robotSection) await painted();
+  }
+  app.append(h('footer', {}, h('p', {}, `Made by elastocal ${report.version ?? ''}. This file is complete: it needs no network and no other file.`), licences()));
+  document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
+  app.dataset.complete = '';
 }
 
 const report = JSON.parse(document.getElementById('report-data').textContent);

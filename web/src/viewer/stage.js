@@ -82,13 +82,15 @@ export class Stage {
     this.invalidate();
   }
 
+  /** Takes a size, and draws again what has been drawn: a picture costs more than all else here. */
   resize(width, height) {
-    if (width < 1 || height < 1) return;
+    if (width < 1 || height < 1 || (width === this.width && height === this.height)) return;
+    [this.width, this.height] = [width, height];
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.draw();
+    if (this.drawn) this.draw();
   }
 
   invalidate() {
@@ -99,6 +101,7 @@ export class Stage {
   draw() {
     cancelAnimationFrame(this.pending);
     this.pending = 0;
+    this.drawn = true;
     this.renderer.render(this.scene, this.camera);
     this.afterDraw?.();
   }

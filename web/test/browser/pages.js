@@ -16,6 +16,7 @@ export async function openPage(browser, file, options = {}) {
   page.on('dialog', (dialog) => { problems.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
   page.on('request', (request) => !request.url().startsWith('data:') && !request.url().startsWith('blob:') && request.url() !== url && requests.push(request.url()));
   await page.goto(url);
+  await page.waitForSelector('#app[data-complete]', {state: 'attached'});
   return {page, problems, requests};
 }
 

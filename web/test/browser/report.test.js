@@ -6,20 +6,23 @@ import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 import {after, before, test} from 'node:test';
-import {fileURLToPath} from 'node:url';
+import {fileURLToPath, pathToFileURL} from 'node:url';
 
 import {page as fill, sampleReport} from '../sample.js';
 import {EVIL} from '../sample_robot.js';
 import {openBrowser} from './chromium.js';
 import {embeddedReport, openPage, picture, waitForViewer} from './pages.js';
+import {trianglePage} from './triangle.js';
 
 const template = process.env.TEMPLATE ?? fileURLToPath(new URL('../../dist/index.html', import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'elastocal-report-'));
 const sample = join(folder, 'sample.html');
+const triangle = join(folder, 'triangle.html');
 const files = {sample, ...(process.env.REPORT && {program: resolve(process.env.REPORT)})};
 let browser;
 
 before(async () => {
+  writeFileSync(triangle, trianglePage);
   writeFileSync(sample, fill(readFileSync(template, 'utf8'), sampleReport()));
   browser = await openBrowser();
 });
@@ -186,16 +189,21 @@ for (const [name, file] of Object.entries(files)) {
     await page.close();
   });
 
-  test(`${name}: the viewer is there within 2 s, in less than 5 MB`, async (t) => {
-    const times = [];
+  test(`${name}: the viewer is there within 2 s, or 16 times what one triangle takes, in less than 5 MB`, async (t) => {
+    const times = {viewer: [], triangle: []};
     // Other tests may run beside this one: the quickest of up to six counts.
-    while (times.length < 6 && !(Math.min(...times) < 2000)) {
-      const {page} = await openPage(browser, file);
-      times.push(Number(await waitForViewer(page)));
-      await page.close();
+    const limit = () => Math.max(2000, 16 * Math.min(...times.triangle));
+    const tooLate = () => !(Math.min(...times.viewer) < limit());
+    while (times.viewer.length < 6 && tooLate()) {
+      for (const [what, path] of [['triangle', triangle], ['viewer', file]]) {
+        const page = await browser.newPage({viewport: {width: 1280, height: 900}, deviceScaleFactor: 0.5});
+        await page.goto(pathToFileURL(path).href);
+        times[what].push(Number(await waitForViewer(page)));
+        await page.close();
+      }
     }
-    t.diagnostic(`first picture of the viewer after ${times.join(', ')} ms; ${(readFileSync(file).length / 1e6).toFixed(2)} MB`);
-    assert.ok(Math.min(...times) < 2000, `${times} ms`);
+    t.diagnostic(`first picture of the viewer after ${times.viewer.join(', ')} ms, of a triangle after ${times.triangle.join(', ')} ms; ${(readFileSync(file).length / 1e6).toFixed(2)} MB`);
+    assert.ok(!tooLate(), `${times.viewer} ms, limit ${limit()} ms`);
     assert.ok(readFileSync(file).length < 5e6);
   });
 }
