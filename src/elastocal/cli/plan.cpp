@@ -26,7 +26,7 @@ struct PlanCommand {
   CommonOptions common;
   std::string project, postures, output, trajectory, folder;
   std::string kind;  ///< of a validation motion; empty: postures are given
-  std::optional<double> zmp_margin_mm, lift_mm, inset_mm;
+  std::optional<double> zmp_margin_mm, lift_mm, inset_mm, approach_mm;
   bool unbalanced = false, unstabilised = false;
   MotionPlanOptions options;
   MotionTrialOptions tries{.robots = 0};
@@ -117,6 +117,7 @@ int Plan(const PlanCommand& command) {
   if (command.zmp_margin_mm) options.limits.zmp_margin = 1e-3 * *command.zmp_margin_mm;
   if (command.lift_mm) options.plan.lift_m = 1e-3 * *command.lift_mm;
   if (command.inset_mm) options.plan.inset = 1e-3 * *command.inset_mm;
+  if (command.approach_mm) options.approach.height = 1e-3 * *command.approach_mm;
   options.plan.balanced = !command.unbalanced;
   MotionTrialOptions tries = command.tries;
   tries.seed = command.common.seed.value_or(1);
@@ -211,6 +212,9 @@ void AddPlan(CLI::App& app, Action& action) {
   length("--inset-mm", options->inset_mm,
          "How far the zero-moment point stays from the middle of a sole, towards the foot that "
          "leaves or meets the floor, mm; default: 0.54 of half the width of the sole");
+  length(
+      "--approach-mm", options->approach_mm,
+      "Of touches: height above its table from which a plate goes straight down, mm; default: 50");
   number("--torque-share", plan.limits.torque_share, "Share of the torque limits to be used");
   number("--velocity-share", plan.limits.velocity_share, "Share of the velocity limits to be used");
   number("--floor-friction", options->tries.floor_friction,

@@ -177,6 +177,7 @@ std::vector<Bound> MakeBounds() {
       {"plan --zmp-margin-mm", "mm", 0, 1e3, "a foot"},
       {"plan --lift-mm", "mm", 1, 1e3, "a leg"},
       {"plan --inset-mm", "mm", 0.1, 1e3, "a foot"},
+      {"plan --approach-mm", "mm", 1, 1e3, "an arm"},
       {"plan --torque-share", "", 0.01, 1, "a share"},
       {"plan --velocity-share", "", 0.01, 1, "a share"},
       {"plan --floor-friction", "", 0, 10, "rubber has 1"},

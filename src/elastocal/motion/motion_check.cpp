@@ -99,7 +99,8 @@ const char* ConstraintName(Constraint constraint) {
                                  "friction of the feet",
                                  "bent knee of a standing leg",
                                  "feet that stand still",
-                                 "swinging foot above the floor"};
+                                 "swinging foot above the floor",
+                                 "reach of the hand above the table"};
   return kNames[static_cast<std::size_t>(constraint)];
 }
 

@@ -46,7 +46,8 @@ enum class Constraint {
   kFriction,
   kKnee,
   kFeet,
-  kFloor
+  kFloor,
+  kApproach
 };
 
 /// "torque limit" and the like, for messages.

@@ -7,6 +7,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/smooth_step.hpp"
+#include "elastocal/robot/inverse_dynamics.hpp"
 
 namespace elastocal {
 namespace {
@@ -118,6 +119,28 @@ std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
   return std::nullopt;
 }
 
+std::optional<PlacedPosture> MoveBuilder::AsGiven(const Eigen::VectorXd& q,
+                                                  const std::vector<int>& standing,
+                                                  Refusal& why) const {
+  PlacedPosture pose{q, robot_.T_world_root};
+  if (!standing.empty()) {
+    const int first = standing.front();
+    pose.T_world_root =
+        robot_.T_world_sole[Size(first)] * robot_.legs[Size(first)].SolePose(q).inverse();
+  }
+  for (const int foot : standing) {
+    if (PlaceSole(robot_, foot, robot_.T_world_sole[Size(foot)], pose)) continue;
+    why = OutOfReach();
+    return std::nullopt;
+  }
+  const MotionMargins margins =
+      CheckMotion(robot_, {options_.rate_hz, pose.q.transpose(), {standing}});
+  const auto refusal = Refuse(margins, robot_.limits);
+  if (!refusal) return pose;
+  why = *refusal;
+  return std::nullopt;
+}
+
 std::optional<PlacedPosture> MoveBuilder::AtHeights(const Eigen::VectorXd& q,
                                                     const std::vector<int>& standing,
                                                     const PlacedPosture& near, const Manner& manner,
@@ -202,10 +225,25 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Follow(const PlacedPosture& from,
   stretch.rate_hz = options_.rate_hz;
   stretch.q = WithEnds(way);
   stretch.standing = standing;
-  stretch.zmp = SupportCentre(robot_, standing).transpose().replicate(stretch.q.rows(), 1);
+  stretch.zmp = ZmpWay(from, to, standing, stretch.q.rows());
   stretch.begin = from;
   stretch.end = to;
   return BalanceAndCheck(stretch, why);
+}
+
+Eigen::MatrixX2d MoveBuilder::ZmpWay(const PlacedPosture& from, const PlacedPosture& to,
+                                     const std::vector<int>& standing, Eigen::Index samples) const {
+  constexpr double kBalanced = 1e-6;  // m
+  const Eigen::Vector2d centre = SupportCentre(robot_, standing);
+  const auto at_rest = [&](const PlacedPosture& pose) -> Eigen::Vector2d {
+    const Eigen::Vector2d com =
+        (pose.T_world_root * CentreOfMass(robot_.tree, robot_.inertias, pose.q)).head<2>();
+    return (com - centre).norm() < kBalanced ? centre : com;
+  };
+  const Eigen::RowVector2d begin = at_rest(from).transpose();
+  const Eigen::RowVector2d way = at_rest(to).transpose() - begin;
+  return begin.replicate(samples, 1) +
+         ShareOfWay(samples, SamplesOf(kEnds), SamplesOf(kEnds)) * way;
 }
 
 std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, const PlacedPosture& to,

@@ -32,7 +32,13 @@ class MoveBuilder {
   std::optional<PlacedPosture> AtRest(const Eigen::VectorXd& q, const std::vector<int>& standing,
                                       const PlacedPosture& near, Refusal& why) const;
 
-  /// The same with one foot held by its leg at a pose in the world.
+  /// The posture as it is, legs too: the first of the feet says where the root link is, and the
+  /// centre of mass where the zero-moment point is. The other feet are put exactly where they
+  /// stand.
+  std::optional<PlacedPosture> AsGiven(const Eigen::VectorXd& q, const std::vector<int>& standing,
+                                       Refusal& why) const;
+
+  /// As AtRest, with one foot held by its leg at a pose in the world.
   std::optional<PlacedPosture> AtRestWithFoot(const std::vector<int>& standing, int foot,
                                               const Transform& T_world_sole,
                                               const PlacedPosture& near, Refusal& why) const;
@@ -63,6 +69,10 @@ class MoveBuilder {
   Eigen::Index SamplesOf(double seconds) const;
 
  private:
+  /// Samples of the zero-moment point that lead from where it is at rest in one posture to the
+  /// other.
+  Eigen::MatrixX2d ZmpWay(const PlacedPosture& from, const PlacedPosture& to,
+                          const std::vector<int>& standing, Eigen::Index samples) const;
   std::optional<Eigen::MatrixXd> BalanceAndCheck(const Stretch& stretch, Refusal& why) const;
   /// The way with its first and last row held for a moment.
   Eigen::MatrixXd WithEnds(const Eigen::MatrixXd& way) const;

@@ -133,21 +133,48 @@ class TourPlanner {
     for (const int i : Order()) {
       Refusal why;
       if (set_.in_order) GoTo(hub_, why);
-      const auto target = build_.AtRest(set_.postures[Size(i)], set_.standing, here_, why);
+      const Eigen::VectorXd& q = set_.postures[Size(i)];
+      const auto target = set_.legs_given ? build_.AsGiven(q, set_.standing, why)
+                                          : build_.AtRest(q, set_.standing, here_, why);
       if (!target) {
         LeaveOut(i, why, true);
-        continue;
-      }
-      if (!GoTo(*target, why) && !GoByHub(*target, why)) {
+      } else if (!(set_.approaches.empty() ? VisitDirectly(i, *target, why)
+                                           : VisitByApproach(i, *target, why))) {
         LeaveOut(i, why, false);
-        continue;
       }
-      const int ends = static_cast<int>(build_.SamplesOf(0.5));
-      result_.visits.push_back({i, rows_.count - ends, 0});
-      Hold();
-      result_.visits.back().end = rows_.count + ends;
     }
     GoBack();
+  }
+
+  bool VisitDirectly(int posture, const PlacedPosture& target, Refusal& why) {
+    if (!GoTo(target, why) && !GoByHub(target, why)) return false;
+    Rest(posture);
+    return true;
+  }
+
+  bool VisitByApproach(int posture, const PlacedPosture& target, Refusal& why) {
+    const Eigen::MatrixXd& way = set_.approaches[Size(posture)];
+    if (way.rows() == 0) {
+      why = {Constraint::kApproach};
+      return false;
+    }
+    const PlacedPosture before{WithLegsOf(target.q, way.row(0).transpose()), target.T_world_root};
+    const auto there = build_.Follow(before, target, set_.standing, way, why);
+    if (!there || (!GoTo(before, why) && !GoByHub(before, why))) return false;
+    rows_.Add(*there, set_.standing);
+    here_ = target;
+    Rest(posture);
+    rows_.Add(there->colwise().reverse(), set_.standing);
+    here_ = before;
+    return true;
+  }
+
+  /// Holds the posture, in which the robot has arrived, and takes it down as visited.
+  void Rest(int posture) {
+    const int ends = static_cast<int>(build_.SamplesOf(0.5));
+    result_.visits.push_back({posture, rows_.count - ends, 0});
+    Hold();
+    result_.visits.back().end = rows_.count + ends;
   }
 
   std::vector<int> Order() const {
@@ -175,13 +202,17 @@ class TourPlanner {
   /// The postures with the joints of standing legs as in the hub, so that these do not affect the
   /// order.
   std::vector<Eigen::VectorXd> Targets() const {
-    std::vector<Eigen::VectorXd> targets = set_.postures;
-    for (Eigen::VectorXd& q : targets) {
-      for (const int foot : set_.standing) {
-        for (const int c : robot_.legs[Size(foot)].coordinates()) q[c] = hub_.q[c];
-      }
-    }
+    std::vector<Eigen::VectorXd> targets;
+    for (const Eigen::VectorXd& q : set_.postures) targets.push_back(WithLegsOf(hub_.q, q));
     return targets;
+  }
+
+  /// The posture with the joints of standing legs as they are in another one.
+  Eigen::VectorXd WithLegsOf(const Eigen::VectorXd& other, Eigen::VectorXd q) const {
+    for (const int foot : set_.standing) {
+      for (const int c : robot_.legs[Size(foot)].coordinates()) q[c] = other[c];
+    }
+    return q;
   }
 
   bool GoTo(const PlacedPosture& to, Refusal& why) {

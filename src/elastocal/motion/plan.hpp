@@ -23,6 +23,13 @@ struct PostureTour {
       false;  ///< visited in the given order, each time from the posture of rest (repeatability)
   /// Coordinates that oscillate one after the other while all else is at rest (section 6.1.4).
   std::vector<int> sines = {};
+  /// The postures are held as they are, legs too: the first foot that stands says where the root
+  /// link is.
+  bool legs_given = false;
+  /// Empty, or by posture: the only way to it, samples x coordinates at the rate of the options,
+  /// during which the root link stays where it is in the posture. The robot goes it forth and back.
+  /// A posture with an empty way is left out.
+  std::vector<Eigen::MatrixXd> approaches = {};
 };
 
 /// Sinusoidal motions of a joint around the middle of its range. The amplitude is at most `share`

@@ -31,6 +31,7 @@ std::optional<Refusal> Refuse(const MotionMargins& margins, const MotionLimits& 
     case Constraint::kFloor:
       return because(margins.floor);
     case Constraint::kReach:
+    case Constraint::kApproach:
       break;
   }
   return OutOfReach();

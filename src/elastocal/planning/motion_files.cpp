@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 
@@ -48,12 +49,16 @@ std::vector<PlannedMotion> ChainMotions(const MotionPlan& plan) {
   return motions;
 }
 
-Json TourJson(const Project& project, const PlannedTour& set, double rate_hz) {
+Json TourJson(const Project& project, const PlannedTour& set, double begin_s, double rate_hz) {
   Json json = {{"name", set.name},
                {"duration_s", static_cast<double>(set.motion.q.rows()) / rate_hz},
                {"visits", Json::array()},
                {"left_out", Json::array()}};
-  for (const Visit& visit : set.visits) json["visits"].push_back(visit.posture);
+  const auto time_s = [&](int row) { return std::round(1e3 * (begin_s + row / rate_hz)) / 1e3; };
+  for (const Visit& visit : set.visits) {
+    json["visits"].push_back(visit.posture);
+    json["rests_s"].push_back({time_s(visit.begin), time_s(visit.end)});
+  }
   for (const LeftOut& left : set.left_out) {
     json["left_out"].push_back({{"posture", left.posture}, {"reason", ReasonText(project, left)}});
   }
@@ -107,8 +112,12 @@ std::string FormatMotionSummary(const Project& project, const MotionPlan& plan,
   Json json;
   json["planning_s"] = plan.seconds;
   json["sets"] = Json::array();
+  Eigen::Index row = plan.whole.motion.q.rows();
+  for (const PlannedTour& set : plan.planned) row -= set.motion.q.rows();
   for (const PlannedTour& set : plan.planned) {
-    json["sets"].push_back(TourJson(project, set, plan.rate_hz));
+    const double begin = static_cast<double>(row) / plan.rate_hz;
+    json["sets"].push_back(TourJson(project, set, begin, plan.rate_hz));
+    row += set.motion.q.rows();
   }
   json["margins"] = {
       {"clearance_m", margins.clearance.value}, {"zmp_m", margins.zmp.value},

@@ -10,6 +10,7 @@
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/observation/standing_robot.hpp"
 #include "elastocal/planning/project_motion.hpp"
+#include "elastocal/planning/stand_at_tables.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -32,33 +33,6 @@ std::vector<int> CoordinatesBefore(const RobotTree& tree, const ObservationSetup
     if (!of_legs.contains(k) && !known) coordinates.push_back(coordinate);
   }
   return coordinates;
-}
-
-/// Puts the soles of the robot where the feet of the set-up stand, and the feet that the project
-/// leaves open where the soles are.
-void PlaceOnFloor(const Project& project, ObservationSetup& setup, StandingRobot& robot) {
-  Transform T_floor_world = Transform::Identity();
-  for (std::size_t f = 0; f < setup.feet.size(); ++f) {
-    ContactFoot& foot = setup.feet[f];
-    const auto sole = std::find_if(robot.soles.begin(), robot.soles.end(),
-                                   [&](const Sole& of) { return of.link == foot.link; });
-    if (sole == robot.soles.end()) {
-      throw InputError(project.file.string() + ": the foot " +
-                       Quote(project.tree.links[Size(foot.link)].name) +
-                       " of contact.feet has no sole in the section 'standing', by which the robot "
-                       "is balanced");
-    }
-    Transform& T_world_sole =
-        robot.T_world_sole[Size(static_cast<int>(sole - robot.soles.begin()))];
-    foot.share = 1.0 / static_cast<double>(setup.feet.size());
-    foot.T_floor_foot.linear() = T_world_sole.linear();
-    if (f == 0) T_floor_world = foot.T_floor_foot * T_world_sole.inverse();
-    if (project.contact->foot_placed[f] == 0) {
-      foot.T_floor_foot.translation() = (T_floor_world * T_world_sole).translation();
-    }
-    T_world_sole = foot.T_floor_foot;
-  }
-  robot.T_world_root = T_floor_world * robot.T_world_root;
 }
 
 }  // namespace
@@ -85,6 +59,43 @@ std::vector<int> HandCoordinates(const RobotTree& tree, const ObservationSetup& 
   return own.size() < 3 ? all : own;
 }
 
+MovingChain HandOf(const RobotTree& tree, const ObservationSetup& setup, int plate,
+                   const Eigen::VectorXd& q) {
+  return {tree, CoordinatesBefore(tree, setup, setup.plates[Size(plate)].link), q};
+}
+
+bool ReachWithPlate(MovingChain& hand, const ContactPlate& plate, const Transform& T_root_face,
+                    const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+                    Eigen::VectorXd& q) {
+  constexpr int kIterations = 60;
+  constexpr double kReached = 1e-9, kDamping = 1e-3, kLargest = 0.3;
+  const PhysicalPlate described = DescribedPlate(plate);
+  const std::vector<int>& coordinates = hand.coordinates();
+  Eigen::VectorXd x = q(coordinates);
+  const Eigen::VectorXd least = lower(coordinates), most = upper(coordinates);
+  for (int i = 0; i < kIterations; ++i) {
+    hand.Move(x);
+    const Transform found = hand.link_poses()[Size(described.link)] * described.T_link_face;
+    Vector6d error;
+    error << T_root_face.translation() - found.translation(),
+        RotationVector(T_root_face.linear() * found.linear().transpose());
+    if (error.norm() < kReached) {
+      q(coordinates) = x;
+      return true;
+    }
+    Eigen::MatrixXd J(6, hand.size());
+    J << hand.PointJacobian(described.link, found.translation()),
+        hand.RotationJacobian(described.link);
+    // A joint at its end that would move beyond it takes no part.
+    Eigen::Matrix<double, 6, 6> gram = J * J.transpose();
+    gram.diagonal().array() += kDamping * std::min(1.0, error.squaredNorm());
+    Eigen::VectorXd step = J.transpose() * gram.ldlt().solve(error);
+    step *= std::min(1.0, kLargest / std::max(1e-12, step.cwiseAbs().maxCoeff()));
+    x = (x + step).cwiseMax(least).cwiseMin(most);
+  }
+  return false;
+}
+
 Sight NominalSight(const ObservationSetup& setup, const Instrument& instrument,
                    const std::vector<Transform>& T_root_link, const Transform& T_floor_root) {
   Sight sight;
@@ -102,16 +113,10 @@ ObservedPostureSampler::ObservedPostureSampler(const Project& project, std::uint
     throw InputError(project.file.string() + ": there is no section 'contact' or 'instruments'");
   }
   setup_ = project.contact->setup;
-  if (setup_.feet.empty()) {
-    robot_ = std::make_unique<StandingRobot>(project.tree, std::vector<Sole>(), MotionLimits());
-    StandUp(*robot_, project.motion.rest, {});
-  } else {
-    robot_ = StandProjectRobot(project, {});
-    PlaceOnFloor(project, setup_, *robot_);
-  }
-  for (const ContactPlate& plate : setup_.plates) {
-    arms_.push_back(std::make_unique<MovingChain>(
-        robot_->tree, CoordinatesBefore(robot_->tree, setup_, plate.link), robot_->rest));
+  robot_ = StandAtTables(project, {}, setup_);
+  for (int plate = 0; plate < static_cast<int>(setup_.plates.size()); ++plate) {
+    arms_.push_back(
+        std::make_unique<MovingChain>(HandOf(robot_->tree, setup_, plate, robot_->rest)));
   }
   std::set<int> moved;
   for (const auto& instrument : setup_.instruments) {
@@ -160,38 +165,6 @@ bool ObservedPostureSampler::Balance(PlacedPosture& pose) {
   return robot_->Held() || BalanceAtRest(*robot_, robot_->AllFeet(), com_, pose);
 }
 
-bool ObservedPostureSampler::Reach(const Transform& T_root_face, int plate, Eigen::VectorXd& q) {
-  constexpr int kIterations = 60;
-  constexpr double kReached = 1e-9, kDamping = 1e-3, kLargest = 0.3;
-  MovingChain& arm = *arms_[Size(plate)];
-  const PhysicalPlate described = DescribedPlate(setup_.plates[Size(plate)]);
-  const std::vector<int>& coordinates = arm.coordinates();
-  Eigen::VectorXd x = q(coordinates);
-  const Eigen::VectorXd lower = project_.motion.lower(coordinates);
-  const Eigen::VectorXd upper = project_.motion.upper(coordinates);
-  for (int i = 0; i < kIterations; ++i) {
-    arm.Move(x);
-    const Transform found = arm.link_poses()[Size(described.link)] * described.T_link_face;
-    Vector6d error;
-    error << T_root_face.translation() - found.translation(),
-        RotationVector(T_root_face.linear() * found.linear().transpose());
-    if (error.norm() < kReached) {
-      q(coordinates) = x;
-      return true;
-    }
-    Eigen::MatrixXd J(6, arm.size());
-    J << arm.PointJacobian(described.link, found.translation()),
-        arm.RotationJacobian(described.link);
-    // A joint at its end that would move beyond it takes no part.
-    Eigen::Matrix<double, 6, 6> gram = J * J.transpose();
-    gram.diagonal().array() += kDamping * std::min(1.0, error.squaredNorm());
-    Eigen::VectorXd step = J.transpose() * gram.ldlt().solve(error);
-    step *= std::min(1.0, kLargest / std::max(1e-12, step.cwiseAbs().maxCoeff()));
-    x = (x + step).cwiseMax(lower).cwiseMin(upper);
-  }
-  return false;
-}
-
 bool ObservedPostureSampler::TryTouch(int plate, const TableTop& table, PlacedPosture& pose) {
   constexpr int kRounds = 12;  // balance moves the root link, and the hand reaches again
   constexpr double kStill = 1e-8;
@@ -213,35 +186,32 @@ bool ObservedPostureSampler::TryTouch(int plate, const TableTop& table, PlacedPo
   T_world_face.linear() = RotZ(random_.Uniform(-kYaw, kYaw)).linear() *
                           RotationBetween(R.col(2), Eigen::Vector3d::UnitZ()) * R;
   for (int round = 0; round < kRounds; ++round) {
-    if (!Reach(pose.T_world_root.inverse() * T_world_face, plate, pose.q)) {
+    if (!ReachWithPlate(*arms_[Size(plate)], of, pose.T_world_root.inverse() * T_world_face,
+                        project_.motion.lower, project_.motion.upper, pose.q)) {
       return Blamed("reach of the hand");
     }
     const Transform before = pose.T_world_root;
     if (!Balance(pose)) return Blamed("reach of the legs");
-    if ((before.translation() - pose.T_world_root.translation()).norm() < kStill) return true;
+    if ((before.translation() - pose.T_world_root.translation()).norm() < kStill) {
+      return ReachesAbove(plate, pose) || Blamed("reach of the hand above the table");
+    }
   }
   return Blamed("balance");
 }
 
-bool ObservedPostureSampler::TableApart(const PlacedPosture& pose, int plate) const {
-  const TableTop& table = *project_.contact->tables[Size(plate)];
-  const int hand = robot_->tree.links[Size(setup_.plates[Size(plate)].link)].body;
-  std::vector<Transform> T_world_link = LinkTransforms(robot_->tree, pose.q);
-  for (Transform& T : T_world_link) T = pose.T_world_root * T;
-  const Eigen::Matrix3Xd centres = SphereCentres(project_.motion.spheres, T_world_link);
-  for (std::size_t s = 0; s < project_.motion.spheres.size(); ++s) {
-    const CollisionSphere& sphere = project_.motion.spheres[s];
-    if (robot_->tree.links[Size(sphere.link)].body == hand) continue;
-    const Eigen::Vector3d p = centres.col(static_cast<Eigen::Index>(s)) - table.centre;
-    const bool over = std::abs(p.x()) < 0.5 * table.size.x() + sphere.radius &&
-                      std::abs(p.y()) < 0.5 * table.size.y() + sphere.radius;
-    // The table is a top of any thickness: what is over it is above it.
-    if (over && p.z() < sphere.radius) return false;
-  }
-  return true;
+/// Whether the hand comes from above to the touch, as a motion does that is planned later.
+bool ObservedPostureSampler::ReachesAbove(int plate, const PlacedPosture& touch) {
+  const ContactPlate& of = setup_.plates[Size(plate)];
+  Transform T_root_face =
+      LinkTransforms(robot_->tree, touch.q)[Size(of.link)] * DescribedPlate(of).T_link_face;
+  T_root_face.translation() +=
+      kApproachHeight * touch.T_world_root.linear().transpose() * Eigen::Vector3d::UnitZ();
+  Eigen::VectorXd q = touch.q;
+  return ReachWithPlate(*arms_[Size(plate)], of, T_root_face, project_.motion.lower,
+                        project_.motion.upper, q);
 }
 
-bool ObservedPostureSampler::Feasible(const PlacedPosture& pose, int plate) {
+bool ObservedPostureSampler::Feasible(const PlacedPosture& pose) {
   if (((pose.q - project_.motion.lower).array() < 0.0).any() ||
       ((project_.motion.upper - pose.q).array() < 0.0).any()) {
     return Blamed("limits of joints");
@@ -252,12 +222,13 @@ bool ObservedPostureSampler::Feasible(const PlacedPosture& pose, int plate) {
     if (bend < robot_->limits.least_knee) return Blamed("straight legs");
   }
   if (robot_->clearances) {
+    Eigen::Index nearest = 0;
     const Eigen::VectorXd clearances = robot_->clearances(pose.q);
-    if (clearances.size() > 0 && clearances.minCoeff() < robot_->limits.clearance) {
-      return Blamed("parts of the robot that meet");
+    if (clearances.size() > 0 && clearances.minCoeff(&nearest) < robot_->limits.clearance) {
+      const auto parts = static_cast<Eigen::Index>(AllContacts(project_).size());
+      return Blamed(nearest < parts ? "parts of the robot that meet" : "the tables");
     }
   }
-  if (plate >= 0 && !TableApart(pose, plate)) return Blamed("parts of the robot below the table");
   return true;
 }
 
@@ -271,7 +242,7 @@ std::optional<Eigen::VectorXd> ObservedPostureSampler::DrawTouch(int plate) {
   blame_.clear();
   for (int i = 0; i < kTries; ++i) {
     PlacedPosture pose = DrawStance();
-    if (TryTouch(plate, *table, pose) && Feasible(pose, plate)) return pose.q;
+    if (TryTouch(plate, *table, pose) && Feasible(pose)) return pose.q;
   }
   return std::nullopt;
 }
@@ -296,7 +267,7 @@ std::optional<Eigen::VectorXd> ObservedPostureSampler::DrawLook() {
       Blamed("view of the cameras");
     } else if (!Balance(pose)) {
       Blamed("reach of the legs");
-    } else if (Feasible(pose, -1) && (sees(pose) || Blamed("view of the cameras"))) {
+    } else if (Feasible(pose) && (sees(pose) || Blamed("view of the cameras"))) {
       return pose.q;
     }
   }

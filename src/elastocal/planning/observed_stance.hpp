@@ -16,11 +16,14 @@
 
 namespace elastocal {
 
+/// From so high above its table a plate goes straight down to it, m.
+inline constexpr double kApproachHeight = 0.05;
+
 /// Draws postures in which a robot stands on the feet of `contact` (or its root link is held still)
 /// and touches a table or is seen by instruments. Nominally, the feet stand flat in their places,
 /// the centre of mass is over the middle of the support, joints keep the limits of the section
-/// `design`, the parts of its contacts are apart, and no part but the plate is lower than the table
-/// over it. Torques are not limited.
+/// `design`, the parts of its contacts are apart, tables are free of all but the plate that lies on
+/// them, and the hand comes to a touch from straight above. Torques are not limited.
 class ObservedPostureSampler {
  public:
   /// Keeps a reference. Throws InputError without `contact` and `instruments`, for a foot that is
@@ -46,10 +49,9 @@ class ObservedPostureSampler {
  private:
   PlacedPosture DrawStance();
   bool Balance(PlacedPosture& pose);
-  bool Reach(const Transform& T_root_face, int plate, Eigen::VectorXd& q);
   bool TryTouch(int plate, const TableTop& table, PlacedPosture& pose);
-  bool Feasible(const PlacedPosture& pose, int plate);
-  bool TableApart(const PlacedPosture& pose, int plate) const;
+  bool ReachesAbove(int plate, const PlacedPosture& touch);
+  bool Feasible(const PlacedPosture& pose);
   bool Blamed(const std::string& reason);
 
   const Project& project_;
@@ -68,6 +70,15 @@ PhysicalPlate DescribedPlate(const ContactPlate& plate, double edge = 0.08);
 /// The coordinates with which a hand moves its plate: of the joints before it that no foot and no
 /// other plate needs, or of all where these are fewer than three.
 std::vector<int> HandCoordinates(const RobotTree& tree, const ObservationSetup& setup, int plate);
+
+/// The joints before the link of a plate that are not of a foot's leg, of the robot in a posture.
+MovingChain HandOf(const RobotTree& tree, const ObservationSetup& setup, int plate,
+                   const Eigen::VectorXd& q);
+
+/// Moves the joints of a hand in `q`, within limits by coordinate, until the plate's face has the
+/// given pose (1e-9 m and rad). False, with `q` as it was, if that is out of reach.
+bool ReachWithPlate(MovingChain& hand, const ContactPlate& plate, const Transform& T_root_face,
+                    const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, Eigen::VectorXd& q);
 
 /// What each instrument depends on in a nominal posture, with the root link there on the floor.
 Sight NominalSight(const ObservationSetup& setup, const Instrument& instrument,

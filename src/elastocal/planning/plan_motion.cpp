@@ -14,6 +14,8 @@
 #include "elastocal/planning/chain_setups.hpp"
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
+#include "elastocal/planning/stand_at_tables.hpp"
+#include "elastocal/planning/touch_motion.hpp"
 
 namespace elastocal {
 namespace {
@@ -167,6 +169,13 @@ MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& 
                       const MotionPlanOptions& options, const Progress& progress) {
   CheckPlanOptions(options);
   CheckHasNoLinkages(project, "the command plan");
+  if (project.contact) {
+    ObservationSetup setup = project.contact->setup;
+    const auto robot = StandAtTables(project, options.limits, setup);
+    std::vector<PostureTour> tours =
+        TouchTours(project, *robot, postures, options.approach, options.plan.rate_hz);
+    return PlanSets(project, *robot, std::move(tours), options, progress);
+  }
   const auto robot = StandProjectRobot(project, options.limits);
   return PlanSets(project, *robot, PostureTours(*robot, postures), options, progress);
 }

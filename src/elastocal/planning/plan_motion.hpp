@@ -12,6 +12,7 @@
 #include "elastocal/motion/plan.hpp"
 #include "elastocal/motion/validation_tours.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"
+#include "elastocal/planning/touch_motion.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/simulation/stand_through.hpp"
 
@@ -23,6 +24,7 @@ struct MotionPlanOptions {
   MotionLimits limits = {};
   int threads = 2;  ///< chains planned at a time; the result does not depend on it
   ValidationOptions validation = {};  ///< of PlanValidationMotion
+  ApproachOptions approach = {};      ///< of hands to tables, in projects with `contact`
 };
 
 /// The worst value of a quantity over a whole motion beside its limit, in words for people.
@@ -62,6 +64,9 @@ struct MotionPlan {
 /// same motion. Progress counts chains.
 ///
 /// Without soles in the project, the root link is held still and nothing is balanced.
+///
+/// In a project with `contact` the robot stands on its feet as there, the postures are held as they
+/// are, and each touch is reached from above its table (StandAtTables, TouchTours).
 ///
 /// Throws InputError for shares outside (0, 1] in the options, for a chain
 /// that stands on what is no sole, and where the robot cannot stand.

@@ -59,6 +59,12 @@ std::vector<std::string> ContactNames(const Project& project) {
     names.push_back(project.motion.spheres[Size(a)].name + " and " +
                     project.motion.spheres[Size(b)].name);
   }
+  if (!project.contact) return names;
+  for (std::size_t plate = 0; plate < project.contact->tables.size(); ++plate) {
+    if (!project.contact->tables[plate]) continue;
+    names.push_back("the table of " + project.contact->setup.plates[plate].name +
+                    " (limit: touch)");
+  }
   return names;
 }
 
@@ -107,6 +113,7 @@ std::string ReasonText(const Project& project, const LeftOut& left_out) {
     case Constraint::kKnee:
       return text + fmt::format(": {:.2f}", left_out.value);
     case Constraint::kReach:
+    case Constraint::kApproach:
       break;
   }
   return text;

@@ -23,7 +23,7 @@ std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
 /// StandingRobot::clearances.
 std::vector<SpherePair> AllContacts(const Project& project);
 
-/// Names of these pairs: "LHAND and BELLY".
+/// Names of these pairs, "LHAND and BELLY", and then of the tables of StandAtTables.
 std::vector<std::string> ContactNames(const Project& project);
 
 /// The sets of a posture file. Throws what FeetOf throws.
