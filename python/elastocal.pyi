@@ -305,6 +305,7 @@ def plan(
     zmp_margin_mm: Optional[float] = None,
     lift_mm: Optional[float] = None,
     inset_mm: Optional[float] = None,
+    approach_mm: Optional[float] = None,
     torque_share: float = ...,
     velocity_share: float = ...,
     balanced: bool = True,

@@ -52,8 +52,8 @@ JointMotion MotionFromDict(const py::dict& given, const Project& project) {
 
 MotionPlanOptions PlanOptionsOf(double move_s, double rest_s, std::optional<double> zmp_margin_mm,
                                 std::optional<double> lift_mm, std::optional<double> inset_mm,
-                                double torque_share, double velocity_share, bool balanced,
-                                int threads) {
+                                std::optional<double> approach_mm, double torque_share,
+                                double velocity_share, bool balanced, int threads) {
   ExpectBounded("plan --move-s", move_s);
   ExpectBounded("plan --rest-s", rest_s);
   ExpectBounded("plan --torque-share", torque_share);
@@ -74,6 +74,7 @@ MotionPlanOptions PlanOptionsOf(double move_s, double rest_s, std::optional<doub
   set("plan --zmp-margin-mm", zmp_margin_mm, options.limits.zmp_margin);
   set("plan --lift-mm", lift_mm, options.plan.lift_m);
   set("plan --inset-mm", inset_mm, options.plan.inset);
+  set("plan --approach-mm", approach_mm, options.approach.height);
   return options;
 }
 
@@ -92,9 +93,10 @@ void ExpectPlayable(const MotionPlan& plan, bool balanced) {
 PyPlan PlanFor(const Project& project, const py::object& postures,
                const std::optional<std::string>& kind, int count, double move_s, double rest_s,
                std::optional<double> zmp_margin_mm, std::optional<double> lift_mm,
-               std::optional<double> inset_mm, double torque_share, double velocity_share,
-               bool balanced, int robots, double floor_friction, double leg_geometry_scale,
-               bool stabilised, int threads, std::uint64_t seed, const Progress& progress) {
+               std::optional<double> inset_mm, std::optional<double> approach_mm,
+               double torque_share, double velocity_share, bool balanced, int robots,
+               double floor_friction, double leg_geometry_scale, bool stabilised, int threads,
+               std::uint64_t seed, const Progress& progress) {
   if (postures.is_none() != kind.has_value()) {
     throw InputError("postures or kind: one of them was expected");
   }
@@ -102,8 +104,9 @@ PyPlan PlanFor(const Project& project, const py::object& postures,
   ExpectWithin("robots", robots, 0, 1000);
   ExpectBounded("plan --floor-friction", floor_friction);
   ExpectBounded("plan --leg-geometry-scale", leg_geometry_scale);
-  MotionPlanOptions options = PlanOptionsOf(move_s, rest_s, zmp_margin_mm, lift_mm, inset_mm,
-                                            torque_share, velocity_share, balanced, threads);
+  MotionPlanOptions options =
+      PlanOptionsOf(move_s, rest_s, zmp_margin_mm, lift_mm, inset_mm, approach_mm, torque_share,
+                    velocity_share, balanced, threads);
   options.validation.random_postures = count;
   const MotionTrialOptions tries{.robots = robots,
                                  .seed = seed,
@@ -220,10 +223,10 @@ void AddMotions(py::module_& module) {
       "kind"_a = std::nullopt, "count"_a = plan.validation.random_postures,
       "move_s"_a = plan.plan.path.duration_s, "rest_s"_a = plan.plan.hold_s,
       "zmp_margin_mm"_a = std::nullopt, "lift_mm"_a = std::nullopt, "inset_mm"_a = std::nullopt,
-      "torque_share"_a = plan.limits.torque_share, "velocity_share"_a = plan.limits.velocity_share,
-      "balanced"_a = true, "robots"_a = 0, "floor_friction"_a = tries.floor_friction,
-      "leg_geometry_scale"_a = tries.leg_errors, "stabilised"_a = true, "threads"_a = plan.threads,
-      "seed"_a = 1, "progress"_a = Progress(),
+      "approach_mm"_a = std::nullopt, "torque_share"_a = plan.limits.torque_share,
+      "velocity_share"_a = plan.limits.velocity_share, "balanced"_a = true, "robots"_a = 0,
+      "floor_friction"_a = tries.floor_friction, "leg_geometry_scale"_a = tries.leg_errors,
+      "stabilised"_a = true, "threads"_a = plan.threads, "seed"_a = 1, "progress"_a = Progress(),
       "Plans a motion through calibration postures that the robot does standing by itself, like "
       "the command of that name. postures: a Design, a posture file, or a dict of chains with "
       "arrays (postures, joints), rad or m, or lists of dicts of joints. kind: a validation motion "

@@ -4,6 +4,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/observation/observed_posture.hpp"
 #include "elastocal/planning/design_observations.hpp"
+#include "elastocal/planning/plan_motion.hpp"
 #include "elastocal/planning/simulate_observations.hpp"
 #include "elastocal/simulation/level_feet.hpp"
 #include "tests/test_files.hpp"
@@ -94,6 +95,69 @@ TEST(SimulateObservations, MuJoCosContactLaysPlatesFlushOnTheTrueTables) {
     EXPECT_NEAR(left[0], 0.0, 4e-3);
     EXPECT_LT(left.tail<2>().cwiseAbs().maxCoeff(), 6e-3);
   }
+}
+
+/// The plate's face in every sample, on the floor by the foot that the planner does not use for it.
+std::vector<Transform> FacesOf(const Project& project, int plate, const Eigen::MatrixXd& q) {
+  const ObservationSetup setup = ObservedPostureSampler(project, 0).setup();
+  const PhysicalPlate face = DescribedPlate(setup.plates[Size(plate)]);
+  const ContactFoot& right = setup.feet[1];
+  std::vector<Transform> faces;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const std::vector<Transform> links = LinkTransforms(project.tree, q.row(i).transpose());
+    faces.push_back(right.T_floor_foot * links[Size(right.link)].inverse() *
+                    links[Size(face.link)] * face.T_link_face);
+  }
+  return faces;
+}
+
+TEST(PlanTouches, PlatesComeStraightDownOntoTheirTablesAndAreNeverInThem) {
+  const Project project = TouchProject();
+  const ObservationDesign drawn = DrawObservedPostures(project, 2, 5);
+  const MotionPlan plan = PlanMotion(project, drawn.postures, {});
+  EXPECT_TRUE(plan.left_out.empty()) << plan.left_out[0];
+  EXPECT_TRUE(plan.broken().empty()) << plan.broken()[0].Describe();
+  ASSERT_EQ(plan.planned.size(), 3u);
+  for (int plate = 0; plate < 2; ++plate) {
+    const PlannedTour& tour = plan.planned[Size(plate)];
+    const TableTop& table = *project.contact->tables[Size(plate)];
+    const std::vector<Transform> faces = FacesOf(project, plate, tour.motion.q);
+    const auto height = [&](int i) { return faces[Size(i)].translation().z() - table.centre.z(); };
+    ASSERT_EQ(tour.visits.size(), 2u);
+    for (const Visit& visit : tour.visits) {
+      const Transform& touch = faces[Size(visit.begin)];
+      EXPECT_NEAR(height(visit.begin), 0.0, 1e-7);
+      EXPECT_LT((touch.linear().col(2) - Eigen::Vector3d::UnitZ()).norm(), 1e-7);
+      EXPECT_NEAR(height(visit.begin - 300), 0.05, 1e-4) << "3 s before, at 100 Hz";
+      for (int i = visit.begin - 300; i < visit.end; ++i) {
+        // The root link moves a little to keep the balance.
+        EXPECT_LT((faces[Size(i)].translation() - touch.translation()).head<2>().norm(), 2e-3);
+        EXPECT_LT((faces[Size(i)].linear() - touch.linear()).norm(), 1e-6);
+      }
+    }
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const Eigen::Vector2d off = (faces[i].translation() - table.centre).head<2>();
+      const bool over = (off.cwiseAbs() - 0.5 * table.size).maxCoeff() < 0.0;
+      EXPECT_TRUE(!over || height(static_cast<int>(i)) > -1e-7);
+    }
+  }
+}
+
+TEST(PlanTouches, ATableInTheWayAndAHandThatDoesNotReachAreNamed) {
+  Project project = TouchProject();
+  const ObservationDesign drawn = DrawObservedPostures(project, 1, 5);
+  MotionPlanOptions high;
+  high.approach.height = 0.7;
+  const MotionPlan without_reach = PlanMotion(project, {drawn.postures[0]}, high);
+  ASSERT_EQ(without_reach.left_out.size(), 1u);
+  EXPECT_NE(without_reach.left_out[0].find("reach of the hand above the table"), std::string::npos)
+      << without_reach.left_out[0];
+  EXPECT_EQ(without_reach.impossible, std::vector<std::string>{"left"});
+  project.contact->tables[0]->centre.z() += 0.02;
+  const MotionPlan inside = PlanMotion(project, {drawn.postures[0]}, {});
+  ASSERT_EQ(inside.left_out.size(), 1u);
+  EXPECT_NE(inside.left_out[0].find("the table of left (limit: touch) -16.0 mm"), std::string::npos)
+      << inside.left_out[0];
 }
 
 TEST(DesignObservations, ChosenPosturesTellMoreThanRandomOnes) {
