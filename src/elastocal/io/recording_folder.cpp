@@ -62,8 +62,15 @@ TrialSamples Sample(const TrialFiles& files, const MarkedRobot& robot, const Pro
   // Of a bag with both, the clocks are one already, up to what the computers differed.
   if (file.start_s && files.markers == files.joints) options.expected_lag_s = -*file.start_s;
   if (files.expected_lag_s) options.expected_lag_s = files.expected_lag_s;
-  return SampleTrial(robot, TrialOf(files, project), markers, std::move(file.trajectories), log,
-                     options);
+  const std::vector<ReferenceLength>& references = project.recording.reference_lengths;
+  const auto scale = MeasureScale(references, file.trajectories);
+  TrialSamples samples = SampleTrial(robot, TrialOf(files, project), markers,
+                                     std::move(file.trajectories), log, options);
+  samples.summary.scale = scale;
+  samples.summary.reference_missing = !references.empty() && !scale;
+  std::erase_if(samples.summary.markers_unknown,
+                [&](const std::string& label) { return IsReferenceMarker(references, label); });
+  return samples;
 }
 
 /// Which axis points up: as the user says, or as all files say.

@@ -52,6 +52,9 @@ class Finder {
     if (!summary_.markers_missing.empty()) {
       Add("never seen: " + Join(summary_.markers_missing));
     }
+    if (summary_.reference_missing) {
+      Add("no reference length of the project is seen; the scale of the cameras is not checked");
+    }
     for (std::size_t m = 0; m < summary_.smoothing.size(); ++m) AddLostMarker(m);
     AddLog();
     return findings_;
@@ -142,7 +145,8 @@ std::string Describe(const TrialSummary& summary) {
   return beginning +
          Format("%d postures from %d of %d frames at %.4g Hz, %zu markers; ", summary.postures,
                 summary.samples, summary.frame_count, summary.rate_hz, summary.markers.size()) +
-         Describe(summary.clock);
+         Describe(summary.clock) +
+         (summary.scale ? "; scale of the cameras " + Describe(*summary.scale) : "");
 }
 
 std::vector<std::string> Findings(const TrialSummary& summary) { return Finder(summary).Find(); }

@@ -9,6 +9,7 @@
 #include "elastocal/measurement/gaps.hpp"
 #include "elastocal/measurement/labels.hpp"
 #include "elastocal/measurement/recording.hpp"
+#include "elastocal/measurement/reference_scale.hpp"
 #include "elastocal/measurement/signal_excerpt.hpp"
 #include "elastocal/measurement/stable_samples.hpp"
 #include "elastocal/measurement/torque_sensors.hpp"
@@ -47,6 +48,8 @@ struct TrialSummary {
       markers_missing;  ///< markers that take part, but are not in the file or never seen
   std::vector<std::string> markers_unknown;  ///< markers in the file that the project does not have
   std::vector<BadTorqueSensor> bad_torque_sensors;
+  std::optional<MeasuredScale> scale;  ///< by the project's reference lengths
+  bool reference_missing = false;      ///< the project has some, but none is seen in this trial
   std::vector<std::string> torques_missing;  ///< joints that have a sensor, but no logged torques
 };
 

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/up_check.hpp"
@@ -53,6 +55,51 @@ std::vector<std::string> FindGeneralFault(const Project& project, std::optional<
   return {FaultAndRemedy(faults.front(), project.tree, *of)};
 }
 
+/// What undoes a wrong scale: `scale=1.00200` in all trials, else `scale:TRIAL=1.00200` in each.
+std::string ScaleCorrections(const std::vector<const TrialSummary*>& wrong, bool all) {
+  constexpr double kAlike = 5e-4;
+  double least = wrong.front()->scale->size, most = least, sum = 0.0;
+  std::string each;
+  for (const TrialSummary* trial : wrong) {
+    least = std::min(least, trial->scale->size);
+    most = std::max(most, trial->scale->size);
+    sum += trial->scale->size;
+    each += fmt::format(" scale:{}={:.5f}", trial->trial.name, 1.0 + trial->scale->size);
+  }
+  if (!all || most - least > kAlike) return each;
+  return fmt::format(" scale={:.5f}", 1.0 + sum / static_cast<double>(wrong.size()));
+}
+
+/// The trials whose scale the reference lengths contradict, in a sentence; empty without any.
+std::string DescribeWrongScales(const std::vector<TrialSummary>& trials) {
+  std::vector<const TrialSummary*> wrong;
+  bool all = true;
+  std::string names;
+  for (const TrialSummary& trial : trials) {
+    if (!trial.refused.empty()) continue;
+    if (trial.scale && IsWrong(*trial.scale)) {
+      wrong.push_back(&trial);
+      names += (names.empty() ? "" : ", ") + trial.trial.name;
+    } else {
+      all = false;
+    }
+  }
+  if (wrong.empty()) return "";
+  return fmt::format(
+      "the cameras' scale is wrong: by the reference lengths, positions are {} times the true ones "
+      "in {} (--accept{} corrects it)",
+      Describe(*wrong.front()->scale), all ? "all trials" : "trial " + names,
+      ScaleCorrections(wrong, all));
+}
+
+/// Whether reference lengths say of every trial that its scale is right.
+bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
+  return !trials.empty() &&
+         std::all_of(trials.begin(), trials.end(), [](const TrialSummary& trial) {
+           return !trial.refused.empty() || (trial.scale && !IsWrong(*trial.scale));
+         });
+}
+
 /// A group of chains whose held-out trials the largest model predicts worse than it fits those of
 /// the estimate.
 struct Contrast {
@@ -93,12 +140,16 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
                                     const Recording& recording, const ModelComparison& comparison) {
   std::vector<std::string> faults;
   if (const auto up = FindWrongUp(robot.model, recording)) faults.push_back(Describe(*up));
+  const std::string wrong_scales = DescribeWrongScales(as_recorded.trials);
+  if (!wrong_scales.empty()) faults.push_back(wrong_scales);
   for (const RecordingMistake& mistake :
        FindRecordingMistakes(project, seed, as_recorded, recording, comparison.largest())) {
     faults.push_back(DescribeMistake(mistake));
   }
-  if (const auto scale = FindWrongScale(comparison.largest(), project.calibration)) {
-    faults.push_back(Describe(*scale));
+  // Where the cameras are right, a robot whose lengths are all off is of another size.
+  if (wrong_scales.empty() && !ScaleIsKnown(as_recorded.trials)) {
+    const auto scale = FindWrongScale(comparison.largest(), project.calibration);
+    if (scale) faults.push_back(Describe(*scale));
   }
   // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;

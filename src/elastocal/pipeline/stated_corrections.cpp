@@ -129,6 +129,14 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
   const std::size_t colon = name.find(':');
   const std::string word = name.substr(0, colon);
   StatedCorrection correction;
+  if (name.starts_with("scale=")) {
+    const std::optional<double> factor = ParseNumber(name.substr(name.find('=') + 1));
+    if (!factor) Refuse(name, "'" + name.substr(name.find('=') + 1) + "' is not a number");
+    CheckSize(name, *factor, kLeastFactor, kLargestFactor, "");
+    correction.kind = FaultKind::kCameraScale;
+    correction.size = *factor;
+    return correction;
+  }
   if (word == "offset") {
     correction.kind = FaultKind::kJointOffset;
   } else if (word == "scale") {
@@ -140,7 +148,7 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
   if (colon == std::string::npos || equals == std::string::npos || equals < colon) {
     Refuse(name,
            "gain:JOINT=FACTOR, gain:JOINT@TRIAL=FACTOR, offset:JOINT@TRIAL=SIZE, "
-           "offset:JOINT@TRIAL:POSTURE=SIZE or scale:TRIAL=FACTOR was expected");
+           "offset:JOINT@TRIAL:POSTURE=SIZE or scale:TRIAL=FACTOR or scale=FACTOR was expected");
   }
   const std::optional<double> size = ParseNumber(name.substr(equals + 1));
   if (!size) Refuse(name, "'" + name.substr(equals + 1) + "' is not a number");
@@ -209,6 +217,13 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
     }
     throw InputError(fmt::format("--accept: no trial '{}' is used; trials: {}", correction.trial,
                                  fmt::join(known, ", ")));
+  }
+  if (correction.kind == FaultKind::kCameraScale) {
+    for (TrialSummary& trial : measured.trials) {
+      const bool here = correction.trial.empty() || trial.trial.name == correction.trial;
+      if (here && trial.scale)
+        trial.scale->size = (1.0 + trial.scale->size) / correction.size - 1.0;
+    }
   }
   return InWords(correction, tree);
 }

@@ -17,6 +17,7 @@ namespace elastocal {
 ///     offset:JOINT@TRIAL=2.1   they are 2.1 deg (of a sliding joint: mm) too large in this trial
 ///     offset:JOINT@TRIAL:4=2.1 the same from its fourth posture on
 ///     scale:TRIAL=1.005        the cameras' positions are 1.005 times the true ones in this trial
+///     scale=1.005              ... in all trials
 struct StatedCorrection {
   FaultKind kind = FaultKind::kJointGain;
   int coordinate = -1;     ///< of the robot tree; of a scale: -1

@@ -55,6 +55,12 @@ TEST_F(StatedCorrections, AreDoneWhereTheySay) {
   EXPECT_DOUBLE_EQ(measured_.validation.markers(0, 1), 2.0);
   EXPECT_DOUBLE_EQ(measured_.validation.markers(1, 1), 1.0);
   EXPECT_DOUBLE_EQ(measured_.calibration.markers(0, 1), 1.0);
+  measured_.trials.resize(1);
+  measured_.trials[0].scale = MeasuredScale{0.25, 0.01};
+  EXPECT_EQ(Apply("scale=1.25"), "the cameras' positions were divided by 1.25");
+  EXPECT_DOUBLE_EQ(measured_.calibration.markers(0, 1), 0.8);
+  EXPECT_DOUBLE_EQ(measured_.validation.markers(0, 1), 1.6);
+  EXPECT_DOUBLE_EQ(measured_.trials[0].scale->size, 0.0) << "what the reference lengths say then";
 }
 
 TEST_F(StatedCorrections, HaveTheNamesThatFaultsAreGiven) {
@@ -102,6 +108,8 @@ TEST_F(StatedCorrections, NamesThatSayNothingAreRefused) {
   refused("gain:turret_joint=", "'' is not a number");
   refused("gain:turret_joint=2.5", "0.5 to 2");
   refused("scale:a=0", "0.5 to 2");
+  refused("scale=3", "0.5 to 2");
+  refused("scale=", "'' is not a number");
   refused("offset:turret_joint=1", "error of the robot");
   refused("offset:turret_joint@a=61", "-60 to 60 deg");
   refused("offset:turret_joint@d=1", "trials: a, b, c");

@@ -118,6 +118,10 @@ void AddTrials(const CalibrationRun& run, Json& json) {
                               {"samples", trial.samples},
                               {"clock", ClockJson(trial)},
                               {"findings", Findings(trial)}});
+    if (trial.scale) {
+      json["trials"].back()["camera_scale"] = {{"value", 1.0 + trial.scale->size},
+                                               {"sd", trial.scale->sd}};
+    }
     const bool better = !json.contains("clock") ||
                         (json["clock"]["drift_ppm"].is_null() && trial.clock.drift_estimated);
     if (calibration && trial.refused.empty() && better) json["clock"] = ClockJson(trial);

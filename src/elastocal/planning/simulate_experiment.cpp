@@ -76,6 +76,41 @@ void CheckDurations(const Simulation& simulation) {
   }
 }
 
+/// Bars that stand upright beside the robot, in the frame of the room; their lengths have the
+/// errors that the project states.
+std::vector<std::array<Eigen::Vector3d, 2>> DrawBars(const std::vector<ReferenceLength>& references,
+                                                     std::uint64_t seed) {
+  constexpr double kBeside = 1.2, kApart = 0.2, kAboveFloor = 0.1;
+  Random random(seed ^ 0xba5);
+  std::vector<std::array<Eigen::Vector3d, 2>> bars;
+  for (const ReferenceLength& reference : references) {
+    const double x = kApart * static_cast<double>(bars.size());
+    const double length = reference.length + random.Normal(reference.sd);
+    bars.push_back({Eigen::Vector3d(x, kBeside, kAboveFloor),
+                    Eigen::Vector3d(x, kBeside, kAboveFloor + length)});
+  }
+  return bars;
+}
+
+/// Adds what the cameras see of the bars.
+void SeeBars(const std::vector<ReferenceLength>& references,
+             const std::vector<std::array<Eigen::Vector3d, 2>>& bars, double noise_sd,
+             std::uint64_t seed, MarkerTrajectories& markers) {
+  Random random(seed);
+  const Eigen::Index frames = markers.positions.rows();
+  for (std::size_t k = 0; k < bars.size(); ++k) {
+    for (std::size_t end = 0; end < 2; ++end) {
+      const Eigen::Index column = markers.positions.cols();
+      markers.names.push_back(references[k].markers[end]);
+      markers.positions.conservativeResize(frames, column + 3);
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        markers.positions.col(column + axis) =
+            random.NormalVector(frames, noise_sd).array() + bars[k][end][axis];
+      }
+    }
+  }
+}
+
 SimulatedTrial Play(const Simulation& simulation, std::size_t trial) {
   return simulation.matched ? RunMatchedTrial(*simulation.matched, trial)
                             : RunTrial(simulation.experiment, trial);
@@ -142,6 +177,7 @@ Simulation PrepareSimulation(const Project& project, const SimulationOptions& op
     simulation.matched = MatchTrials(simulation.experiment, project, simulation.chosen);
     simulation.experiment = simulation.matched->plan;
   }
+  simulation.bars = DrawBars(project.recording.reference_lengths, settings.seed);
   return simulation;
 }
 
@@ -158,6 +194,9 @@ SimulationRun PlaySimulation(const Project& project, const Simulation& simulatio
     const PlannedTrial& planned = simulation.experiment.trials[index];
     SimulatedTrial trial = Play(simulation, index);
     trial.raw.joints = JointsToMotors(project.tree, std::move(trial.raw.joints));
+    const VirtualExperimentOptions& settings = simulation.experiment.options;
+    SeeBars(project.recording.reference_lengths, simulation.bars, settings.sensors.marker_noise_sd,
+            settings.seed + 1000 * (index + 1), trial.raw.markers);
     WriteSimulatedTrial(staged[i], trial);
     run.trials[i] = {planned.name,     planned.kind,
                      planned.postures, trial.motion.frame_count(),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ struct Simulation {
   VirtualExperiment experiment;
   std::optional<MatchedExperiment> matched = {};  ///< in place of physics
   std::vector<std::size_t> chosen;                ///< of experiment.trials: those to be played
+  /// The bars of the project's reference lengths as they are made, beside the robot: both ends, m.
+  std::vector<std::array<Eigen::Vector3d, 2>> bars = {};
 };
 
 /// Draws the robot and plans the trials. Throws InputError for a trial, chain or fault that is not

@@ -12,6 +12,7 @@
 #include "elastocal/calibration/options.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/measurement/recording.hpp"
+#include "elastocal/measurement/reference_scale.hpp"
 #include "elastocal/measurement/trial_samples.hpp"
 #include "elastocal/observation/setup.hpp"
 #include "elastocal/robot/error_model.hpp"
@@ -46,6 +47,8 @@ struct RecordingColumns {
   std::map<std::string, double> not_recorded;
   /// Marker -> its label in files of cameras; default: the marker's name.
   std::map<std::string, std::string> labels = {};
+  /// By which the scale of the cameras is checked in each trial.
+  std::vector<ReferenceLength> reference_lengths = {};
 };
 
 /// Which parts of the robot are estimated as elastic (eq. 5 to 7). Where patterns are not given, a

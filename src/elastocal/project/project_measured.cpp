@@ -112,6 +112,30 @@ void ReadNotRecorded(const YamlValue& section, JointType type, double unit, Proj
   }
 }
 
+void ReadReferenceLengths(const YamlValue& section, Project& project) {
+  for (const YamlValue& value : section.Items()) {
+    value.ExpectKeys({"markers", "length_mm", "sd_mm"});
+    ReferenceLength reference;
+    const std::vector<YamlValue> markers = value.Get("markers").Items();
+    value.Get("markers").Expect(markers.size() == 2, "the labels of two markers");
+    for (std::size_t end = 0; end < 2; ++end) {
+      reference.markers[end] = markers[end].Text();
+      for (const Marker& marker : project.markers) {
+        if (marker.name == reference.markers[end]) {
+          markers[end].Fail(Quote(marker.name) +
+                            " is a marker of the robot; those of a reference length stand by "
+                            "themselves");
+        }
+      }
+    }
+    value.Get("markers").Expect(reference.markers[0] != reference.markers[1],
+                                "two different markers");
+    reference.length = kOneMm * value.Get("length_mm").Bounded();
+    reference.sd = kOneMm * value.Get("sd_mm").Bounded();
+    project.recording.reference_lengths.push_back(reference);
+  }
+}
+
 }  // namespace
 
 void ReadMarkers(const YamlValue& section, Project& project) {
@@ -156,14 +180,17 @@ void ReadForceTorqueSensors(const YamlValue& section, Project& project) {
 }
 
 void ReadRecordingColumns(const YamlValue& section, Project& project) {
-  section.ExpectKeys(
-      {"columns", "labels", "ignore", "root", "not_recorded_deg", "not_recorded_mm"});
+  section.ExpectKeys({"columns", "labels", "ignore", "root", "not_recorded_deg", "not_recorded_mm",
+                      "reference_lengths"});
   if (const auto root = section.Find("root")) {
     root->Expect(root->Text() == "held" || root->Text() == "free", "held or free");
     project.recording.free_root = root->Text() == "free";
   }
   if (const auto labels = section.Find("labels")) ReadLabels(*labels, project);
   if (const auto columns = section.Find("columns")) ReadColumns(*columns, project);
+  if (const auto lengths = section.Find("reference_lengths")) {
+    ReadReferenceLengths(*lengths, project);
+  }
   if (const auto ignore = section.Find("ignore")) {
     for (const YamlValue& column : ignore->Items()) {
       project.recording.ignore.push_back(column.Text());

@@ -346,6 +346,12 @@ TEST(Project, ChecksMarkers) {
 
 TEST(Project, ChecksRecordingColumns) {
   ExpectError("recording: {columns: {markers: {M: [x, y]}}}", {"three columns"});
+  ExpectError("recording: {reference_lengths: [{markers: [A], length_mm: 500, sd_mm: 0.1}]}",
+              {"two markers"});
+  ExpectError("recording: {reference_lengths: [{markers: [A, A], length_mm: 500, sd_mm: 0.1}]}",
+              {"different"});
+  ExpectError("recording: {reference_lengths: [{markers: [A, B], length_mm: 0.5, sd_mm: 0.1}]}",
+              {"length_mm", "10"});
   ExpectError("recording: {not_recorded_deg: {rail_joint: 0}}", {"rail_joint", "not_recorded_mm"});
   ExpectError("recording: {not_recorded_mm: {elbow_joint: 0}}", {"not_recorded_deg"});
   ExpectError("recording: {not_recorded_mm: {finger_right_joint: 0}}",
