@@ -121,6 +121,13 @@ std::string DescribeLeftOut(const Project& project, const PlannedTour& set, cons
                      left.at_rest ? "at rest" : "on every way there");
 }
 
+/// The robot where it moves: between tables, if the project has some.
+std::unique_ptr<StandingRobot> StandForMotion(const Project& project, const MotionLimits& limits) {
+  if (!project.contact) return StandProjectRobot(project, limits);
+  ObservationSetup setup = project.contact->setup;
+  return StandAtTables(project, limits, setup);
+}
+
 /// Whether no posture of the set can be kept and reached.
 bool IsImpossible(const PlannedTour& set) {
   return set.motion.q.rows() == 0 ||
@@ -169,22 +176,19 @@ MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& 
                       const MotionPlanOptions& options, const Progress& progress) {
   CheckPlanOptions(options);
   CheckHasNoLinkages(project, "the command plan");
-  if (project.contact) {
-    ObservationSetup setup = project.contact->setup;
-    const auto robot = StandAtTables(project, options.limits, setup);
-    std::vector<PostureTour> tours =
-        TouchTours(project, *robot, postures, options.approach, options.plan.rate_hz);
-    return PlanSets(project, *robot, std::move(tours), options, progress);
-  }
-  const auto robot = StandProjectRobot(project, options.limits);
-  return PlanSets(project, *robot, PostureTours(*robot, postures), options, progress);
+  const auto robot = StandForMotion(project, options.limits);
+  std::vector<PostureTour> tours =
+      project.contact
+          ? TouchTours(project, *robot, postures, options.approach, options.plan.rate_hz)
+          : PostureTours(*robot, postures);
+  return PlanSets(project, *robot, std::move(tours), options, progress);
 }
 
 MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std::uint64_t seed,
                                 const MotionPlanOptions& options, const Progress& progress) {
   CheckPlanOptions(options);
   CheckHasNoLinkages(project, "the command plan");
-  const auto robot = StandProjectRobot(project, options.limits);
+  const auto robot = StandForMotion(project, options.limits);
   Random random(seed);
   std::vector<PostureTour> tours = ValidationTours(
       *robot, project.motion, SetupsOfBothSides(project), kind, options.validation, random);
