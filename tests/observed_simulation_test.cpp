@@ -143,6 +143,21 @@ TEST(PlanTouches, PlatesComeStraightDownOntoTheirTablesAndAreNeverInThem) {
   }
 }
 
+// With the first foot in the air, the second one says where the robot is.
+TEST(PlanTouches, TheRootIsPlacedByTheFootThatStands) {
+  const Project project = TouchProject();
+  const ObservedPostureSampler stance(project, 0);
+  const StandingRobot& robot = stance.robot();
+  for (const int swings : {0, 1}) {
+    PlacedPosture pose{robot.rest, robot.T_world_root};
+    const Transform T_lifted =
+        Eigen::Translation3d(0.0, 0.0, 0.05) * robot.T_world_sole[Size(swings)];
+    ASSERT_TRUE(PlaceSole(robot, swings, T_lifted, pose));
+    EXPECT_TRUE(RootOnFloor(robot, pose.q).isApprox(robot.T_world_root, 1e-9)) << swings;
+    EXPECT_FALSE(RootOnFoot(robot, swings, pose.q).isApprox(robot.T_world_root, 1e-3));
+  }
+}
+
 TEST(PlanTouches, ATableInTheWayAndAHandThatDoesNotReachAreNamed) {
   Project project = TouchProject();
   const ObservationDesign drawn = DrawObservedPostures(project, 1, 5);

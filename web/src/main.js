@@ -90,7 +90,7 @@ async function show(report) {
     if (make === robotSection) await painted();
   }
   app.append(h('footer', {}, h('p', {}, `Made by elastocal ${report.version ?? ''}. This file is complete: it needs no network and no other file.`), licences()));
-  document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
+  document.getElementById(location.hash.slice(1))?.scrollIntoView();
   app.dataset.complete = '';
 }
 

@@ -123,11 +123,7 @@ std::optional<PlacedPosture> MoveBuilder::AsGiven(const Eigen::VectorXd& q,
                                                   const std::vector<int>& standing,
                                                   Refusal& why) const {
   PlacedPosture pose{q, robot_.T_world_root};
-  if (!standing.empty()) {
-    const int first = standing.front();
-    pose.T_world_root =
-        robot_.T_world_sole[Size(first)] * robot_.legs[Size(first)].SolePose(q).inverse();
-  }
+  if (!standing.empty()) pose.T_world_root = RootOnFoot(robot_, standing.front(), q);
   for (const int foot : standing) {
     if (PlaceSole(robot_, foot, robot_.T_world_sole[Size(foot)], pose)) continue;
     why = OutOfReach();

@@ -153,6 +153,26 @@ bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_so
   return robot.legs[Size(foot)].Place(pose.T_world_root.inverse() * T_world_sole, pose.q);
 }
 
+Transform RootOnFoot(const StandingRobot& robot, int foot, const Eigen::VectorXd& q) {
+  return robot.T_world_sole[Size(foot)] * robot.legs[Size(foot)].SolePose(q).inverse();
+}
+
+Transform RootOnFloor(const StandingRobot& robot, const Eigen::VectorXd& q) {
+  constexpr double kBelow = 1e-3;  // m: a foot that stands too is there but for rounding
+  if (robot.Held()) return robot.T_world_root;
+  for (const int foot : robot.AllFeet()) {
+    const Transform T_world_root = RootOnFoot(robot, foot, q);
+    bool above = true;
+    for (const int other : robot.AllFeet()) {
+      const Transform T_world_sole = T_world_root * robot.legs[Size(other)].SolePose(q);
+      const double floor = robot.T_world_sole[Size(other)].translation().z();
+      above = above && T_world_sole.translation().z() > floor - kBelow;
+    }
+    if (above) return T_world_root;
+  }
+  return RootOnFoot(robot, 0, q);
+}
+
 bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
                    const Eigen::Vector2d& com, PlacedPosture& pose) {
   constexpr int kIterations = 30;

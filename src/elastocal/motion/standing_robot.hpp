@@ -81,6 +81,13 @@ struct PlacedPosture {
   Transform T_world_root = Transform::Identity();
 };
 
+/// Pose of the root link in the world in a posture with this foot where it stands.
+Transform RootOnFoot(const StandingRobot& robot, int foot, const Eigen::VectorXd& q);
+
+/// The same where the robot stands on all feet or on one: no foot is below the floor then. Of a
+/// held robot, where it is held.
+Transform RootOnFloor(const StandingRobot& robot, const Eigen::VectorXd& q);
+
 /// Starting from `pose`, moves the root link horizontally until the centre of mass is over `com`,
 /// and places the legs of `feet` so that their soles keep their place. Returns false, with the pose
 /// changed, if a foot is out of reach.

@@ -53,6 +53,7 @@ Json TourJson(const Project& project, const PlannedTour& set, double begin_s, do
   Json json = {{"name", set.name},
                {"duration_s", static_cast<double>(set.motion.q.rows()) / rate_hz},
                {"visits", Json::array()},
+               {"rests_s", Json::array()},
                {"left_out", Json::array()}};
   const auto time_s = [&](int row) { return std::round(1e3 * (begin_s + row / rate_hz)) / 1e3; };
   for (const Visit& visit : set.visits) {

@@ -127,10 +127,7 @@ std::unique_ptr<StandingRobot> StandAtTables(const Project& project, const Motio
   if (tables.empty()) return robot;
   robot->clearances = [&robot = *robot, own = robot->clearances, tables](const Eigen::VectorXd& q) {
     const Eigen::VectorXd parts = own ? own(q) : Eigen::VectorXd();
-    Transform T_world_root = robot.T_world_root;
-    if (!robot.Held()) {
-      T_world_root = robot.T_world_sole.front() * robot.legs.front().SolePose(q).inverse();
-    }
+    const Transform T_world_root = RootOnFloor(robot, q);
     std::vector<Transform> T_world_link = LinkTransforms(robot.tree, q);
     for (Transform& T : T_world_link) T = T_world_root * T;
     Eigen::VectorXd all(parts.size() + static_cast<Eigen::Index>(tables.size()));

@@ -52,12 +52,8 @@ std::vector<PostureTour> TouchTours(const Project& project, const StandingRobot&
     const int index = static_cast<int>(plate - plates.begin());
     if (plate == plates.end() || !project.contact->tables[Size(index)]) continue;
     for (const Eigen::VectorXd& q : tour.postures) {
-      Transform T_world_root = robot.T_world_root;
-      if (!robot.Held()) {
-        T_world_root = robot.T_world_sole.front() * robot.legs.front().SolePose(q).inverse();
-      }
       tour.approaches.push_back(
-          WayDown(project, robot.tree, index, T_world_root, q, options, rate_hz));
+          WayDown(project, robot.tree, index, RootOnFloor(robot, q), q, options, rate_hz));
     }
   }
   return tours;
