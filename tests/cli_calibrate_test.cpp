@@ -61,7 +61,7 @@ TEST_F(Program, CalibratedUrdfNeedsNoCalibration) {
   std::ofstream(again) << project;
   const std::string json_file = (scratch_.path() / "again.json").string();
   ASSERT_EQ(RunProgram("calibrate " + again + " --recording " + recording_ + " -o " + out_ +
-                       "/again --json " + json_file)
+                       "/again --kfold 3 --json " + json_file)
                 .exit_code,
             0);
   const nlohmann::json summary = nlohmann::json::parse(ReadFile(json_file));
@@ -73,7 +73,7 @@ TEST_F(Program, CalibratedUrdfNeedsNoCalibration) {
 }
 
 TEST_F(Program, EncoderOffsetsAreWrittenApart) {
-  ASSERT_EQ(Calibrate(project_, recording_, "--zero-offsets encoder").exit_code, 0);
+  ASSERT_EQ(Calibrate(project_, recording_, "--zero-offsets encoder --kfold 3").exit_code, 0);
   const std::string xacro = ReadFile(out_ + "/offsets.xacro");
   EXPECT_NE(xacro.find("NOT in these origins"), std::string::npos);
   EXPECT_NE(xacro.find("name=\"elbow_joint_offset\""), std::string::npos) << xacro;
@@ -82,7 +82,8 @@ TEST_F(Program, EncoderOffsetsAreWrittenApart) {
 
 TEST_F(Program, NothingIsLeftWhenAnOutputCannotBeWritten) {
   const std::string file = scratch_.Write("file", "");
-  const ProgramResult result = Calibrate(project_, recording_, "--json " + file + "/summary.json");
+  const ProgramResult result =
+      Calibrate(project_, recording_, "--kfold 3 --json " + file + "/summary.json");
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_NE(result.err.find(file), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(out_));
@@ -100,7 +101,7 @@ TEST_F(Program, OutputsMayNotReplaceInputs) {
 }
 
 TEST_F(Program, JsonCanGoToStandardOutput) {
-  const ProgramResult result = Calibrate(project_, recording_, "--json -");
+  const ProgramResult result = Calibrate(project_, recording_, "--kfold 3 --json -");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "converged");
   const ProgramResult demo = RunProgram("demo --quick --count 15 --json - -o " + out_);

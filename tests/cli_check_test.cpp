@@ -54,7 +54,7 @@ TEST_F(Program, APriorMakesAFewPosturesEnough) {
       AnotherDay(scratch_.path() / "today.csv", project_, truth_, "elbow_joint.theta", 5e-3);
   const std::string updated = (scratch_.path() / "updated").string();
   const ProgramResult result = RunProgram("calibrate " + project_ + " --recording " + today +
-                                          " --prior " + out_ + " --days 2 -o " + updated);
+                                          " --prior " + out_ + " --days 2 --kfold 3 -o " + updated);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find("elbow_joint: has moved since"), std::string::npos) << result.err;
   const auto offset = [](const std::string& folder) {

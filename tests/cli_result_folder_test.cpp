@@ -93,8 +93,10 @@ TEST_F(Program, FilesOfSomebodyElseAreNotReplaced) {
     EXPECT_EQ(ReadFile(file), before);
   }
   // Its own files are, and JSON that the user names is again and again.
-  EXPECT_EQ(Calibrate(project_, recording_, "--json " + out_ + "/mine.json").exit_code, 0);
-  EXPECT_EQ(Calibrate(project_, recording_, "--json " + out_ + "/mine.json").exit_code, 0);
+  EXPECT_EQ(Calibrate(project_, recording_, "--kfold 3 --json " + out_ + "/mine.json").exit_code,
+            0);
+  EXPECT_EQ(Calibrate(project_, recording_, "--kfold 3 --json " + out_ + "/mine.json").exit_code,
+            0);
 }
 
 TEST_F(Program, AFolderOfTwoRunsIsRefusedByItsReaders) {
@@ -115,7 +117,8 @@ TEST_F(Program, AFolderOfTwoRunsIsRefusedByItsReaders) {
                          folder),
               {name, "of two runs"});
     // A run of the command that writes it puts the folder in order.
-    EXPECT_EQ(RunProgram("calibrate " + project_ + " --recording " + recording_ + " -o " + folder)
+    EXPECT_EQ(RunProgram("calibrate " + project_ + " --recording " + recording_ + " -o " + folder +
+                         kFewFolds)
                   .exit_code,
               0);
     EXPECT_EQ(RunProgram("report " + folder).exit_code, 0);

@@ -154,7 +154,7 @@ class Killed : public Program {
 };
 
 TEST_F(Killed, Calibrate) {
-  const std::string end = " -o FOLDER --kfold 5";
+  const std::string end = " -o FOLDER --kfold 3";
   const std::string first = Copy(recording_, "first_input.csv");
   const std::string second = Copy(recording_, "second_input.csv");
   TryKills("calibrate " + project_ + " --recording " + first + end,

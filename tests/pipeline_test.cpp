@@ -73,7 +73,7 @@ TEST_F(Pipeline, CalibratesAndTellsOfItsSteps) {
 // A folder holds the files of one run: those of a good run go when a bad one follows.
 TEST_F(Pipeline, ARunThatIsNotDeployableTakesTheEarlierFilesAway) {
   const std::filesystem::path folder = scratch_.path() / "out";
-  CalibrationRun run = CalibrateExperiment(project_, {table_});
+  CalibrationRun run = CalibrateExperiment(project_, {table_}, {.folds = 3});
   const std::string no_page = Publish(folder, run);
   const std::vector<std::string> all = CalibrationFileNames(project_);
   std::set<std::string> expected(all.begin(), all.end());
@@ -83,7 +83,7 @@ TEST_F(Pipeline, ARunThatIsNotDeployableTakesTheEarlierFilesAway) {
   EXPECT_EQ(CompareCalibrations(folder, folder).comparison.changed, false);
 
   project_.calibration.plausible_marker_sd = 1e-6;  // nothing real is as good
-  run = CalibrateExperiment(project_, {table_});
+  run = CalibrateExperiment(project_, {table_}, {.folds = 3});
   EXPECT_FALSE(run.deployable());
   EXPECT_FALSE(run.urdf.has_value());
   Publish(folder, run);
@@ -97,7 +97,7 @@ TEST_F(Pipeline, ARunThatIsNotDeployableTakesTheEarlierFilesAway) {
 
 TEST_F(Pipeline, ACalibrationIsValidatedOnAnotherRecording) {
   const std::filesystem::path folder = scratch_.path() / "out";
-  CalibrationRun run = CalibrateExperiment(project_, {table_});
+  CalibrationRun run = CalibrateExperiment(project_, {table_}, {.folds = 3});
   Publish(folder, run);
   const ValidationRun validation =
       ValidateCalibration(project_, folder / "calibration.yaml", table_);

@@ -31,8 +31,10 @@ class Program : public ::testing::Test {
     out_ = (scratch_.path() / "out").string();
   }
 
+  /// With `more` options, or else with fewer folds than usual: most tests are not about folds,
+  /// which take most of the time.
   ProgramResult Calibrate(const std::string& project, const std::string& recording,
-                          const std::string& more = "") {
+                          const std::string& more = kFewFolds) {
     return RunProgram("calibrate " + project + " --recording " + recording + " -o " + out_ + " " +
                       more);
   }
@@ -73,11 +75,12 @@ class Program : public ::testing::Test {
                       project.tree);
     const std::string out = (scratch_.path() / folder).string();
     const ProgramResult result =
-        RunProgram("calibrate " + project_ + " --recording " + table + " -o " + out);
+        RunProgram("calibrate " + project_ + " --recording " + table + " -o " + out + kFewFolds);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return out;
   }
 
+  static constexpr const char* kFewFolds = " --kfold 3";
   static constexpr const char* kProject = "tests/robots/arm6_project.yaml";
   ScratchFolder scratch_;
   Eigen::VectorXd truth_;

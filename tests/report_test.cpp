@@ -66,7 +66,7 @@ class Report : public ::testing::Test {
                       project.tree);
   }
 
-  ProgramResult Calibrate(const std::string& more = "") {
+  ProgramResult Calibrate(const std::string& more = " --kfold 3") {
     return RunProgram("calibrate " + project_ + " --recording " + recording_ + " -o " + out_ +
                       more);
   }
@@ -85,7 +85,7 @@ class Report : public ::testing::Test {
 };
 
 TEST_F(Report, CalibrateWritesWhatThePageShows) {
-  ASSERT_EQ(Calibrate(" --seed 3").exit_code, 0);
+  ASSERT_EQ(Calibrate(" --kfold 3 --seed 3").exit_code, 0);
   const Json data = Read("report_data.json");
   const Json summary = Read("summary.json");
   ASSERT_EQ(data["scenes"].size(), 1u);
@@ -127,11 +127,11 @@ TEST_F(Report, TakesMeshesAlong) {
 }
 
 TEST_F(Report, SaysHowToGetTheSameAgain) {
-  ASSERT_EQ(Calibrate(" --seed 3").exit_code, 0);
+  ASSERT_EQ(Calibrate(" --kfold 3 --seed 3").exit_code, 0);
   const Json run = Read("runs.json")["calibrate"];
   EXPECT_EQ(run["seed"], 3);
   EXPECT_EQ(run["command_line"], "elastocal calibrate " + project_ + " --recording " + recording_ +
-                                     " -o " + out_ + " --seed 3");
+                                     " -o " + out_ + " --kfold 3 --seed 3");
   ASSERT_EQ(run["inputs"].size(), 3u);  // project, URDF, recording
   EXPECT_EQ(run["inputs"][2]["file"], recording_);
   EXPECT_EQ(run["inputs"][2]["bytes"], std::filesystem::file_size(recording_));

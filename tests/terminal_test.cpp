@@ -93,8 +93,8 @@ TEST_F(Program, MessagesFollowWhatWasPrinted) {
   const std::string both = (scratch_.path() / "both.txt").string();
   const std::string swapped = scratch_.Write("swapped.csv", table);
   const std::vector<std::string> lines =
-      Screen(RunOnTerminal("calibrate " + project_ + " --recording " + swapped + " -o " + out_ +
-                           " >" + both + " 2>&1; cat " + both));
+      Screen(RunOnTerminal("calibrate " + project_ + " --recording " + swapped + " --kfold 3 -o " +
+                           out_ + " >" + both + " 2>&1; cat " + both));
   std::size_t first = lines.size();
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::size_t at = lines[i].find("elastocal: ");

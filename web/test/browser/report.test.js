@@ -21,6 +21,10 @@ const triangle = join(folder, 'triangle.html');
 const files = {sample, ...(process.env.REPORT && {program: resolve(process.env.REPORT)})};
 let browser;
 
+/** A page at 1280 x 900 for all tests that only read it: opening one takes longer than they do. */
+const kept = {};
+const keptPage = (file) => kept[file] ??= openPage(browser, file);
+
 before(async () => {
   writeFileSync(triangle, trianglePage);
   writeFileSync(sample, fill(readFileSync(template, 'utf8'), sampleReport()));
@@ -50,10 +54,9 @@ for (const [name, file] of Object.entries(files)) {
   });
 
   test(`${name}: has the licences of others' software`, async () => {
-    const {page} = await openPage(browser, file);
+    const {page} = await keptPage(file);
     const text = await page.$eval('#licences pre', (pre) => pre.textContent);
     for (const words of ['three 0', 'uplot 1', 'urdf-loader 0', 'MIT', 'Apache License']) assert.ok(text.includes(words), words);
-    await page.close();
   });
 
   test(`${name}: fits widths of 390 and 1280, and paper`, async () => {
@@ -72,7 +75,7 @@ for (const [name, file] of Object.entries(files)) {
   });
 
   test(`${name}: no figure runs into the next`, async () => {
-    const {page} = await openPage(browser, file);
+    const {page} = await keptPage(file);
     for (const [width, media] of [[320, 'screen'], [390, 'screen'], [900, 'screen'], [1280, 'screen'], [680, 'print']]) {
       await page.setViewportSize({width, height: 900});
       await page.emulateMedia({media});
@@ -88,11 +91,12 @@ for (const [name, file] of Object.entries(files)) {
       assert.deepEqual(meetings, [], `${media} ${width}`);
       assert.ok(await page.$$eval('.fact', (all) => all.length) >= 9);
     }
-    await page.close();
+    await page.setViewportSize({width: 1280, height: 900});
+    await page.emulateMedia({media: null});
   });
 
   test(`${name}: a standard deviation on the page has two significant digits, and its estimate the same decimals`, async () => {
-    const {page} = await openPage(browser, file);
+    const {page} = await keptPage(file);
     const cells = await page.$$eval('#parameters .estimate', (all) => all.map((e) => [e.querySelector('.value').textContent, e.querySelector('.sd').textContent]));
     const decimals = (text) => text.split('.')[1]?.length ?? 0;
     for (const [value, sd] of cells) {
@@ -100,7 +104,6 @@ for (const [name, file] of Object.entries(files)) {
       assert.equal(decimals(value), decimals(sd), `${value} ${sd}`);
     }
     assert.ok(cells.length > 5);
-    await page.close();
   });
 
   test(`${name}: slider, play and magnification change the picture`, async () => {
@@ -134,7 +137,7 @@ for (const [name, file] of Object.entries(files)) {
 
   test(`${name}: the tables hold the numbers of summary.json`, async () => {
     const {summary} = embeddedReport(file);
-    const {page} = await openPage(browser, file);
+    const {page} = await keptPage(file);
     const shown = new Map(await page.$$eval('#parameters [data-parameter]', (all) => all.map((e) => [e.dataset.parameter, {value: e.dataset.value, text: e.querySelector('.value')?.textContent}])));
     const unit = {'rad': 180 / Math.PI, 'm': 1e3, 'rad/(N.m)': 1e6};
     let checked = 0;
@@ -151,7 +154,6 @@ for (const [name, file] of Object.entries(files)) {
     const text = await page.textContent('#models');
     const errors = summary.kfold ?? summary;
     for (const value of Object.values(errors.rmse_3d_mm)) assert.ok(text.includes(value.toFixed(2)), `${value}`);
-    await page.close();
   });
 
   test(`${name}: every figure gives its data as CSV`, async () => {
@@ -209,7 +211,7 @@ for (const [name, file] of Object.entries(files)) {
 }
 
 test('names from the user’s files are shown, not run', async () => {
-  const {page, problems} = await openPage(browser, sample);
+  const {page, problems} = await keptPage(sample);
   await waitForViewer(page);
   assert.equal(await page.$$eval('#app script', (all) => all.length), 0);
   assert.ok((await page.textContent('h1')).includes(EVIL));
@@ -217,19 +219,17 @@ test('names from the user’s files are shown, not run', async () => {
     assert.ok((await page.textContent(`#${id}`)).includes(EVIL), id);
   }
   assert.deepEqual(problems, []);
-  await page.close();
 });
 
 test('the stiffness of a leg has its interval, or is unknown', async () => {
-  const {page, problems} = await openPage(browser, sample);
+  const {page, problems} = await keptPage(sample);
   const row = await page.$$eval('[aria-label="Stiffness of the legs"] tbody tr', (all) => [...all[0].cells].map((cell) => cell.innerText.replaceAll('\n', ' ')));
   assert.deepEqual(row.slice(1), ['unknown, > 33.0', 'unknown, > 32.0', '186 181.5 to 190.2', '24\u202f700 22\u202f500 to 26\u202f800', '5\u202f230 5\u202f190 to 5\u202f270', 'unknown']);
   assert.deepEqual(problems, []);
-  await page.close();
 });
 
 test('nine equal warnings are one line with the names, and fold out', async () => {
-  const {page, problems} = await openPage(browser, sample);
+  const {page, problems} = await keptPage(sample);
   const lines = await page.$$eval('#findings .words.state- > ul > li', (all) => all.map((li) => li.firstChild.textContent + (li.querySelector(':scope > .others')?.textContent ?? '')));
   assert.equal(lines.length, 2);
   assert.match(lines[1], /"arm_1_joint".*The same is true of "arm_2_joint", .* and "arm_9_joint"\.$/);
@@ -237,7 +237,6 @@ test('nine equal warnings are one line with the names, and fold out', async () =
   assert.equal(await page.$$eval('#findings .words details[open] li', (all) => all.filter((li) => li.offsetHeight > 0).length), 9);
   assert.match(await page.textContent('.verdict-link'), /^Read 1 remark and 2 warnings$/);
   assert.deepEqual(problems, []);
-  await page.close();
 });
 
 test('the chain filter, dark colours and keys on plots work', async () => {
