@@ -14,45 +14,69 @@ namespace {
 
 constexpr double kLeastGain = 1e-6;  // nats, of an exchange
 
-/// Of all parameters in units of their standard deviations: angles and compliances differ by orders
-/// of magnitude.
-struct Scaled {
-  Eigen::MatrixXd data, covariance;
-  Eigen::VectorXd change;
-
-  Scaled(const PriorKnowledge& prior, const Eigen::MatrixXd& information) {
-    const Eigen::VectorXd unit = prior.covariance.diagonal().cwiseSqrt();
-    data = unit.asDiagonal() * information * unit.asDiagonal();
-    covariance =
-        unit.cwiseInverse().asDiagonal() * prior.covariance * unit.cwiseInverse().asDiagonal();
-    change = prior.change_sd.cwiseQuotient(unit);
-  }
-};
-
 double LogDetPlusOne(Eigen::MatrixXd M) {
   M.diagonal().array() += 1.0;
   const Eigen::LLT<Eigen::MatrixXd> factor(M);
   return 2.0 * Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum();
 }
 
-/// What the data say of changes, beside the parameters: A - A (A + P^-1)^-1 A with P = L L', which
-/// is A - A L (I + L'AL)^-1 L'A.
-Eigen::MatrixXd Beside(const Scaled& scaled) {
-  const Eigen::LLT<Eigen::MatrixXd> root(scaled.covariance);
-  const Eigen::MatrixXd reach = root.matrixU() * scaled.data;  // L'A
-  Eigen::MatrixXd inner = root.matrixU() * Eigen::MatrixXd(reach.transpose());
-  inner.diagonal().array() += 1.0;
-  return scaled.data - reach.transpose() * Eigen::LLT<Eigen::MatrixXd>(inner).solve(reach);
-}
+/// What is known beforehand, with its covariance P = L L' in units of the standard deviations
+/// (angles and compliances differ by orders of magnitude). Data of information A are worth
+/// B = L'AL beside it.
+class Knowledge {
+ public:
+  explicit Knowledge(const PriorKnowledge& prior)
+      : unit_(prior.covariance.diagonal().cwiseSqrt()),
+        root_(unit_.cwiseInverse().asDiagonal() * prior.covariance *
+              unit_.cwiseInverse().asDiagonal()),
+        change_(prior.change_sd.cwiseQuotient(unit_)) {
+    for (int i = 0; i < change_.size(); ++i) {
+      if (change_[i] > 0.0) changing_.push_back(i);
+    }
+    inverse_root_ = Eigen::MatrixXd::Identity(unit_.size(), unit_.size());
+    root_.matrixL().solveInPlace(inverse_root_);
+  }
+
+  const std::vector<int>& changing() const { return changing_; }
+
+  Eigen::MatrixXd Worth(const Eigen::MatrixXd& information) const {
+    const Eigen::MatrixXd scaled = unit_.asDiagonal() * information * unit_.asDiagonal();
+    const Eigen::MatrixXd reach = root_.matrixU() * scaled;  // L'A
+    return root_.matrixU() * Eigen::MatrixXd(reach.transpose());
+  }
+
+  /// What the data say of changes, beside the parameters: A - A (A + P^-1)^-1 A, which is
+  /// L^-T B (I + B)^-1 L^-1. Of the parameters that may change.
+  Eigen::MatrixXd OfChanges(const Eigen::MatrixXd& worth) const {
+    const Eigen::MatrixXd columns = inverse_root_(Eigen::all, changing_);
+    Eigen::MatrixXd all = worth;
+    all.diagonal().array() += 1.0;
+    return (worth * columns).transpose() * Eigen::LLT<Eigen::MatrixXd>(all).solve(columns);
+  }
+
+  /// Nats that the data are expected to tell.
+  double Told(const Eigen::MatrixXd& worth, SequentialAim aim) const {
+    if (aim == SequentialAim::kParameters) return LogDetPlusOne(worth);
+    const Eigen::VectorXd size = change_(changing_);
+    return LogDetPlusOne(size.asDiagonal() * OfChanges(worth) * size.asDiagonal());
+  }
+
+ private:
+  Eigen::VectorXd unit_;
+  Eigen::LLT<Eigen::MatrixXd> root_;
+  Eigen::MatrixXd inverse_root_;
+  Eigen::VectorXd change_;
+  std::vector<int> changing_;
+};
 
 class Search {
  public:
   Search(PostureProblem& problem, const PriorKnowledge& prior, const SequentialOptions& options,
          const std::vector<Eigen::VectorXd>& pool)
-      : prior_(prior), options_(options) {
+      : knowledge_(prior), aim_(options.aim) {
     for (const Eigen::VectorXd& x : pool) {
       const Eigen::MatrixXd psi = EvaluateRegressor(problem, x) / prior.marker_sd;
-      information_.emplace_back(psi.transpose() * psi);
+      worth_.push_back(knowledge_.Worth(psi.transpose() * psi));
     }
     const auto columns = problem.column_count();
     sum_ = Eigen::MatrixXd::Zero(columns, columns);
@@ -61,9 +85,9 @@ class Search {
   /// The candidate that gives most, added to what is there.
   int Best(double& most) const {
     int best = -1;
-    for (std::size_t i = 0; i < information_.size(); ++i) {
+    for (std::size_t i = 0; i < worth_.size(); ++i) {
       InterruptionPoint();
-      const double value = ExpectedInformation(prior_, sum_ + information_[i], options_.aim);
+      const double value = knowledge_.Told(sum_ + worth_[i], aim_);
       if (best >= 0 && !(value > most + kLeastGain)) continue;
       most = value;
       best = static_cast<int>(i);
@@ -71,13 +95,13 @@ class Search {
     return best;
   }
 
-  void Add(int candidate) { sum_ += information_[candidate]; }
-  void Remove(int candidate) { sum_ -= information_[candidate]; }
+  void Add(int candidate) { sum_ += worth_[candidate]; }
+  void Remove(int candidate) { sum_ -= worth_[candidate]; }
 
  private:
-  const PriorKnowledge& prior_;
-  const SequentialOptions& options_;
-  std::vector<Eigen::MatrixXd> information_;
+  Knowledge knowledge_;
+  SequentialAim aim_;
+  std::vector<Eigen::MatrixXd> worth_;  // of each candidate
   Eigen::MatrixXd sum_;
 };
 
@@ -85,30 +109,19 @@ class Search {
 
 double ExpectedInformation(const PriorKnowledge& prior, const Eigen::MatrixXd& data,
                            SequentialAim aim) {
-  const Scaled scaled(prior, data);
-  if (aim == SequentialAim::kParameters) {
-    const Eigen::LLT<Eigen::MatrixXd> root(scaled.covariance);
-    const Eigen::MatrixXd reach = root.matrixU() * scaled.data;
-    return LogDetPlusOne(root.matrixU() * Eigen::MatrixXd(reach.transpose()));
-  }
-  std::vector<int> changing;
-  for (int i = 0; i < scaled.change.size(); ++i) {
-    if (scaled.change[i] > 0.0) changing.push_back(i);
-  }
-  const Eigen::MatrixXd left = Beside(scaled);
-  const Eigen::VectorXd size = scaled.change(changing);
-  return LogDetPlusOne(size.asDiagonal() * left(changing, changing) * size.asDiagonal());
+  const Knowledge knowledge(prior);
+  return knowledge.Told(knowledge.Worth(data), aim);
 }
 
 Eigen::VectorXd ChangeDeviations(const PriorKnowledge& prior, const Eigen::MatrixXd& data) {
-  const Scaled scaled(prior, data);
-  const Eigen::VectorXd told = Beside(scaled).diagonal();
+  const Knowledge knowledge(prior);
+  const Eigen::VectorXd told = knowledge.OfChanges(knowledge.Worth(data)).diagonal();
   Eigen::VectorXd result =
-      Eigen::VectorXd::Constant(told.size(), std::numeric_limits<double>::infinity());
-  for (Eigen::Index i = 0; i < told.size(); ++i) {
-    if (scaled.change[i] > 0.0 && told[i] > 0.0) {
-      result[i] = std::sqrt(prior.covariance(i, i) / told[i]);
-    }
+      Eigen::VectorXd::Constant(prior.change_sd.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < knowledge.changing().size(); ++i) {
+    const double one = told[static_cast<Eigen::Index>(i)];
+    const int parameter = knowledge.changing()[i];
+    if (one > 0.0) result[parameter] = std::sqrt(prior.covariance(parameter, parameter) / one);
   }
   return result;
 }
