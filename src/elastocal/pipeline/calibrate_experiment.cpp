@@ -19,6 +19,8 @@
 namespace elastocal {
 namespace {
 
+constexpr int kElasticityFolds = 10;  // of the choice of elasticity
+
 /// By what the data, and those of an earlier calibration, tell before the prior, the waist being
 /// free in trials.
 Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& base,
@@ -109,7 +111,8 @@ CalibrationRun CalibrateExperiment(const Project& given,
 
   if (options.prior.empty()) {
     // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
-    run.elasticity = ChooseElasticity(measured.calibration, options.seed, options.threads, project);
+    run.elasticity = ChooseElasticity(measured.calibration, options.seed, kElasticityFolds,
+                                      options.threads, project);
 
     // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
     run.causes = ChooseCauses(measured, options.seed, project);

@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kLeastPostures = 10;
 constexpr int kMostPostures = 300;
-constexpr int kFolds = 10;
 constexpr double kLeastGain = 0.02;  // of the mean error
 
 /// Evenly drawn, at most kMostPostures.
@@ -50,8 +49,8 @@ bool HasMasses(const RobotTree& tree) {
 }  // namespace
 
 std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
-                                              std::optional<std::uint64_t> seed, int threads,
-                                              Project& project) {
+                                              std::optional<std::uint64_t> seed, int most_folds,
+                                              int threads, Project& project) {
   const ElasticityChoice asked = project.elasticity;
   if (!recording.trials.empty() || asked.torsion || asked.bending || !HasMasses(project.tree) ||
       recording.posture_count() < kLeastPostures) {
@@ -81,7 +80,7 @@ std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
     try {
       const CrossValidation folds =
           CrossValidate(std::vector<ModelKind>{kind}, model, sample, base, project.calibration,
-                        {.folds = FoldsFor(sample, kFolds), .threads = threads});
+                        {.folds = FoldsFor(sample, most_folds), .threads = threads});
       trial.rmse_3d = folds.metrics[static_cast<int>(kind)].rmse_3d;
       const Eigen::VectorXd errors = ErrorsByPosture(folds.distances[static_cast<int>(kind)]);
       if (best.size() == 0) best = errors;

@@ -23,13 +23,13 @@ struct ElasticityTrial {
 };
 
 /// Decides on the elasticity of the joints in a table of postures where the project leaves it open:
-/// torsion, then bending, enters when it lowers the error of left-out postures (ten folds, on at
-/// most 300 postures) by more than the standard error of that gain, and by more than 2 %. Sets
-/// `project.elasticity`; returns what was tried, nothing where there was nothing to decide: trials,
-/// whose joints are all elastic anyway; a choice in the project; a robot without masses; fewer than
-/// ten postures.
+/// torsion, then bending, enters when it lowers the error of left-out postures (`most_folds` folds,
+/// on at most 300 postures) by more than the standard error of that gain, and by more than 2 %.
+/// Sets `project.elasticity`; returns what was tried, nothing where there was nothing to decide:
+/// trials, whose joints are all elastic anyway; a choice in the project; a robot without masses;
+/// fewer than ten postures.
 std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
-                                              std::optional<std::uint64_t> seed, int threads,
-                                              Project& project);
+                                              std::optional<std::uint64_t> seed, int most_folds,
+                                              int threads, Project& project);
 
 }  // namespace elastocal

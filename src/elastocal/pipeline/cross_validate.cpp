@@ -12,13 +12,17 @@ bool ChoosesElasticity(const ExperimentData& data) {
   return data.open_elasticity.has_value() && data.as_recorded.posture_count() <= kMostNested;
 }
 
+/// Of the choice of elasticity within a fold. Every fold asks anew, so that the folds within folds
+/// take most of the time of a table; half as many as of the choice itself choose the same.
+constexpr int kInnerFolds = 5;
+
 /// The project with the elastic joints that these postures choose.
 Project ProjectOfFold(const ExperimentData& data, const Recording& training) {
   Project project = data.project;
   if (!ChoosesElasticity(data)) return project;
   ElasticityChoice chosen = project.elasticity;
   project.elasticity = *data.open_elasticity;
-  ChooseElasticity(training, data.seed, 1, project);
+  ChooseElasticity(training, data.seed, kInnerFolds, 1, project);
   chosen.torsion = project.elasticity.torsion;
   chosen.bending = project.elasticity.bending;
   project.elasticity = std::move(chosen);
