@@ -13,7 +13,8 @@ bool ChoosesElasticity(const ExperimentData& data) {
 }
 
 /// Of the choice of elasticity within a fold. Every fold asks anew, so that the folds within folds
-/// take most of the time of a table; half as many as of the choice itself choose the same.
+/// take most of the time of a table; half as many as of the choice itself choose as well
+/// (docs/accuracy.md).
 constexpr int kInnerFolds = 5;
 
 /// The project with the elastic joints that these postures choose.
