@@ -74,6 +74,7 @@ TEST_F(Program, QuietPrintsNothing) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.out, "");
   EXPECT_EQ(result.err.find("error"), std::string::npos) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["kfold"]["folds"], 10);
 }
 
 TEST_F(Program, ValidateAppliesACalibrationToAnotherRecording) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 namespace elastocal {
@@ -32,6 +33,32 @@ TEST(Sequential, TwoParametersByHand) {
   const Eigen::VectorXd sd = ChangeDeviations(prior, data);
   EXPECT_NEAR(sd[0], std::sqrt(1.0 / a + p + unknown), 1e-6);
   EXPECT_TRUE(std::isinf(sd[1]));  // it never changes
+}
+
+// Correlated parameters of unlike units, by the formulas with inverses.
+TEST(Sequential, CorrelatedParametersByInverses) {
+  const Eigen::Vector3d unit(1e-2, 3.0, 0.2);
+  Eigen::Matrix3d correlation, told;
+  correlation << 1.0, 0.6, -0.3, 0.6, 1.0, 0.2, -0.3, 0.2, 1.0;
+  told << 5.0, 1.0, 2.0, 1.0, 3.0, -1.0, 2.0, -1.0, 4.0;
+  const Eigen::Matrix3d covariance = unit.asDiagonal() * correlation * unit.asDiagonal();
+  const Eigen::Matrix3d data =
+      unit.cwiseInverse().asDiagonal() * told * unit.cwiseInverse().asDiagonal();
+  const PriorKnowledge prior{.covariance = covariance, .change_sd = Eigen::Vector3d(0.0, 6.0, 0.1)};
+
+  const double all = std::log((Eigen::Matrix3d::Identity() + covariance * data).determinant());
+  EXPECT_NEAR(ExpectedInformation(prior, data, SequentialAim::kParameters), all, 1e-12);
+
+  const Eigen::Matrix3d beside = data - data * (data + covariance.inverse()).inverse() * data;
+  const Eigen::Vector3d change = prior.change_sd;
+  const Eigen::Matrix3d worth =
+      Eigen::Matrix3d::Identity() + change.asDiagonal() * beside * change.asDiagonal();
+  EXPECT_NEAR(ExpectedInformation(prior, data, SequentialAim::kChanges),
+              std::log(worth.determinant()), 1e-12);
+
+  const Eigen::VectorXd sd = ChangeDeviations(prior, data);
+  EXPECT_TRUE(std::isinf(sd[0]));
+  for (const int i : {1, 2}) EXPECT_NEAR(sd[i] * std::sqrt(beside(i, i)), 1.0, 1e-12) << i;
 }
 
 }  // namespace
