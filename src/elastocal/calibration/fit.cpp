@@ -7,8 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/SparseCore>
-
 #include "elastocal/calibration/motion_correlation.hpp"
 #include "elastocal/calibration/variances.hpp"
 #include "elastocal/math/statistics.hpp"
@@ -25,7 +23,6 @@ constexpr double kWeightTolerance = 1e-2;
 constexpr double kMotionTolerance = 0.1;  // relative, of samples: where their sum ends is uncertain
 constexpr double kRoughly = 10.0;         // times these
 constexpr int kRoughIterations = 5;       // of a solve whose weights will change anyway
-constexpr double kLeastLeft = 0.05;       // of the variance of a row
 constexpr int kMaxSolves = 6;  // for the last digits, where the iterations of one do not suffice
 constexpr int kMaxPolishing = 20;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
@@ -57,16 +54,6 @@ void SolveOnce(const FitProblem& problem, const Selection& selection, const std:
   fit.iterations += solved.iterations;
   fit.initial_cost = solved.initial_cost;
   fit.final_cost = solved.final_cost;
-}
-
-/// Covariance of the unknowns in the units of the solver; that of the parameters goes into the
-/// fit's posterior.
-Eigen::MatrixXd TakeCovariance(const FitProblem& problem, const std::vector<int>& parameters,
-                               const NormalEquations& equations, Fit& fit) {
-  const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
-  fit.posterior.parameters = parameters;
-  fit.posterior.covariance = ParameterCovariance(problem.model, parameters, covariance);
-  return covariance;
 }
 
 /// The largest relative change of a source's standard deviation, by how much it matters.
@@ -204,114 +191,6 @@ void FollowLoads(const FitProblem& problem, const Selection& selection,
   fit.final_cost = CostOf(body);
 }
 
-/// The cluster of each posture: one each, but of a motion as many moments together as twice those
-/// that tell as much as one posture.
-std::vector<int> ClusterOfPostures(const FitProblem& problem, const Noise& noise) {
-  const std::vector<int> motion = MotionOfPostures(problem.recording);
-  std::vector<int> cluster(motion.size());
-  int size = 0;
-  for (int i = 0; i < static_cast<int>(motion.size()); ++i) {
-    const bool joins = i > 0 && !noise.motion.empty() && motion[i] >= 0 &&
-                       motion[i] == motion[i - 1] &&
-                       size < 2.0 * noise.motion[problem.group[i]].samples_each;
-    cluster[i] = i == 0 ? 0 : cluster[i - 1] + (joins ? 0 : 1);
-    size = joins ? size + 1 : 1;
-  }
-  return cluster;
-}
-
-/// The cluster of each residual block; -1 of priors.
-std::vector<int> ClusterOfBlocks(const std::vector<int>& cluster, const Selection& selection,
-                                 const BodyResiduals& body) {
-  std::vector<int> of_block;
-  for (const BodyObservation& of : selection.bodies) of_block.push_back(cluster[of.posture]);
-  for (int i : body.tied_postures()) of_block.push_back(cluster[i]);
-  of_block.resize(body.residual_blocks.size(), -1);
-  return of_block;
-}
-
-/// Information of the prior on the unknowns in the units of the solver: of the parameters, then of
-/// what else is unknown.
-Eigen::SparseMatrix<double> PriorInformation(const FitProblem& problem, const Prior& prior,
-                                             const std::vector<int>& parameters,
-                                             Eigen::Index unknowns) {
-  Eigen::VectorXd own =
-      Eigen::VectorXd::Constant(unknowns, BodyResiduals::kPoseScale * BodyResiduals::kPoseScale);
-  Eigen::VectorXd unit(static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const Parameter& parameter = problem.model.parameters[parameters[i]];
-    const auto at = static_cast<Eigen::Index>(i);
-    unit[at] = ParameterScale(parameter);
-    own[at] = std::pow(unit[at] / prior.Of(problem.model.tree, parameter), 2);
-  }
-  const EarlierPart earlier = PartOf(problem.options.earlier, problem.model, parameters);
-  if (earlier.positions.empty()) return Eigen::SparseMatrix<double>(own.asDiagonal());
-  Eigen::MatrixXd information = own.asDiagonal();
-  const Eigen::VectorXd scale = unit(earlier.positions);
-  information(earlier.positions, earlier.positions) =
-      scale.asDiagonal() * earlier.Information() * scale.asDiagonal();
-  return information.sparseView();
-}
-
-/// Compares the covariance with that of the cluster-robust (sandwich) estimator, whose clusters are
-/// the postures (ClusterOfPostures): residuals r over the root of what the fit leaves of their
-/// variance (HC2), and C (sum J' r r' J) C beside C J' J C. Where the postures scatter more than
-/// the noise model says, on average over the robot's parameters, the data's part of the covariance
-/// is widened.
-void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
-                     const Selection& selection, const NormalEquations& equations,
-                     const Eigen::MatrixXd& covariance,
-                     const std::vector<Eigen::VectorXd>& explained, Fit& fit) {
-  const BodyResiduals& body = residuals.body;
-  std::vector<Eigen::VectorXd> raised;
-  for (std::size_t block = 0; block < explained.size(); ++block) {
-    const Eigen::ArrayXd left = (1.0 - explained[block].array()).max(kLeastLeft);
-    raised.emplace_back(body.Residual(static_cast<int>(block)).array() / left.sqrt());
-  }
-  const std::vector<int> cluster = ClusterOfPostures(problem, residuals.noise);
-  const Eigen::MatrixXd scores = equations.Scores(raised, ClusterOfBlocks(cluster, selection, body),
-                                                  cluster.empty() ? 0 : cluster.back() + 1);
-  const std::vector<int>& parameters = fit.posterior.parameters;
-  const auto count = static_cast<Eigen::Index>(parameters.size());
-  const Eigen::MatrixXd by_prior =
-      PriorInformation(problem, residuals.prior, parameters, covariance.rows()) *
-      covariance.leftCols(count);
-  const Eigen::MatrixXd by_data =
-      covariance.topLeftCorner(count, count) - covariance.topRows(count) * by_prior;
-  const Eigen::VectorXd by_clusters = (covariance * scores).rowwise().squaredNorm();
-  double expected = 0.0;
-  double found = 0.0;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (IsExternal(problem.model.parameters[parameters[i]].kind)) continue;
-    expected += by_data(i, i) / covariance(i, i);
-    found += by_clusters[i] / covariance(i, i);
-  }
-  fit.posterior.cluster_factor = expected > 0.0 ? found / expected : 1.0;
-  if (!(fit.posterior.cluster_factor > 1.0)) return;
-  fit.posterior.covariance += ParameterCovariance(problem.model, parameters,
-                                                  (fit.posterior.cluster_factor - 1.0) * by_data);
-}
-
-/// What the data tell of the parameters, poses of waist and feet being unknown, without the prior.
-Eigen::MatrixXd DataInformation(const FitProblem& problem, const Prior& prior,
-                                const std::vector<int>& parameters,
-                                const NormalEquations& equations) {
-  const auto count = static_cast<Eigen::Index>(parameters.size());
-  const Eigen::Index poses = equations.information().rows() - count;
-  Eigen::MatrixXd information = equations.information();
-  information -= PriorInformation(problem, prior, parameters, information.rows());
-  Eigen::MatrixXd own = information.topLeftCorner(count, count);
-  if (poses > 0) {
-    const auto across = information.topRightCorner(count, poses);
-    own -= across * information.bottomRightCorner(poses, poses).ldlt().solve(across.transpose());
-  }
-  Eigen::VectorXd scale(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    scale[i] = ParameterScale(problem.model.parameters[parameters[i]]);
-  }
-  return scale.cwiseInverse().asDiagonal() * own * scale.cwiseInverse().asDiagonal();
-}
-
 }  // namespace
 
 Prior WidenedPrior(const FitProblem& problem, const Fit& fit) {
@@ -399,27 +278,6 @@ void Polish(const FitProblem& problem, const Selection& selection, const std::ve
     fit.termination = Termination::kNoConvergence;
     fit.message = "the iterations were used up before noise and prior came to rest";
   }
-}
-
-void UpdatePosterior(const FitProblem& problem, const Selection& selection,
-                     const std::vector<int>& parameters, Fit& fit) {
-  FitResiduals residuals(problem, selection, parameters, fit);
-  BodyResiduals& body = residuals.body;
-  body.Evaluate(body.Start(), true);
-  const NormalEquations equations(body);
-  const Eigen::MatrixXd covariance = TakeCovariance(problem, parameters, equations, fit);
-  const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
-  fit.degrees_of_freedom = DegreesOfFreedom(
-      problem.options, CollectComponents(problem, selection, fit.noise, body, explained));
-  fit.posterior.effective_parameters = 0.0;
-  const int observations = body.body_count() + static_cast<int>(body.tied_postures().size());
-  for (int block = 0; block < observations; ++block) {
-    if (body.residual_blocks[block].active) {
-      fit.posterior.effective_parameters += explained[block].sum();
-    }
-  }
-  WidenByClusters(problem, residuals, selection, equations, covariance, explained, fit);
-  fit.posterior.data_information = DataInformation(problem, residuals.prior, parameters, equations);
 }
 
 }  // namespace elastocal

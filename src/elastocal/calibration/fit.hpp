@@ -87,6 +87,11 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
 void Polish(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
             Fit& fit);
 
+/// Covariance of the unknowns in the units of the solver; that of `parameters` goes into the fit's
+/// posterior.
+Eigen::MatrixXd TakeCovariance(const FitProblem& problem, const std::vector<int>& parameters,
+                               const NormalEquations& equations, Fit& fit);
+
 /// Uncertainty of `parameters`, with noise, weights and prior as they are.
 void UpdatePosterior(const FitProblem& problem, const Selection& selection,
                      const std::vector<int>& parameters, Fit& fit);
