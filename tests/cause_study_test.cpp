@@ -14,6 +14,7 @@
 #include "elastocal/pipeline/calibrate_experiment.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
+#include "elastocal/pipeline/compare_calibrations.hpp"
 #include "elastocal/pipeline/validate_calibration.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
@@ -314,6 +315,29 @@ TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
   const double found = OnAnotherDay(project, run).rmse_3d;
   EXPECT_NEAR(foretold, found, 0.25 * found);
   EXPECT_NEAR(foretold, 2.644e-3, 5e-5);  // docs/accuracy.md
+}
+
+// Nothing moved between the two days, though the second alone chooses a moment of the wrist.
+TEST_F(TiagoCauses, CompareAccusesNoJoint) {
+  const ScratchFolder scratch;
+  std::vector<std::vector<std::string>> chosen;
+  for (const char* day : {"training", "validation"}) {
+    const Project project = ProjectWith("auto");
+    const std::filesystem::path table = SharedFile("data/tiago_mocap/" + std::string(day) + ".csv");
+    CalibrationRun run = CalibrateExperiment(project, {table}, {.folds = 0});
+    chosen.push_back(run.extra);
+    std::filesystem::create_directory(scratch.path() / day);
+    for (const auto& [name, text] : MakeCalibrationFiles(project, run)) {
+      scratch.Write(std::string(day) + "/" + name, text);
+    }
+  }
+  EXPECT_NE(chosen[0], chosen[1]);
+  const ComparisonRun compared =
+      CompareCalibrations(scratch.path() / "training", scratch.path() / "validation", {});
+  EXPECT_FALSE(compared.comparison.changed);
+  for (const JointDifference& joint : compared.comparison.joints) {
+    EXPECT_FALSE(joint.moved) << joint.joint << ": " << joint.p_adjusted;
+  }
 }
 
 }  // namespace

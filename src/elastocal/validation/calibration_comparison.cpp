@@ -10,6 +10,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/validation/conditioned_estimate.hpp"
 
 namespace elastocal {
 namespace {
@@ -157,16 +158,27 @@ void CheckSameRobot(const CalibrationEstimate& a, const CalibrationEstimate& b) 
                    "joints on it; two calibrations with one gauge were expected");
 }
 
-/// Adds to `names` the parameters that are held in `holder` and estimated in `other`.
-void AddHeldInOneOnly(const CalibrationEstimate& holder, const CalibrationEstimate& other,
-                      std::string& names) {
-  for (const ParameterEstimate& held : holder.parameters) {
-    if (held.status != ParameterStatus::kHeld) continue;
-    for (const ParameterEstimate& parameter : other.parameters) {
-      if (parameter.name != held.name || parameter.status != ParameterStatus::kEstimated) continue;
-      names += (names.empty() ? "" : ", ") + held.name;
-    }
+/// The names of parameters, and of many the first few.
+std::string NamesOf(const std::vector<FixedParameter>& parameters) {
+  constexpr std::size_t kMost = 8;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kMost, parameters.size()); ++i) {
+    names += (i == 0 ? "" : ", ") + parameters[i].name;
   }
+  if (parameters.size() <= kMost) return names;
+  return names + " and " + std::to_string(parameters.size() - kMost) + " more";
+}
+
+/// Says what one side alone estimates.
+void AddModelWarning(const std::string& side, const std::string& other,
+                     const std::vector<FixedParameter>& fixed, CalibrationComparison& comparison) {
+  if (fixed.empty()) return;
+  const std::string names = side + " alone estimates " + NamesOf(fixed) + ": ";
+  comparison.warnings.push_back(
+      names + (comparison.with_covariance
+                   ? "its other estimates are compared as they would be with these fixed as in " +
+                         other + "; what they would explain may then look like a moved joint"
+                   : "what they explain is in the other estimates of " + other));
 }
 
 void AddWarnings(const CalibrationEstimate& a, const CalibrationEstimate& b,
@@ -175,19 +187,6 @@ void AddWarnings(const CalibrationEstimate& a, const CalibrationEstimate& b,
     comparison.warnings.push_back(
         "both name the recording " + a.recording +
         "; if it is the same one, their errors are not independent, and the test means nothing");
-  }
-  if (a.model != b.model) {
-    comparison.warnings.push_back(
-        "A has the model " + a.model + ", B the model " + b.model +
-        ": effects that one of them does not model are in its other estimates");
-  }
-  std::string held;
-  AddHeldInOneOnly(a, b, held);
-  AddHeldInOneOnly(b, a, held);
-  if (!held.empty()) {
-    comparison.warnings.push_back(
-        "held in one calibration only, whose other estimates contain their deviation from " +
-        std::string("nominal: ") + held);
   }
   if (!comparison.with_covariance) {
     comparison.warnings.emplace_back(
@@ -198,21 +197,27 @@ void AddWarnings(const CalibrationEstimate& a, const CalibrationEstimate& b,
 
 }  // namespace
 
-CalibrationComparison CompareCalibrations(const CalibrationEstimate& a,
-                                          const CalibrationEstimate& b,
+CalibrationComparison CompareCalibrations(const CalibrationEstimate& given_a,
+                                          const CalibrationEstimate& given_b,
                                           const ComparisonOptions& options) {
-  CheckSameRobot(a, b);
+  CheckSameRobot(given_a, given_b);
   CalibrationComparison comparison;
-  const bool full = a.has_covariance() && b.has_covariance();
+  const bool full = given_a.has_covariance() && given_b.has_covariance();
   comparison.with_covariance = full;
-  CommonParameters common = FindCommonParameters(a, b);
+  const std::vector<FixedParameter> in_a_alone = FixedIn(given_b, given_a);
+  const std::vector<FixedParameter> in_b_alone = FixedIn(given_a, given_b);
+  AddWarnings(given_a, given_b, comparison);
+  AddModelWarning("A", "B", in_a_alone, comparison);
+  AddModelWarning("B", "A", in_b_alone, comparison);
+  const CalibrationEstimate a = full ? Conditioned(given_a, in_a_alone) : given_a;
+  const CalibrationEstimate b = full ? Conditioned(given_b, in_b_alone) : given_b;
+  CommonParameters common = FindCommonParameters(given_a, given_b);
   if (common.common.empty()) {
     throw InputError(
         a.source + " and " + b.source +
         ": no parameter of the robot is estimated in both, so nothing can be compared");
   }
   comparison.not_compared = std::move(common.not_compared);
-  AddWarnings(a, b, comparison);
 
   std::vector<int> in_a, in_b;
   Differences all{.values = Eigen::VectorXd(static_cast<Eigen::Index>(common.common.size())),

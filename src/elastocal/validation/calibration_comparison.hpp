@@ -73,6 +73,11 @@ struct CalibrationComparison {
 /// correlation. If a covariance is missing, the p value of a joint is the smallest one of its
 /// parameters times their number (Bonferroni).
 ///
+/// **Two models.** What one side alone estimates (a cause, a spring, a parameter that the other
+/// side holds) is in the other estimates of that other side. Both are therefore compared under what
+/// both models have: each estimate as it would be with these parameters fixed as in the other
+/// (FixedIn, Conditioned). A warning names them. This needs both covariances.
+///
 /// The uncertainty is only that of noise. Effects that neither model has (for example elasticity)
 /// make two recordings of different postures differ by more.
 ///

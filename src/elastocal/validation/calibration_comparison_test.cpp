@@ -121,13 +121,37 @@ TEST_F(CalibrationComparisonTest, WithoutCovarianceBonferroniWithinAJoint) {
 
 TEST_F(CalibrationComparisonTest, Warnings) {
   b_.recording = a_.recording;
-  b_.model = "offsets_only";
   b_.parameters[3].status = ParameterStatus::kHeld;
+  b_.parameters[3].value = 0.02;
   const CalibrationComparison comparison = Compared();
-  ASSERT_EQ(comparison.warnings.size(), 3u);
+  ASSERT_EQ(comparison.warnings.size(), 2u);
   EXPECT_NE(comparison.warnings[0].find("A.csv"), std::string::npos);
-  EXPECT_NE(comparison.warnings[1].find("offsets_only"), std::string::npos);
-  EXPECT_NE(comparison.warnings[2].find("j2.d"), std::string::npos);
+  EXPECT_NE(comparison.warnings[1].find("A alone estimates j2.d: "), std::string::npos);
+}
+
+// B alone has a cause, which takes 3 mrad of j1.theta; without it both say the same.
+TEST_F(CalibrationComparisonTest, UnderWhatBothModelsHave) {
+  b_.parameters.push_back({.name = "j1.gear", .unit = "1", .value = 5e-3, .sd = 1e-3});
+  b_.covariance_names.emplace_back("j1.gear");
+  b_.covariance.conservativeResize(7, 7);
+  b_.covariance.row(6).setZero();
+  b_.covariance.col(6).setZero();
+  b_.covariance(6, 6) = 1e-6;
+  b_.covariance(0, 6) = b_.covariance(6, 0) = -0.6e-6;
+  b_.parameters[0].value -= 3e-3;
+  b_.parameters[1].value += 1e-3;  // uncorrelated with the cause: stays
+  const CalibrationComparison comparison = Compared();
+  EXPECT_NEAR(comparison.parameters[0].difference, 0.0, 1e-15);
+  EXPECT_NEAR(comparison.parameters[0].sd, std::sqrt(1e-6 + (1.0 - 0.36) * 1e-6), 1e-12);
+  EXPECT_NEAR(comparison.parameters[1].difference, 1e-3, 1e-15);
+  EXPECT_NEAR(comparison.parameters[1].sd, std::sqrt(2e-6), 1e-12);
+  ASSERT_EQ(comparison.warnings.size(), 1u);
+  EXPECT_NE(comparison.warnings[0].find("B alone estimates j1.gear: "), std::string::npos);
+  // The same the other way round, with the sign of the difference.
+  std::swap(a_, b_);
+  const CalibrationComparison turned = Compared();
+  EXPECT_NEAR(turned.parameters[0].difference, 0.0, 1e-15);
+  EXPECT_NEAR(turned.parameters[1].difference, -1e-3, 1e-15);
 }
 
 TEST_F(CalibrationComparisonTest, WhatCannotBeCompared) {
