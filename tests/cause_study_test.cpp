@@ -4,20 +4,25 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/outliers.hpp"
+#include "elastocal/io/calibration_file.hpp"
+#include "elastocal/io/covariance_file.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/pipeline/calibrate_experiment.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/compare_calibrations.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/validate_calibration.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
+#include "elastocal/validation/calibration_comparison.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -69,9 +74,10 @@ constexpr double kSoftness = 10.0, kUsualMassSd = 0.05, kKnownMassSd = 0.01;
 Project ArmProject() { return ParseProject(kProject, SourceFile("project.yaml")); }
 
 /// Sixty postures in two hours of a robot with errors of geometry, springs, masses and `injected`
-/// (null: nothing else), and where they are to be found. `soft`: see kSoftness.
-Measurements Record(const Project& project, const Injected* injected, bool soft,
-                    std::uint64_t seed) {
+/// (null: nothing else), and where they are to be found. `soft`: see kSoftness. Another `session`
+/// has other postures and noise of the same robot; `turned`: the zero of arm_left_4_joint, rad.
+Measurements Record(const Project& project, const Injected* injected, bool soft, std::uint64_t seed,
+                    std::uint64_t session = 0, double turned = 0.0) {
   Random random(seed);
   Project real = project;
   const double mass_sd = soft ? kKnownMassSd : kUsualMassSd;
@@ -92,8 +98,11 @@ Measurements Record(const Project& project, const Injected* injected, bool soft,
   if (injected != nullptr) {
     delta[FindParameter(model.parameters, injected->parameter)] = injected->size;
   }
+  delta[FindParameter(model.parameters, "arm_left_4_joint.theta")] += turned;
+  const std::uint64_t drawn = seed + 100000 * session;
+  if (session > 0) random = Random(drawn);
   Recording recording =
-      MakeSyntheticRecording(model, delta, {.postures = 60, .marker_sd = 0.0, .seed = seed});
+      MakeSyntheticRecording(model, delta, {.postures = 60, .marker_sd = 0.0, .seed = drawn});
   recording.time_s = Eigen::VectorXd::LinSpaced(60, 0.0, 7200.0);
   NoteApproach(recording);
   recording.markers = PredictedPositions(model, recording, delta, {});
@@ -231,6 +240,59 @@ int NamedWithoutCause(bool soft) {
 
 TEST(Causes, NothingIsNamedWhereNothingIs) {
   for (const bool soft : {false, true}) EXPECT_LE(NamedWithoutCause(soft), 1 + Seeds() / 20);
+}
+
+/// What a calibration with these causes says of a recording.
+CalibrationEstimate Calibrated(const Measurements& measured, const std::vector<std::string>& extra,
+                               const std::string& source) {
+  Project project = Elastic(ArmProject());
+  project.calibration.extra = {false, extra};
+  ChooseCauses(measured, {}, project);
+  Measurements own = measured;
+  const RecordedModel robot = MakeRecordedModel(project, {}, own, KnockSearch::kNone);
+  const CalibrationResult result =
+      Calibrate(robot.model, own.calibration, robot.base, ModelKind::kFull, project.calibration);
+  CalibrationEstimate estimate =
+      ParseEstimate(MakeCalibrationYaml(result, source, ZeroOffsets::kOrigin), source);
+  std::istringstream covariance(MakeCovarianceCsv(result));
+  ReadCovariance(covariance, source, estimate);
+  return estimate;
+}
+
+// One session is calibrated without the cause that the robot has, the other one with it.
+TEST(Causes, ComparedWithASessionThatDoesNotKnowThem) {
+  int robots = 0, false_alarms = 0, named = 0;
+  for (const Injected& injected : kInjected) {
+    for (int seed = 1; seed <= Seeds(); ++seed) {
+      const auto s = 2 * kFirstSeed + static_cast<std::uint64_t>(seed);
+      const Project project = Elastic(ArmProject());
+      const CalibrationEstimate a =
+          Calibrated(Record(project, &injected, injected.soft, s, 1), {}, "A");
+      const auto b = [&](double turned) {
+        return Calibrated(Record(project, &injected, injected.soft, s, 2, turned), {injected.cause},
+                          "B");
+      };
+      const CalibrationComparison same = CompareCalibrations(a, b(0.0), {});
+      const CalibrationComparison turned = CompareCalibrations(a, b(0.3 * M_PI / 180.0), {});
+      ++robots;
+      if (same.joints.front().moved) {
+        ++false_alarms;
+        std::printf("  %s, seed %d: %s accused, p %.2g\n", injected.cause, seed,
+                    same.joints.front().joint.c_str(), same.joints.front().p_adjusted);
+      }
+      const bool found =
+          turned.joints.front().moved && turned.joints.front().joint == "arm_left_4_joint";
+      if (found) ++named;
+      if (!found) {
+        std::printf("  %s, seed %d: turned, %s instead, p %.2g\n", injected.cause, seed,
+                    turned.joints.front().joint.c_str(), turned.joints.front().p_adjusted);
+      }
+    }
+  }
+  std::printf("compared: %d false alarms, turned joint named in %d, of %d\n", false_alarms, named,
+              robots);
+  EXPECT_LE(false_alarms, robots / 10);
+  EXPECT_GE(named, robots * 9 / 10);
 }
 
 TEST(Causes, ProjectsSayWhichAreEstimated) {

@@ -195,6 +195,27 @@ void AddWarnings(const CalibrationEstimate& a, const CalibrationEstimate& b,
   }
 }
 
+bool HasLoad(const std::vector<FixedParameter>& parameters) {
+  return std::ranges::any_of(parameters,
+                             [](const FixedParameter& one) { return IsLoad(one.name); });
+}
+
+/// Takes those away that mean nothing under what both models have.
+void DropIncomparable(const CalibrationEstimate& a, const CalibrationEstimate& b, bool other_loads,
+                      CommonParameters& common) {
+  std::erase_if(common.common, [&](const CommonParameter& one) {
+    const char* reason = nullptr;
+    if (a.parameters[one.in_a].status != ParameterStatus::kEstimated ||
+        b.parameters[one.in_b].status != ParameterStatus::kEstimated) {
+      reason = "not positive without what one of them alone estimates";
+    } else if (other_loads && IsSpring(one.name)) {
+      reason = "the models differ in what loads the joints";
+    }
+    if (reason != nullptr) common.not_compared.push_back({one.name, reason});
+    return reason != nullptr;
+  });
+}
+
 }  // namespace
 
 CalibrationComparison CompareCalibrations(const CalibrationEstimate& given_a,
@@ -212,6 +233,7 @@ CalibrationComparison CompareCalibrations(const CalibrationEstimate& given_a,
   const CalibrationEstimate a = full ? Conditioned(given_a, in_a_alone) : given_a;
   const CalibrationEstimate b = full ? Conditioned(given_b, in_b_alone) : given_b;
   CommonParameters common = FindCommonParameters(given_a, given_b);
+  DropIncomparable(a, b, HasLoad(in_a_alone) || HasLoad(in_b_alone), common);
   if (common.common.empty()) {
     throw InputError(
         a.source + " and " + b.source +

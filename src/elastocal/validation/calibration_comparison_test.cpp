@@ -142,9 +142,10 @@ TEST_F(CalibrationComparisonTest, UnderWhatBothModelsHave) {
   b_.parameters[1].value += 1e-3;  // uncorrelated with the cause: stays
   const CalibrationComparison comparison = Compared();
   EXPECT_NEAR(comparison.parameters[0].difference, 0.0, 1e-15);
-  EXPECT_NEAR(comparison.parameters[0].sd, std::sqrt(1e-6 + (1.0 - 0.36) * 1e-6), 1e-12);
+  const double noise = (300.0 + 25.0) / (300.0 + 1.0);  // with the 5 sd that the cause explained
+  EXPECT_NEAR(comparison.parameters[0].sd, std::sqrt(1e-6 + noise * (1.0 - 0.36) * 1e-6), 1e-10);
   EXPECT_NEAR(comparison.parameters[1].difference, 1e-3, 1e-15);
-  EXPECT_NEAR(comparison.parameters[1].sd, std::sqrt(2e-6), 1e-12);
+  EXPECT_NEAR(comparison.parameters[1].sd, std::sqrt((1.0 + noise) * 1e-6), 1e-10);
   ASSERT_EQ(comparison.warnings.size(), 1u);
   EXPECT_NE(comparison.warnings[0].find("B alone estimates j1.gear: "), std::string::npos);
   // The same the other way round, with the sign of the difference.
@@ -152,6 +153,23 @@ TEST_F(CalibrationComparisonTest, UnderWhatBothModelsHave) {
   const CalibrationComparison turned = Compared();
   EXPECT_NEAR(turned.parameters[0].difference, 0.0, 1e-15);
   EXPECT_NEAR(turned.parameters[1].difference, -1e-3, 1e-15);
+}
+
+// A compliance is what turns by a load: where B has other loads than A it means something else.
+TEST_F(CalibrationComparisonTest, SpringsOnlyUnderTheSameLoads) {
+  for (CalibrationEstimate* side : {&a_, &b_}) {
+    side->parameters[1].name = side->covariance_names[1] = "j1.compliance_z";
+  }
+  EXPECT_EQ(Compared().parameters.size(), 6u);
+  b_.parameters.push_back({.name = "link.mass", .unit = "kg", .value = 0.0, .sd = 1.0});
+  b_.covariance_names.emplace_back("link.mass");
+  b_.covariance = Eigen::Matrix<double, 7, 1>(1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 1.0).asDiagonal();
+  const CalibrationComparison comparison = Compared();
+  EXPECT_EQ(comparison.parameters.size(), 5u);
+  ASSERT_EQ(comparison.not_compared.size(), 2u);
+  EXPECT_EQ(comparison.not_compared[0].name, "link.mass");
+  EXPECT_EQ(comparison.not_compared[1].name, "j1.compliance_z");
+  EXPECT_NE(comparison.not_compared[1].reason.find("loads"), std::string::npos);
 }
 
 TEST_F(CalibrationComparisonTest, WhatCannotBeCompared) {

@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/statistics.hpp"
 
 namespace elastocal {
 namespace {
@@ -32,40 +33,19 @@ std::set<std::string> JointsOf(const CalibrationEstimate& estimate) {
 
 /// Whether the name is that of a cause that belongs to no joint (corrections.hpp).
 bool IsCauseOfNoJoint(const std::string& name) {
-  return name.starts_with("gravity.") || name.starts_with("waist.") || name.ends_with(".mass") ||
-         name.find(".moment_") != std::string::npos;
+  return IsLoad(name) || name.starts_with("waist.");
 }
 
-}  // namespace
-
-std::vector<FixedParameter> FixedIn(const CalibrationEstimate& other,
-                                    const CalibrationEstimate& estimate) {
-  std::map<std::string, const ParameterEstimate*> there;
-  for (const ParameterEstimate& parameter : other.parameters) {
-    there.emplace(parameter.name, &parameter);
-  }
-  const std::set<std::string> joints = JointsOf(estimate), joints_there = JointsOf(other);
-  const bool all_there = std::ranges::includes(joints_there, joints);
-  std::vector<FixedParameter> fixed;
-  for (const ParameterEstimate& parameter : estimate.parameters) {
-    if (parameter.external || parameter.status != ParameterStatus::kEstimated) continue;
-    const auto at = there.find(parameter.name);
-    if (at != there.end()) {
-      const ParameterStatus status = at->second->status;
-      if (status == ParameterStatus::kHeld || status == ParameterStatus::kNotInModel) {
-        fixed.push_back({parameter.name, at->second->value});
-      }
-    } else if (joints_there.contains(OwnerName(parameter.name)) ||
-               (all_there && IsCauseOfNoJoint(parameter.name))) {
-      fixed.push_back({parameter.name, 0.0});
-    }
-  }
-  return fixed;
+/// By how much the variance of the noise that a fit finds grows, if `count` parameters are fixed at
+/// a place that costs `squares` in its weighted sum of squares.
+double MoreNoise(const CalibrationEstimate& estimate, double squares, Eigen::Index count) {
+  const double freedom = StudentDegreesOfFreedom(0.975, estimate.interval_factor);
+  if (!std::isfinite(freedom)) return 1.0;  // the noise is known
+  return std::max(1.0, (freedom + squares) / (freedom + static_cast<double>(count)));
 }
 
-CalibrationEstimate Conditioned(const CalibrationEstimate& estimate,
-                                const std::vector<FixedParameter>& fixed) {
-  if (fixed.empty()) return estimate;
+CalibrationEstimate ConditionedOnce(const CalibrationEstimate& estimate,
+                                    const std::vector<FixedParameter>& fixed) {
   CalibrationEstimate result = estimate;
   std::map<std::string, ParameterEstimate*> by_name;
   for (ParameterEstimate& parameter : result.parameters) {
@@ -107,8 +87,11 @@ CalibrationEstimate Conditioned(const CalibrationEstimate& estimate,
   if (factor.info() != Eigen::Success) {
     throw InputError(estimate.source + ": its covariance is not positive definite");
   }
-  const Eigen::VectorXd moved = across * factor.solve(per_sd.cwiseProduct(step));
-  result.covariance = S(others, others) - across * factor.solve(across.transpose());
+  const Eigen::VectorXd scaled = per_sd.cwiseProduct(step);
+  const Eigen::VectorXd weights = factor.solve(scaled);
+  const Eigen::VectorXd moved = across * weights;
+  result.covariance = MoreNoise(estimate, scaled.dot(weights), step.size()) *
+                      (S(others, others) - across * factor.solve(across.transpose()));
   result.covariance_names.clear();
   for (std::size_t i = 0; i < others.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -119,6 +102,59 @@ CalibrationEstimate Conditioned(const CalibrationEstimate& estimate,
     result.covariance_names.push_back(parameter.name);
   }
   return result;
+}
+
+}  // namespace
+
+bool IsLoad(const std::string& parameter) {
+  return parameter.starts_with("gravity.") || parameter.ends_with(".mass") ||
+         parameter.find(".moment_") != std::string::npos;
+}
+
+bool IsSpring(const std::string& parameter) {
+  return parameter.find(".compliance_") != std::string::npos;
+}
+
+std::vector<FixedParameter> FixedIn(const CalibrationEstimate& other,
+                                    const CalibrationEstimate& estimate) {
+  std::map<std::string, const ParameterEstimate*> there;
+  for (const ParameterEstimate& parameter : other.parameters) {
+    there.emplace(parameter.name, &parameter);
+  }
+  const std::set<std::string> joints = JointsOf(estimate), joints_there = JointsOf(other);
+  const bool all_there = std::ranges::includes(joints_there, joints);
+  std::vector<FixedParameter> fixed;
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (parameter.external || parameter.status != ParameterStatus::kEstimated) continue;
+    const auto at = there.find(parameter.name);
+    if (at != there.end()) {
+      const ParameterStatus status = at->second->status;
+      if (status == ParameterStatus::kHeld || status == ParameterStatus::kNotInModel) {
+        fixed.push_back({parameter.name, at->second->value});
+      }
+    } else if (joints_there.contains(OwnerName(parameter.name)) ||
+               (all_there && IsCauseOfNoJoint(parameter.name))) {
+      fixed.push_back({parameter.name, 0.0});
+    }
+  }
+  return fixed;
+}
+
+CalibrationEstimate Conditioned(const CalibrationEstimate& estimate,
+                                const std::vector<FixedParameter>& fixed) {
+  std::vector<FixedParameter> all = fixed;
+  while (!all.empty()) {
+    CalibrationEstimate result = ConditionedOnce(estimate, all);
+    const std::size_t count = all.size();
+    for (const ParameterEstimate& parameter : result.parameters) {
+      const bool estimated = parameter.status == ParameterStatus::kEstimated;
+      if (estimated && IsSpring(parameter.name) && parameter.value < 0.0) {
+        all.push_back({parameter.name, 0.0});
+      }
+    }
+    if (all.size() == count) return result;
+  }
+  return estimate;
 }
 
 }  // namespace elastocal

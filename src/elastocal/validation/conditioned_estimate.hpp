@@ -22,8 +22,17 @@ struct FixedParameter {
 std::vector<FixedParameter> FixedIn(const CalibrationEstimate& other,
                                     const CalibrationEstimate& estimate);
 
-/// The estimate as it would be if these parameters had the values given: conditional mean and
-/// covariance of the normal distribution that the file describes. The parameters become `held`.
+/// Whether a parameter changes what loads the joints: the mass or first moment of a link, the tilt
+/// of gravity.
+bool IsLoad(const std::string& parameter);
+
+/// Whether it is a compliance of a joint or a leg.
+bool IsSpring(const std::string& parameter);
+
+/// The estimate as a fit would give it that keeps these parameters at the values given: mean and
+/// covariance of the normal distribution that the file describes, under that condition. A
+/// compliance that would be negative is then kept at 0, as in a fit. The noise is larger by what
+/// these parameters explained. They become `held`. All this is exact for a linear problem.
 /// Throws InputError if they are not in the covariance, or this is not positive definite.
 CalibrationEstimate Conditioned(const CalibrationEstimate& estimate,
                                 const std::vector<FixedParameter>& fixed);

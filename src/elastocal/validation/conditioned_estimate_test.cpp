@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/statistics.hpp"
 #include "tests/expect_input_error.hpp"
 
 namespace elastocal {
@@ -77,6 +78,7 @@ TEST(Conditioned, ByHand) {
   CalibrationEstimate estimate =
       CalibrationWith({{"x", kEstimated}, {"y", kEstimated}, {"z", kEstimated}});
   estimate.covariance_names = {"z", "x", "y"};
+  estimate.interval_factor = 1.9;  // the noise is known
   estimate.parameters[0].value = 1e-3;
   estimate.parameters[1].value = 2.0;
   estimate.parameters[2].value = 300.0;
@@ -100,6 +102,38 @@ TEST(Conditioned, ByHand) {
   const CalibrationEstimate after = Conditioned(found, {{"y", 3.0}});
   EXPECT_NEAR(both.parameters[0].value, after.parameters[0].value, 1e-15);
   EXPECT_NEAR(both.parameters[0].sd, after.parameters[0].sd, 1e-15);
+}
+
+// A fit that may not use z leaves its squares to the noise.
+TEST(Conditioned, TheNoiseIsLarger) {
+  using enum ParameterStatus;
+  CalibrationEstimate estimate = CalibrationWith({{"x", kEstimated}, {"z", kEstimated}});
+  estimate.covariance_names = {"x", "z"};
+  estimate.covariance = Eigen::Matrix2d::Identity();
+  estimate.interval_factor = StudentQuantile(0.975, 20.0);
+  EXPECT_NEAR(Conditioned(estimate, {{"z", 6.5}}).parameters[0].sd,
+              std::sqrt((20.0 + 36.0) / (20.0 + 1.0)), 1e-6);
+  EXPECT_EQ(Conditioned(estimate, {{"z", 0.5}}).parameters[0].sd, 1.0);  // it explained nothing
+}
+
+// Without z the spring would be negative, so it stays at 0, and x follows.
+TEST(Conditioned, SpringsAreNotNegative) {
+  using enum ParameterStatus;
+  CalibrationEstimate estimate =
+      CalibrationWith({{"x", kEstimated}, {"j.compliance_z", kEstimated}, {"z", kEstimated}});
+  estimate.covariance_names = {"x", "j.compliance_z", "z"};
+  estimate.interval_factor = 1.9;
+  estimate.covariance.resize(3, 3);
+  estimate.covariance << 1.0, 0.5, 0.0,  //
+      0.5, 1.0, 0.8,                     //
+      0.0, 0.8, 1.0;
+  estimate.parameters[2].value = 2.0;  // the spring would be 0.5 - 1.6
+  const CalibrationEstimate found = Conditioned(estimate, {{"z", 0.0}});
+  EXPECT_EQ(found.parameters[1].value, 0.0);
+  EXPECT_EQ(found.parameters[1].status, kHeld);
+  // x by both: the weights solve [1 0.8; 0.8 1] w = [-0.5, -2].
+  EXPECT_NEAR(found.parameters[0].value, 0.5 + 0.5 * (-0.5 + 1.6) / 0.36, 1e-12);
+  EXPECT_EQ(found.covariance_names, Strings{"x"});
 }
 
 TEST(Conditioned, RefusesWhatTheCovarianceDoesNotHave) {
