@@ -90,8 +90,11 @@ function(elastocal_layer name)
   if(ELASTOCAL_FUZZ AND name IN_LIST ELASTOCAL_FUZZED_LAYERS)
     target_compile_options(elastocal_${name} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
-  if(BUILD_SHARED_LIBS)  # a layer's own functions may be inlined into it
+  if(BUILD_SHARED_LIBS)
+    # A layer's own functions may be inlined into it, and it calls its own instances of templates, not
+    # those that a LIGHT layer or a program has optimised less.
     target_compile_options(elastocal_${name} PRIVATE -fno-semantic-interposition)
+    target_link_options(elastocal_${name} PRIVATE LINKER:-Bsymbolic-functions)
   endif()
   if(ARG_LIGHT)
     target_compile_options(elastocal_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
