@@ -91,6 +91,16 @@ TEST_F(Batch, ThePriorOfAFleetServesTheNextRobot) {
                 .exit_code,
             0);
   EXPECT_NE(Read("out", "covariance.csv"), Read("alone", "covariance.csv"));
+
+  // A session whose errors count from another frame is no member of the family.
+  std::string text = Read("fleet", "arm_2/calibration.yaml");
+  const std::size_t at = text.find("gauge: prior");
+  ASSERT_NE(at, std::string::npos);
+  scratch_.Write("fleet/arm_2/calibration.yaml", text.replace(at, 12, "gauge: nominal_markers"));
+  fs::remove(Folder("fleet") + "/arm_2/SHA256SUMS");
+  ASSERT_EQ(Run("fleet").exit_code, 0);
+  const std::string report = Read("fleet", "fleet.json");
+  EXPECT_NE(report.find("arm_2: with another gauge of the root link"), std::string::npos) << report;
 }
 
 TEST_F(Batch, TheSameUnderMpirun) {

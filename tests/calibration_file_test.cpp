@@ -56,6 +56,17 @@ TEST_F(CalibrationFile, ReadsBackWhatWasWrittenToTheLastBit) {
   EXPECT_EQ(stored.joint_errors.size(), static_cast<std::size_t>(joint_parameters));
 }
 
+// As the prior of a fleet is written.
+TEST_F(CalibrationFile, AnEstimateKeepsItsGauge) {
+  CalibrationEstimate estimate =
+      ParseEstimate(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin), "first");
+  EXPECT_EQ(estimate.gauge, "prior");
+  estimate.gauge = "link torso_1_link";
+  const CalibrationEstimate again = ParseEstimate(MakeCalibrationYaml(estimate), "again");
+  EXPECT_EQ(again.gauge, "link torso_1_link");
+  EXPECT_EQ(again.parameters.size(), estimate.parameters.size());
+}
+
 // What a prediction without any fit needs: where the waist was, and the markers.
 TEST_F(CalibrationFile, ReadsBackWaistAndMarkers) {
   CalibrationResult uncalibrated = result_;

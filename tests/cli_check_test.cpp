@@ -70,6 +70,27 @@ TEST_F(Program, APriorMakesAFewPosturesEnough) {
   EXPECT_EQ(alone.exit_code, 2) << "--days without --prior";
 }
 
+// Its errors count from another frame of the root link.
+TEST_F(Program, APriorWithAnotherGaugeIsRefused) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  std::string text = ReadFile(out_ + "/calibration.yaml");
+  const std::size_t at = text.find("gauge: prior");
+  ASSERT_NE(at, std::string::npos);
+  std::filesystem::create_directory(scratch_.path() / "other");
+  scratch_.Write("other/covariance.csv", ReadFile(out_ + "/covariance.csv"));
+  scratch_.Write("other/calibration.yaml", text.replace(at, 12, "gauge: nominal_markers"));
+  const std::string other = (scratch_.path() / "other").string();
+  const std::string words = "calibrate " + project_ + " --recording " + recording_ + " --prior ";
+  const ProgramResult refused = RunProgram(words + other + " -o " + out_ + "2");
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  for (const std::string& part : {other, std::string("'nominal_markers'"), std::string("'prior'"),
+                                  std::string("calibration.gauge")}) {
+    EXPECT_NE(refused.err.find(part), std::string::npos) << refused.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(out_ + "2"));
+  EXPECT_EQ(RunProgram(words + out_ + " --kfold 0 -o " + out_ + "2").exit_code, 0);
+}
+
 TEST_F(Program, FollowUpsAreDesignedAndWrongOnesRefused) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string no_design = RunProgram("design " + project_ + " --after " + out_ + " -o " +

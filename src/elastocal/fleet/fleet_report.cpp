@@ -53,19 +53,32 @@ SessionOutcome ReadOutcome(const FleetTask& task, const TaskEnd& end, const fs::
   return outcome;
 }
 
-/// Of the nominal robot that most members are of; the others are noted.
-void KeepOneRobot(std::vector<FleetMember>& members, std::vector<std::string>& notes) {
+/// Keeps the members of which `key` is what most have; the others are noted as `of_others`.
+template <typename Key>
+void KeepMost(Key key, const std::string& of_others, std::vector<FleetMember>& members,
+              std::vector<std::string>& notes) {
   std::map<std::string, int> counts;
-  for (const FleetMember& member : members) ++counts[member.estimate.nominal];
+  for (const FleetMember& member : members) ++counts[key(member.estimate)];
   std::string most;
-  for (const auto& [nominal, count] : counts) {
-    if (most.empty() || count > counts[most]) most = nominal;
+  int largest = 0;
+  for (const auto& [value, count] : counts) {
+    if (count <= largest) continue;
+    most = value;
+    largest = count;
   }
   std::erase_if(members, [&](const FleetMember& member) {
-    if (member.estimate.nominal == most) return false;
-    notes.push_back(member.session + ": of another nominal robot than most, not in the family");
+    if (key(member.estimate) == most) return false;
+    notes.push_back(member.session + ": " + of_others + " than most, not in the family");
     return true;
   });
+}
+
+/// One nominal robot, and one frame of the root link: else errors are not of the same quantities.
+void KeepOneRobot(std::vector<FleetMember>& members, std::vector<std::string>& notes) {
+  KeepMost([](const CalibrationEstimate& estimate) { return estimate.nominal; },
+           "of another nominal robot", members, notes);
+  KeepMost([](const CalibrationEstimate& estimate) { return estimate.gauge; },
+           "with another gauge of the root link (calibration.gauge)", members, notes);
 }
 
 Json FindingJson(const std::string& parameter, const std::string& unit, double p) {

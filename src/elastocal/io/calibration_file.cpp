@@ -212,6 +212,7 @@ std::string MakeCalibrationYaml(const CalibrationEstimate& estimate) {
   yaml << YAML::Key << "nominal" << YAML::Value << YAML::DoubleQuoted << estimate.nominal;
   yaml << YAML::Key << "recording" << YAML::Value << estimate.recording;
   yaml << YAML::Key << "model" << YAML::Value << estimate.model;
+  yaml << YAML::Key << "gauge" << YAML::Value << estimate.gauge;
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(estimate.interval_factor);
   yaml << YAML::Key << "parameter_count" << YAML::Value << estimate.parameters.size();
   yaml << YAML::Key << "parameters" << YAML::Value << YAML::BeginSeq;

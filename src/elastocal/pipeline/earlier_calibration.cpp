@@ -14,6 +14,19 @@
 #include "elastocal/pipeline/choose_causes.hpp"
 
 namespace elastocal {
+namespace {
+
+/// Errors with another frame of the root link are those of other quantities.
+void CheckGauge(const std::filesystem::path& calibration, const Project& project) {
+  const CalibrationEstimate earlier = ReadEstimate(FindCalibrationFiles(calibration).calibration);
+  const std::string wanted = GaugeText(project.calibration.gauge);
+  if (earlier.gauge == wanted) return;
+  throw InputError(earlier.source + ": has the gauge '" + earlier.gauge +
+                   "', and calibration.gauge of the project is '" + wanted +
+                   "'; the gauge of the earlier calibration was expected");
+}
+
+}  // namespace
 
 ElasticityChoice ElasticityOf(const StoredCalibration& calibration, const Project& project) {
   ElasticityChoice choice = project.elasticity;
@@ -109,6 +122,7 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
 std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,
                                           const Measurements& measured,
                                           std::optional<std::uint64_t> seed, Project& project) {
+  CheckGauge(calibration, project);
   const EarlierFit fit = FitAfterEarlier(calibration, days, measured, seed, {}, project);
   std::vector<std::string> warnings;
   if (fit.stored.recording == measured.calibration.source) {

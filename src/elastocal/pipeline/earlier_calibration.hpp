@@ -49,8 +49,9 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
                            const JointCheckOptions& options, Project& project);
 
 /// Takes an earlier calibration as the prior of the project's estimates. What it says of joints
-/// that seem to have moved since counts as little as what is known of a new robot. What a user
-/// should know of it, a sentence each.
+/// that seem to have moved since counts as little as what is known of a new robot. Returns what a
+/// user should know of it, a sentence each. Throws InputError as FitAfterEarlier, and for a
+/// calibration with another gauge than the project's.
 std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,
                                           const Measurements& measured,
                                           std::optional<std::uint64_t> seed, Project& project);

@@ -178,6 +178,9 @@ TEST_F(CalibrationComparisonTest, WhatCannotBeCompared) {
   b_.nominal = "f";
   ExpectInputError(compare, {"A", "'robot'", "B", "'other robot'", "nominal"});
   b_ = ThreeJoints("B");
+  b_.gauge = "link j1_link";
+  ExpectInputError(compare, {"A has the gauge 'prior'", "B 'link j1_link'", "root link"});
+  b_ = ThreeJoints("B");
   for (ParameterEstimate& parameter : b_.parameters) parameter.name = "left_" + parameter.name;
   ExpectInputError(compare, {"A", "B", "nothing"});
   b_ = ThreeJoints("B");
