@@ -188,6 +188,11 @@ void AddWarnings(const CalibrationEstimate& a, const CalibrationEstimate& b,
         "both name the recording " + a.recording +
         "; if it is the same one, their errors are not independent, and the test means nothing");
   }
+  if (a.model != b.model) {
+    comparison.warnings.push_back(
+        "A has the model " + a.model + ", B the model " + b.model +
+        ": effects that one of them does not model are in its other estimates");
+  }
   if (!comparison.with_covariance) {
     comparison.warnings.emplace_back(
         "without covariance.csv of both, parameters are tested one by one: joints are found less "

@@ -121,12 +121,14 @@ TEST_F(CalibrationComparisonTest, WithoutCovarianceBonferroniWithinAJoint) {
 
 TEST_F(CalibrationComparisonTest, Warnings) {
   b_.recording = a_.recording;
+  b_.model = "offsets_only";
   b_.parameters[3].status = ParameterStatus::kHeld;
   b_.parameters[3].value = 0.02;
   const CalibrationComparison comparison = Compared();
-  ASSERT_EQ(comparison.warnings.size(), 2u);
+  ASSERT_EQ(comparison.warnings.size(), 3u);
   EXPECT_NE(comparison.warnings[0].find("A.csv"), std::string::npos);
-  EXPECT_NE(comparison.warnings[1].find("A alone estimates j2.d: "), std::string::npos);
+  EXPECT_NE(comparison.warnings[1].find("offsets_only"), std::string::npos);
+  EXPECT_NE(comparison.warnings[2].find("A alone estimates j2.d: "), std::string::npos);
 }
 
 // B alone has a cause, which takes 3 mrad of j1.theta; without it both say the same.

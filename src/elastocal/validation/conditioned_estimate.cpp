@@ -44,62 +44,69 @@ double MoreNoise(const CalibrationEstimate& estimate, double squares, Eigen::Ind
   return std::max(1.0, (freedom + squares) / (freedom + static_cast<double>(count)));
 }
 
-CalibrationEstimate ConditionedOnce(const CalibrationEstimate& estimate,
-                                    const std::vector<FixedParameter>& fixed) {
-  CalibrationEstimate result = estimate;
-  std::map<std::string, ParameterEstimate*> by_name;
-  for (ParameterEstimate& parameter : result.parameters) {
-    by_name.emplace(parameter.name, &parameter);
-  }
-  std::map<std::string, double> values;
-  for (const FixedParameter& one : fixed) values.emplace(one.name, one.value);
+/// Rows of a covariance: those of the fixed parameters, with what these change by, and the others.
+struct Rows {
+  std::vector<int> fixed, others;
+  Eigen::VectorXd step;
+};
 
-  // Rows of the covariance, apart: those that are fixed and the others.
-  std::vector<int> at, others;
-  std::vector<double> steps;
+/// Throws InputError where a fixed parameter has no row.
+Rows FindRows(const CalibrationEstimate& estimate, const std::vector<FixedParameter>& fixed) {
+  std::map<std::string, double> values, steps;
+  for (const ParameterEstimate& one : estimate.parameters) values.emplace(one.name, one.value);
+  for (const FixedParameter& one : fixed) steps.emplace(one.name, one.value - values.at(one.name));
+  Rows rows{.fixed = {}, .others = {}, .step = Eigen::VectorXd(std::ssize(steps))};
   for (std::size_t row = 0; row < estimate.covariance_names.size(); ++row) {
-    const auto value = values.find(estimate.covariance_names[row]);
-    if (value == values.end()) {
-      others.push_back(static_cast<int>(row));
+    const auto step = steps.find(estimate.covariance_names[row]);
+    if (step == steps.end()) {
+      rows.others.push_back(static_cast<int>(row));
       continue;
     }
-    ParameterEstimate& parameter = *by_name.at(value->first);
-    at.push_back(static_cast<int>(row));
-    steps.push_back(value->second - parameter.value);
-    parameter.value = value->second;
-    parameter.sd = std::numeric_limits<double>::quiet_NaN();
-    parameter.status = ParameterStatus::kHeld;
-    values.erase(value);
+    rows.step[std::ssize(rows.fixed)] = step->second;
+    rows.fixed.push_back(static_cast<int>(row));
+    steps.erase(step);
   }
-  if (!values.empty()) {
-    throw InputError(estimate.source + ": its covariance has no parameter '" +
-                     values.begin()->first + "'");
-  }
+  if (steps.empty()) return rows;
+  throw InputError(estimate.source + ": its covariance has no parameter '" + steps.begin()->first +
+                   "'");
+}
 
-  const Eigen::VectorXd step =
-      Eigen::Map<const Eigen::VectorXd>(steps.data(), static_cast<Eigen::Index>(steps.size()));
+/// The conditional normal distribution, springs of any sign.
+CalibrationEstimate ConditionedOnce(const CalibrationEstimate& estimate,
+                                    const std::vector<FixedParameter>& fixed) {
+  const Rows rows = FindRows(estimate, fixed);
   // In units of standard deviations, as the parameters have different units.
   const Eigen::MatrixXd& S = estimate.covariance;
-  const Eigen::VectorXd per_sd = S.diagonal()(at).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd across = S(others, at) * per_sd.asDiagonal();
+  const Eigen::VectorXd per_sd = S.diagonal()(rows.fixed).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd across = S(rows.others, rows.fixed) * per_sd.asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> factor(
-      Eigen::MatrixXd(per_sd.asDiagonal() * S(at, at) * per_sd.asDiagonal()));
+      Eigen::MatrixXd(per_sd.asDiagonal() * S(rows.fixed, rows.fixed) * per_sd.asDiagonal()));
   if (factor.info() != Eigen::Success) {
     throw InputError(estimate.source + ": its covariance is not positive definite");
   }
-  const Eigen::VectorXd scaled = per_sd.cwiseProduct(step);
-  const Eigen::VectorXd weights = factor.solve(scaled);
+  const Eigen::VectorXd step = per_sd.cwiseProduct(rows.step);
+  const Eigen::VectorXd weights = factor.solve(step);
   const Eigen::VectorXd moved = across * weights;
-  result.covariance = MoreNoise(estimate, scaled.dot(weights), step.size()) *
-                      (S(others, others) - across * factor.solve(across.transpose()));
+
+  CalibrationEstimate result = estimate;
+  result.covariance = MoreNoise(estimate, step.dot(weights), step.size()) *
+                      (S(rows.others, rows.others) - across * factor.solve(across.transpose()));
   result.covariance_names.clear();
-  for (std::size_t i = 0; i < others.size(); ++i) {
+  std::map<std::string, ParameterEstimate*> by_name;
+  for (ParameterEstimate& one : result.parameters) by_name.emplace(one.name, &one);
+  for (const FixedParameter& one : fixed) {
+    ParameterEstimate& parameter = *by_name.at(one.name);
+    parameter.value = one.value;
+    parameter.sd = std::numeric_limits<double>::quiet_NaN();
+    parameter.status = ParameterStatus::kHeld;
+  }
+  for (std::size_t i = 0; i < rows.others.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    ParameterEstimate& parameter =
-        *by_name.at(estimate.covariance_names[static_cast<std::size_t>(others[i])]);
+    const std::string& name = estimate.covariance_names[static_cast<std::size_t>(rows.others[i])];
+    ParameterEstimate& parameter = *by_name.at(name);
     parameter.value += moved[row];
     parameter.sd = std::sqrt(result.covariance(row, row));
-    result.covariance_names.push_back(parameter.name);
+    result.covariance_names.push_back(name);
   }
   return result;
 }
