@@ -12,19 +12,26 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/robot/parameters.hpp"
 
 namespace elastocal {
 namespace {
 
+/// What a parameter is of its owner: the part of its name after the last dot.
+std::string QuantityName(const std::string& parameter) {
+  return parameter.substr(parameter.rfind('.') + 1);
+}
+
 /// The joints whose geometry a calibration has.
 std::set<std::string> JointsOf(const CalibrationEstimate& estimate) {
-  constexpr std::array<const char*, 7> kGeometry = {".theta", ".r",    ".d",    ".b",
-                                                    ".alpha", ".beta", ".gamma"};
+  using Kind = ParameterKind;
+  constexpr std::array kGeometry = {Kind::kTheta, Kind::kR,    Kind::kD,    Kind::kB,
+                                    Kind::kAlpha, Kind::kBeta, Kind::kGamma};
   std::set<std::string> joints;
   for (const ParameterEstimate& parameter : estimate.parameters) {
     if (parameter.external) continue;
-    if (std::ranges::any_of(kGeometry,
-                            [&](const char* kind) { return parameter.name.ends_with(kind); })) {
+    const std::string quantity = QuantityName(parameter.name);
+    if (std::ranges::any_of(kGeometry, [&](Kind kind) { return quantity == KindName(kind); })) {
       joints.insert(OwnerName(parameter.name));
     }
   }
@@ -114,12 +121,12 @@ CalibrationEstimate ConditionedOnce(const CalibrationEstimate& estimate,
 }  // namespace
 
 bool IsLoad(const std::string& parameter) {
-  return parameter.starts_with("gravity.") || parameter.ends_with(".mass") ||
-         parameter.find(".moment_") != std::string::npos;
+  const std::string quantity = QuantityName(parameter);
+  return quantity == "mass" || quantity.starts_with("moment_") || quantity.starts_with("tilt_");
 }
 
 bool IsSpring(const std::string& parameter) {
-  return parameter.find(".compliance_") != std::string::npos;
+  return QuantityName(parameter).starts_with("compliance_");
 }
 
 std::vector<FixedParameter> FixedIn(const CalibrationEstimate& other,

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// A real TIAGo on two days: what the first one says of the second.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/pipeline/calibrate_experiment.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/compare_calibrations.hpp"
+#include "elastocal/pipeline/validate_calibration.hpp"
+#include "elastocal/project/project.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+// The estimate goes through the file, and a validation uses it.
+class TiagoCauses : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(training_)) GTEST_SKIP() << training_ << " is not there";
+  }
+  static Project ProjectWith(const std::string& extra) {
+    const std::string text = "robot: {urdf: " + SharedFile("robots/tiago/tiago_arm.urdf").string() +
+                             "}\n" + kTiago + "calibration: {extra: " + extra + "}\n";
+    return ParseProject(text, SourceFile("project.yaml"));
+  }
+  /// The errors on the other day, nothing fitted.
+  static ErrorMetrics OnAnotherDay(const Project& project, CalibrationRun& run) {
+    const ScratchFolder scratch;
+    const std::string file = scratch.Write(
+        "calibration.yaml", MakeCalibrationFiles(project, run).at("calibration.yaml"));
+    const ValidationRun validated = ValidateCalibration(
+        project, file, SharedFile("data/tiago_mocap/validation.csv"), {.frozen = true, .seed = {}});
+    return validated.transfer.calibrated.metrics_all;
+  }
+  /// That of marker 1, m.
+  double Validate(const std::string& extra, std::vector<std::string>& chosen) const {
+    const Project project = ProjectWith(extra);
+    CalibrationRun run = CalibrateExperiment(project, {training_}, {.folds = 0});
+    chosen = run.extra;
+    return OnAnotherDay(project, run).marker_rmse_3d[0];
+  }
+
+  static constexpr const char* kTiago = R"(
+chains: [{name: arm, tip: arm_7_link}]
+markers:
+  single:
+    - {name: M1, link: arm_7_link, position_mm: [0, 70, 130]}
+    - {name: M2, link: arm_7_link, position_mm: [0, -90, 145]}
+    - {name: M3, link: arm_7_link, position_mm: [0, -60, 235]}
+    - {name: M4, link: arm_7_link, position_mm: [0, 50, 235]}
+recording:
+  ignore: [shipped_row, t_start_robot, t_end_robot, marker_std_mm]
+  columns: {markers: {M1: [x1, y1, z1], M2: [x2, y2, z2], M3: [x3, y3, z3], M4: [x4, y4, z4]}}
+)";
+  const std::filesystem::path training_ = SharedFile("data/tiago_mocap/training.csv");
+};
+
+TEST_F(TiagoCauses, HysteresisOfTheWristIsFoundAndHelpsOnAnotherDay) {
+  std::vector<std::string> none, chosen;
+  const double without = Validate("none", none);
+  const double with = Validate("auto", chosen);
+  EXPECT_TRUE(none.empty());
+  ASSERT_FALSE(chosen.empty());
+  EXPECT_EQ(chosen.front(), "arm_6_joint.hysteresis");
+  EXPECT_NEAR(without, 2.737e-3, 5e-6);  // docs/accuracy.md
+  EXPECT_LT(with, 2.4e-3);
+}
+
+// By the defaults, everything being decided anew in each fold.
+TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
+  const Project project = ProjectWith("auto");
+  CalibrationRun run = CalibrateExperiment(project, {training_});
+  ASSERT_EQ(run.cross_validation.folds, 10);
+  const double foretold = run.cross_validation.metrics[static_cast<int>(ModelKind::kFull)].rmse_3d;
+  const double found = OnAnotherDay(project, run).rmse_3d;
+  EXPECT_NEAR(foretold, found, 0.25 * found);
+  EXPECT_NEAR(foretold, 2.644e-3, 5e-5);  // docs/accuracy.md
+}
+
+// Nothing moved between the two days, though the second alone chooses a moment of the wrist.
+TEST_F(TiagoCauses, CompareAccusesNoJoint) {
+  const ScratchFolder scratch;
+  std::vector<std::vector<std::string>> chosen;
+  for (const char* day : {"training", "validation"}) {
+    const Project project = ProjectWith("auto");
+    const std::filesystem::path table = SharedFile("data/tiago_mocap/" + std::string(day) + ".csv");
+    CalibrationRun run = CalibrateExperiment(project, {table}, {.folds = 0});
+    chosen.push_back(run.extra);
+    std::filesystem::create_directory(scratch.path() / day);
+    for (const auto& [name, text] : MakeCalibrationFiles(project, run)) {
+      scratch.Write(std::string(day) + "/" + name, text);
+    }
+  }
+  EXPECT_NE(chosen[0], chosen[1]);
+  const ComparisonRun compared =
+      CompareCalibrations(scratch.path() / "training", scratch.path() / "validation", {});
+  EXPECT_FALSE(compared.comparison.changed);
+  for (const JointDifference& joint : compared.comparison.joints) {
+    EXPECT_FALSE(joint.moved) << joint.joint << ": " << joint.p_adjusted;
+  }
+}
+
+}  // namespace
+}  // namespace elastocal
