@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kMostFree = 300;  // postures with a free root
+constexpr Eigen::Index kMostFree = 300;  // postures with a free root
 
 /// Rank of a kind in the paper's order; lower comes first.
 int PriorityClass(ParameterKind kind, ExternalPriority external) {
@@ -97,15 +97,17 @@ std::vector<Share> RegroupedInto(const BaseParameters& base, int dropped) {
   return shares;
 }
 
+Eigen::MatrixXd NominalFactor(const ErrorModel& model, const Eigen::MatrixXd& q, RootPose root) {
+  const Geometry geometry = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
+  if (root == RootPose::kConstant) return RegressorFactor(model, geometry, q, {});
+  return FreeRootFactor(model, geometry, q.topRows(std::min(q.rows(), kMostFree)));
+}
+
 Eigen::MatrixXd NominalFactor(const ErrorModel& model, const IdentifiabilityOptions& options) {
   Random random(options.seed);
-  const bool free = options.root == RootPose::kFree;
-  const int postures = free ? std::min(options.postures, kMostFree) : options.postures;
-  Eigen::MatrixXd q(postures, model.tree.coordinate_count());
-  for (int i = 0; i < postures; ++i) q.row(i) = RandomPosture(model.tree, random);
-  const Eigen::VectorXd nominal = Eigen::VectorXd::Zero(model.parameter_count());
-  const Geometry geometry = ApplyErrors(model, nominal);
-  return free ? FreeRootFactor(model, geometry, q) : RegressorFactor(model, geometry, q, {});
+  Eigen::MatrixXd q(options.postures, model.tree.coordinate_count());
+  for (int i = 0; i < options.postures; ++i) q.row(i) = RandomPosture(model.tree, random);
+  return NominalFactor(model, q, options.root);
 }
 
 BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd& factor,

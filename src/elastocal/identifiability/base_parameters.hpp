@@ -73,6 +73,9 @@ std::vector<Share> RegroupedInto(const BaseParameters& base, int dropped);
 /// Factor (see regressor.hpp) of the regressor over random postures at nominal geometry.
 Eigen::MatrixXd NominalFactor(const ErrorModel& model, const IdentifiabilityOptions& options);
 
+/// The same over the postures in the rows of `q`; with a free root the first 300 of them.
+Eigen::MatrixXd NominalFactor(const ErrorModel& model, const Eigen::MatrixXd& q, RootPose root);
+
 /// Finds the base parameters by QR without pivoting over random postures (section 2.1). Joint
 /// parameters have the paper's priority: theta, then r, d and b, then alpha, beta and gamma.
 BaseParameters FindBaseParameters(const ErrorModel& model, const IdentifiabilityOptions& options);

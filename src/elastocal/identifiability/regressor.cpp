@@ -3,24 +3,11 @@
 
 #include <algorithm>
 
+#include "elastocal/identifiability/root_projection.hpp"
 #include "elastocal/math/decompositions.hpp"
 #include "elastocal/robot/jacobian.hpp"
 
 namespace elastocal {
-namespace {
-
-/// What is left of the columns of A once those of B are taken out. Those may be dependent: two
-/// markers do not show a rotation about their line.
-Eigen::MatrixXd WithoutSpan(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
-  constexpr double kDependent = 1e-9;
-  const SingularValueDecomposition svd = DecomposeSingular(B);
-  const Eigen::Index rank = (svd.values.array() > kDependent * svd.values[0]).count();
-  const auto basis = svd.U.leftCols(rank);
-  return A - basis * (basis.transpose() * A);
-}
-
-}  // namespace
-
 Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometry,
                                 const Eigen::MatrixXd& q,
                                 const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& seen) {
@@ -69,7 +56,7 @@ Eigen::MatrixXd FreeRootFactor(const ErrorModel& model, const Geometry& geometry
       jacobian.Evaluate(geometry, q.row(first + i).transpose());
       const Eigen::MatrixXd own = jacobian.Dense();
       rows.middleRows(factor.rows() + i * size, size) =
-          WithoutSpan(own, own.leftCols<kWaistParameterCount>());
+          RootProjection(own.leftCols<kWaistParameterCount>()).Apply(own);
     }
     factor = TriangularFactor(rows);
   }

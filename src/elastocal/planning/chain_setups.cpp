@@ -9,11 +9,12 @@ namespace elastocal {
 namespace {
 
 /// What can give way while the chain moves: its joints, and the leg that the robot stands on, if
-/// it is one. (How two legs share the load, statics does not say.)
+/// it is one. (How two legs share the load, statics does not say; where the root is free, how it
+/// gives way does not show.)
 Elasticity ChainElasticity(const Project& project, const ChainSetup& setup) {
   const RobotTree& tree = project.tree;
   Elasticity elasticity;
-  if (setup.support.size() == 1) {
+  if (setup.support.size() == 1 && !project.motion.free_root) {
     for (const Chain& chain : project.chains) {
       if (chain.tip_link == setup.support[0]) elasticity.legs = {{chain.name, chain.tip_link}};
     }
@@ -28,11 +29,33 @@ Elasticity ChainElasticity(const Project& project, const ChainSetup& setup) {
   return elasticity;
 }
 
+/// The markers of a chain. With a free root also those that it is seen from: on the body that it
+/// begins at or, if that has none, on the nearest body towards the root.
+std::vector<std::string> SeenMarkers(const Project& project, const Chain& chain) {
+  std::vector<std::string> names = ChainMarkers(project, chain);
+  if (names.empty() || !project.motion.free_root) return names;
+  const RobotTree& tree = project.tree;
+  std::vector<int> bodies = {0};
+  for (int joint : JointsToBody(tree, tree.links[chain.from_link].body)) {
+    bodies.push_back(joint + 1);
+  }
+  for (auto body = bodies.rbegin(); body != bodies.rend(); ++body) {
+    bool found = false;
+    for (const Marker& marker : project.markers) {
+      if (tree.links[marker.link].body != *body) continue;
+      names.push_back(marker.name);
+      found = true;
+    }
+    if (found) break;
+  }
+  return names;
+}
+
 }  // namespace
 
 DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic) {
   const std::vector<std::string> markers =
-      ChainMarkers(project, project.chains[FindChain(project, setup.name)]);
+      SeenMarkers(project, project.chains[FindChain(project, setup.name)]);
   if (markers.empty()) {
     throw InputError(project.file.string() + ": chain '" + setup.name + "' carries no markers");
   }

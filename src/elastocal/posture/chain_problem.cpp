@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "elastocal/identifiability/regressor.hpp"
 #include "elastocal/math/priority_qr.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/posture/clearance.hpp"
@@ -65,6 +64,10 @@ MarkerVisibility MakeVisibility(const ErrorModel& model, const MotionSetup& moti
   };
 }
 
+RootPose RootOf(const MotionSetup& motion) {
+  return motion.free_root ? RootPose::kFree : RootPose::kConstant;
+}
+
 /// Keeps only the compliances that gravity excites in these postures (rows of q), and that can be
 /// told from the other parameters.
 void KeepExcited(const ErrorModel& model, const MotionSetup& motion, const ChainSetup& chain,
@@ -82,7 +85,7 @@ void KeepExcited(const ErrorModel& model, const MotionSetup& motion, const Chain
   const auto geometric = static_cast<std::size_t>(base.geometric_count);
   if (order.size() == geometric) return;
   MovingChain moving(model.tree, chain.coordinates, motion.rest);
-  PostureRegressor regressor(model, base.kept, moving);
+  PostureRegressor regressor(model, base.kept, moving, RootOf(motion));
   const Eigen::Index postures = std::min(kPostures, q.rows());
   Eigen::MatrixXd stacked(postures * regressor.rows(), regressor.columns());
   for (Eigen::Index i = 0; i < postures; ++i) {
@@ -167,8 +170,8 @@ BaseParameters FindChainParameters(const ErrorModel& model, const MotionSetup& m
     q.row(i) = motion.rest.transpose();
     for (int c : chain.coordinates) q(i, c) = random.Uniform(motion.lower[c], motion.upper[c]);
   }
-  const Geometry geometry = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
-  BaseParameters base = FindBaseParameters(model, RegressorFactor(model, geometry, q, {}), options);
+  options.root = RootOf(motion);
+  BaseParameters base = FindBaseParameters(model, NominalFactor(model, q, options.root), options);
   KeepExcited(model, motion, chain, q, base);
   return base;
 }
@@ -177,7 +180,7 @@ PostureProblem MakeChainProblem(const ErrorModel& model, const std::vector<int>&
                                 const MotionSetup& motion, const ChainSetup& chain,
                                 Criterion criterion) {
   FeasibleSet feasible = MakeFeasibleSet(model.tree, motion, chain);
-  PostureRegressor regressor(model, base, feasible.chain);
+  PostureRegressor regressor(model, base, feasible.chain, RootOf(motion));
   return {std::move(feasible), std::move(regressor), criterion, MakeVisibility(model, motion)};
 }
 

@@ -27,7 +27,7 @@ class IndexProgram : public NonlinearProgram {
     for (int i = 0; i < count; ++i) {
       jacobian_blocks.push_back({i * constraints, constraints, i * variables, variables});
       const Eigen::MatrixXd& psi = set.psi(which[i]);
-      shown_.push_back((psi.rowwise().squaredNorm().array() > 0.0).cast<double>());
+      shown_.push_back((psi.rowwise().squaredNorm().array() > 0.0).cast<double>().matrix());
     }
     jacobian_.resize(count);
     psi_.resize(count);
@@ -38,7 +38,7 @@ class IndexProgram : public NonlinearProgram {
     Eigen::MatrixXd information = others_;
     const Eigen::Index constraints = problem_.feasible.constraint_count();
     for (std::size_t i = 0; i < psi_.size(); ++i) {
-      psi_[i] = shown_[i].matrix().asDiagonal() * Regressor(i);
+      psi_[i] = Regressor(i);
       information.selfadjointView<Eigen::Lower>().rankUpdate(psi_[i].transpose());
       EvaluateConstraints(problem_.feasible, Posture(i), values_, jacobian_[i]);
       constraints_.segment(static_cast<Eigen::Index>(i) * constraints, constraints) = values_;
@@ -54,8 +54,7 @@ class IndexProgram : public NonlinearProgram {
     Eigen::VectorXd gradient(x_.size());
     const Eigen::Index variables = problem_.variable_count();
     for (std::size_t i = 0; i < psi_.size(); ++i) {
-      const Eigen::MatrixXd weight =
-          -scale_ * psi_[i] * value_.weight;  // zero if no marker is seen
+      const Eigen::MatrixXd weight = -scale_ * psi_[i] * value_.weight;
       Regressor(i);
       gradient.segment(static_cast<Eigen::Index>(i) * variables, variables) =
           problem_.regressor.Gradient(problem_.feasible.chain, weight);
@@ -73,15 +72,15 @@ class IndexProgram : public NonlinearProgram {
   void MoveTo(const Eigen::VectorXd& x) { x_ = x; }
 
  private:
-  const Eigen::MatrixXd& Regressor(std::size_t i) {
-    return problem_.regressor.Evaluate(problem_.feasible.chain, Posture(i));
+  Eigen::MatrixXd Regressor(std::size_t i) {
+    return problem_.regressor.Evaluate(problem_.feasible.chain, Posture(i), shown_[i]);
   }
 
   PostureProblem& problem_;
   Eigen::MatrixXd others_;
   int postures_;
   double scale_;  // the index changes little by one posture among many; log det is of order one
-  std::vector<Eigen::ArrayXd> shown_;  // for each posture, 1 for rows of markers that are seen
+  std::vector<Eigen::VectorXd> shown_;  // for each posture, 1 for rows of markers that are seen
   Eigen::VectorXd x_, values_, constraints_;
   std::vector<Eigen::MatrixXd> psi_, jacobian_;
   CriterionValue value_;

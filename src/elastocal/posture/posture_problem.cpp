@@ -12,14 +12,14 @@ namespace elastocal {
 
 Eigen::MatrixXd EvaluateRegressor(PostureProblem& problem, const Eigen::VectorXd& x) {
   InterruptionPoint();
-  Eigen::MatrixXd psi = problem.regressor.Evaluate(problem.feasible.chain, x);
-  if (!problem.visible) return psi;
+  if (!problem.visible) return problem.regressor.Evaluate(problem.feasible.chain, x);
   problem.feasible.chain.Move(x);
   const std::vector<char> visible = problem.visible(problem.feasible.chain);
+  Eigen::VectorXd shown(problem.regressor.rows());
   for (std::size_t m = 0; m < visible.size(); ++m) {
-    if (visible[m] == 0) psi.middleRows<3>(3 * static_cast<Eigen::Index>(m)).setZero();
+    shown.segment<3>(3 * static_cast<Eigen::Index>(m)).setConstant(visible[m] != 0 ? 1.0 : 0.0);
   }
-  return psi;
+  return problem.regressor.Evaluate(problem.feasible.chain, x, shown);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "elastocal/math/decompositions.hpp"
@@ -25,19 +26,20 @@ std::vector<int> AllParameters(const ErrorModel& model) {
 
 /// Compares the gradient of sum(weight .* Psi) with differences for random robots and weights.
 void ExpectGradient(const ErrorModel& model, const MovingChain& moving, Random& random,
-                    double tolerance) {
+                    double tolerance, RootPose root = RootPose::kConstant,
+                    const Eigen::VectorXd& shown = {}) {
   MovingChain chain = moving;
-  PostureRegressor regressor(model, AllParameters(model), chain);
+  PostureRegressor regressor(model, AllParameters(model), chain, root);
   const Eigen::VectorXd x = RandomPosture(model.tree, random)(chain.coordinates());
   Eigen::MatrixXd weight(regressor.rows(), regressor.columns());
   for (Eigen::Index i = 0; i < weight.size(); ++i) weight.data()[i] = random.Normal(1.0);
-  regressor.Evaluate(chain, x);
+  regressor.Evaluate(chain, x, shown);
   const Eigen::VectorXd gradient = regressor.Gradient(chain, weight);
   for (int i = 0; i < chain.size(); ++i) {
     const Eigen::MatrixXd ahead =
-        regressor.Evaluate(chain, x + kStep * Eigen::VectorXd::Unit(chain.size(), i));
+        regressor.Evaluate(chain, x + kStep * Eigen::VectorXd::Unit(chain.size(), i), shown);
     const Eigen::MatrixXd behind =
-        regressor.Evaluate(chain, x - kStep * Eigen::VectorXd::Unit(chain.size(), i));
+        regressor.Evaluate(chain, x - kStep * Eigen::VectorXd::Unit(chain.size(), i), shown);
     EXPECT_NEAR(gradient[i], weight.cwiseProduct(ahead - behind).sum() / (2 * kStep), tolerance);
   }
 }
@@ -66,6 +68,41 @@ TEST(PostureRegressor, GradientOfCompliancesEqualsDifferences) {
   Random random(5);
   // Loads of up to 100 N.m multiply the columns.
   ExpectGradient(leg.model, leg.problem.feasible.chain, random, 1e-4);
+}
+
+TEST(PostureRegressor, GradientWithAFreeRootEqualsDifferences) {
+  Elasticity elasticity;
+  elasticity.torsion = {1, 2, 3};
+  LegProblem leg(Criterion::kO1, elasticity);
+  const MovingChain& chain = leg.problem.feasible.chain;
+  Random random(6);
+  ExpectGradient(leg.model, chain, random, 1e-4, RootPose::kFree);
+  Eigen::VectorXd shown = Eigen::VectorXd::Ones(3 * leg.model.marker_count());
+  shown.segment<3>(3).setZero();
+  ExpectGradient(leg.model, chain, random, 1e-4, RootPose::kFree, shown);
+  shown.setZero();  // two are seen, which do not show the turn about their line
+  shown.head<3>().setOnes();
+  shown.tail<3>().setOnes();
+  ExpectGradient(leg.model, chain, random, 1e-4, RootPose::kFree, shown);
+}
+
+// With a free root a posture tells what the estimate knows once six numbers of it are spent on
+// where the robot is: the Schur complement of the information of all parameters.
+TEST(PostureRegressor, WithAFreeRootTheInformationIsTheSchurComplement) {
+  LegProblem leg;
+  MovingChain chain = leg.problem.feasible.chain;
+  const Eigen::VectorXd x = Eigen::Vector4d(0.1, 0.2, -0.4, 0.9);
+  Eigen::VectorXd shown = Eigen::VectorXd::Ones(3 * leg.model.marker_count());
+  shown.segment<3>(6).setZero();
+  const std::vector<int> all = AllParameters(leg.model);
+  const Eigen::MatrixXd psi = PostureRegressor(leg.model, all, chain).Evaluate(chain, x, shown);
+  const Eigen::MatrixXd free =
+      PostureRegressor(leg.model, all, chain, RootPose::kFree).Evaluate(chain, x, shown);
+  const Eigen::MatrixXd A = psi.transpose() * psi;
+  const Eigen::MatrixXd spent =
+      A.leftCols<6>() * A.topLeftCorner<6, 6>().inverse() * A.topRows<6>();
+  EXPECT_LT((free.transpose() * free - (A - spent)).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LT(free.leftCols<6>().cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(PostureRegressor, IsTheGeneralizedJacobianUnderGravity) {

@@ -2,6 +2,8 @@
 #include "elastocal/posture/posture_regressor.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 #include <stdexcept>
 
 #include "elastocal/robot/leg_load.hpp"
@@ -41,14 +43,28 @@ int MotionParameter(const ErrorModel& model, int joint) {
   throw std::logic_error("a joint that moves a marker has no parameter of its motion");
 }
 
+/// The columns, and those of T0, which are the model's first parameters.
+std::vector<int> WithRoot(const std::vector<int>& base) {
+  std::vector<int> all(kWaistParameterCount);
+  std::iota(all.begin(), all.end(), 0);
+  std::copy_if(base.begin(), base.end(), std::back_inserter(all),
+               [](int i) { return i >= kWaistParameterCount; });
+  return all;
+}
+
 }  // namespace
 
-PostureRegressor::PostureRegressor(const ErrorModel& model, std::vector<int> base,
-                                   const MovingChain& chain)
+PostureRegressor::PostureRegressor(const ErrorModel& model, const std::vector<int>& base,
+                                   const MovingChain& chain, RootPose root)
     : model_(model),
-      base_(std::move(base)),
+      base_(root == RootPose::kFree ? WithRoot(base) : base),
       geometry_(ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()))),
-      jacobian_(model) {
+      jacobian_(model),
+      free_(root == RootPose::kFree) {
+  for (int i : base) {
+    const auto at = std::lower_bound(base_.begin(), base_.end(), i) - base_.begin();
+    asked_.push_back(static_cast<int>(at));
+  }
   for (std::size_t column = 0; column < base_.size(); ++column) {
     const Parameter& parameter = model_.parameters[base_[column]];
     if (IsJointCompliance(parameter.kind)) {
@@ -69,7 +85,7 @@ PostureRegressor::PostureRegressor(const ErrorModel& model, std::vector<int> bas
     unit_loads_.setOnes(3, static_cast<Eigen::Index>(model_.tree.joints.size()));
     loads_ = unit_loads_;
   }
-  psi_.setZero(rows(), columns());
+  psi_.setZero(rows(), static_cast<Eigen::Index>(base_.size()));
   LayOut(chain);
 }
 
@@ -124,7 +140,8 @@ void PostureRegressor::EvaluateLegs(const Eigen::VectorXd& q) {
   }
 }
 
-const Eigen::MatrixXd& PostureRegressor::Evaluate(MovingChain& chain, const Eigen::VectorXd& x) {
+Eigen::MatrixXd PostureRegressor::Evaluate(MovingChain& chain, const Eigen::VectorXd& x,
+                                           const Eigen::VectorXd& shown) {
   x_ = x;
   const Eigen::VectorXd q = chain.FullPosture(x);
   jacobian_.Evaluate(geometry_, q, unit_loads_);
@@ -136,13 +153,27 @@ const Eigen::MatrixXd& PostureRegressor::Evaluate(MovingChain& chain, const Eige
     }
   }
   EvaluateLegs(q);
-  return psi_;
+  shown_ = shown;
+  if (shown.size() > 0) psi_ = shown.asDiagonal() * psi_;
+  if (!free_) return psi_;
+  projection_.emplace(psi_.leftCols<kWaistParameterCount>());
+  return projection_->Apply(psi_(Eigen::all, asked_));
+}
+
+Eigen::MatrixXd PostureRegressor::Unprojected(const Eigen::MatrixXd& weight) const {
+  const RootProjection::Weights weights = projection_->Derivative(psi_(Eigen::all, asked_), weight);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(psi_.rows(), psi_.cols());
+  result(Eigen::all, asked_) = weights.psi;
+  result.leftCols<kWaistParameterCount>() += weights.root;
+  return result;
 }
 
 Eigen::VectorXd PostureRegressor::Gradient(MovingChain& chain, const Eigen::MatrixXd& weight) {
+  Eigen::MatrixXd own = free_ ? Unprojected(weight) : weight;
+  if (shown_.size() > 0) own = shown_.asDiagonal() * own;
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(chain.size());
-  for (int m = 0; m < model_.marker_count(); ++m) AddMarkerGradient(m, weight, gradient);
-  if (elastic_ || !legs_.empty()) AddLoadGradient(chain, weight, gradient);
+  for (int m = 0; m < model_.marker_count(); ++m) AddMarkerGradient(m, own, gradient);
+  if (elastic_ || !legs_.empty()) AddLoadGradient(chain, own, gradient);
   return gradient;
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/identifiability/root_projection.hpp"
 #include "elastocal/robot/error_model.hpp"
 #include "elastocal/robot/jacobian.hpp"
 #include "elastocal/robot/moving_chain.hpp"
@@ -15,22 +18,29 @@ namespace elastocal {
 /// geometry, and its derivative by the posture. Compliances may be among the parameters. Those of
 /// joints (eq. 5) act under the weight of what the joints carry. Those of a leg (eq. 6) move the
 /// root link and all markers, under the weight of the whole robot, which stands on that leg alone.
+///
+/// Where the root link is free, Psi_b is what no displacement of the whole robot explains (see
+/// RootProjection); columns of T0 are zero.
 class PostureRegressor {
  public:
   /// `base` lists the columns: indices into the model's parameters, ascending. Torque biases, and
   /// compliances of a leg that the chain moves, may not be among them (std::invalid_argument).
   /// Keeps a reference to the model.
-  PostureRegressor(const ErrorModel& model, std::vector<int> base, const MovingChain& chain);
+  PostureRegressor(const ErrorModel& model, const std::vector<int>& base, const MovingChain& chain,
+                   RootPose root = RootPose::kConstant);
 
   int rows() const { return 3 * model_.marker_count(); }
-  int columns() const { return static_cast<int>(base_.size()); }
+  int columns() const { return static_cast<int>(asked_.size()); }
 
-  /// Psi_b in the posture x of `chain`, rows() x columns(): m/rad, m/m, m/(rad/(N.m)).
-  const Eigen::MatrixXd& Evaluate(MovingChain& chain, const Eigen::VectorXd& x);
+  /// Psi_b in the posture x of `chain`, rows() x columns(): m/rad, m/m, m/(rad/(N.m)). `shown`, by
+  /// row, is 1 for markers that are seen and 0 for others, whose rows are zero; empty: all are
+  /// seen.
+  Eigen::MatrixXd Evaluate(MovingChain& chain, const Eigen::VectorXd& x,
+                           const Eigen::VectorXd& shown = {});
 
   /// Derivatives by x of the sum of `weight` .* Psi_b with a constant weight (rows() x columns()),
-  /// in the posture of the last evaluation. With weight = 2 Psi_b M^-1 it is the gradient of log
-  /// det M.
+  /// in the posture of the last evaluation and with the markers that were seen there. With weight =
+  /// 2 Psi_b M^-1 it is the gradient of log det M.
   Eigen::VectorXd Gradient(MovingChain& chain, const Eigen::MatrixXd& weight);
 
  private:
@@ -56,6 +66,8 @@ class PostureRegressor {
     Eigen::Vector3d Of(const Eigen::Vector3d& p) const { return axis.cross(p) + translation; }
   };
   void LayOut(const MovingChain& chain);
+  /// Weights of the columns `base_` before the projection, for weights after it.
+  Eigen::MatrixXd Unprojected(const Eigen::MatrixXd& weight) const;
   double Load(int parameter) const;
   double LoadOn(const LegColumn& column, const Eigen::VectorXd& q) const;
   void EvaluateLegs(const Eigen::VectorXd& q);
@@ -65,7 +77,8 @@ class PostureRegressor {
                        Eigen::VectorXd& gradient) const;
 
   const ErrorModel& model_;
-  std::vector<int> base_;
+  std::vector<int> base_;   // with the six of T0 before the others, where the root is free
+  std::vector<int> asked_;  // columns of psi_ that were asked for
   Geometry geometry_;
   GeneralizedJacobian jacobian_;
   bool elastic_ = false;
@@ -74,7 +87,10 @@ class PostureRegressor {
   std::vector<std::vector<MarkerColumn>> columns_;  // by marker, in the order of the path
   std::vector<std::vector<PathJoint>> paths_;       // by marker
   std::vector<LegColumn> legs_;
-  Eigen::MatrixXd psi_;
+  Eigen::MatrixXd psi_;    // columns `base_`, before the projection
+  Eigen::VectorXd shown_;  // by row; empty: all are seen
+  bool free_ = false;
+  std::optional<RootProjection> projection_;  // of a free root, in the last posture
 };
 
 }  // namespace elastocal

@@ -185,6 +185,7 @@ void ReadRecordingColumns(const YamlValue& section, Project& project) {
   if (const auto root = section.Find("root")) {
     root->Expect(root->Text() == "held" || root->Text() == "free", "held or free");
     project.recording.free_root = root->Text() == "free";
+    project.motion.free_root = project.recording.free_root;
   }
   if (const auto labels = section.Find("labels")) ReadLabels(*labels, project);
   if (const auto columns = section.Find("columns")) ReadColumns(*columns, project);

@@ -40,6 +40,7 @@ struct MotionSetup {
   std::vector<CollisionSphere> spheres;
   std::vector<ChainSetup> chains;        ///< in the order in which they are calibrated
   std::vector<Eigen::Vector3d> cameras;  ///< in the root link's frame, m; empty: nothing is hidden
+  bool free_root = false;  ///< the root link has an unknown pose of its own in each posture
 };
 
 }  // namespace elastocal
