@@ -7,8 +7,11 @@
 #include "elastocal/calibration/placing_markers.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/planning/assess_postures.hpp"
+#include "elastocal/planning/design_postures.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/tables/read_file.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/invented_arm.hpp"
 #include "tests/scratch_folder.hpp"
@@ -203,6 +206,42 @@ TEST_F(MobileManipulator, WithMarkersOnOneBodyIsRefused) {
   const auto table = Table(rests, 3);
   ExpectInputError([&] { CalibrateExperiment(project_, {table}); },
                    {"table3.csv", "root is free", "one body"});
+}
+
+/// The arm's project with a section `design`, and whatever else.
+Project ArmToDesign(const std::string& sections) {
+  const auto file = SourceFile("tests/robots/arm6_project.yaml");
+  std::string text = ReadFile(file);
+  const std::string recording = "recording:\n";
+  text.insert(text.find(recording) + recording.size(), sections);
+  return ParseProject(text + "\ndesign:\n  chains: [{chain: arm}, {chain: wrist}]\n", file);
+}
+
+PostureDesign Designed(const Project& project) {
+  PostureDesignOptions options;
+  SetPostureCount(12, options.design);
+  options.design.certify = false;
+  return DesignPostures(project, options);
+}
+
+// Postures are chosen for what is to be estimated: those for a free root tell more of it than as
+// many that were chosen as if the root were held.
+TEST(DesignWithAFreeRoot, ChoosesPosturesForIt) {
+  const Project held = ArmToDesign(""), free = ArmToDesign("  root: free\n");
+  const PostureDesign for_held = Designed(held), for_free = Designed(free);
+  ASSERT_EQ(for_free.chains.size(), 2u);
+  // 6 revolute and 1 prismatic joint and 10 markers; 3 of the joints behind the forearm's markers,
+  // which the wrist's are seen from.
+  EXPECT_EQ(for_free.chains[0].design.parameter_count, 4 * 6 + 2 * 1 + 3 * 10 - 6);
+  EXPECT_EQ(for_free.chains[1].design.parameter_count, 4 * 3 + 3 * 7 - 6);
+  PostureAssessmentOptions options;
+  options.chains = {"arm"};
+  options.assess.starts = 1;
+  const auto o1 = [&](const PostureDesign& design) {
+    return AssessPostures(free, design.postures(), options)[0].assessment.indices.o1;
+  };
+  EXPECT_NEAR(o1(for_free), for_free.chains[0].design.index, 1e-9);
+  EXPECT_GT(o1(for_free), 1.005 * o1(for_held));
 }
 
 }  // namespace
