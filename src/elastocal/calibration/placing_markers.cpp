@@ -4,12 +4,10 @@
 #include <map>
 #include <utility>
 
-#include "elastocal/math/decompositions.hpp"
+#include "elastocal/math/transform.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr double kLeastWidth = 0.01;  // m: of the markers about the line that fits them best
 
 Eigen::Matrix3Xd PositionsInBody(const ErrorModel& model, const std::vector<int>& markers) {
   Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(markers.size()));
@@ -22,11 +20,6 @@ Eigen::Matrix3Xd PositionsInBody(const ErrorModel& model, const std::vector<int>
 }
 
 }  // namespace
-
-bool TellPose(const Eigen::Matrix3Xd& positions) {
-  if (positions.cols() < 3) return false;
-  return SingularValues(positions.colwise() - positions.rowwise().mean())[1] > kLeastWidth;
-}
 
 Eigen::Matrix3Xd MarkersOnBody(const ErrorModel& model, int body) {
   std::vector<int> markers;

@@ -10,10 +10,6 @@
 
 namespace elastocal {
 
-/// Whether three or more markers (3 x markers, m) tell a pose: they do not lie on a line, within
-/// 10 mm.
-bool TellPose(const Eigen::Matrix3Xd& positions);
-
 /// Nominal positions of a body's markers in its frame, 3 x markers, m.
 Eigen::Matrix3Xd MarkersOnBody(const ErrorModel& model, int body);
 

@@ -37,6 +37,7 @@ std::string StiffnessTable(const std::vector<LegCompliance>& legs) {
 }  // namespace
 
 std::string DescribeSimulation(const SimulationRun& run) {
+  if (run.legs.empty()) return TrialTable(run.trials);
   return TrialTable(run.trials) + "\nStiffness of the legs as felt at the waist\n" +
          StiffnessTable(run.legs);
 }

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "elastocal/math/decompositions.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -35,6 +37,12 @@ Eigen::Matrix3d RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector
   const Eigen::Vector3d half = (a + b).normalized();  // the way from a to it, twice
   const Eigen::Vector3d vector = a.cross(half);
   return Eigen::Quaterniond(a.dot(half), vector.x(), vector.y(), vector.z()).toRotationMatrix();
+}
+
+bool TellPose(const Eigen::Matrix3Xd& points) {
+  constexpr double kLeastWidth = 10e-3;
+  if (points.cols() < 3) return false;
+  return SingularValues(points.colwise() - points.rowwise().mean())[1] > kLeastWidth;
 }
 
 Transform FitRigid(const Eigen::Ref<const Eigen::Matrix3Xd>& from,

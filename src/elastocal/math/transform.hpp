@@ -27,6 +27,9 @@ Eigen::Matrix3d RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector
 Transform FitRigid(const Eigen::Ref<const Eigen::Matrix3Xd>& from,
                    const Eigen::Ref<const Eigen::Matrix3Xd>& to);
 
+/// Whether three or more points (columns, m) tell a pose: they do not lie on a line, within 10 mm.
+bool TellPose(const Eigen::Matrix3Xd& points);
+
 /// URDF origin: translation `xyz` [m] and fixed-axis roll, pitch, yaw `rpy` [rad], R = Rz Ry Rx.
 Transform FromXyzRpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy);
 

@@ -10,6 +10,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/log_mistake.hpp"
 #include "elastocal/measurement/posture_frames.hpp"
+#include "elastocal/measurement/seen_from.hpp"
 #include "elastocal/measurement/smoothed_log.hpp"
 #include "elastocal/measurement/support_check.hpp"
 #include "elastocal/measurement/trial_clock.hpp"
@@ -40,9 +41,10 @@ class TrialSampler {
     if (const auto moved = FindMovedSupport(robot_.tree, seen, trial_, trajectories_)) {
       return Refuse(Describe(*moved, robot_.tree));
     }
-    FitClock(speeds);
+    const SpeedsFrom seen_speeds = SpeedsForClock(speeds);
+    FitClock(seen_speeds);
     if (summary().clock.state != ClockState::kReliable) {
-      return Refuse(Describe(summary().clock) + CauseOfBadClock(speeds));
+      return Refuse(Describe(summary().clock) + CauseOfBadClock(seen_speeds));
     }
     LeaveOutUnlogged(speeds);
     Average(ChooseFrames(speeds));
@@ -134,7 +136,23 @@ class TrialSampler {
     smoothed_log_ = SmoothLog(log_, options_.smoothing);
   }
 
-  int StandingLink() const { return trial_.support.empty() ? 0 : trial_.support[0]; }
+  // Speeds of the markers as seen from a link.
+  struct SpeedsFrom {
+    int link = 0;
+    Eigen::MatrixXd speeds;
+  };
+
+  // Seen from what stands still or, where the root is free, from a body with markers.
+  SpeedsFrom SpeedsForClock(const Eigen::MatrixXd& speeds) const {
+    if (trial_.free_root) {
+      if (const auto seen = SeeFromMarkedBody(robot_, markers_, trajectories_)) {
+        Eigen::MatrixXd relative = MarkerSpeeds(seen->trajectories);
+        ForgetEdges(seen->trajectories, smoothed_log_.margin_s, relative);
+        return {seen->link, std::move(relative)};
+      }
+    }
+    return {trial_.support.empty() ? 0 : trial_.support[0], speeds};
+  }
 
   ClockOptions ClockSettings() const {
     ClockOptions options = options_.clock;
@@ -142,18 +160,17 @@ class TrialSampler {
     return options;
   }
 
-  void FitClock(const Eigen::MatrixXd& speeds) {
-    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, StandingLink(), smoothed_log_,
+  void FitClock(const SpeedsFrom& seen) {
+    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.link, smoothed_log_,
                                               coordinates_, trajectories_.rate_hz);
-    summary().clock = EstimateTrialClock(speeds, trajectories_.rate_hz, logged,
+    summary().clock = EstimateTrialClock(seen.speeds, trajectories_.rate_hz, logged,
                                          options_.expected_lag_s, ClockSettings());
   }
 
-  std::string CauseOfBadClock(const Eigen::MatrixXd& speeds) const {
-    const auto mistake =
-        FindLogMistake(robot_, markers_, StandingLink(), smoothed_log_, coordinates_, speeds,
-                       trajectories_.rate_hz, options_.expected_lag_s, ClockSettings(),
-                       result_.summary.clock.peak);
+  std::string CauseOfBadClock(const SpeedsFrom& seen) const {
+    const auto mistake = FindLogMistake(robot_, markers_, seen.link, smoothed_log_, coordinates_,
+                                        seen.speeds, trajectories_.rate_hz, options_.expected_lag_s,
+                                        ClockSettings(), result_.summary.clock.peak);
     return mistake ? "; " + Describe(*mistake, log_.names) : "";
   }
 

@@ -57,7 +57,8 @@ struct TrialSamples {
 /// 2. close short gaps; filter markers and log with the same low-pass (SmoothTrajectories,
 ///    SmoothLog);
 /// 3. estimate lag and drift of the robot's clock (EstimateTrialClock); the first support foot or,
-///    without one, the root link is at rest in the laboratory;
+///    without one, the root link is at rest in the laboratory; a free root moves, and the motion is
+///    seen from a body with markers (SeeFromMarkedBody);
 /// 4. find stable samples (FindStableSamples) or, in a trial of motion, take moments at a constant
 /// rate
 ///    from the first motion to the last, both only where the robot's log covers the frame;

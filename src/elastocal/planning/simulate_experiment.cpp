@@ -162,6 +162,12 @@ Simulation PrepareSimulation(const Project& project, const SimulationOptions& op
   CheckHasMarkers(project);
   const DescribedRobot robot = DescribeRobot(project);
   VirtualExperimentOptions settings = options.experiment;
+  settings.free_root = project.recording.free_root;
+  if (options.matched && settings.free_root) {
+    throw InputError(project.file.string() +
+                     ": the root is free (recording: root), and a matched truth is that of a root "
+                     "link that is held or stands");
+  }
   Simulation simulation;
   if (options.motion) {
     settings.motion.seed = settings.seed;

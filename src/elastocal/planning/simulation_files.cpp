@@ -84,7 +84,9 @@ SimulationFiles FilesOfSimulation(const Simulation& simulation, const fs::path& 
   files.experiment = folder / "experiment.yaml";
   files.truth = folder / "truth.yaml";
   for (const std::size_t i : simulation.chosen) {
-    files.trials.push_back(FilesOfTrial(simulation.experiment.trials[i], folder));
+    TrialFiles trial = FilesOfTrial(simulation.experiment.trials[i], folder);
+    trial.free_root = simulation.experiment.options.free_root && trial.support.empty();
+    files.trials.push_back(std::move(trial));
   }
   const std::vector<fs::path> earlier = EarlierSimulation(files, force);
   const std::vector<fs::path> written = files.all();

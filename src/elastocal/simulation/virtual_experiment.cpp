@@ -7,6 +7,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/simulation/driving_base.hpp"
 #include "elastocal/simulation/faults.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
@@ -132,6 +133,10 @@ SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) 
                                experiment.T_camera_world[index], experiment.options.physics);
   } catch (const InputError& error) {
     throw InputError("trial '" + trial.name + "': " + error.what());
+  }
+  if (experiment.options.free_root && trial.support.empty()) {
+    DriveBase(trial.motion, experiment.T_camera_world[index],
+              StreamSeed(experiment.options.seed, "drive " + trial.name), result.motion);
   }
   result.raw = Measure(experiment.robot, experiment.clusters, experiment.trials, index,
                        result.motion, experiment.options.sensors, experiment.options.faults);

@@ -28,6 +28,8 @@ struct VirtualExperimentOptions {
   /// Seed of the robot's errors if it is another one than `seed`: the same robot with other
   /// postures, places and noise, as in a second recording of it.
   std::optional<std::uint64_t> robot_seed = {};
+  /// The base drives between the rests of trials without support (DriveBase).
+  bool free_root = false;
   TruthOptions truth;
   PhysicsOptions physics;
   MotionOptions motion;
