@@ -208,6 +208,27 @@ TEST_F(MobileManipulator, WithMarkersOnOneBodyIsRefused) {
                    {"table3.csv", "root is free", "one body"});
 }
 
+// Recording folders of a base that drives between the rests, through the program's own files: what
+// `simulate`, `calibrate` and held-out trials make of them.
+TEST(DrivingBase, IsCalibratedFromARecordingFolder) {
+  ScratchFolder scratch;
+  const Project held = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  Project free = held;
+  free.recording.free_root = true;
+  SimulationOptions options;
+  options.experiment.motion.arm_postures = 30;
+  options.matched = true;
+  ExpectInputError([&] { PrepareSimulation(free, options); }, {"root is free", "matched"});
+  options.matched = false;
+  SimulateExperiment(free, options, scratch.path() / "sim");
+  const CalibrationRun run = CalibrateExperiment(free, {scratch.path() / "sim"});
+  EXPECT_TRUE(HasFreeRoot(run.recording));
+  ASSERT_TRUE(run.held_out);
+  EXPECT_TRUE(run.deployable());
+  const std::map<ModelKind, double>& error = run.held_out->table.mean_rmse_3d;
+  EXPECT_LT(5.0 * error.at(run.comparison.largest_kind()), error.at(ModelKind::kUncalibrated));
+}
+
 /// The arm's project with a section `design`, and whatever else.
 Project ArmToDesign(const std::string& sections) {
   const auto file = SourceFile("tests/robots/arm6_project.yaml");

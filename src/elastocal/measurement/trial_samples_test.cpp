@@ -120,6 +120,56 @@ TEST(SampleTrial, HoldsTheRootWhereThereIsNoSupport) {
   ExpectTrue(samples, played, 0);
 }
 
+/// The trial with the whole robot on a cart that goes to and fro and turns between the rests, but
+/// stands still during each of them.
+ScriptedTrial OnACart(ScriptedTrial played) {
+  Random random(7);
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = from;  // place, m, and direction, rad
+  Eigen::Index posture = 0;
+  for (Eigen::Index i = 0; i < played.markers.positions.rows(); ++i) {
+    const double time = static_cast<double>(i) / played.markers.rate_hz;
+    const bool next =
+        posture + 1 < played.rest_begin_s.size() && time >= played.rest_begin_s[posture + 1];
+    if (next) {
+      ++posture;
+      from = to;
+      to = 0.4 * random.NormalVector(3, 1.0);
+    }
+    const double u = std::clamp((time - played.rest_begin_s[posture] - 1.5) / 3.5, 0.0, 1.0);
+    const Eigen::Vector3d place = from + u * u * u * (10.0 + u * (-15.0 + 6.0 * u)) * (to - from);
+    const Transform T = FromXyzRpy({place.x(), place.y(), 0.0}, {0.0, 0.0, place.z()});
+    auto row = played.markers.positions.row(i);
+    for (Eigen::Index c = 0; c < row.size(); c += 3) {
+      row.segment<3>(c) = (T * row.segment<3>(c).transpose().eval()).transpose();
+    }
+  }
+  return played;
+}
+
+// What the joints do is then seen from the waist; by what moves in the laboratory, no clock fits.
+TEST(SampleTrial, TellsTheClockOfARobotThatDrivesBetweenItsRests) {
+  const ScriptedTrial played = OnACart(Play(WaistAndLeg(), {.lag_s = 2.3, .drift_ppm = 20.0}));
+  Trial trial{.name = "cart", .chains = {"leg"}, .free_root = true};
+  const TrialSamples samples = Sample(played, {}, trial);
+  ASSERT_EQ(samples.summary.refused, "");
+  EXPECT_EQ(samples.summary.postures, 24);
+  for (const double time : {0.0, 110.0}) {
+    // Samples are 60 ms and more away from the ends of a rest.
+    EXPECT_NEAR(samples.summary.clock.RobotTime(time), (1.0 + 20e-6) * time - 2.3, 5e-3);
+  }
+  for (Eigen::Index i = 0; i < samples.q.rows(); ++i) {
+    const Eigen::Index posture = PostureAt(played, samples.time_s[i]);
+    EXPECT_LT((samples.q.row(i) - played.q.row(posture)).cwiseAbs().maxCoeff(), 2e-3) << i;
+  }
+  trial.free_root = false;
+  EXPECT_NE(Sample(played, {}, trial).summary.refused, "");
+  // From the thigh, where the waist has lost a marker.
+  ScriptedTrial without = played;
+  without.markers.positions.leftCols(3).setConstant(kNaN);
+  trial.free_root = true;
+  EXPECT_EQ(Sample(without, {}, trial).summary.refused, "");
+}
+
 // The speeds of a leg one of whose joints has the wrong sign are others; where they do not fit any
 // more, the log that would fit tells why.
 TEST(SampleTrial, NamesTheSignAndTheExchangeThatSpoilTheClock) {
