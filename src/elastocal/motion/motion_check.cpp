@@ -48,6 +48,15 @@ void CheckJoints(const StandingRobot& robot, const RobotState& state, Eigen::Ind
   }
 }
 
+void CheckLevers(const RobotTree& tree, const Eigen::VectorXd& q, Eigen::Index sample,
+                 MotionMargins& margins) {
+  for (std::size_t i = 0; i < tree.linkages.size(); ++i) {
+    const Linkage& linkage = tree.linkages[i];
+    Least(margins.lever, LeverShare(tree, linkage, q(CoordinatesOf(tree, linkage))), sample,
+          static_cast<int>(i));
+  }
+}
+
 void CheckTorques(const RobotTree& tree, const Eigen::VectorXd& torques, Eigen::Index sample,
                   MotionMargins& margins) {
   for (Eigen::Index i = 0; i < torques.size(); ++i) {
@@ -100,6 +109,7 @@ const char* ConstraintName(Constraint constraint) {
                                  "bent knee of a standing leg",
                                  "feet that stand still",
                                  "swinging foot above the floor",
+                                 "lever of rods on their joints",
                                  "reach of the hand above the table"};
   return kNames[static_cast<std::size_t>(constraint)];
 }
@@ -110,6 +120,7 @@ MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motio
   const double step = 1.0 / motion.rate_hz;
   MotionMargins margins;
   margins.clearance.value = margins.floor.value = std::numeric_limits<double>::infinity();
+  margins.lever.value = margins.floor.value;
   if (robot.Held()) margins.zmp.value = margins.knee.value = margins.floor.value;
   std::vector<Transform> T_world_root(Size(samples));
   std::vector<std::vector<Transform>> T_root_link(Size(samples));
@@ -145,6 +156,7 @@ MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motio
     for (Transform& T : T_world_link) T = T_world_root[Size(i)] * T;
 
     CheckJoints(robot, state, i, margins);
+    CheckLevers(robot.tree, state.q, i, margins);
     CheckTorques(robot.tree, held.torques, i, margins);
     CheckFeet(robot, standing, T_world_link, i, margins);
     CheckKnees(robot, standing, state.q, i, margins);
@@ -185,7 +197,8 @@ std::vector<Constraint> BrokenConstraints(const MotionMargins& margins,
       {Constraint::kKnee, below(margins.knee, limits.least_knee)},
       {Constraint::kFeet,
        above(margins.foot_moved, kFootTolerance) || above(margins.foot_turned, kFootTolerance)},
-      {Constraint::kFloor, below(margins.floor, -kFootTolerance)}};
+      {Constraint::kFloor, below(margins.floor, -kFootTolerance)},
+      {Constraint::kLever, below(margins.lever, limits.lever_share)}};
   std::vector<Constraint> broken;
   for (const auto& [constraint, breaks] : checks) {
     if (breaks) broken.push_back(constraint);

@@ -33,6 +33,7 @@ struct MotionMargins {
   Worst foot_moved;   ///< largest displacement of a standing foot, m
   Worst foot_turned;  ///< largest rotation of a standing foot, rad
   Worst floor;        ///< least height of a corner of a swinging foot, m
+  Worst lever;        ///< least LeverShare of a linkage; infinite without linkages
 };
 
 /// A limit that a motion can break.
@@ -47,6 +48,7 @@ enum class Constraint {
   kKnee,
   kFeet,
   kFloor,
+  kLever,
   kApproach
 };
 

@@ -30,6 +30,8 @@ std::optional<Refusal> Refuse(const MotionMargins& margins, const MotionLimits& 
       return because(margins.foot_moved);
     case Constraint::kFloor:
       return because(margins.floor);
+    case Constraint::kLever:
+      return because(margins.lever);
     case Constraint::kReach:
     case Constraint::kApproach:
       break;

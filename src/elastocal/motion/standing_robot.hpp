@@ -25,8 +25,9 @@ struct MotionLimits {
   /// Least distance of the zero-moment point to the edge of the support polygon, m. Negative: three
   /// tenths of the narrowest sole's half width.
   double zmp_margin = -1.0;
-  double friction = 0.5;    ///< largest ratio of horizontal to vertical force at a foot
-  double least_knee = 0.3;  ///< least bend of the knee of a standing leg, rad
+  double friction = 0.5;     ///< largest ratio of horizontal to vertical force at a foot
+  double least_knee = 0.3;   ///< least bend of the knee of a standing leg, rad
+  double lever_share = 0.1;  ///< least LeverShare of linkages: away from their dead points
 };
 
 /// A robot with its feet on a level floor, z = 0 of the world, or one whose root link is held still

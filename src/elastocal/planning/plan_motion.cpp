@@ -109,6 +109,11 @@ std::vector<LimitUse> LimitUses(const Project& project, const MotionMargins& mar
            tiny(kFootTolerance), list.Sole(margins.foot_turned), Constraint::kFeet);
   list.Add("swinging foot above the floor, mm", margins.floor, mm(margins.floor.value), mm(0.0),
            list.Sole(margins.floor), Constraint::kFloor);
+  if (!project.tree.linkages.empty()) {
+    list.Add("lever of rods, % of where put together", margins.lever, percent(margins.lever.value),
+             percent(limits.lever_share), project.tree.linkages[Size(margins.lever.index)].name,
+             Constraint::kLever);
+  }
   return std::move(list.uses);
 }
 
@@ -175,7 +180,6 @@ std::vector<LimitUse> MotionPlan::broken() const {
 MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& postures,
                       const MotionPlanOptions& options, const Progress& progress) {
   CheckPlanOptions(options);
-  CheckHasNoLinkages(project, "the command plan");
   const auto robot = StandForMotion(project, options.limits);
   std::vector<PostureTour> tours =
       project.contact
@@ -187,7 +191,6 @@ MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& 
 MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std::uint64_t seed,
                                 const MotionPlanOptions& options, const Progress& progress) {
   CheckPlanOptions(options);
-  CheckHasNoLinkages(project, "the command plan");
   const auto robot = StandForMotion(project, options.limits);
   Random random(seed);
   std::vector<PostureTour> tours = ValidationTours(

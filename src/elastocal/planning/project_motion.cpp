@@ -112,6 +112,10 @@ std::string ReasonText(const Project& project, const LeftOut& left_out) {
     case Constraint::kFriction:
     case Constraint::kKnee:
       return text + fmt::format(": {:.2f}", left_out.value);
+    case Constraint::kLever:
+      return text + fmt::format(": {} at {:.0f} %",
+                                project.tree.linkages[Size(left_out.index)].name,
+                                100.0 * left_out.value);
     case Constraint::kReach:
     case Constraint::kApproach:
       break;

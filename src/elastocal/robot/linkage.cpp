@@ -170,6 +170,13 @@ Eigen::MatrixXd ByJoints(const std::vector<Loop>& loops) {
   return J;
 }
 
+/// The least lever, m: of the cranks on their rods, and of the rods on the joints.
+double LeastLever(const std::vector<Loop>& loops) {
+  double least = SingularValues(ByJoints(loops)).minCoeff();
+  for (const Loop& loop : loops) least = std::min(least, std::abs(loop.by_motor));
+  return least;
+}
+
 /// Position of the motor that closes one loop; nothing where the rod cannot reach.
 std::optional<double> MotorOf(const RobotTree& tree, const Linkage& linkage, const Rod& rod,
                               const Eigen::VectorXd& positions, double branch) {
@@ -374,6 +381,14 @@ std::optional<Eigen::VectorXd> JointsFromMotors(const RobotTree& tree, const Lin
   constexpr double kSame = 1e-6;  // rad or m
   if (!back || (*back - motors).lpNorm<Eigen::Infinity>() > kSame) return std::nullopt;
   return positions;
+}
+
+double LeverShare(const RobotTree& tree, const Linkage& linkage, const Eigen::VectorXd& positions) {
+  const auto lever = [&](const Eigen::VectorXd& at) {
+    const auto motors = MotorPositions(tree, linkage, at);
+    return motors ? LeastLever(EvaluateLoops(tree, linkage, *motors, at)) : 0.0;
+  };
+  return lever(positions) / lever(linkage.assembled);
 }
 
 std::vector<int> CoordinatesOf(const RobotTree& tree, const Linkage& linkage) {

@@ -96,6 +96,11 @@ std::optional<Closure> CloseLinkage(const RobotTree& tree, const Linkage& linkag
 std::optional<Eigen::VectorXd> JointsFromMotors(const RobotTree& tree, const Linkage& linkage,
                                                 const Eigen::VectorXd& motors);
 
+/// The least lever with which motors, through the rods, move the linkage's joints at `positions`,
+/// as a share of that where the linkage is put together: 0 at a dead point, and where a rod cannot
+/// reach.
+double LeverShare(const RobotTree& tree, const Linkage& linkage, const Eigen::VectorXd& positions);
+
 /// Entries of q that the linkage's joints have, in their order.
 std::vector<int> CoordinatesOf(const RobotTree& tree, const Linkage& linkage);
 
