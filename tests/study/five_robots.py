@@ -26,9 +26,7 @@ def torque_sensors(text, joints):
 
 def linkages_of(project):
     """The section `linkages` of a project file: the numbers of the drawing."""
-    text = (ROOT / project).read_text()
-    section = re.search(r"^linkages:\n(?:[ #].*\n|\n)*", text, re.MULTILINE)
-    return section.group(0)
+    return re.search(r"^linkages:\n(?:[ #].*\n|\n)*", (ROOT / project).read_text(), re.MULTILINE).group(0)
 
 
 ROBOTS = {

@@ -170,6 +170,13 @@ Eigen::MatrixXd ByJoints(const std::vector<Loop>& loops) {
   return J;
 }
 
+Eigen::VectorXd GapsOf(const std::vector<Loop>& loops) {
+  Eigen::VectorXd gaps(static_cast<Eigen::Index>(loops.size()));
+  std::transform(loops.begin(), loops.end(), gaps.begin(),
+                 [](const Loop& loop) { return loop.gap; });
+  return gaps;
+}
+
 /// The least lever, m: of the cranks on their rods, and of the rods on the joints.
 double LeastLever(const std::vector<Loop>& loops) {
   double least = SingularValues(ByJoints(loops)).minCoeff();
@@ -317,6 +324,11 @@ std::optional<Eigen::VectorXd> MotorPositions(const RobotTree& tree, const Linka
   return motors;
 }
 
+Eigen::VectorXd LoopGaps(const RobotTree& tree, const Linkage& linkage,
+                         const Eigen::VectorXd& motors, const Eigen::VectorXd& positions) {
+  return GapsOf(EvaluateLoops(tree, linkage, motors, positions));
+}
+
 Linkage WithErrors(const Linkage& linkage, const Eigen::VectorXd& errors) {
   Linkage with = linkage;
   if (errors.size() == 0) return with;
@@ -336,8 +348,7 @@ std::optional<Closure> CloseLinkage(const RobotTree& tree, const Linkage& linkag
   Closure closure{start, {}, {}};
   for (int step = 0; step < kMostSteps; ++step) {
     const std::vector<Loop> loops = EvaluateLoops(tree, with, motors, closure.positions);
-    Eigen::VectorXd gaps(size);
-    for (Eigen::Index i = 0; i < size; ++i) gaps[i] = loops[static_cast<std::size_t>(i)].gap;
+    const Eigen::VectorXd gaps = GapsOf(loops);
     const Eigen::PartialPivLU<Eigen::MatrixXd> inverse(ByJoints(loops));
     if (gaps.lpNorm<Eigen::Infinity>() < kClosed) {
       Eigen::MatrixXd by_errors = Eigen::MatrixXd::Zero(size, with.error_count());

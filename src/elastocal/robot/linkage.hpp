@@ -77,6 +77,10 @@ void AddLinkage(Linkage linkage, RobotTree& tree);
 std::optional<Eigen::VectorXd> MotorPositions(const RobotTree& tree, const Linkage& linkage,
                                               const Eigen::VectorXd& positions);
 
+/// By how much each rod is too short for motors and joints at these positions, m.
+Eigen::VectorXd LoopGaps(const RobotTree& tree, const Linkage& linkage,
+                         const Eigen::VectorXd& motors, const Eigen::VectorXd& positions);
+
 /// Positions of the linkage's joints for those of the motors, by rods with `errors` (see
 /// Linkage::error_count; empty: none), from a start nearby.
 struct Closure {

@@ -53,8 +53,36 @@ class Drawing {
           errors[at++] = GeometryScale(joint) * random.Normal(1.0) * sd;
         }
       }
-      robot_.tree.linkages[i] = WithErrors(linkage, errors);
+      robot_.tree.linkages[i] = Assembled(linkage, errors);
       for (const int k : linkage.joints) robot_.offset[k] = 0.0;
+    }
+  }
+
+  /// The true rods. They were adjusted when the linkage was put together on the true tree, so that
+  /// the motors read there what the description says, but for the errors of their lengths.
+  Linkage Assembled(const Linkage& linkage, Eigen::VectorXd& errors) const {
+    const auto motors = MotorPositions(robot_.described, linkage, linkage.assembled);
+    Eigen::VectorXd but_lengths = errors;
+    ForLengths(linkage, [&](std::size_t, Eigen::Index at) { but_lengths[at] = 0.0; });
+    Linkage with = WithErrors(linkage, but_lengths);
+    const Eigen::VectorXd gaps = LoopGaps(robot_.tree, with, *motors, linkage.assembled);
+    for (std::size_t r = 0; r < with.rods.size(); ++r) with.rods[r].length += gaps[Index(r)];
+    ForLengths(linkage, [&](std::size_t r, Eigen::Index at) {
+      with.rods[r].length += errors[at];
+      errors[at] += gaps[Index(r)];
+    });
+    return with;
+  }
+
+  /// Calls `use(rod, entry of the linkage's errors)` for each length that is uncertain.
+  template <typename Use>
+  static void ForLengths(const Linkage& linkage, const Use& use) {
+    Eigen::Index at = 0;
+    for (std::size_t r = 0; r < linkage.rods.size(); ++r) {
+      for (const RodUncertainty& uncertain : linkage.rods[r].uncertain) {
+        if (uncertain.quantity == RodQuantity::kLength) use(r, at);
+        ++at;
+      }
     }
   }
 
