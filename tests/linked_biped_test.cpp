@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/linkage_file.hpp"
@@ -256,6 +257,20 @@ TEST_F(OfMujoco, DisplacedAxesAreFoundAsDisplacedAnchors) {
   EXPECT_LT(calibrated, 6e-5);
   EXPECT_GT(exact_rods, 2e-3);
   EXPECT_GT(uncalibrated, 1e-2);
+}
+
+// Rods turn a joint by a multiple of what the motors say where a lever is off. That is the robot's
+// error, and no joint is accused of a wrong gain for it.
+TEST_F(OfMujoco, LeversThatAreOffAreNoFaultsOfTheRecording) {
+  Recording recording = Record();
+  Random random(3);
+  for (auto row : recording.markers.rowwise()) row += random.NormalVector(row.size(), 2e-5);
+  const CalibrationOptions options;
+  const CalibrationResult result =
+      Calibrate(model_, recording, FindBaseParameters(model_, {}), ModelKind::kGeometric, options);
+  for (const RecordingFault& fault : FindRecordingFaults(result, recording, options)) {
+    ADD_FAILURE() << DescribeFault(fault, model_.tree, recording);
+  }
 }
 
 }  // namespace

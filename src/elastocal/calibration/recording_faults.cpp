@@ -162,8 +162,11 @@ class FaultSearch {
       add({.kind = FaultKind::kJointOffset, .posture = split},
           [&](int i) { return i >= split ? 1.0 : 0.0; });
     };
-    add({FaultKind::kJointGain}, [&](int i) { return recording_.q(i, coordinate); });
-    try_all();
+    const auto at = static_cast<int>(joint - result_.model.tree.joints.begin());
+    if (!IsMovedByRods(result_.model.tree, at)) {
+      add({FaultKind::kJointGain}, [&](int i) { return recording_.q(i, coordinate); });
+      try_all();
+    }
     const std::size_t before = found_.size();
     for (int split = stride; split < count; split += stride) add_split(split);
     try_all();

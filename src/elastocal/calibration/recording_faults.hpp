@@ -28,7 +28,8 @@ struct RecordingFault {
 
 /// Looks for the fault that explains most of what a fit has left: each candidate is one more
 /// unknown beside all others (score test), so that it is not confused with what the robot's own
-/// errors explain as well. Candidates are the gain of each joint, an offset of each joint from a
+/// errors explain as well. Candidates are the gain of each joint (but of those that rods
+/// move, whose levers are the robot's own errors), an offset of each joint from a
 /// posture on (twelve of them, then all near the best one) or in one trial alone, and the scale
 /// of the cameras in one of several trials (a scale of all of them looks like a robot all of whose
 /// lengths are off). Only faults that no good robot has are returned, the one that explains most

@@ -402,6 +402,12 @@ double LeverShare(const RobotTree& tree, const Linkage& linkage, const Eigen::Ve
   return lever(positions) / lever(linkage.assembled);
 }
 
+bool IsMovedByRods(const RobotTree& tree, int joint) {
+  return std::any_of(tree.linkages.begin(), tree.linkages.end(), [&](const Linkage& linkage) {
+    return std::find(linkage.joints.begin(), linkage.joints.end(), joint) != linkage.joints.end();
+  });
+}
+
 std::vector<int> CoordinatesOf(const RobotTree& tree, const Linkage& linkage) {
   std::vector<int> coordinates;
   for (int k : linkage.joints) coordinates.push_back(tree.joints[k].coordinate);

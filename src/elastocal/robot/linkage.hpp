@@ -105,6 +105,9 @@ std::optional<Eigen::VectorXd> JointsFromMotors(const RobotTree& tree, const Lin
 /// reach.
 double LeverShare(const RobotTree& tree, const Linkage& linkage, const Eigen::VectorXd& positions);
 
+/// Whether a joint belongs to a linkage.
+bool IsMovedByRods(const RobotTree& tree, int joint);
+
 /// Entries of q that the linkage's joints have, in their order.
 std::vector<int> CoordinatesOf(const RobotTree& tree, const Linkage& linkage);
 
