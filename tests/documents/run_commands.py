@@ -45,6 +45,7 @@ USER_FILES = {
     "docs/diagnose.md": {"training.csv": f"shared:{ARM}"},
     "docs/python.md": {"talos_left_arm_02_10_contact.csv": f"shared:{ARM}"},
     "docs/howto/laser_tracker.md": {"arm.csv": f"shared:{ARM}", "arm_again.csv": f"shared:{ARM}"},
+    "docs/howto/five_robots.md": {"tiago_arm.urdf": "shared:../robots/tiago/tiago_arm.urdf"},
     "docs/howto/table.md": {
         "left.csv": f"shared:{TABLE}/left.csv", "right.csv": f"shared:{TABLE}/right.csv",
         "another_day.csv": f"shared:{TABLE}/right.csv",
