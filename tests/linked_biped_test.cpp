@@ -19,6 +19,7 @@
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/motion/motion_check.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage_errors.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
@@ -188,6 +189,34 @@ TEST_F(LinkedBiped, CalibratedRodsAreWrittenForControllers) {
     EXPECT_LT((PlacedByFile(project_, yaml, q) - expected).norm(), 1e-9);
     EXPECT_GT((expected - q).norm(), 1e-4);
   }
+}
+
+// The actuator's foot is at (-60, 300) mm from the knee, its anchor at (-50, -20) mm in the shank,
+// which the knee turns: the lever is the distance of the knee from the line through both.
+TEST_F(LinkedBiped, ThePlanKeepsRodsAwayFromDeadPoints) {
+  const Linkage& knee = model_.tree.linkages[0];
+  ASSERT_EQ(knee.name, "left_knee");
+  const auto lever = [](double a) {
+    const Eigen::Vector2d foot(-60.0, 300.0);
+    const Eigen::Vector2d anchor(-50.0 * std::cos(a) - 20.0 * std::sin(a),
+                                 50.0 * std::sin(a) - 20.0 * std::cos(a));
+    const Eigen::Vector2d rod = (anchor - foot).normalized();
+    return std::abs(anchor.x() * rod.y() - anchor.y() * rod.x());
+  };
+  const auto at = [](double a) { return Eigen::VectorXd::Constant(1, a); };
+  for (const double a : {0.0, 0.7, 1.47, 1.745}) {
+    EXPECT_NEAR(LeverShare(model_.tree, knee, at(a)), lever(a) / lever(knee.assembled[0]), 1e-9);
+  }
+  EXPECT_EQ(LeverShare(model_.tree, knee, knee.assembled), 1.0);
+
+  // At 100 degrees the line nearly passes by the knee.
+  const StandingRobot robot(model_.tree, {}, {.position_margin = -1.0, .torque_share = 100.0});
+  SampledMotion motion{100.0, NeutralPosture(model_.tree, 0.01).transpose(), {{}}};
+  EXPECT_EQ(Broken(CheckMotion(robot, motion), robot.limits), std::nullopt);
+  motion.q(0, CoordinatesOf(model_.tree, knee)[0]) = 1.745;
+  const MotionMargins margins = CheckMotion(robot, motion);
+  EXPECT_EQ(BrokenConstraints(margins, robot.limits), std::vector{Constraint::kLever});
+  EXPECT_EQ(margins.lever.index, 0);
 }
 
 /// A table of the motors and markers of a rigid robot that settles in MuJoCo under its weight.

@@ -8,6 +8,7 @@
 #include "elastocal/robot/jacobian.hpp"
 
 namespace elastocal {
+
 Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometry,
                                 const Eigen::MatrixXd& q,
                                 const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& seen) {

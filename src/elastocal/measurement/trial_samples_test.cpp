@@ -10,6 +10,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/smooth_step.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/test_robots.hpp"
@@ -135,8 +136,8 @@ ScriptedTrial OnACart(ScriptedTrial played) {
       from = to;
       to = 0.4 * random.NormalVector(3, 1.0);
     }
-    const double u = std::clamp((time - played.rest_begin_s[posture] - 1.5) / 3.5, 0.0, 1.0);
-    const Eigen::Vector3d place = from + u * u * u * (10.0 + u * (-15.0 + 6.0 * u)) * (to - from);
+    const double u = (time - played.rest_begin_s[posture] - 1.5) / 3.5;
+    const Eigen::Vector3d place = from + SmoothStep(u) * (to - from);
     const Transform T = FromXyzRpy({place.x(), place.y(), 0.0}, {0.0, 0.0, place.z()});
     auto row = played.markers.positions.row(i);
     for (Eigen::Index c = 0; c < row.size(); c += 3) {

@@ -63,6 +63,9 @@ class LimitList {
     const int link = project_.soles[Size(worst.index)].link;
     return project_.tree.links[Size(link)].name;
   }
+  std::string Linkage(const Worst& worst) const {
+    return worst.index < 0 ? "" : project_.tree.linkages[Size(worst.index)].name;
+  }
   std::string Parts(const Worst& worst) const {
     return worst.index < 0 ? "" : ContactNames(project_)[Size(worst.index)];
   }
@@ -111,8 +114,7 @@ std::vector<LimitUse> LimitUses(const Project& project, const MotionMargins& mar
            list.Sole(margins.floor), Constraint::kFloor);
   if (!project.tree.linkages.empty()) {
     list.Add("lever of rods, % of where put together", margins.lever, percent(margins.lever.value),
-             percent(limits.lever_share), project.tree.linkages[Size(margins.lever.index)].name,
-             Constraint::kLever);
+             percent(limits.lever_share), list.Linkage(margins.lever), Constraint::kLever);
   }
   return std::move(list.uses);
 }

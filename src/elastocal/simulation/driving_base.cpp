@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastocal/math/random.hpp"
+#include "elastocal/math/smooth_step.hpp"
 
 namespace elastocal {
 namespace {
@@ -21,9 +22,6 @@ Place DrawPlace(Random& random) {
 Transform PoseAt(const Place& place) {
   return Transform(Eigen::Translation3d(place.x(), place.y(), 0.0)) * RotZ(place.z());
 }
-
-/// From 0 to 1, with speed and acceleration zero at both ends.
-double Quintic(double s) { return s * s * s * (10.0 + s * (-15.0 + 6.0 * s)); }
 
 /// Where the run of equal entries ends that begins at `i`.
 std::size_t RunEnd(const std::vector<bool>& flags, std::size_t i) {
@@ -63,7 +61,7 @@ std::vector<Place> DrivenPlaces(const std::vector<bool>& resting, Random& random
     const Place to = resting[i] ? from : DrawPlace(random);
     const auto frames = static_cast<double>(end - i);
     for (std::size_t k = i; k < end; ++k) {
-      places.push_back(from + Quintic(static_cast<double>(k - i) / frames) * (to - from));
+      places.push_back(from + SmoothStep(static_cast<double>(k - i) / frames) * (to - from));
     }
     from = to;
     i = end;
