@@ -61,7 +61,7 @@ std::vector<Place> DrivenPlaces(const std::vector<bool>& resting, Random& random
     const Place to = resting[i] ? from : DrawPlace(random);
     const auto frames = static_cast<double>(end - i);
     for (std::size_t k = i; k < end; ++k) {
-      places.push_back(from + SmoothStep(static_cast<double>(k - i) / frames) * (to - from));
+      places.emplace_back(from + SmoothStep(static_cast<double>(k - i) / frames) * (to - from));
     }
     from = to;
     i = end;
