@@ -154,7 +154,7 @@ TEST(PlanTouches, TheRootIsPlacedByTheFootThatStands) {
         Eigen::Translation3d(0.0, 0.0, 0.05) * robot.T_world_sole[Size(swings)];
     ASSERT_TRUE(PlaceSole(robot, swings, T_lifted, pose));
     EXPECT_TRUE(RootOnFloor(robot, pose.q).isApprox(robot.T_world_root, 1e-9)) << swings;
-    EXPECT_FALSE(RootOnFoot(robot, swings, pose.q).isApprox(robot.T_world_root, 1e-3));
+    EXPECT_FALSE(RootOverFeet(robot, {swings}, pose.q).isApprox(robot.T_world_root, 1e-3));
   }
 }
 

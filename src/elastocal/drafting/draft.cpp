@@ -166,14 +166,14 @@ void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
 }
 
 /// The posture of rest and, of a robot that balances, those in which it stands on its feet with the
-/// weight over all and over each of them: its parts do not touch in them, whatever the spheres that
-/// cover them do.
+/// weight over all and over the fewest of them: its parts do not touch in them, whatever the
+/// spheres that cover them do.
 std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft) {
   std::vector<Eigen::VectorXd> postures = {draft.rest.q};
   if (!draft.stands) return postures;
   std::vector<Sole> soles;
   for (const DraftedSole& sole : draft.soles) {
-    soles.push_back({FindLink(draft.tree, sole.link), sole.lower, sole.upper});
+    soles.push_back({FindLink(draft.tree, sole.link), sole.lower, sole.upper, sole.ball_radius});
   }
   StandingRobot robot(draft.tree, std::move(soles), {});
   StandOptions options;
@@ -185,9 +185,11 @@ std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft) {
   }
   postures.push_back(robot.rest);
   for (const int foot : robot.AllFeet()) {
-    PlacedPosture over_one{robot.rest, robot.T_world_root};
-    if (BalanceAtRest(robot, robot.AllFeet(), SupportCentre(robot, {foot}), over_one)) {
-      postures.push_back(over_one.q);
+    const std::vector<int> fewest =
+        robot.soles.size() > 1 ? robot.AllFeetBut(foot) : robot.AllFeet();
+    PlacedPosture over_fewest{robot.rest, robot.T_world_root};
+    if (BalanceAtRest(robot, robot.AllFeet(), SupportCentre(robot, fewest), over_fewest)) {
+      postures.push_back(over_fewest.q);
     }
   }
   return postures;
@@ -233,13 +235,16 @@ void JoinMirrors(ProjectDraft& draft) {
   draft.designs = std::move(joined);
 }
 
-/// Whether the legs have five joints of their own or more each, which `plan` needs to balance.
-bool CanBalance(const RobotTree& tree, const Limbs& limbs) {
-  constexpr std::size_t kLeast = 5;
+/// Whether the legs have as many joints of their own as `plan` needs to balance: five, or three
+/// where four or more legs end in balls.
+bool CanBalance(const RobotTree& tree, const Limbs& limbs, const std::vector<DraftedSole>& soles) {
+  const bool balls = std::any_of(soles.begin(), soles.end(),
+                                 [](const DraftedSole& sole) { return sole.ball_radius; });
+  if (soles.empty() || (balls && soles.size() < 4)) return false;
   for (const Limb& limb : limbs.limbs) {
     if (!limb.leg) continue;
     const std::vector<int> own = ChainCoordinates(tree, 0, limb.tip_link);
-    if (own.size() < kLeast) return false;
+    if (own.size() < LeastLegJoints(balls)) return false;
     for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
       const bool in_leg = std::find(limb.joints.begin(), limb.joints.end(), k) != limb.joints.end();
       if (!in_leg && IsMovedBy(tree.joints[Size(k)], own)) return false;
@@ -272,8 +277,8 @@ void WarnOfGuesses(ProjectDraft& draft) {
         "the root link to be held still, for instance on a stand");
   } else if (!draft.soles.empty() && !draft.stands) {
     draft.warnings.push_back(
-        "the robot does not balance on one or two legs of five joints or more each: the draft "
-        "takes its root link to be held still, for instance on a stand");
+        "the robot does not balance on legs of five joints or more each, or on four of three: the "
+        "draft takes its root link to be held still, for instance on a stand");
   }
   for (const Joint& joint : draft.tree.joints) {
     if (joint.mimic || joint.limits.lower < joint.limits.upper) continue;
@@ -299,8 +304,7 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   draft.tree = ParseUrdf(draft.urdf, source);
   NameTips(described, draft);
   draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics);
-  draft.stands = draft.soles.size() <= 2 && !draft.soles.empty() && draft.rest.stands &&
-                 CanBalance(draft.tree, draft.limbs);
+  draft.stands = draft.rest.stands && CanBalance(draft.tree, draft.limbs, draft.soles);
   if (draft.stands) draft.stance = ChooseStance(draft.tree, draft.soles);
   draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
   constexpr double kMargin = 0.004;  // of the longest branch: 5 mm on a robot of 1.75 m

@@ -166,15 +166,16 @@ class DraftWriter {
 
   void WriteSoles() {
     if (!draft_.stands) {
-      text_ +=
-          draft_.soles.empty()
-              ? "# No legs were found: the root link is held still.\n"
-              : "# The robot does not balance on one or two flat soles of legs with five\n"
-                "# joints or more each: the root link is held still, for instance on a stand.\n";
+      text_ += draft_.soles.empty() ? "# No legs were found: the root link is held still.\n"
+                                    : "# The robot does not balance on flat soles of legs with "
+                                      "five joints or more each,\n"
+                                      "# or on four legs with three: the root link is held still, "
+                                      "for instance on a stand.\n";
       return;
     }
     text_ +=
-        "# The undersides of the feet: x ahead, y to the left, z upwards in the link's frame.\n"
+        "# The undersides of the feet: x ahead, y to the left, z upwards in the link's frame; or\n"
+        "# balls about the link's origin.\n"
         "standing:\n  soles:\n";
     for (const DraftedSole& sole : draft_.soles) {
       std::string note = sole.added ? "  # the link was added to the copy of the URDF" : "";
@@ -183,8 +184,11 @@ class DraftWriter {
       } else if (sole.guessed_size) {
         note += note.empty() ? "  # the size is a guess, measure it" : "; the size is a guess";
       }
-      text_ += fmt::format("    - {{link: {}, lower_mm: {}, upper_mm: {}}}{}\n", Word(sole.link),
-                           MmList(sole.lower), MmList(sole.upper), note);
+      text_ += sole.ball_radius
+                   ? fmt::format("    - {{link: {}, ball_radius_mm: {}}}{}\n", Word(sole.link),
+                                 Mm(*sole.ball_radius), note)
+                   : fmt::format("    - {{link: {}, lower_mm: {}, upper_mm: {}}}{}\n",
+                                 Word(sole.link), MmList(sole.lower), MmList(sole.upper), note);
     }
     if (draft_.stance) {
       text_ +=

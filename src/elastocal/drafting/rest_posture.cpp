@@ -22,10 +22,12 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 /// A chain of joints from the root link to a link, placed by damped least squares.
 class Placer {
  public:
-  Placer(const RobotTree& tree, int link, const std::vector<int>& joints, Eigen::VectorXd lower,
-         Eigen::VectorXd upper)
+  /// `turned`: the link gets its attitude too, not only its place.
+  Placer(const RobotTree& tree, int link, bool turned, const std::vector<int>& joints,
+         Eigen::VectorXd lower, Eigen::VectorXd upper)
       : tree_(tree),
         link_(link),
+        turned_(turned),
         joints_(joints),
         lower_(std::move(lower)),
         upper_(std::move(upper)) {}
@@ -40,6 +42,10 @@ class Placer {
       Vector6 error;
       error << wanted.translation() - found.translation(),
           RotationVector(wanted.linear() * found.linear().transpose());
+      if (!turned_) {
+        error.tail<3>().setZero();
+        J.bottomRows<3>().setZero();
+      }
       if (error.norm() < kReached) return true;
       const Eigen::MatrixXd normal =
           J.transpose() * J + kDamping * Eigen::MatrixXd::Identity(J.cols(), J.cols());
@@ -73,11 +79,12 @@ class Placer {
 
   const RobotTree& tree_;
   int link_;
+  bool turned_;
   const std::vector<int>& joints_;
   Eigen::VectorXd lower_, upper_;
 };
 
-/// Whether all soles are flat at one height, and that height.
+/// Whether all soles are flat (or balls) at one height, and that height.
 bool Flat(const RobotTree& tree, const std::vector<DraftedSole>& soles, const Eigen::VectorXd& q,
           double& height) {
   constexpr double kFlat = 0.035, kSame = 0.01;
@@ -85,9 +92,11 @@ bool Flat(const RobotTree& tree, const std::vector<DraftedSole>& soles, const Ei
   double lowest = 1e9, highest = -1e9;
   for (const DraftedSole& sole : soles) {
     const Transform& T = poses[Size(FindLink(tree, sole.link))];
-    if ((T.linear().col(2) - Eigen::Vector3d::UnitZ()).norm() > kFlat) return false;
-    lowest = std::min(lowest, T.translation().z());
-    highest = std::max(highest, T.translation().z());
+    const bool flat = (T.linear().col(2) - Eigen::Vector3d::UnitZ()).norm() <= kFlat;
+    if (!flat && !sole.ball_radius) return false;
+    const double lowest_point = T.translation().z() - sole.ball_radius.value_or(0.0);
+    lowest = std::min(lowest, lowest_point);
+    highest = std::max(highest, lowest_point);
   }
   height = -0.5 * (lowest + highest);
   return !soles.empty() && highest - lowest < kSame;
@@ -109,7 +118,7 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
       const int link = FindLink(tree, sole.link);
       Transform wanted = zero[Size(link)];
       wanted.translation().z() *= 1.0 - drop;
-      const Placer placer(tree, link, joints, lower, upper);
+      const Placer placer(tree, link, !sole.ball_radius, joints, lower, upper);
       bool placed = false;
       for (std::size_t knee = 1; knee + 1 < joints.size() && !placed; ++knee) {
         for (const double bend : {kKnee, -kKnee}) {

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/motion/leg_chain.hpp"
+#include "elastocal/robot/moving_chain.hpp"
 
 namespace elastocal {
 namespace {
@@ -109,6 +111,27 @@ DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& 
   return sole;
 }
 
+/// The foot of a leg that can place it and not turn it, about the limb's tip.
+DraftedSole FindBall(const RobotTree& tree, const BodyShape& shape, const Limb& limb,
+                     const std::vector<Transform>& T_root_link) {
+  constexpr double kThickest = 0.2;  // of the leg's length: more is no ball about the tip
+  const Transform& T_root_body = T_root_link[Size(BodyLink(tree, limb.tip_body))];
+  const double tip = T_root_link[Size(limb.tip_link)].translation().z();
+  const double hip =
+      T_root_link[Size(tree.joints[Size(limb.joints[0])].child_link)].translation().z();
+  DraftedSole sole;
+  sole.link = tree.links[Size(limb.tip_link)].name;
+  sole.ball_radius = 0.0;
+  sole.guessed_size = true;
+  if (shape.guessed) return sole;
+  double lowest = tip;
+  for (const Eigen::Vector3d& p : shape.points) lowest = std::min(lowest, (T_root_body * p).z());
+  if (tip - lowest > kThickest * (hip - tip)) return sole;
+  sole.ball_radius = tip - lowest;
+  sole.guessed_size = false;
+  return sole;
+}
+
 }  // namespace
 
 std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& shapes,
@@ -118,7 +141,9 @@ std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& sha
   for (std::size_t i = 0; i < limbs.limbs.size(); ++i) {
     const Limb& limb = limbs.limbs[i];
     if (!limb.leg) continue;
-    soles.push_back(FindSole(tree, shapes.bodies[Size(limb.tip_body)], limb, T_root_link));
+    const bool ball = ChainCoordinates(tree, 0, limb.tip_link).size() < LeastLegJoints(false);
+    soles.push_back(
+        (ball ? FindBall : FindSole)(tree, shapes.bodies[Size(limb.tip_body)], limb, T_root_link));
     soles.back().limb = static_cast<int>(i);
   }
   return soles;

@@ -18,6 +18,9 @@ struct DraftedSole {
   Transform T_parent_sole = Transform::Identity();
   Eigen::Vector2d lower = Eigen::Vector2d::Zero();  ///< corner of least x and y, m
   Eigen::Vector2d upper = Eigen::Vector2d::Zero();
+  /// Of a foot that is a ball, m: of a leg with too few joints to lay a sole flat. Its corners are
+  /// 0.
+  std::optional<double> ball_radius = {};
   bool guessed_size = false;    ///< no shape says how large the sole is
   bool guessed_height = false;  ///< nor a link where it is
 };
@@ -25,7 +28,9 @@ struct DraftedSole {
 /// Finds the soles of the legs. The floor is under the lowest points of a foot's shapes in the zero
 /// posture, in which soles lie flat, and what of the shapes is next to it touches it. Without
 /// shapes, a link fixed to the last body whose z axis points up is the sole, and otherwise the foot
-/// is taken to be as high as usual. Corners are in the sole's frame.
+/// is taken to be as high as usual. Corners are in the sole's frame. The foot of a leg of three or
+/// four joints of its own is a ball about its tip, which reaches down to the lowest point of its
+/// shapes in the zero posture.
 std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& shapes,
                                    const Limbs& limbs);
 

@@ -6,6 +6,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/motion/leg_chain.hpp"
 #include "elastocal/robot/moving_chain.hpp"
 
 namespace elastocal {
@@ -68,6 +69,7 @@ void SetLegWorkspace(const RobotTree& tree, const Limb& limb, const RestPosture&
   // Shares of the height of the root link over straight legs (Fig. 2a of the paper).
   constexpr double kAhead = 0.32, kInwards = 0.125, kOutwards = 0.25;
   constexpr double kLowest = 0.997, kHighest = 0.60, kAboveFloor = 0.018;
+  constexpr double kHighestBall = 0.40;  // of the height at rest, where knees are bent far
   constexpr double kEnough = 0.01;
   const auto zero = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   const Eigen::Vector3d foot = zero[Size(setup.tip_link)].translation();
@@ -77,6 +79,8 @@ void SetLegWorkspace(const RobotTree& tree, const Limb& limb, const RestPosture&
   const double outer = side * foot.y() + kOutwards * height;
   Box box{{foot.x() - kAhead * height, std::min(side * inner, side * outer), -kLowest * height},
           {foot.x() + kAhead * height, std::max(side * inner, side * outer), -kHighest * height}};
+  const bool on_ball = limb.joints.size() < LeastLegJoints(false);
+  if (on_ball) box.upper.z() = -kHighestBall * rest.root_height;
   const std::vector<Eigen::Vector3d> places = TipPlaces(tree, setup, rest.q);
   if (ShareInside(box, places) < kEnough) {
     const double highest = box.upper.z();

@@ -135,6 +135,7 @@ std::vector<Bound> MakeBounds() {
       {"collision.spheres[].radius_mm", "mm", 0.1, 1e4, kBody},
       {"standing.soles[].lower_mm[]", "mm", -1e4, 1e4, kBody},
       {"standing.soles[].upper_mm[]", "mm", -1e4, 1e4, kBody},
+      {"standing.soles[].ball_radius_mm", "mm", 0, 1e3, kBody},
       {"standing.stance_mm", "mm", 1, 1e4, kBody},
       {"design.rest_deg.*", "deg or mm", -1e4, 1e4, "joints' limits"},
       {"design.limit_margin", "", 0, 0.4, "beyond, nearly nothing of the range is left"},

@@ -21,6 +21,11 @@ Eigen::VectorXd LeastStep(const Eigen::MatrixXd& screws, const Eigen::VectorXd& 
   return ShortestSolution(screws, wanted);
 }
 
+/// How a point moves, 3 x coordinates, where its body moves by screws about the root's origin.
+Eigen::MatrixXd PointMoves(const Eigen::MatrixXd& screws, const Eigen::Vector3d& point) {
+  return screws.bottomRows(3) - Skew(point) * screws.topRows(3);
+}
+
 /// Sum of the distances between the joints that carry a link, from the first one to the link, m.
 double LengthOf(const RobotTree& tree, int link) {
   const auto poses = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
@@ -39,23 +44,23 @@ double LengthOf(const RobotTree& tree, int link) {
 
 }  // namespace
 
-LegChain::LegChain(const RobotTree& tree, int sole_link)
+LegChain::LegChain(const RobotTree& tree, const Sole& sole)
     : tree_(tree),
-      sole_link_(sole_link),
-      joints_(JointsToBody(tree, tree.links[static_cast<std::size_t>(sole_link)].body)) {
-  constexpr std::size_t kLeast = 5;
-  coordinates_ = ChainCoordinates(tree, 0, sole_link);
-  bool own = coordinates_.size() >= kLeast;
+      sole_link_(sole.link),
+      on_ball_(sole.ball_radius.has_value()),
+      joints_(JointsToBody(tree, tree.links[static_cast<std::size_t>(sole.link)].body)) {
+  coordinates_ = ChainCoordinates(tree, 0, sole_link_);
+  bool own = coordinates_.size() >= LeastLegJoints(on_ball_);
   for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
     const bool in_leg = std::find(joints_.begin(), joints_.end(), k) != joints_.end();
     own = own && (in_leg || !IsMovedBy(tree.joints[static_cast<std::size_t>(k)], coordinates_));
   }
-  length_ = LengthOf(tree, sole_link);
+  length_ = LengthOf(tree, sole_link_);
   if (own) return;
   throw InputError("robot '" + tree.name + "': '" +
-                   tree.links[static_cast<std::size_t>(sole_link)].name + "' is at the end of " +
-                   std::to_string(joints_.size()) +
-                   " joints; expected a leg of five or more joints of its own to balance on");
+                   tree.links[static_cast<std::size_t>(sole_link_)].name + "' is at the end of " +
+                   std::to_string(joints_.size()) + " joints; expected a leg of " +
+                   (on_ball_ ? "three" : "five") + " or more joints of its own to balance on");
 }
 
 Transform LegChain::Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const {
@@ -85,12 +90,13 @@ Transform LegChain::SolePose(const Eigen::VectorXd& q) const {
 }
 
 void LegChain::Prefer(const Eigen::VectorXd& q) {
-  if (coordinates_.size() <= 6) return;
-  Eigen::MatrixXd screws;
-  Evaluate(q, screws);
-  preferred_ = q(coordinates_);
   const auto count = static_cast<Eigen::Index>(coordinates_.size());
-  still_ = OrthogonalFactor(screws.transpose()).rightCols(count - 6).transpose();
+  if (count <= placed()) return;
+  Eigen::MatrixXd moves;
+  const Transform T_root_sole = Evaluate(q, moves);
+  if (on_ball_) moves = PointMoves(moves, T_root_sole.translation());
+  preferred_ = q(coordinates_);
+  still_ = OrthogonalFactor(moves.transpose()).rightCols(count - placed()).transpose();
 }
 
 bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
@@ -98,7 +104,7 @@ bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
 }
 
 bool LegChain::PlaceFlat(const Transform& T_root_sole, Eigen::VectorXd& q) const {
-  return Solve(T_root_sole, coordinates_.size() < 6, q);
+  return Solve(T_root_sole, !on_ball_ && coordinates_.size() < 6, q);
 }
 
 bool LegChain::Solve(const Transform& T_root_sole, bool any_heading, Eigen::VectorXd& q) const {
@@ -108,7 +114,8 @@ bool LegChain::Solve(const Transform& T_root_sole, bool any_heading, Eigen::Vect
   Eigen::MatrixXd screws;
   for (int i = 0; i < kIterations; ++i) {
     const Transform found = Evaluate(q, screws);
-    Eigen::Vector3d turn = RotationVector(T_root_sole.linear() * found.linear().transpose());
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+    if (!on_ball_) turn = RotationVector(T_root_sole.linear() * found.linear().transpose());
     if (any_heading) {  // the turn about the normal is one more unknown
       const Eigen::Vector3d normal = T_root_sole.linear().col(2);
       screws.conservativeResize(Eigen::NoChange, screws.cols() + 1);
@@ -121,8 +128,12 @@ bool LegChain::Solve(const Transform& T_root_sole, bool any_heading, Eigen::Vect
     if (turn.norm() < kReached && move.norm() < kReached && off.norm() < kReached) return true;
     Eigen::VectorXd wanted(6);
     wanted << turn, move - turn.cross(found.translation());
+    if (on_ball_) {
+      wanted = move;
+      screws = PointMoves(screws, found.translation());
+    }
     if (still_.rows() > 0) {
-      wanted.conservativeResize(6 + off.size());
+      wanted.conservativeResize(placed() + off.size());
       wanted.tail(off.size()) = off;
       screws.conservativeResize(wanted.size(), Eigen::NoChange);
       screws.bottomRows(still_.rows()) = still_;

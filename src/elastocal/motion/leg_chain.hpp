@@ -5,21 +5,26 @@
 
 #include <Eigen/Core>
 
-#include "elastocal/robot/robot_tree.hpp"
+#include "elastocal/robot/standing.hpp"
 
 namespace elastocal {
 
-/// A leg: the joints from the root link to a sole. It has five or more entries of q of its own;
-/// joints within it may be coupled, but not to joints elsewhere. With more than six, the leg stays
-/// near the posture from which it is placed, or goes by the one that is preferred; with five, only
-/// some poses of the sole are in reach (those parallel to the root link, where what is missing is
-/// the joint about the vertical).
+/// How many entries of q of its own a leg has at least whose foot can be placed.
+constexpr std::size_t LeastLegJoints(bool on_ball) { return on_ball ? 3 : 5; }
+
+/// A leg: the joints from the root link to a sole. It has five or more entries of q of its own, or
+/// three or more if its sole is a ball, of which only the place counts; joints within it may be
+/// coupled, but not to joints elsewhere. With more than six (three), the leg stays near the posture
+/// from which it is placed, or goes by the one that is preferred; with five, only some poses of the
+/// sole are in reach (those parallel to the root link, where what is missing is the joint about the
+/// vertical).
 class LegChain {
  public:
   /// Keeps a reference. Throws InputError for fewer joints, and for coupling to joints elsewhere.
-  LegChain(const RobotTree& tree, int sole_link);
+  LegChain(const RobotTree& tree, const Sole& sole);
 
   int sole_link() const { return sole_link_; }
+  bool on_ball() const { return on_ball_; }
   const std::vector<int>& coordinates() const { return coordinates_; }  ///< of q, from the root on
 
   /// Sum of the distances between the joints from the first one to the sole in the zero posture, m.
@@ -28,15 +33,16 @@ class LegChain {
   /// Pose of the sole in the root link's frame.
   Transform SolePose(const Eigen::VectorXd& q) const;
 
-  /// Of the many postures of a leg with more than six joints that have the same pose of the sole,
+  /// Of the many postures of a leg with spare joints that have the same pose of the sole,
   /// `Place` takes from now on the one that differs from `q` only by what moves the sole (as seen
   /// at `q`). It depends on the pose alone then, not on the way to it. Other legs are left as they
   /// are.
   void Prefer(const Eigen::VectorXd& q);
 
   /// Moves the leg's joints in `q` by Newton's method until the sole has the given pose in the root
-  /// link's frame (1e-11 m and rad). Limits are not checked. Returns false, with the joints
-  /// anywhere, if the pose is out of reach or the knee gets straight.
+  /// link's frame (1e-11 m and rad), or if it is a ball the place of that pose. Limits are not
+  /// checked. Returns false, with the joints anywhere, if the pose is out of reach or the knee gets
+  /// straight.
   bool Place(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
   /// The same, but the sole of a leg of five joints, which cannot have every pose, may turn about
@@ -48,9 +54,12 @@ class LegChain {
   /// Pose of the sole; sets `screws` to its derivatives, 6 x coordinates: a rotation and the
   /// velocity of the point at the root's origin.
   Transform Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const;
+  /// How many numbers `Place` sets: those of the sole's pose, or of a ball's place.
+  int placed() const { return on_ball_ ? 3 : 6; }
 
   const RobotTree& tree_;
   int sole_link_;
+  bool on_ball_;
   double length_ = 0.0;
   std::vector<int> joints_, coordinates_;
   Eigen::VectorXd preferred_;  ///< by the leg's coordinates; empty: none

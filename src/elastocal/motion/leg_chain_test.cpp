@@ -36,7 +36,7 @@ constexpr double kHip = -0.5, kKnee = 1.0;
 
 TEST(LegChain, OfSevenJointsStaysNearWhereItIsPlacedFrom) {
   const RobotTree tree = OneLeg("zxytyyx");
-  const LegChain leg(tree, FindLink(tree, "sole"));
+  const LegChain leg(tree, {FindLink(tree, "sole")});
   ASSERT_EQ(leg.coordinates().size(), 7u);
   Eigen::VectorXd rest(7);
   rest << 0, 0, kHip, 0, kKnee, kHip, 0;
@@ -54,7 +54,7 @@ TEST(LegChain, OfSevenJointsStaysNearWhereItIsPlacedFrom) {
 
 TEST(LegChain, OfSevenJointsWithAPreferenceGoesByThePoseAlone) {
   const RobotTree tree = OneLeg("zxytyyx");
-  LegChain leg(tree, FindLink(tree, "sole"));
+  LegChain leg(tree, {FindLink(tree, "sole")});
   Eigen::VectorXd rest(7);
   rest << 0, 0, kHip, 0, kKnee, kHip, 0;
   leg.Prefer(rest);
@@ -72,7 +72,7 @@ TEST(LegChain, OfSevenJointsWithAPreferenceGoesByThePoseAlone) {
 /// A leg of five joints with a bent knee, and a place nearby for its sole.
 class FiveJointLeg : public testing::Test {
  protected:
-  FiveJointLeg() : tree_(OneLeg("xyyyx")), leg_(tree_, FindLink(tree_, "sole")), q_(5) {
+  FiveJointLeg() : tree_(OneLeg("xyyyx")), leg_(tree_, {FindLink(tree_, "sole")}), q_(5) {
     q_ << 0, kHip, kKnee, kHip, 0;
     wanted_ = leg_.SolePose(q_);
     wanted_.translation() += Eigen::Vector3d(0.03, -0.05, 0.02);
@@ -105,7 +105,7 @@ TEST(LegChain, JointsOfALegMayFollowEachOtherButNoOthers) {
   for (const std::size_t k : {4u, 5u, 6u}) tree.joints[k].coordinate -= 1;
   tree.joints[4].mimic = true;
   tree.coordinate_joint = {0, 1, 2, 3, 5, 6};
-  const LegChain leg(tree, FindLink(tree, "sole"));
+  const LegChain leg(tree, {FindLink(tree, "sole")});
   Eigen::VectorXd q(6);
   q << 0, 0, -0.6, 0.6, -0.6, 0;
   Transform wanted = leg.SolePose(q);
@@ -115,10 +115,10 @@ TEST(LegChain, JointsOfALegMayFollowEachOtherButNoOthers) {
 
   AddJoint(tree, "tail", 0, Offset(-0.1, 0, 0), {0, 1, 0});
   MakeLastJointMimic(tree, 0, 1.0, 0.0);
-  ExpectInputError([&] { LegChain(tree, FindLink(tree, "sole")); },
+  ExpectInputError([&] { LegChain(tree, {FindLink(tree, "sole")}); },
                    {"'sole'", "five or more joints of its own"});
   const RobotTree four = OneLeg("xyyy");
-  ExpectInputError([&] { LegChain(four, FindLink(four, "sole")); }, {"4 joints"});
+  ExpectInputError([&] { LegChain(four, {FindLink(four, "sole")}); }, {"4 joints"});
 }
 
 }  // namespace

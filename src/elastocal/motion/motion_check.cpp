@@ -75,13 +75,13 @@ void CheckFeet(const StandingRobot& robot, const std::vector<int>& standing,
     if (std::find(standing.begin(), standing.end(), foot) != standing.end()) {
       const Transform off = robot.T_world_sole[Size(foot)].inverse() * found;
       Largest(margins.foot_moved, off.translation().norm(), sample, foot);
-      Largest(margins.foot_turned, RotationAngle(off.linear()), sample, foot);
+      if (!sole.ball_radius) {
+        Largest(margins.foot_turned, RotationAngle(off.linear()), sample, foot);
+      }
       continue;
     }
-    for (const double x : {sole.lower.x(), sole.upper.x()}) {
-      for (const double y : {sole.lower.y(), sole.upper.y()}) {
-        Least(margins.floor, (found * Eigen::Vector3d(x, y, 0.0)).z(), sample, foot);
-      }
+    for (const double height : HeightsOverFloor(sole, found)) {
+      Least(margins.floor, height, sample, foot);
     }
   }
 }
@@ -130,9 +130,8 @@ MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motio
       T_world_root[Size(i)] = robot.T_world_root;
       continue;
     }
-    const int foot = motion.standing[Size(i)].front();
-    T_world_root[Size(i)] = robot.T_world_sole[Size(foot)] *
-                            T_root_link[Size(i)][Size(robot.soles[Size(foot)].link)].inverse();
+    T_world_root[Size(i)] =
+        RootOverFeet(robot, motion.standing[Size(i)], motion.q.row(i).transpose());
   }
   MotionForces found;
   found.zmp.resize(samples, 2);

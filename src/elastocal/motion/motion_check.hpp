@@ -32,7 +32,7 @@ struct MotionMargins {
   Worst knee;         ///< least bend of the knee (the most bent joint) of a standing leg, rad
   Worst foot_moved;   ///< largest displacement of a standing foot, m
   Worst foot_turned;  ///< largest rotation of a standing foot, rad
-  Worst floor;        ///< least height of a corner of a swinging foot, m
+  Worst floor;        ///< least height of a swinging foot (a corner, or the ball), m
   Worst lever;        ///< least LeverShare of a linkage; infinite without linkages
 };
 
@@ -69,10 +69,10 @@ struct MotionForces {
   Eigen::MatrixXd torques;  ///< samples x coordinates, N.m or N
 };
 
-/// Computes the margins of a motion from its joint positions alone. The first foot that stands
-/// gives the root link's pose (by the URDF's own kinematics; the foot is at robot.T_world_sole).
+/// Computes the margins of a motion from its joint positions alone. The feet that stand give the
+/// root link's pose (RootOverFeet, by the URDF's own kinematics).
 /// Speeds and accelerations are differences, with rest before and after the motion. Inverse
-/// dynamics give the floor's wrench, which two feet share by ShareWrench. Fills `forces`, if given.
+/// dynamics give the floor's wrench, which the feet share by ShareWrench. Fills `forces`, if given.
 MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motion,
                           MotionForces* forces = nullptr);
 

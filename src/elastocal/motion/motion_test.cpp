@@ -309,7 +309,7 @@ TEST(StandingRobot, LengthsOfAMotionFollowFromItsSize) {
   const Walker walker = MakeWalker();
   const StandingRobot robot(walker.tree, walker.soles, {});
   EXPECT_NEAR(robot.leg_length, 0.38 + 0.325 + 0.107, 1e-12);  // the hip's axes meet
-  EXPECT_NEAR(robot.half_sole, 0.06, 1e-12);
+  EXPECT_NEAR(robot.half_support, 0.06, 1e-12);
   EXPECT_NEAR(robot.limits.zmp_margin, 0.3 * 0.06, 1e-12);
   const PlanOptions sized = SizedOptions(robot, {});
   EXPECT_NEAR(sized.lift_m, 0.123 * 0.812, 1e-12);

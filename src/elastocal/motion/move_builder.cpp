@@ -22,22 +22,17 @@ Eigen::VectorXd ShareOfWay(Eigen::Index samples, Eigen::Index before, Eigen::Ind
   return progress;
 }
 
-/// Distances of the robot's own parts, then heights of the corners of swinging feet.
+/// Distances of the robot's own parts, then heights of the lowest points of swinging feet.
 Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vector<int>& standing,
                                     const Eigen::VectorXd& q) {
   const Eigen::VectorXd apart = robot.clearances ? robot.clearances(q) : Eigen::VectorXd();
   std::vector<double> heights;
   for (const int foot : robot.AllFeet()) {
     if (std::find(standing.begin(), standing.end(), foot) != standing.end()) continue;
-    const Sole& sole = robot.soles[Size(foot)];
-    const Transform T_world_sole = robot.T_world_sole[Size(standing.front())] *
-                                   robot.legs[Size(standing.front())].SolePose(q).inverse() *
-                                   robot.legs[Size(foot)].SolePose(q);
-    for (const double x : {sole.lower.x(), sole.upper.x()}) {
-      for (const double y : {sole.lower.y(), sole.upper.y()}) {
-        heights.push_back((T_world_sole * Eigen::Vector3d(x, y, 0.0)).z());
-      }
-    }
+    const Transform T_world_sole =
+        RootOverFeet(robot, standing, q) * robot.legs[Size(foot)].SolePose(q);
+    const auto lowest = HeightsOverFloor(robot.soles[Size(foot)], T_world_sole);
+    heights.insert(heights.end(), lowest.begin(), lowest.end());
   }
   Eigen::VectorXd all(apart.size() + static_cast<Eigen::Index>(heights.size()));
   all.head(apart.size()) = apart;
@@ -53,7 +48,7 @@ constexpr double kEnds = 0.5;  // s, hold at either end, in which the root link 
 
 PlanOptions SizedOptions(const StandingRobot& robot, PlanOptions options) {
   constexpr double kInset = 0.54, kLift = 0.123;
-  if (options.inset <= 0.0) options.inset = kInset * robot.half_sole;
+  if (options.inset <= 0.0) options.inset = kInset * robot.half_support;
   if (options.lift_m <= 0.0) options.lift_m = kLift * robot.leg_length;
   return options;
 }
@@ -62,8 +57,9 @@ Eigen::Index MoveBuilder::SamplesOf(double seconds) const {
   return static_cast<Eigen::Index>(std::lround(seconds * options_.rate_hz));
 }
 
-Eigen::Vector2d MoveBuilder::HandOver(int onto) const {
-  const Eigen::Vector2d centre = SupportCentre(robot_, {onto});
+Eigen::Vector2d MoveBuilder::HandOver(const std::vector<int>& onto) const {
+  const Eigen::Vector2d centre = SupportCentre(robot_, onto);
+  if (onto.size() > 1) return centre;
   const Eigen::Vector2d inwards = SupportCentre(robot_, robot_.AllFeet()) - centre;
   return centre + options_.inset * inwards.normalized();
 }
@@ -123,7 +119,7 @@ std::optional<PlacedPosture> MoveBuilder::AsGiven(const Eigen::VectorXd& q,
                                                   const std::vector<int>& standing,
                                                   Refusal& why) const {
   PlacedPosture pose{q, robot_.T_world_root};
-  if (!standing.empty()) pose.T_world_root = RootOnFoot(robot_, standing.front(), q);
+  if (!standing.empty()) pose.T_world_root = RootOverFeet(robot_, standing, q);
   for (const int foot : standing) {
     if (PlaceSole(robot_, foot, robot_.T_world_sole[Size(foot)], pose)) continue;
     why = OutOfReach();
@@ -292,7 +288,8 @@ Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, d
 }
 
 std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const PlacedPosture& from,
-                                                  const PlacedPosture& to, int onto,
+                                                  const PlacedPosture& to,
+                                                  const std::vector<int>& onto,
                                                   Refusal& why) const {
   Stretch stretch;
   stretch.rate_hz = options_.rate_hz;
@@ -331,7 +328,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, cons
     stretch.T_world_led.push_back(Eigen::Translation3d(0.0, 0.0, lifted[i]) *
                                   robot_.T_world_sole[Size(foot)] * RotY(tilt * second[i]));
   }
-  const Eigen::RowVector2d begin = HandOver(standing.front()).transpose();
+  const Eigen::RowVector2d begin = HandOver(standing).transpose();
   const Eigen::RowVector2d way = SupportCentre(robot_, standing).transpose() - begin;
   stretch.zmp = begin.replicate(shifted.size(), 1) + shifted * way;
   stretch.begin = from;

@@ -21,8 +21,9 @@ class MoveBuilder {
   MoveBuilder(const StandingRobot& robot, const PlanOptions& options)
       : robot_(robot), options_(options) {}
 
-  /// Where the zero-moment point is when the other foot than `onto` leaves the floor, m.
-  Eigen::Vector2d HandOver(int onto) const;
+  /// Where the zero-moment point is when the other foot than `onto` leaves the floor, m: of one
+  /// foot, on the side of the other; of several, in the middle.
+  Eigen::Vector2d HandOver(const std::vector<int>& onto) const;
 
   /// The posture, balanced at rest on the feet. The joints of standing legs are solved for,
   /// starting from those of `near`. The root link is as high as in the posture of rest, higher if a
@@ -32,9 +33,8 @@ class MoveBuilder {
   std::optional<PlacedPosture> AtRest(const Eigen::VectorXd& q, const std::vector<int>& standing,
                                       const PlacedPosture& near, Refusal& why) const;
 
-  /// The posture as it is, legs too: the first of the feet says where the root link is, and the
-  /// centre of mass where the zero-moment point is. The other feet are put exactly where they
-  /// stand.
+  /// The posture as it is, legs too: the feet say where the root link is (RootOverFeet), and the
+  /// centre of mass where the zero-moment point is. All feet are put exactly where they stand.
   std::optional<PlacedPosture> AsGiven(const Eigen::VectorXd& q, const std::vector<int>& standing,
                                        Refusal& why) const;
 
@@ -56,9 +56,9 @@ class MoveBuilder {
   /// amplitude is at most the given share of the range and keeps the velocity limit.
   Eigen::MatrixXd SineWay(const Eigen::VectorXd& q, int coordinate, double share) const;
 
-  /// Motion that shifts the weight from all feet to one of them.
-  std::optional<Eigen::MatrixXd> Shift(const PlacedPosture& from, const PlacedPosture& to, int onto,
-                                       Refusal& why) const;
+  /// Motion that shifts the weight from all feet to some of them.
+  std::optional<Eigen::MatrixXd> Shift(const PlacedPosture& from, const PlacedPosture& to,
+                                       const std::vector<int>& onto, Refusal& why) const;
 
   /// Motion that lifts a foot straight up by options.lift_m while the others stand, and turns it by
   /// `tilt` about its y axis [rad] on the second half of the way.

@@ -73,7 +73,7 @@ class TourPlanner {
   }
 
  private:
-  bool OneFoot() const { return set_.standing.size() < robot_.soles.size(); }
+  bool LiftsAFoot() const { return set_.standing.size() < robot_.soles.size(); }
 
   void Hold() {
     // The holds at the ends of moves are part of `hold_s`.
@@ -81,16 +81,17 @@ class TourPlanner {
     rows_.Add(here_.q.transpose().replicate(samples, 1), set_.standing);
   }
 
-  /// Shifts the weight and lifts the other foot. Does nothing if the set stands on all feet.
+  /// Shifts the weight and lifts the foot on which the set does not stand. Does nothing if the set
+  /// stands on all feet.
   bool StepOntoFeet(Refusal& why) {
-    if (!OneFoot()) return true;
-    const int stands = set_.standing.front();
+    if (!LiftsAFoot()) return true;
     PlacedPosture over = here_;
     if (options_.balanced &&
-        !BalanceAtRest(robot_, robot_.AllFeet(), build_.HandOver(stands), over)) {
+        !BalanceAtRest(robot_, robot_.AllFeet(), build_.HandOver(set_.standing), over)) {
+      why = OutOfReach();
       return false;
     }
-    const auto shifted = build_.Shift(here_, over, stands, why);
+    const auto shifted = build_.Shift(here_, over, set_.standing, why);
     if (!shifted) return false;
     shifted_ = *shifted;
     // Flat or, where the ankle does not bend so far, with the toes or the heel down.
@@ -103,9 +104,9 @@ class TourPlanner {
     return false;
   }
 
-  /// Lifts the foot on which the set does not stand, the weight being over the other one.
+  /// Lifts the foot on which the set does not stand, the weight being over the others.
   bool LiftFoot(const PlacedPosture& over, double tilt, Refusal& why) {
-    const int swings = 1 - set_.standing.front();
+    const int swings = SwingingFoot();
     const Transform T_world_lifted = Eigen::Translation3d(0.0, 0.0, options_.lift_m) *
                                      robot_.T_world_sole[Size(swings)] * RotY(tilt);
     const auto up = build_.AtRestWithFoot(set_.standing, swings, T_world_lifted, over, why);
@@ -119,8 +120,15 @@ class TourPlanner {
     return true;
   }
 
+  int SwingingFoot() const {
+    const std::vector<int> all = robot_.AllFeet();
+    return *std::find_if(all.begin(), all.end(), [&](int foot) {
+      return std::find(set_.standing.begin(), set_.standing.end(), foot) == set_.standing.end();
+    });
+  }
+
   void StepBack() {
-    if (!OneFoot()) return;
+    if (!LiftsAFoot()) return;
     rows_.Add(lifted_.colwise().reverse(), set_.standing);
     rows_.Add(shifted_.colwise().reverse(), robot_.AllFeet());
   }

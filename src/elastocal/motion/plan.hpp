@@ -16,7 +16,7 @@ namespace elastocal {
 /// Postures that a robot goes through while the same feet stand.
 struct PostureTour {
   std::string name;
-  std::vector<int> standing;  ///< feet, indices of soles: all of them, or one
+  std::vector<int> standing;  ///< feet, indices of soles: all of them, or all but one
   /// Postures of the whole robot, by coordinate. Balancing finds the joints of standing legs.
   std::vector<Eigen::VectorXd> postures;
   bool in_order =
@@ -49,12 +49,12 @@ struct PlanOptions {
   bool balanced = true;  ///< false: the root link stays where it is at rest; only for comparison
   double rate_hz = 100.0;
   double hold_s = 1.5;   ///< time at rest in each posture
-  double shift_s = 4.0;  ///< time to shift the weight from two feet to one
+  double shift_s = 4.0;  ///< time to shift the weight off a foot
   double lift_s = 5.0;   ///< time to lift a foot and shift the rest of the weight
   /// When a foot leaves or meets the floor, the zero-moment point is this far from the middle of
-  /// the other foot, towards the one that moves, m. If legs are longer than the model says, the
-  /// foot that touches the floor first pushes the robot away from it. 0: 0.54 of half the width of
-  /// the sole.
+  /// the other foot (if it is one alone), towards the one that moves, m. If legs are longer than
+  /// the model says, the foot that touches the floor first pushes the robot away from it. 0: 0.54
+  /// of half the width of the sole.
   double inset = 0.0;
   /// Height to which a foot is lifted before its leg moves freely, m. A tenth of it is lifted
   /// before the rest of the weight is shifted. 0: 0.123 of the leg's length.
@@ -90,7 +90,7 @@ struct PlannedTour {
 /// Plans the motion through one set (paper, section 3.6). OrderPostures gives the order,
 /// PlanJointPath the ways, and Balance balances them. CheckMotion checks each way; if it breaks
 /// limits, it is made slower or led by the posture of rest. A posture that cannot be held or
-/// reached is left out. For a set on one foot, the weight is first shifted and the other foot
+/// reached is left out. For a set on all feet but one, the weight is first shifted and that foot
 /// lifted straight up, flat or, where its ankle does not bend so far, tilted; at the end the same
 /// is done backwards, so that the foot lands where it stood.
 PlannedTour PlanTour(const StandingRobot& robot, const PostureTour& set,

@@ -33,7 +33,7 @@ Stabiliser::Stabiliser(const RobotTree& tree, const std::vector<Sole>& soles,
       inertias_(BodyInertias(tree)),
       correction_(Eigen::VectorXd::Zero(tree.coordinate_count())) {
   for (const Sole& sole : soles) {
-    legs_.emplace_back(tree, sole.link);
+    legs_.emplace_back(tree, sole);
     middle_.push_back(sole.centre());
   }
   if (!legs_.empty()) leg_length_ = legs_[0].length();
@@ -50,17 +50,46 @@ Eigen::VectorXd Stabiliser::Correct(const Eigen::VectorXd& planned, const std::v
   };
   const auto standing = std::find_if(legs_.begin(), legs_.end(), stands);
   if (standing == legs_.end()) return planned + correction_;
-  T_root_sole_.clear();
-  for (const LegChain& leg : legs_) T_root_sole_.push_back(leg.SolePose(planned));
+  PlaceSoles(planned, support);
   StandOn(static_cast<int>(standing - legs_.begin()));
   ShareWeight(planned, support);
-  LearnTurn(sense, interval_s);
-  LearnFeet(sense, interval_s);
-  LearnHeight(sense, interval_s);
-  LearnShift(planned, sense, interval_s);
+  const StandingSense sensed = InSoleAxes(planned, sense);
+  LearnTurn(sensed, interval_s);
+  LearnFeet(sensed, interval_s);
+  LearnHeight(sensed, interval_s);
+  LearnShift(planned, sensed, interval_s);
   const double largest = options_.largest_speed * interval_s;
   correction_ += (Corrected(planned) - planned - correction_).cwiseMax(-largest).cwiseMin(largest);
   return planned + correction_;
+}
+
+void Stabiliser::PlaceSoles(const Eigen::VectorXd& planned, const std::vector<int>& support) {
+  T_root_sole_.clear();
+  std::vector<Eigen::Vector3d> balls;
+  for (const LegChain& leg : legs_) {
+    T_root_sole_.push_back(leg.SolePose(planned));
+    const bool stands = std::find(support.begin(), support.end(), leg.sole_link()) != support.end();
+    if (leg.on_ball() && stands) balls.push_back(T_root_sole_.back().translation());
+  }
+  if (balls.size() < 3) return;
+  const Eigen::Matrix3d axes = FloorAxes(balls);
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    if (legs_[i].on_ball()) T_root_sole_[i].linear() = axes;
+  }
+}
+
+StandingSense Stabiliser::InSoleAxes(const Eigen::VectorXd& planned,
+                                     const StandingSense& sense) const {
+  StandingSense turned = sense;
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    if (!legs_[i].on_ball()) continue;
+    const Eigen::Matrix3d R =
+        T_root_sole_[i].linear().transpose() * legs_[i].SolePose(planned).linear();
+    const auto column = static_cast<Eigen::Index>(i);
+    turned.wrenches.col(column).head<3>() = R * sense.wrenches.col(column).head<3>();
+    turned.wrenches.col(column).tail<3>() = R * sense.wrenches.col(column).tail<3>();
+  }
+  return turned;
 }
 
 /// Expresses the filtered error in the axes of another sole.

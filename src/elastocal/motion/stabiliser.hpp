@@ -48,6 +48,7 @@ struct StabiliserOptions {
 ///   centres of pressure at like points (a foot on its edge lets the robot rock, and its centre of
 ///   pressure no longer tells where the weight is),
 /// - shifts the root link until the zero-moment point is where the planned centre of mass is.
+/// Of more than two feet only the last is done with the feet, and balls cannot be turned.
 /// Turn and shift are learned for each foot by its planned share of the weight, because every leg
 /// has errors of its own: what it learned on a foot is used again when the weight comes back.
 /// It knows the robot by its description, without errors and elasticity, and takes planned
@@ -70,6 +71,11 @@ class Stabiliser {
   const Eigen::Vector2d& turn() const { return turn_; }    ///< of the root link, rad
 
  private:
+  /// The planned poses of the soles in the root link's frame. A ball gets the axes of the floor on
+  /// which balls are planned to stand, z up and x ahead.
+  void PlaceSoles(const Eigen::VectorXd& planned, const std::vector<int>& support);
+  /// The wrenches in the axes of T_root_sole_.
+  StandingSense InSoleAxes(const Eigen::VectorXd& planned, const StandingSense& sense) const;
   void StandOn(int reference);
   void ShareWeight(const Eigen::VectorXd& planned, const std::vector<int>& support);
   /// What was learned for the soles, by their shares of the weight, in the axes of the reference.

@@ -20,7 +20,7 @@ class BipedStabiliser : public testing::Test {
         planned_[tree_.joints[static_cast<std::size_t>(k)].coordinate] = bent;
       }
     }
-    const LegChain left(tree_, soles_[0].link), right(tree_, soles_[1].link);
+    const LegChain left(tree_, soles_[0]), right(tree_, soles_[1]);
     T_root_sole_ = {left.SolePose(planned_), right.SolePose(planned_)};
     const Eigen::Vector3d com = CentreOfMass(tree_, BodyInertias(tree_), planned_);
     sense_.wrenches.setZero(6, 2);
@@ -40,7 +40,7 @@ class BipedStabiliser : public testing::Test {
     for (int i = 0; i < 10; ++i) {
       q = stabiliser.Correct(planned_, {soles_[0].link, soles_[1].link}, sense_, 0.01);
     }
-    const LegChain left(tree_, soles_[0].link);
+    const LegChain left(tree_, soles_[0]);
     return left.SolePose(q).inverse() * T_root_sole_[0];
   }
 
@@ -63,7 +63,7 @@ TEST_F(BipedStabiliser, LeavesAloneWhatStandsAsPlanned) {
 TEST_F(BipedStabiliser, TurnsBackARootThatLeansForwards) {
   sense_.R_world_root = RotationFromVector({0.0, 0.05, 0.0});
   const Eigen::Vector3d turn = RotationVector(RootMoved().linear());
-  const double sway = std::sqrt(9.81 / LegChain(tree_, soles_[0].link).length());
+  const double sway = std::sqrt(9.81 / LegChain(tree_, soles_[0]).length());
   EXPECT_NEAR(turn.y(), -0.24 * sway * 0.1 * 0.05, 1e-5);  // rate, time, error
   EXPECT_NEAR(turn.x(), 0.0, 1e-5);
 }
@@ -89,7 +89,7 @@ TEST_F(BipedStabiliser, TurnsFeetUntilBothArePressedAlike) {
     q = stabiliser.Correct(planned_, {soles_[0].link, soles_[1].link}, sense_, 0.01);
   }
   const auto turned = [&](std::size_t i) {
-    const Eigen::Matrix3d R = LegChain(tree_, soles_[i].link).SolePose(q).linear();
+    const Eigen::Matrix3d R = LegChain(tree_, soles_[i]).SolePose(q).linear();
     return RotationVector(T_root_sole_[i].linear().transpose() * R).y();
   };
   EXPECT_NEAR(turned(0), -0.16 / 0.812 * 0.1 * 0.1, 1e-5);  // rate, distance, time
@@ -105,7 +105,7 @@ TEST_F(BipedStabiliser, LiftsAFootThatIsTooLow) {
   for (int i = 0; i < 10; ++i) {
     q = stabiliser.Correct(planned_, {soles_[0].link, soles_[1].link}, sense_, 0.01);
   }
-  const LegChain left(tree_, soles_[0].link), right(tree_, soles_[1].link);
+  const LegChain left(tree_, soles_[0]), right(tree_, soles_[1]);
   const double lifted = (right.SolePose(q).inverse() * left.SolePose(q)).translation().z() -
                         (T_root_sole_[1].inverse() * T_root_sole_[0]).translation().z();
   const double width = (T_root_sole_[0].translation() - T_root_sole_[1].translation()).norm();
@@ -140,7 +140,7 @@ TEST_F(BipedStabiliser, LetsALiftedLegGoAsPlanned) {
   lifted[tree_.joints[static_cast<std::size_t>(knee)].coordinate] = 1.6;
   Stabiliser stabiliser(tree_, soles_);
   const Eigen::VectorXd q = stabiliser.Correct(lifted, {soles_[0].link}, sense_, 0.01);
-  const LegChain left(tree_, soles_[0].link), right(tree_, soles_[1].link);
+  const LegChain left(tree_, soles_[0]), right(tree_, soles_[1]);
   EXPECT_TRUE(right.SolePose(q).isApprox(right.SolePose(lifted), 1e-12));
   EXPECT_FALSE(left.SolePose(q).isApprox(left.SolePose(lifted), 1e-6));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
@@ -40,15 +41,85 @@ bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_so
   return false;
 }
 
-/// Height of the root link above the soles: of the posture, if its knees are bent, and otherwise
+/// Height of the root link above the floor: of the posture, if its knees are bent, and otherwise
 /// that of straight legs less the drop.
 double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
                   const StandOptions& options) {
   double bend = 0.0;
   for (const int c : robot.legs[0].coordinates()) bend = std::max(bend, std::abs(posture[c]));
-  if (bend > robot.limits.least_knee) return -robot.legs[0].SolePose(posture).translation().z();
+  const double foot = robot.soles[0].height();
+  if (bend > robot.limits.least_knee) {
+    return foot - robot.legs[0].SolePose(posture).translation().z();
+  }
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(posture.size());
-  return -(1.0 - options.drop) * robot.legs[0].SolePose(zero).translation().z();
+  return foot - (1.0 - options.drop) * robot.legs[0].SolePose(zero).translation().z();
+}
+
+/// The supports on the fewest feet.
+std::vector<std::vector<int>> FewestFeet(const StandingRobot& robot) {
+  std::vector<std::vector<int>> supports;
+  if (robot.soles.size() == 1) return {{0}};
+  for (int foot = static_cast<int>(robot.soles.size()); foot-- > 0;) {
+    supports.push_back(robot.AllFeetBut(foot));
+  }
+  return supports;
+}
+
+/// Least distance from the middle of a support on the fewest feet to its edge, m.
+double HalfSupport(const StandingRobot& robot) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<int>& feet : FewestFeet(robot)) {
+    if (feet.size() == 1) {
+      const Sole& sole = robot.soles[Size(feet[0])];
+      least = std::min(least, 0.5 * (sole.upper - sole.lower).minCoeff());
+      continue;
+    }
+    std::vector<Sole> soles;
+    std::vector<Transform> T_world_sole;
+    for (const int foot : feet) {
+      soles.push_back(robot.soles[Size(foot)]);
+      T_world_sole.push_back(robot.T_world_sole[Size(foot)]);
+    }
+    least = std::min(least,
+                     InsideMargin(SupportPolygon(soles, T_world_sole), SupportCentre(robot, feet)));
+  }
+  return least;
+}
+
+void SizeSupport(StandingRobot& robot) {
+  constexpr double kZmpShare = 0.3;
+  robot.half_support = HalfSupport(robot);
+  if (robot.limits.zmp_margin < 0.0) robot.limits.zmp_margin = kZmpShare * robot.half_support;
+}
+
+/// Where a sole stands on the floor: as it is in the zero posture, a ball as in `posture`.
+Transform PlaceOnFloor(const StandingRobot& robot, int foot, const Eigen::VectorXd& posture) {
+  constexpr double kUpright = 0.01;
+  const Sole& sole = robot.soles[Size(foot)];
+  const bool ball = sole.ball_radius.has_value();
+  Transform T_world_sole =
+      robot.legs[Size(foot)].SolePose(ball ? posture : Eigen::VectorXd::Zero(posture.size()));
+  T_world_sole.translation().z() = sole.height();
+  if (!ball && (T_world_sole.linear().col(2) - Eigen::Vector3d::UnitZ()).norm() > kUpright) {
+    throw InputError(
+        "robot '" + robot.tree.name + "': sole '" + robot.tree.links[Size(sole.link)].name +
+        "' does not lie flat in the zero posture; a frame with z upwards was expected");
+  }
+  return T_world_sole;
+}
+
+/// Whether the feet of a posture are where they stand, and the others not below the floor.
+bool FitsTheFloor(const StandingRobot& robot, const std::vector<int>& standing,
+                  const Transform& T_world_root, const Eigen::VectorXd& q) {
+  constexpr double kOff = 1e-3;  // m: a foot that stands too is there but for rounding
+  for (const int foot : robot.AllFeet()) {
+    const Transform T_world_sole = T_world_root * robot.legs[Size(foot)].SolePose(q);
+    const Transform& place = robot.T_world_sole[Size(foot)];
+    if (T_world_sole.translation().z() < place.translation().z() - kOff) return false;
+    const bool stands = std::find(standing.begin(), standing.end(), foot) != standing.end();
+    if (stands && (T_world_sole.translation() - place.translation()).norm() > kOff) return false;
+  }
+  return true;
 }
 
 /// Moves two soles apart, or together, until their centres have the distance `stance`.
@@ -64,24 +135,30 @@ void Widen(double stance, const std::vector<Sole>& soles, std::vector<Transform>
 
 StandingRobot::StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept)
     : tree(std::move(robot)), inertias(BodyInertias(tree)), soles(std::move(feet)), limits(kept) {
-  if (soles.size() > 2) {
-    throw InputError("robot '" + tree.name + "' has " + std::to_string(soles.size()) +
-                     " feet; expected one or two to balance on, or none");
-  }
+  bool balls = false;
   for (const Sole& sole : soles) {
-    legs.emplace_back(tree, sole.link);
-    const double half = 0.5 * (sole.upper - sole.lower).minCoeff();
-    half_sole = legs.size() == 1 ? half : std::min(half_sole, half);
+    legs.emplace_back(tree, sole);
+    balls = balls || sole.ball_radius;
+  }
+  if (balls && soles.size() < 4) {
+    throw InputError("robot '" + tree.name + "' has " + std::to_string(soles.size()) +
+                     " feet, balls among them; expected four or more, of which three can stand "
+                     "while one is in the air");
   }
   if (Held()) return;
   leg_length = legs[0].length();
-  constexpr double kZmpShare = 0.3;
-  if (limits.zmp_margin < 0.0) limits.zmp_margin = kZmpShare * half_sole;
+  if (soles.size() <= 2) SizeSupport(*this);
 }
 
 std::vector<int> StandingRobot::AllFeet() const {
   std::vector<int> feet;
   for (std::size_t i = 0; i < soles.size(); ++i) feet.push_back(static_cast<int>(i));
+  return feet;
+}
+
+std::vector<int> StandingRobot::AllFeetBut(int swings) const {
+  std::vector<int> feet = AllFeet();
+  feet.erase(feet.begin() + swings);
   return feet;
 }
 
@@ -97,30 +174,20 @@ Eigen::VectorXd NeutralPosture(const RobotTree& tree, double position_margin) {
 }
 
 void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOptions& options) {
-  constexpr double kUpright = 0.01;
   if (robot.Held()) {
     robot.rest = posture;
     return;
   }
-  const auto T_root_link =
-      LinkTransforms(robot.tree, Eigen::VectorXd::Zero(robot.tree.coordinate_count()));
   PlacedPosture pose{posture, Transform::Identity()};
   pose.T_world_root.translation().z() = RootHeight(robot, posture, options);
   robot.T_world_sole.clear();
-  for (std::size_t i = 0; i < robot.soles.size(); ++i) {
-    const std::string& name = robot.tree.links[Size(robot.soles[i].link)].name;
-    Transform T_world_sole = T_root_link[Size(robot.soles[i].link)];
-    if ((T_world_sole.linear().col(2) - Eigen::Vector3d::UnitZ()).norm() > kUpright) {
-      throw InputError(
-          "robot '" + robot.tree.name + "': sole '" + name +
-          "' does not lie flat in the zero posture; a frame with z upwards was expected");
-    }
-    T_world_sole.translation().z() = 0.0;
-    robot.T_world_sole.push_back(T_world_sole);
+  for (const int foot : robot.AllFeet()) {
+    robot.T_world_sole.push_back(PlaceOnFloor(robot, foot, posture));
   }
   if (options.stance && robot.soles.size() == 2) {
     Widen(*options.stance, robot.soles, robot.T_world_sole);
   }
+  if (robot.soles.size() > 2) SizeSupport(robot);  // its triangles are known now
   for (std::size_t i = 0; i < robot.soles.size(); ++i) {
     const Transform& T_world_sole = robot.T_world_sole[i];
     const std::string& name = robot.tree.links[Size(robot.soles[i].link)].name;
@@ -153,24 +220,29 @@ bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_so
   return robot.legs[Size(foot)].Place(pose.T_world_root.inverse() * T_world_sole, pose.q);
 }
 
-Transform RootOnFoot(const StandingRobot& robot, int foot, const Eigen::VectorXd& q) {
-  return robot.T_world_sole[Size(foot)] * robot.legs[Size(foot)].SolePose(q).inverse();
+Transform RootOverFeet(const StandingRobot& robot, const std::vector<int>& feet,
+                       const Eigen::VectorXd& q) {
+  const auto first = Size(feet.front());
+  if (!robot.soles[first].ball_radius) {
+    return robot.T_world_sole[first] * robot.legs[first].SolePose(q).inverse();
+  }
+  Eigen::Matrix3Xd found(3, static_cast<Eigen::Index>(feet.size())), place = found;
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    found.col(column) = robot.legs[Size(feet[i])].SolePose(q).translation();
+    place.col(column) = robot.T_world_sole[Size(feet[i])].translation();
+  }
+  return FitRigid(found, place);
 }
 
 Transform RootOnFloor(const StandingRobot& robot, const Eigen::VectorXd& q) {
-  constexpr double kBelow = 1e-3;  // m: a foot that stands too is there but for rounding
   if (robot.Held()) return robot.T_world_root;
-  for (const int foot : robot.AllFeet()) {
-    const Transform T_world_root = RootOnFoot(robot, foot, q);
-    bool above = true;
-    for (const int other : robot.AllFeet()) {
-      const Transform T_world_sole = T_world_root * robot.legs[Size(other)].SolePose(q);
-      const double floor = robot.T_world_sole[Size(other)].translation().z();
-      above = above && T_world_sole.translation().z() > floor - kBelow;
-    }
-    if (above) return T_world_root;
+  const std::vector<std::vector<int>> supports = FewestFeet(robot);
+  for (const std::vector<int>& standing : supports) {
+    const Transform T_world_root = RootOverFeet(robot, standing, q);
+    if (FitsTheFloor(robot, standing, T_world_root, q)) return T_world_root;
   }
-  return RootOnFoot(robot, 0, q);
+  return RootOverFeet(robot, supports.front(), q);
 }
 
 bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,

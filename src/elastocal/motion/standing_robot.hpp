@@ -23,7 +23,7 @@ struct MotionLimits {
   double velocity_share = 0.9, torque_share = 0.9;
   double clearance = 0.005;  ///< least distance between parts that can touch, m
   /// Least distance of the zero-moment point to the edge of the support polygon, m. Negative: three
-  /// tenths of the narrowest sole's half width.
+  /// tenths of StandingRobot::half_support.
   double zmp_margin = -1.0;
   double friction = 0.5;     ///< largest ratio of horizontal to vertical force at a foot
   double least_knee = 0.3;   ///< least bend of the knee of a standing leg, rad
@@ -35,24 +35,28 @@ struct MotionLimits {
 struct StandingRobot {
   RobotTree tree;
   std::vector<BodyInertia> inertias;
-  std::vector<Sole> soles;     ///< of the feet, one or two; none: the root is held
+  std::vector<Sole> soles;     ///< of the feet; none: the root is held
   std::vector<LegChain> legs;  ///< one for each sole
   Clearances clearances;       ///< between its own parts; may be empty
   MotionLimits limits;         ///< with the margin of the zero-moment point in m
   /// The posture of rest: balanced on all feet.
   Eigen::VectorXd rest;
   Transform T_world_root = Transform::Identity();  ///< in the posture of rest
-  std::vector<Transform> T_world_sole;             ///< where the soles stand
+  /// Where the soles stand; of a ball, with the attitude that it has in the posture of rest.
+  std::vector<Transform> T_world_sole;
 
   StandingRobot(const StandingRobot&) = delete;  // legs refer to the tree
   StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept);
 
   bool Held() const { return soles.empty(); }
-  /// Length of a leg from its first joint to the sole along its joints, and half the least width of
-  /// a sole, m: lengths of a motion are shares of them. 0 for a held robot.
-  double leg_length = 0.0, half_sole = 0.0;
+  /// Length of a leg from its first joint to the sole along its joints, and the least distance from
+  /// the middle of a support on the fewest feet to its edge (half the width of the narrowest sole
+  /// of a biped), m: lengths of a motion are shares of them. 0 for a held robot.
+  double leg_length = 0.0, half_support = 0.0;
 
   std::vector<int> AllFeet() const;
+  /// The fewest feet on which it stands while `swings` is in the air: the others.
+  std::vector<int> AllFeetBut(int swings) const;
 };
 
 struct StandOptions {
@@ -63,8 +67,8 @@ struct StandOptions {
 };
 
 /// Stands the robot up in a posture (by coordinate). The feet are flat and where they are under the
-/// root link in the zero posture, or moved apart (together) along the line of their centres to the
-/// stance. The root link is upright and as high above the feet as in the
+/// root link in the zero posture (balls: in the given one), or moved apart (together) along the
+/// line of two centres to the stance. The root link is upright and as high above the feet as in the
 /// posture, or lower by the drop if its knees are less bent than the limits require. The centre of
 /// mass is over the middle of the support. A held robot rests in the posture itself. Throws
 /// InputError if the legs cannot do this.
@@ -82,11 +86,13 @@ struct PlacedPosture {
   Transform T_world_root = Transform::Identity();
 };
 
-/// Pose of the root link in the world in a posture with this foot where it stands.
-Transform RootOnFoot(const StandingRobot& robot, int foot, const Eigen::VectorXd& q);
+/// Pose of the root link in the world in a posture with these feet where they stand: by the first
+/// one if it is flat, by the places of all (three or more) if they are balls.
+Transform RootOverFeet(const StandingRobot& robot, const std::vector<int>& feet,
+                       const Eigen::VectorXd& q);
 
-/// The same where the robot stands on all feet or on one: no foot is below the floor then. Of a
-/// held robot, where it is held.
+/// The same where the robot stands on all feet or on the fewest: those that stand are where they
+/// are on the floor, and no foot is below it. Of a held robot, where it is held.
 Transform RootOnFloor(const StandingRobot& robot, const Eigen::VectorXd& q);
 
 /// Starting from `pose`, moves the root link horizontally until the centre of mass is over `com`,

@@ -83,13 +83,13 @@ std::vector<int> FeetOf(const StandingRobot& robot, const std::vector<int>& link
     }
   }
   const bool known = feet.size() == links.size() && !feet.empty();
-  if (known && (feet.size() == 1 || feet.size() == robot.soles.size())) return feet;
+  if (known && feet.size() + 1 >= robot.soles.size()) return feet;
   std::string names;
   for (const int link : links) {
     names += (names.empty() ? "" : ", ") + robot.tree.links[Size(link)].name;
   }
-  throw InputError("the robot cannot stand on '" + names + "'; expected one or all of its " +
-                   std::to_string(robot.soles.size()) + " soles");
+  throw InputError("the robot cannot stand on '" + names + "'; expected all of its " +
+                   std::to_string(robot.soles.size()) + " soles, or all but one");
 }
 
 }  // namespace elastocal

@@ -30,7 +30,7 @@ std::vector<PostureTour> ValidationTours(const StandingRobot& robot, const Motio
                                          const ValidationOptions& options, Random& random);
 
 /// Indices of the soles of support feet (links). Throws InputError for links that are not soles,
-/// and unless they are one or all of the soles.
+/// and unless they are all of the soles or all but one.
 std::vector<int> FeetOf(const StandingRobot& robot, const std::vector<int>& links);
 
 }  // namespace elastocal

@@ -105,7 +105,9 @@ RobotView MakeRobotView(const Project& project, std::vector<std::string>& warnin
         {setup.name, project.tree.links[0].name, setup.box->lower, setup.box->upper});
   }
   for (const Sole& sole : project.soles) {
-    view.soles.push_back({project.tree.links[sole.link].name, sole.lower, sole.upper});
+    const Eigen::Vector2d ball = Eigen::Vector2d::Constant(sole.height());
+    view.soles.push_back(
+        {project.tree.links[sole.link].name, sole.lower - ball, sole.upper + ball});
   }
   return view;
 }

@@ -150,6 +150,13 @@ StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
 
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
                                    const JointMotion& planned, MotionLoads loads) {
+  for (const Sole& sole : project.soles) {
+    if (!sole.ball_radius) continue;
+    throw InputError(project.file.string() + ": sole '" +
+                     project.tree.links[static_cast<std::size_t>(sole.link)].name +
+                     "' is a ball, and commands can be corrected for flat soles only; the "
+                     "calibrated URDF serves such a robot");
+  }
   CompensatedMotion result;
   result.planned.motion = planned;
   JointMotion& motion = result.planned.motion;

@@ -43,7 +43,7 @@ struct CompensatedMotion {
 
 /// Corrects every sample of a motion (Compensator::Command). The motion has times or not; its
 /// support may be left open: then all feet stand, or the root link is held where there are none.
-/// Throws InputError for a support that is no foot of the model.
+/// Throws InputError for a support that is no foot of the model, and for feet that are balls.
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
                                    const JointMotion& planned,
                                    MotionLoads loads = MotionLoads::kStatics);

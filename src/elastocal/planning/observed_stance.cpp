@@ -156,7 +156,7 @@ PlacedPosture ObservedPostureSampler::DrawStance() {
   pose.T_world_root.linear() =
       (RotZ(within(kYaw)) * RotY(within(kPitch)) * RotX(within(kRoll))).linear() *
       pose.T_world_root.linear();
-  const double sway = 0.5 * robot_->half_sole;
+  const double sway = 0.5 * robot_->half_support;
   com_ = SupportCentre(*robot_, robot_->AllFeet()) + Eigen::Vector2d(within(sway), within(sway));
   return pose;
 }

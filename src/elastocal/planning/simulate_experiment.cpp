@@ -163,6 +163,7 @@ Simulation PrepareSimulation(const Project& project, const SimulationOptions& op
   const DescribedRobot robot = DescribeRobot(project);
   VirtualExperimentOptions settings = options.experiment;
   settings.free_root = project.recording.free_root;
+  settings.physics.soles = project.soles;
   if (options.matched && settings.free_root) {
     throw InputError(project.file.string() +
                      ": the root is free (recording: root), and a matched truth is that of a root "
@@ -171,9 +172,11 @@ Simulation PrepareSimulation(const Project& project, const SimulationOptions& op
   Simulation simulation;
   if (options.motion) {
     settings.motion.seed = settings.seed;
+    GivenMotionOptions given = options.given;
+    given.soles = project.soles;
     simulation.experiment = PrepareExperiment(
         robot, settings,
-        PlanGivenMotion(robot.tree, robot.chains, *options.motion, settings.motion, options.given));
+        PlanGivenMotion(robot.tree, robot.chains, *options.motion, settings.motion, given));
   } else {
     simulation.experiment = PrepareExperiment(robot, settings);
   }

@@ -97,6 +97,23 @@ void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& moti
   }
 }
 
+Sole ReadSole(const YamlValue& value, const RobotTree& tree) {
+  value.ExpectKeys({"link", "lower_mm", "upper_mm", "ball_radius_mm"});
+  Sole sole;
+  sole.link = LinkNamedBy(value.Get("link"), tree);
+  if (const auto radius = value.Find("ball_radius_mm")) {
+    value.Expect(!value.Find("lower_mm") && !value.Find("upper_mm"),
+                 "either corners of a flat sole or the radius of a ball");
+    sole.ball_radius = kOneMm * radius->Bounded();
+    return sole;
+  }
+  sole.lower = ReadCorner(value.Get("lower_mm"));
+  sole.upper = ReadCorner(value.Get("upper_mm"));
+  value.Expect((sole.lower.array() < sole.upper.array()).all(),
+               "a lower corner below the upper one");
+  return sole;
+}
+
 }  // namespace
 
 void ReadStanding(const YamlValue& section, Project& project) {
@@ -104,15 +121,15 @@ void ReadStanding(const YamlValue& section, Project& project) {
   const YamlValue list = section.Get("soles");
   std::set<int> links;
   for (const YamlValue& value : list.Items()) {
-    value.ExpectKeys({"link", "lower_mm", "upper_mm"});
-    Sole sole{LinkNamedBy(value.Get("link"), project.tree), ReadCorner(value.Get("lower_mm")),
-              ReadCorner(value.Get("upper_mm"))};
-    value.Expect((sole.lower.array() < sole.upper.array()).all(),
-                 "a lower corner below the upper one");
+    const Sole sole = ReadSole(value, project.tree);
     value.Expect(links.insert(sole.link).second, "a link that is no sole yet");
     project.soles.push_back(sole);
   }
-  list.Expect(project.soles.size() == 1 || project.soles.size() == 2, "one or two soles");
+  list.Expect(!project.soles.empty(), "one or more soles");
+  const bool balls = std::any_of(project.soles.begin(), project.soles.end(),
+                                 [](const Sole& sole) { return sole.ball_radius.has_value(); });
+  list.Expect(!balls || project.soles.size() >= 4,
+              "four or more soles where there are balls: three stand while one is in the air");
   if (const auto stance = section.Find("stance_mm")) {
     stance->Expect(project.soles.size() == 2, "two soles, which have a distance");
     project.stance = kOneMm * stance->Bounded();

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "elastocal/math/decompositions.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -19,7 +21,73 @@ Vector2d CentreOnFloor(const Sole& sole, const Transform& T_world_sole) {
   return (T_world_sole * Vector3d(centre.x(), centre.y(), 0.0)).head<2>();
 }
 
+/// Forces at points (columns) with the least sum of squares that give the force and the moment
+/// about the origin, 3 x points.
+Eigen::Matrix3Xd LeastForces(const Eigen::Matrix3Xd& points, const Vector3d& force,
+                             const Vector3d& moment) {
+  Eigen::MatrixXd sum(6, 3 * points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    sum.block<3, 3>(0, 3 * i).setIdentity();
+    sum.block<3, 3>(3, 3 * i) = Skew(points.col(i));
+  }
+  Eigen::VectorXd wanted(6);
+  wanted << force, moment;
+  return ShortestSolution(sum, wanted).reshaped(3, points.cols());
+}
+
+/// Shares a wrench among three or more soles, of which those that would pull carry nothing.
+std::vector<LinkWrench> ShareAmongMany(const std::vector<Sole>& soles,
+                                       const std::vector<Transform>& T_world_sole,
+                                       const Vector3d& force, const Vector3d& moment) {
+  std::vector<Eigen::Index> pressing(soles.size());
+  std::iota(pressing.begin(), pressing.end(), 0);
+  Eigen::Matrix3Xd centres(3, static_cast<Eigen::Index>(soles.size()));
+  for (std::size_t i = 0; i < soles.size(); ++i) {
+    centres.col(static_cast<Eigen::Index>(i)) << CentreOnFloor(soles[i], T_world_sole[i]), 0.0;
+  }
+  Eigen::Matrix3Xd forces;
+  while (true) {
+    forces = LeastForces(centres(Eigen::all, pressing), force, moment);
+    Eigen::Index least = 0;
+    if (forces.row(2).minCoeff(&least) >= 0.0 || pressing.size() <= 3) break;
+    pressing.erase(pressing.begin() + least);
+  }
+  std::vector<LinkWrench> wrenches;
+  for (const Sole& sole : soles)
+    wrenches.push_back({sole.link, Vector3d::Zero(), Vector3d::Zero()});
+  for (std::size_t i = 0; i < pressing.size(); ++i) {
+    const Vector3d pressed = forces.col(static_cast<Eigen::Index>(i));
+    LinkWrench& wrench = wrenches[static_cast<std::size_t>(pressing[i])];
+    wrench = {wrench.link, pressed, centres.col(pressing[i]).cross(pressed)};
+  }
+  return wrenches;
+}
+
 }  // namespace
+
+std::vector<double> HeightsOverFloor(const Sole& sole, const Transform& T_world_sole) {
+  if (sole.ball_radius) return {T_world_sole.translation().z() - *sole.ball_radius};
+  std::vector<double> heights;
+  for (const double x : {sole.lower.x(), sole.upper.x()}) {
+    for (const double y : {sole.lower.y(), sole.upper.y()}) {
+      heights.push_back((T_world_sole * Vector3d(x, y, 0.0)).z());
+    }
+  }
+  return heights;
+}
+
+Eigen::Matrix3d FloorAxes(const std::vector<Vector3d>& centres) {
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& p : centres) middle += p / static_cast<double>(centres.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : centres) spread += (p - middle) * (p - middle).transpose();
+  const Vector3d normal = DecomposeSymmetric(spread).vectors.col(0);
+  const Vector3d z = normal.z() < 0.0 ? Vector3d(-normal) : normal;
+  const Vector3d y = z.cross(Vector3d::UnitX()).normalized();
+  Eigen::Matrix3d axes;
+  axes << y.cross(z), y, z;
+  return axes;
+}
 
 Polygon ConvexHull(const Eigen::Matrix2Xd& points) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(points.cols()));
@@ -79,9 +147,9 @@ Vector2d ZeroMomentPoint(const Vector3d& force, const Vector3d& moment) {
 std::vector<LinkWrench> ShareWrench(const std::vector<Sole>& soles,
                                     const std::vector<Transform>& T_world_sole,
                                     const Vector3d& force, const Vector3d& moment) {
+  if (soles.empty()) throw std::invalid_argument("a wrench can be shared among soles only");
   if (soles.size() == 1) return {{soles[0].link, force, moment}};
-  if (soles.size() != 2)
-    throw std::invalid_argument("a wrench can be shared by one or two soles only");
+  if (soles.size() > 2) return ShareAmongMany(soles, T_world_sole, force, moment);
   const Vector2d zmp = ZeroMomentPoint(force, moment);
   const Vector2d first = CentreOnFloor(soles[0], T_world_sole[0]);
   const Vector2d second = CentreOnFloor(soles[1], T_world_sole[1]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,14 +10,26 @@
 
 namespace elastocal {
 
-/// The rectangle of a foot that touches the floor, in the plane z = 0 of its link.
+/// What of a foot touches the floor: a rectangle in the plane z = 0 of its link, or a ball about
+/// the origin of its link, which touches in one point whatever its attitude.
 struct Sole {
   int link = 0;
-  Eigen::Vector2d lower = Eigen::Vector2d::Zero();  ///< corner of least x and y, m
+  Eigen::Vector2d lower = Eigen::Vector2d::Zero();  ///< corner of least x and y, m; 0 of a ball
   Eigen::Vector2d upper = Eigen::Vector2d::Zero();
+  std::optional<double> ball_radius = {};  ///< m, 0 or more; none: a flat sole
 
   Eigen::Vector2d centre() const { return 0.5 * (lower + upper); }
+  /// Of the link's origin over the floor on which it stands, m.
+  double height() const { return ball_radius.value_or(0.0); }
 };
+
+/// Heights of a sole's lowest points over the plane z = 0 of the world, m: of the corners of a flat
+/// one, of the lowest point of a ball.
+std::vector<double> HeightsOverFloor(const Sole& sole, const Transform& T_world_sole);
+
+/// Axes of the floor under a robot on balls, by columns, from three or more of their centres in its
+/// root link's frame: z is the normal of their plane that points up there, and x ahead.
+Eigen::Matrix3d FloorAxes(const std::vector<Eigen::Vector3d>& centres);
 
 /// A convex polygon on the floor, corners counter-clockwise, 2 x corners, m.
 using Polygon = Eigen::Matrix2Xd;
@@ -36,13 +49,15 @@ double InsideMargin(const Polygon& polygon, const Eigen::Vector2d& point);
 /// robot presses on the floor (force.z() > 0).
 Eigen::Vector2d ZeroMomentPoint(const Eigen::Vector3d& force, const Eigen::Vector3d& moment);
 
-/// Shares the floor's wrench among one or two soles; one wrench for each sole. Of two soles, the
-/// first gets the share w of force and vertical moment: w = 1 if the zero-moment point is at its
-/// centre, 0 at the centre of the other, and in between by the projection on the line of the
-/// centres. Both press at the same offset from their centres, so that together they press at the
-/// zero-moment point. Both forces then have the friction ratio of the sum, and the wrenches add up
-/// to the given one exactly. The shares of two real legs depend on their stiffness and on errors of
-/// their geometry. Throws std::invalid_argument unless there are one or two soles.
+/// Shares the floor's wrench among soles; one wrench for each sole. Of two soles, the first gets
+/// the share w of force and vertical moment: w = 1 if the zero-moment point is at its centre, 0 at
+/// the centre of the other, and in between by the projection on the line of the centres. Both press
+/// at the same offset from their centres, so that together they press at the zero-moment point.
+/// Both forces then have the friction ratio of the sum, and the wrenches add up to the given one
+/// exactly. Of three and more, each presses at its centre without a moment, with the forces whose
+/// sum of squares is the least; a foot that would have to pull is left out. The shares of real legs
+/// depend on their stiffness and on errors of their geometry. Throws std::invalid_argument without
+/// soles.
 std::vector<LinkWrench> ShareWrench(const std::vector<Sole>& soles,
                                     const std::vector<Transform>& T_world_sole,
                                     const Eigen::Vector3d& force, const Eigen::Vector3d& moment);

@@ -73,5 +73,37 @@ TEST(ShareWrench, AddsUpAndPressesBetweenTheFeet) {
   EXPECT_THROW(ShareWrench({}, {}, force, force), std::invalid_argument);
 }
 
+TEST(ShareWrench, OfFourFeetAddsUpAndNoFootPulls) {
+  const std::vector<Eigen::Vector3d> places = {
+      {0.2, 0.1, 0.02}, {0.2, -0.1, 0.02}, {-0.2, 0.1, 0.02}, {-0.2, -0.1, 0.02}};
+  std::vector<Sole> soles;
+  std::vector<Transform> T;
+  for (std::size_t i = 0; i < 4; ++i) {
+    soles.push_back({static_cast<int>(i), {0, 0}, {0, 0}, 0.02});
+    T.emplace_back(Eigen::Translation3d(places[i]));
+  }
+  const auto share = [&](const Eigen::Vector3d& at) {
+    const Eigen::Vector3d force(3.0, -2.0, 100.0), moment = at.cross(force);
+    const auto wrenches = ShareWrench(soles, T, force, moment);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero(), turn = sum;
+    for (const LinkWrench& wrench : wrenches) {
+      EXPECT_GE(wrench.force.z(), -1e-9);
+      sum += wrench.force;
+      turn += wrench.moment;
+    }
+    EXPECT_LT((sum - force).norm(), 1e-9);
+    EXPECT_LT((turn - moment).norm(), 1e-9);
+    return wrenches;
+  };
+  for (const LinkWrench& wrench : share({0, 0, 0})) EXPECT_NEAR(wrench.force.z(), 25.0, 1e-9);
+  // Beyond the middle of two edges the far foot carries nothing: the other three follow from the
+  // lever rule.
+  const auto near = share({0.15, 0.06, 0});
+  EXPECT_NEAR(near[0].force.z(), 67.5, 1e-9);
+  EXPECT_NEAR(near[1].force.z(), 20.0, 1e-9);
+  EXPECT_NEAR(near[2].force.z(), 12.5, 1e-9);
+  EXPECT_EQ(near[3].force.z(), 0.0);
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -99,16 +99,24 @@ class GivenMotionPlanner {
             T_root_link[stretch.support[0]].inverse() * T_root_link[stretch.support[s]];
         if (i == stretch.first) first.push_back(T);
         const Transform moved = first[s - 1].inverse() * T;
-        if (moved.translation().norm() < kFeetApart && RotationAngle(moved.linear()) < kFeetTurn) {
-          continue;
-        }
+        const bool balls = IsBall(stretch.support[0]) || IsBall(stretch.support[s]);
+        const double apart =
+            balls ? std::abs(T.translation().norm() - first[s - 1].translation().norm())
+                  : moved.translation().norm();
+        if (apart < kFeetApart && (balls || RotationAngle(moved.linear()) < kFeetTurn)) continue;
         throw InputError(PlaceOf(motion_, i) + "the foot '" + tree_.links[stretch.support[s]].name +
-                         "' is " + std::to_string(std::lround(1e3 * moved.translation().norm())) +
+                         "' is " + std::to_string(std::lround(1e3 * apart)) +
                          " mm from where it stood, against '" +
                          tree_.links[stretch.support[0]].name +
                          "': both cannot be on the floor; the column 'support' says which one is");
       }
     }
+  }
+
+  bool IsBall(int link) const {
+    return std::any_of(given_.soles.begin(), given_.soles.end(), [&](const Sole& sole) {
+      return sole.link == link && sole.ball_radius.has_value();
+    });
   }
 
   bool Moves(int coordinate, const Stretch& stretch) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastocal/robot/joint_motion.hpp"
+#include "elastocal/robot/standing.hpp"
 #include "elastocal/simulation/motions.hpp"
 
 namespace elastocal {
@@ -18,6 +19,7 @@ struct GivenMotionOptions {
   /// The chains that the trials exercise. By default those from the root link of which a joint
   /// moves in the trial, except the legs on which the robot stands.
   std::vector<int> chains = {};
+  std::vector<Sole> soles = {};  ///< balls may turn where they stand; other feet are flat
 };
 
 /// Makes trials that play a user's own trajectory or postures: one for each stretch of samples with

@@ -35,6 +35,14 @@ std::string PoseAttributes(const Transform& T) {
          Attribute("quat", Numbers(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
 }
 
+/// What of a foot touches the floor.
+Sole SoleOf(int link, const PhysicsOptions& options) {
+  for (const Sole& sole : options.soles) {
+    if (sole.link == link) return sole;
+  }
+  return {link, {-0.10, -0.06}, {0.10, 0.06}};
+}
+
 /// Writes the bodies, walking over the tree from the body that is fixed or floats.
 class MjcfWriter {
  public:
@@ -108,7 +116,7 @@ class MjcfWriter {
     Plates(body);
     for (std::size_t s = 0; s < support_.size(); ++s) {
       if (FootLink(static_cast<int>(s)).body == body && static_cast<int>(s) != from_sole) {
-        Sole(static_cast<int>(s));
+        WriteSole(static_cast<int>(s));
       }
     }
     for (int k = 0; k < static_cast<int>(tree_.joints.size()); ++k) {
@@ -157,20 +165,29 @@ class MjcfWriter {
   }
 
   /// Writes a further foot on the floor.
-  void Sole(int sole) {
+  void WriteSole(int sole) {
     const Link& link = FootLink(sole);
+    const int link_of = support_[static_cast<std::size_t>(sole)];
     text += "<body" + Attribute("name", "s" + std::to_string(sole)) +
             PoseAttributes(link.T_body_link) + ">\n";
     LinkSprings(FootSprings(sole), link.T_body_link.translation(), link.T_body_link.inverse());
     text += "<inertial pos=\"0 0 0\" mass=\"0.1\" diaginertia=\"1e-4 1e-4 1e-4\"/>\n";
-    if (options_.standing == Standing::kFree) {
-      constexpr double kHalfThickness = 0.01;
-      text += R"(<geom type="box" pos="0 0 )" + Number(kHalfThickness) + "\"" +
-              Attribute("size", Numbers(std::array{0.5 * options_.foot_length,
-                                                   0.5 * options_.foot_width, kHalfThickness})) +
-              " mass=\"0\"" + Friction() + "/>\n";
+    if (StandsFreely(support_, options_)) {
+      text += "<geom" + Shape(SoleOf(link_of, options_)) + " mass=\"0\"" + Friction() + "/>\n";
     }
     text += "</body>\n";
+  }
+
+  static std::string Shape(const Sole& sole) {
+    constexpr double kHalfThickness = 0.01, kLeastBall = 0.001;
+    if (sole.ball_radius) {
+      return R"( type="sphere")" +
+             Attribute("size", Number(std::max(kLeastBall, *sole.ball_radius)));
+    }
+    const Eigen::Vector2d centre = sole.centre(), half = 0.5 * (sole.upper - sole.lower);
+    return R"( type="box")" +
+           Attribute("pos", Numbers(std::array{centre.x(), centre.y(), kHalfThickness})) +
+           Attribute("size", Numbers(std::array{half.x(), half.y(), kHalfThickness}));
   }
 
   /// A plate and its table share a bit, so that nothing else touches either.
@@ -319,7 +336,30 @@ std::string Header(const PhysicsOptions& options, bool contact) {
          "\"><flag" + (contact ? "" : " contact=\"disable\"") + "/></option>\n<worldbody>\n";
 }
 
+/// Places of the balls among the feet, in the waist's frame, m.
+std::vector<Eigen::Vector3d> Balls(const std::vector<int>& support, const PhysicsOptions& options,
+                                   const std::vector<Transform>& T_waist_link) {
+  std::vector<Eigen::Vector3d> balls;
+  for (const int foot : support) {
+    if (!SoleOf(foot, options).ball_radius) continue;
+    balls.push_back(T_waist_link[static_cast<std::size_t>(foot)].translation());
+  }
+  return balls;
+}
+
+constexpr int kBallsThatStand = 3;
+
 }  // namespace
+
+int CountBalls(const std::vector<int>& support, const PhysicsOptions& options) {
+  return static_cast<int>(std::count_if(support.begin(), support.end(), [&](int foot) {
+    return SoleOf(foot, options).ball_radius.has_value();
+  }));
+}
+
+bool StandsFreely(const std::vector<int>& support, const PhysicsOptions& options) {
+  return options.standing == Standing::kFree || CountBalls(support, options) >= kBallsThatStand;
+}
 
 MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
                     const Eigen::VectorXd& encoders, const PhysicsOptions& options,
@@ -331,9 +371,19 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
   MjcfWriter writer(robot, support, options, plates);
   const std::vector<Transform> T_waist_link =
       TrueLinkTransforms(robot, TrueJointPositions(robot, encoders));
+  const bool stands_freely = StandsFreely(support, options);
+  const std::vector<Eigen::Vector3d> balls = Balls(support, options, T_waist_link);
   for (int foot : support) {
     const Transform& T_waist_foot = T_waist_link[static_cast<std::size_t>(foot)];
-    if (model.T_world_foot.empty()) {
+    if (model.T_world_foot.empty() && CountBalls(support, options) >= kBallsThatStand) {
+      const Eigen::Matrix3d R_world_waist = FloorAxes(balls).transpose();
+      Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector3d& p : balls) middle += p / static_cast<double>(balls.size());
+      model.T_world_waist.linear() = R_world_waist;
+      model.T_world_waist.translation() =
+          SoleOf(foot, options).height() * Eigen::Vector3d::UnitZ() - R_world_waist * middle;
+      model.T_world_foot.push_back(model.T_world_waist * T_waist_foot);
+    } else if (model.T_world_foot.empty()) {
       model.T_world_foot.emplace_back(LegOf(robot, foot).R_floor_foot);
       model.T_world_waist = model.T_world_foot[0] * T_waist_foot.inverse();
     } else {
@@ -344,7 +394,7 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
   std::string constraints;
   if (support.empty()) {
     writer.WriteFromWaist(model.T_world_waist, false);
-  } else if (options.standing == Standing::kFree) {
+  } else if (stands_freely) {
     writer.text += R"(<geom type="plane" size="5 5 0.1")" + writer.Friction() + "/>\n";
     writer.WriteFromWaist(model.T_world_waist, true);
   } else {
@@ -352,7 +402,7 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
     for (std::size_t s = 1; s < support.size(); ++s) constraints += Weld(s, model.T_world_foot[s]);
   }
   writer.WriteTables();
-  const bool contact = options.standing == Standing::kFree || !plates.empty();
+  const bool contact = stands_freely || !plates.empty();
   model.xml = Header(options, contact) + writer.text + "</worldbody>\n<equality>\n" + constraints +
               "</equality>\n</mujoco>\n";
   return model;

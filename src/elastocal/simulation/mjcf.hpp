@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/robot/standing.hpp"
 #include "elastocal/simulation/true_robot.hpp"
 
 namespace elastocal {
 
 /// How a robot stands.
 enum class Standing {
-  kWelded,  ///< its soles are part of the floor
+  kWelded,  ///< its soles are part of the floor (see StandsFreely)
   kFree,    ///< its soles lie on the floor by contact and friction, and it may fall
 };
 
@@ -24,12 +25,20 @@ struct PhysicsOptions {
   /// Inertia and damping of the springs, as times, s; see MjcfModel.
   double spring_inertia_time_s = 0.010;
   double spring_damping_time_s = 0.020;
-  double foot_length = 0.20, foot_width = 0.12;  ///< of soles that stand freely, m
+  /// What of the feet touches the floor. Other feet are flat, 0.20 m long and 0.12 m wide.
+  std::vector<Sole> soles = {};
   double floor_friction = 0.8;
   double gravity = 9.81;  ///< m/s^2, downwards
   /// By which gravity is turned about x and y of the world: what the robot stands on is not level.
   double gravity_tilt_x = 0.0, gravity_tilt_y = 0.0;  ///< rad
 };
+
+/// How many of the feet of `support` are balls.
+int CountBalls(const std::vector<int>& support, const PhysicsOptions& options);
+
+/// Whether the feet of `support` lie on the floor by contact: as the options say, and always where
+/// three or more of them are balls, which nothing could hold.
+bool StandsFreely(const std::vector<int>& support, const PhysicsOptions& options);
 
 /// A flat square plate of the robot, which a table can carry without friction. Both are a little
 /// soft: MuJoCo's contact gives way by tenths of a millimetre under some tens of newtons.
@@ -52,9 +61,9 @@ struct PhysicalPlate {
 /// on
 ///   which the robot stands `s<i>` (i: index into `support`).
 /// - With Standing::kWelded, the tree is rooted at the first sole, which is fixed to the world
-///   exactly, and reversed up to the waist; a weld constraint holds a second sole. With kFree, the
-///   root is the waist with a floating joint, and the soles are boxes on the floor. Without
-///   support, the waist is fixed.
+///   exactly, and reversed up to the waist; a weld constraint holds a second sole. Where the
+///   robot stands freely, the root is the waist with a floating joint, and the soles are boxes or
+///   balls on the floor. Without support, the waist is fixed.
 ///
 /// Springs are stiff (1e5 N.m/rad) for the small bodies that they carry. MuJoCo integrates damping
 /// implicitly but stiffness explicitly. An elastic joint of stiffness k therefore has an additional
@@ -71,8 +80,9 @@ struct MjcfModel {
 /// `encoders` is the posture (by coordinate) in which the robot is put on the floor. It decides
 /// where a second sole stands, so that the legs are not under stress except by their errors. The
 /// first sole lies under the origin of the world's frame, with the attitude that it has when the
-/// root link is upright in the zero posture of the description. Throws std::invalid_argument for a
-/// support that is not the foot of a leg, and for kFree without support.
+/// root link is upright in the zero posture of the description; three and more balls all touch the
+/// floor, as nearly as they can. Throws std::invalid_argument for a support that is not the foot of
+/// a leg, and for kFree without support.
 MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
                     const Eigen::VectorXd& encoders, const PhysicsOptions& options,
                     const std::vector<PhysicalPlate>& plates = {});

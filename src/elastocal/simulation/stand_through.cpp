@@ -35,18 +35,18 @@ void MoveTo(const JointMotion& motion, double time_s, Between& between) {
 }
 
 /// Distance of the zero-moment point to the edge of the loaded soles, m.
-double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles,
-                 const StandingSense& sense) {
-  const double pressed = kLoaded * sense.wrenches.row(2).sum();
+double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles) {
+  const auto [force, moment] = body.FloorWrench();
   std::vector<Sole> standing;
   std::vector<Transform> T_world_sole;
   for (std::size_t i = 0; i < soles.size(); ++i) {
-    if (!(sense.wrenches(2, static_cast<Eigen::Index>(i)) > pressed)) continue;
+    const Transform T = body.SolePose(static_cast<int>(i));
+    const double pressed = T.linear().row(2).dot(body.SoleWrench(static_cast<int>(i)).head<3>());
+    if (!(pressed > kLoaded * force.z())) continue;
     standing.push_back(soles[i]);
-    T_world_sole.push_back(body.SolePose(static_cast<int>(i)));
+    T_world_sole.push_back(T);
   }
   if (standing.empty()) return -std::numeric_limits<double>::infinity();
-  const auto [force, moment] = body.FloorWrench();
   return InsideMargin(SupportPolygon(standing, T_world_sole), ZeroMomentPoint(force, moment));
 }
 
@@ -103,8 +103,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
                          const JointMotion& motion, PhysicsOptions physics,
                          const StandThroughOptions& options) {
   physics.standing = Standing::kFree;
-  physics.foot_length = soles.front().upper.x() - soles.front().lower.x();
-  physics.foot_width = soles.front().upper.y() - soles.front().lower.y();
+  physics.soles = soles;
   std::vector<int> feet;
   for (const Sole& sole : soles) feet.push_back(sole.link);
   const Eigen::MatrixXd& commanded = options.commanded != nullptr ? *options.commanded : motion.q;
@@ -157,7 +156,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
     run.tracking = std::max(run.tracking,
                             TrackingError(robot, body.Encoders(), now.Of(commanded) + correction));
     const StandingSense sense = Sense(body, soles.size(), R_root_unit);
-    run.least_zmp_margin = std::min(run.least_zmp_margin, ZmpMargin(body, soles, sense));
+    run.least_zmp_margin = std::min(run.least_zmp_margin, ZmpMargin(body, soles));
     const Eigen::VectorXd planned = now.Of(motion.q);
     if (options.watch) options.watch(now.at, planned, body);
     if (options.stabiliser == nullptr) continue;

@@ -59,7 +59,7 @@ TrueMotion PlayMotion(const TrueRobot& robot, const std::vector<int>& support, c
       result.torques(i, c) = torques[k];
     }
     result.T_camera_waist.push_back(T_camera_world * body.WaistPose());
-    if (options.standing == Standing::kFree) CheckStanding(body.WaistPose(), height, time_s);
+    if (StandsFreely(support, options)) CheckStanding(body.WaistPose(), height, time_s);
   }
   return result;
 }

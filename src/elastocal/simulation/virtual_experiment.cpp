@@ -146,7 +146,9 @@ SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) 
 WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
                                  const TrueMotion& motion) {
   const PlannedTrial& trial = experiment.trials[index];
-  if (trial.support.empty()) return {};
+  // Balls turn where they stand: they say nothing of where the waist is.
+  const PhysicsOptions& physics = experiment.options.physics;
+  if (trial.support.empty() || CountBalls(trial.support, physics) > 0) return {};
   const auto foot = static_cast<std::size_t>(trial.support[0]);
   return LargestWaistGive(
       motion, RestFrames(trial.motion, motion), [&](const Eigen::VectorXd& encoders) -> Transform {
