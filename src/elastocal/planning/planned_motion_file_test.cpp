@@ -53,7 +53,7 @@ TEST(ProjectFile, ReadsSoles) {
   const std::string left = "{link: left_sole_link, lower_mm: [-1, -1], upper_mm: [1, 1]}";
   EXPECT_EQ(parse("[" + left + "]").soles.size(), 1u);
   ExpectInputError([&] { parse("[" + left + ", " + left + "]"); }, {"no sole yet"});
-  ExpectInputError([&] { parse("[]"); }, {"one or two soles"});
+  ExpectInputError([&] { parse("[]"); }, {"one or more soles"});
   ExpectInputError([&] { parse("[{link: left_sole_link, lower_mm: [1, -1], upper_mm: [1, 1]}]"); },
                    {"lower corner"});
   ExpectInputError([&] { parse("[{link: left_sole_lnk, lower_mm: [1, -1], upper_mm: [1, 1]}]"); },
