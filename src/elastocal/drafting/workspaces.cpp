@@ -79,7 +79,7 @@ void SetLegWorkspace(const RobotTree& tree, const Limb& limb, const RestPosture&
   const double outer = side * foot.y() + kOutwards * height;
   Box box{{foot.x() - kAhead * height, std::min(side * inner, side * outer), -kLowest * height},
           {foot.x() + kAhead * height, std::max(side * inner, side * outer), -kHighest * height}};
-  const bool on_ball = limb.joints.size() < LeastLegJoints(false);
+  const bool on_ball = setup.coordinates.size() < LeastLegJoints(false);
   if (on_ball) box.upper.z() = -kHighestBall * rest.root_height;
   const std::vector<Eigen::Vector3d> places = TipPlaces(tree, setup, rest.q);
   if (ShareInside(box, places) < kEnough) {

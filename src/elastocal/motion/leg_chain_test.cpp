@@ -121,5 +121,36 @@ TEST(LegChain, JointsOfALegMayFollowEachOtherButNoOthers) {
   ExpectInputError([&] { LegChain(four, {FindLink(four, "sole")}); }, {"4 joints"});
 }
 
+TEST(LegChain, OfThreeJointsPlacesABallWhateverItsAttitude) {
+  const RobotTree tree = OneLeg("xyy");
+  const LegChain leg(tree, {FindLink(tree, "sole"), {0, 0}, {0, 0}, 0.02});
+  Eigen::VectorXd q(3);
+  q << 0.1, kHip, kKnee;
+  Transform wanted = leg.SolePose(q);
+  wanted.translation() += Eigen::Vector3d(0.03, -0.04, 0.05);
+  wanted.linear() = RotX(0.7).linear();
+  ASSERT_TRUE(leg.Place(wanted, q));
+  EXPECT_LT((leg.SolePose(q).translation() - wanted.translation()).norm(), 1e-10);
+  EXPECT_GT(RotationAngle(leg.SolePose(q).linear().transpose() * wanted.linear()), 0.1);
+  ExpectInputError([&] { LegChain(tree, {FindLink(tree, "sole")}); }, {"3 joints", "five or more"});
+}
+
+TEST(LegChain, OfFourJointsOnABallGoesByThePlaceAlone) {
+  const RobotTree tree = OneLeg("zxyy");
+  LegChain leg(tree, {FindLink(tree, "sole"), {0, 0}, {0, 0}, 0.0});
+  Eigen::VectorXd rest(4);
+  rest << 0.0, 0.1, kHip, kKnee;
+  leg.Prefer(rest);
+  Transform wanted = leg.SolePose(rest);
+  wanted.translation() += Eigen::Vector3d(0.03, -0.02, 0.05);
+  Eigen::VectorXd there = rest, by_detour = rest;
+  ASSERT_TRUE(leg.Place(wanted, there));
+  Transform detour = wanted;
+  detour.translation() += Eigen::Vector3d(-0.05, 0.03, 0.02);
+  ASSERT_TRUE(leg.Place(detour, by_detour));
+  ASSERT_TRUE(leg.Place(wanted, by_detour));
+  EXPECT_LT((there - by_detour).cwiseAbs().maxCoeff(), 1e-8);
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -8,6 +8,7 @@
 
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/physical_inertia.hpp"
+#include "elastocal/simulation/standing_feet.hpp"
 
 namespace elastocal {
 namespace {
@@ -33,14 +34,6 @@ std::string PoseAttributes(const Transform& T) {
   const Eigen::Quaterniond q(T.linear());
   return Attribute("pos", Numbers(Eigen::Vector3d(T.translation()))) +
          Attribute("quat", Numbers(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
-}
-
-/// What of a foot touches the floor.
-Sole SoleOf(int link, const PhysicsOptions& options) {
-  for (const Sole& sole : options.soles) {
-    if (sole.link == link) return sole;
-  }
-  return {link, {-0.10, -0.06}, {0.10, 0.06}};
 }
 
 /// Writes the bodies, walking over the tree from the body that is fixed or floats.
@@ -167,13 +160,13 @@ class MjcfWriter {
   /// Writes a further foot on the floor.
   void WriteSole(int sole) {
     const Link& link = FootLink(sole);
-    const int link_of = support_[static_cast<std::size_t>(sole)];
     text += "<body" + Attribute("name", "s" + std::to_string(sole)) +
             PoseAttributes(link.T_body_link) + ">\n";
     LinkSprings(FootSprings(sole), link.T_body_link.translation(), link.T_body_link.inverse());
     text += "<inertial pos=\"0 0 0\" mass=\"0.1\" diaginertia=\"1e-4 1e-4 1e-4\"/>\n";
     if (StandsFreely(support_, options_)) {
-      text += "<geom" + Shape(SoleOf(link_of, options_)) + " mass=\"0\"" + Friction() + "/>\n";
+      text += "<geom" + Shape(SoleOf(support_[static_cast<std::size_t>(sole)], options_)) +
+              " mass=\"0\"" + Friction() + "/>\n";
     }
     text += "</body>\n";
   }
@@ -336,30 +329,7 @@ std::string Header(const PhysicsOptions& options, bool contact) {
          "\"><flag" + (contact ? "" : " contact=\"disable\"") + "/></option>\n<worldbody>\n";
 }
 
-/// Places of the balls among the feet, in the waist's frame, m.
-std::vector<Eigen::Vector3d> Balls(const std::vector<int>& support, const PhysicsOptions& options,
-                                   const std::vector<Transform>& T_waist_link) {
-  std::vector<Eigen::Vector3d> balls;
-  for (const int foot : support) {
-    if (!SoleOf(foot, options).ball_radius) continue;
-    balls.push_back(T_waist_link[static_cast<std::size_t>(foot)].translation());
-  }
-  return balls;
-}
-
-constexpr int kBallsThatStand = 3;
-
 }  // namespace
-
-int CountBalls(const std::vector<int>& support, const PhysicsOptions& options) {
-  return static_cast<int>(std::count_if(support.begin(), support.end(), [&](int foot) {
-    return SoleOf(foot, options).ball_radius.has_value();
-  }));
-}
-
-bool StandsFreely(const std::vector<int>& support, const PhysicsOptions& options) {
-  return options.standing == Standing::kFree || CountBalls(support, options) >= kBallsThatStand;
-}
 
 MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
                     const Eigen::VectorXd& encoders, const PhysicsOptions& options,
@@ -372,16 +342,11 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
   const std::vector<Transform> T_waist_link =
       TrueLinkTransforms(robot, TrueJointPositions(robot, encoders));
   const bool stands_freely = StandsFreely(support, options);
-  const std::vector<Eigen::Vector3d> balls = Balls(support, options, T_waist_link);
+  const bool on_balls = CountBalls(support, options) >= kBallsThatStand;
   for (int foot : support) {
     const Transform& T_waist_foot = T_waist_link[static_cast<std::size_t>(foot)];
-    if (model.T_world_foot.empty() && CountBalls(support, options) >= kBallsThatStand) {
-      const Eigen::Matrix3d R_world_waist = FloorAxes(balls).transpose();
-      Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-      for (const Eigen::Vector3d& p : balls) middle += p / static_cast<double>(balls.size());
-      model.T_world_waist.linear() = R_world_waist;
-      model.T_world_waist.translation() =
-          SoleOf(foot, options).height() * Eigen::Vector3d::UnitZ() - R_world_waist * middle;
+    if (model.T_world_foot.empty() && on_balls) {
+      model.T_world_waist = PutOnBalls(support, options, T_waist_link);
       model.T_world_foot.push_back(model.T_world_waist * T_waist_foot);
     } else if (model.T_world_foot.empty()) {
       model.T_world_foot.emplace_back(LegOf(robot, foot).R_floor_foot);

@@ -33,13 +33,6 @@ struct PhysicsOptions {
   double gravity_tilt_x = 0.0, gravity_tilt_y = 0.0;  ///< rad
 };
 
-/// How many of the feet of `support` are balls.
-int CountBalls(const std::vector<int>& support, const PhysicsOptions& options);
-
-/// Whether the feet of `support` lie on the floor by contact: as the options say, and always where
-/// three or more of them are balls, which nothing could hold.
-bool StandsFreely(const std::vector<int>& support, const PhysicsOptions& options);
-
 /// A flat square plate of the robot, which a table can carry without friction. Both are a little
 /// soft: MuJoCo's contact gives way by tenths of a millimetre under some tens of newtons.
 struct PhysicalPlate {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/simulation/standing_feet.hpp"
 
 namespace elastocal {
 namespace {

@@ -9,6 +9,7 @@
 #include "elastocal/math/random.hpp"
 #include "elastocal/simulation/driving_base.hpp"
 #include "elastocal/simulation/faults.hpp"
+#include "elastocal/simulation/standing_feet.hpp"
 #include "elastocal/simulation/stream_seed.hpp"
 
 namespace elastocal {

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// An invented quadruped, as `init` drafts it: it moves a leg while it stands on the other three, in
+// the plan and on robots of MuJoCo that stand freely on their balls.
+
+#include <gtest/gtest.h>
+
+#include "elastocal/drafting/draft.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/motion/stabiliser.hpp"
+#include "elastocal/planning/compensate_motion.hpp"
+#include "elastocal/planning/plan_motion.hpp"
+#include "elastocal/planning/project_motion.hpp"
+#include "elastocal/planning/simulate_experiment.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class Quadruped : public testing::Test {
+ protected:
+  Quadruped() {
+    const std::string file = "tests/robots/quadruped.urdf";
+    const ProjectDraft draft = DraftProject(ReadFile(SourceFile(file)), file, {});
+    folder_.Write("robot.urdf", draft.urdf);
+    project_ = ReadProject(folder_.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
+    // The foot of a leg goes up by 0.1 m and to the side.
+    const ChainSetup& setup = project_.motion.chains[0];
+    Eigen::VectorXd q = project_.motion.rest;
+    q[setup.coordinates[0]] += 0.15;
+    q[setup.coordinates[1]] += 0.4;
+    q[setup.coordinates[2]] -= 0.8;
+    plan_ = PlanMotion(project_, {{setup.name, setup.support, {q}}}, {});
+  }
+
+  ScratchFolder folder_;
+  Project project_;
+  MotionPlan plan_;
+};
+
+TEST_F(Quadruped, LiftsAFootOverTheMiddleOfTheOthers) {
+  ASSERT_TRUE(plan_.left_out.empty()) << plan_.left_out[0];
+  EXPECT_TRUE(plan_.broken().empty());
+  ASSERT_EQ(plan_.planned[0].visits.size(), 1u);
+  // At rest on three feet the zero-moment point is in their middle.
+  const Visit& visit = plan_.planned[0].visits[0];
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  const Eigen::VectorXd q =
+      plan_.planned[0].motion.q.row((visit.begin + visit.end) / 2).transpose();
+  const std::vector<Transform> T_root_link = LinkTransforms(project_.tree, q);
+  const Eigen::Vector3d com = CentreOfMass(project_.tree, BodyInertias(project_.tree), q);
+  std::vector<Eigen::Vector3d> balls;
+  for (const int link : project_.motion.chains[0].support) {
+    balls.push_back(T_root_link[Size(link)].translation());
+    middle += (balls.back() - com).head<2>() / 3.0;
+  }
+  EXPECT_LT(middle.norm(), 1e-6);
+  EXPECT_TRUE(FloorAxes(balls).isIdentity(1e-9));  // the root link is upright
+  EXPECT_GT(T_root_link[Size(project_.motion.chains[0].tip_link)].translation().z(),
+            balls[0].z() + 0.05);
+}
+
+/// What inertial unit and feet measure of the robot at rest on all its feet, the root link leaning.
+StandingSense SenseAtRest(const StandingRobot& robot, double lean) {
+  StandingSense sense;
+  sense.R_world_root = RotX(lean).linear();
+  sense.wrenches.setZero(6, 4);
+  const Eigen::Vector3d com =
+      robot.T_world_root * CentreOfMass(robot.tree, robot.inertias, robot.rest);
+  const Eigen::Vector3d force(0.0, 0.0, 200.0);
+  const auto wrenches = ShareWrench(robot.soles, robot.T_world_sole, force, com.cross(force));
+  const std::vector<Transform> T_root_link = LinkTransforms(robot.tree, robot.rest);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Matrix3d R_link_world =
+        (robot.T_world_root * T_root_link[Size(robot.soles[i].link)]).linear().transpose();
+    sense.wrenches.col(static_cast<Eigen::Index>(i)).head<3>() = R_link_world * wrenches[i].force;
+  }
+  return sense;
+}
+
+TEST_F(Quadruped, ItsStabiliserKnowsTheFloorUnderItsBalls) {
+  const auto robot = StandProjectRobot(project_, {});
+  std::vector<int> support;
+  for (const Sole& sole : robot->soles) support.push_back(sole.link);
+  Stabiliser upright(robot->tree, robot->soles);
+  Stabiliser leaning(robot->tree, robot->soles);
+  Eigen::VectorXd corrected;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::VectorXd q = upright.Correct(robot->rest, support, SenseAtRest(*robot, 0.0), 0.01);
+    EXPECT_LT((q - robot->rest).cwiseAbs().maxCoeff(), 1e-6);
+    corrected = leaning.Correct(robot->rest, support, SenseAtRest(*robot, 0.02), 0.01);
+  }
+  // It turns against the lean: by the corrected joints the floor is turned about x as the root
+  // link has to be turned back.
+  std::vector<Eigen::Vector3d> balls;
+  const std::vector<Transform> T_root_link = LinkTransforms(robot->tree, corrected);
+  for (const int link : support) balls.push_back(T_root_link[Size(link)].translation());
+  const Eigen::Vector3d turn = RotationVector(FloorAxes(balls));
+  EXPECT_GT(turn.x(), 0.005);
+  EXPECT_LT(turn.x(), 0.05);
+  EXPECT_NEAR(leaning.turn().x(), -turn.x(), 2e-3);
+}
+
+TEST_F(Quadruped, RobotsWithErrorsStandThrough) {
+  for (const MotionTrial& trial : TryMotion(project_, plan_.whole.motion, {.robots = 3})) {
+    EXPECT_TRUE(trial.run.stood) << trial.seed;
+    EXPECT_LT(trial.run.largest_lean, 0.06) << trial.seed;
+    EXPECT_GT(trial.run.largest_shift, 1e-4) << trial.seed;  // the stabiliser works
+  }
+  // Where nothing rubs, feet slide apart.
+  MotionTrialOptions ice{.robots = 1};
+  ice.floor_friction = 1e-4;
+  EXPECT_FALSE(TryMotion(project_, plan_.whole.motion, ice)[0].run.stood);
+}
+
+TEST_F(Quadruped, IsRecordedWhileItStandsOnThreeFeet) {
+  SimulationOptions options;
+  options.motion = plan_.whole.motion;
+  const Simulation simulation = PrepareSimulation(project_, options);
+  ASSERT_EQ(simulation.experiment.trials.size(), 1u);
+  EXPECT_EQ(simulation.experiment.trials[0].support, project_.motion.chains[0].support);
+  const TrueMotion played = RunTrial(simulation.experiment, 0).motion;
+  const double height = played.T_camera_waist[0].translation().z();
+  EXPECT_GT(height, 0.4);
+  for (const Transform& T : played.T_camera_waist) {
+    EXPECT_NEAR(T.translation().z(), height, 0.02);
+    EXPECT_GT(T.linear()(2, 2), 0.995);
+  }
+  EXPECT_EQ(LargestWaistDeflection(simulation.experiment, 0, played).translation, 0.0);
+}
+
+TEST_F(Quadruped, CommandsAreNotCorrected) {
+  ExpectInputError([&] { CompensateMotion(project_, {}, plan_.whole.motion); },
+                   {"project.yaml", "front_left_foot", "ball"});
+}
+
+}  // namespace
+}  // namespace elastocal
