@@ -55,7 +55,7 @@ TEST_F(Quadruped, LiftsAFootOverTheMiddleOfTheOthers) {
   const Eigen::Vector3d com = CentreOfMass(project_.tree, BodyInertias(project_.tree), q);
   std::vector<Eigen::Vector3d> balls;
   for (const int link : project_.motion.chains[0].support) {
-    balls.push_back(T_root_link[Size(link)].translation());
+    balls.emplace_back(T_root_link[Size(link)].translation());
     middle += (balls.back() - com).head<2>() / 3.0;
   }
   EXPECT_LT(middle.norm(), 1e-6);
@@ -98,7 +98,7 @@ TEST_F(Quadruped, ItsStabiliserKnowsTheFloorUnderItsBalls) {
   // link has to be turned back.
   std::vector<Eigen::Vector3d> balls;
   const std::vector<Transform> T_root_link = LinkTransforms(robot->tree, corrected);
-  for (const int link : support) balls.push_back(T_root_link[Size(link)].translation());
+  for (const int link : support) balls.emplace_back(T_root_link[Size(link)].translation());
   const Eigen::Vector3d turn = RotationVector(FloorAxes(balls));
   EXPECT_GT(turn.x(), 0.005);
   EXPECT_LT(turn.x(), 0.05);

@@ -272,11 +272,11 @@ void WarnOfGuesses(ProjectDraft& draft) {
         ", because the URDF has no shape of the foot; measure it");
   }
   if (!draft.soles.empty() && !draft.rest.stands) {
-    draft.warnings.push_back(
+    draft.warnings.emplace_back(
         "no posture of rest was found in which the soles are flat on one floor: the draft takes "
         "the root link to be held still, for instance on a stand");
   } else if (!draft.soles.empty() && !draft.stands) {
-    draft.warnings.push_back(
+    draft.warnings.emplace_back(
         "the robot does not balance on legs of five joints or more each, or on four of three: the "
         "draft takes its root link to be held still, for instance on a stand");
   }

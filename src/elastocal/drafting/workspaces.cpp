@@ -24,7 +24,7 @@ std::vector<Eigen::Vector3d> TipPlaces(const RobotTree& tree, const ChainSetup& 
   for (int n = 0; n < kPostures; ++n) {
     Eigen::VectorXd q = rest;
     for (const int c : setup.coordinates) q[c] = random.Uniform(range.first[c], range.second[c]);
-    places.push_back(LinkTransforms(tree, q)[Size(setup.tip_link)].translation());
+    places.emplace_back(LinkTransforms(tree, q)[Size(setup.tip_link)].translation());
   }
   return places;
 }

@@ -30,7 +30,7 @@ Transform PutOnBalls(const std::vector<int>& support, const PhysicsOptions& opti
   for (const int foot : support) {
     const Sole sole = SoleOf(foot, options);
     if (!sole.ball_radius) continue;
-    centres.push_back(T_waist_link[static_cast<std::size_t>(foot)].translation());
+    centres.emplace_back(T_waist_link[static_cast<std::size_t>(foot)].translation());
     middle += centres.back();
     height += sole.height();
   }

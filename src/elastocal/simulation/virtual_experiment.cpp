@@ -38,7 +38,7 @@ std::vector<Eigen::VectorXd> RestPostures(const Motion& motion) {
     bool resting = false;
     for (Eigen::Index i = 1; i < segment.samples.rows(); ++i) {
       const bool rests = segment.samples.row(i) == segment.samples.row(i - 1);
-      if (rests && !resting) postures.push_back(segment.samples.row(i).transpose());
+      if (rests && !resting) postures.emplace_back(segment.samples.row(i).transpose());
       resting = rests;
     }
   }
