@@ -69,7 +69,7 @@ void Stabiliser::PlaceSoles(const Eigen::VectorXd& planned, const std::vector<in
   for (const LegChain& leg : legs_) {
     T_root_sole_.push_back(leg.SolePose(planned));
     const bool stands = std::find(support.begin(), support.end(), leg.sole_link()) != support.end();
-    if (leg.on_ball() && stands) balls.push_back(T_root_sole_.back().translation());
+    if (leg.on_ball() && stands) balls.emplace_back(T_root_sole_.back().translation());
   }
   if (balls.size() < 3) return;
   const Eigen::Matrix3d axes = FloorAxes(balls);

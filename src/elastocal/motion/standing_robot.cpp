@@ -112,14 +112,13 @@ Transform PlaceOnFloor(const StandingRobot& robot, int foot, const Eigen::Vector
 bool FitsTheFloor(const StandingRobot& robot, const std::vector<int>& standing,
                   const Transform& T_world_root, const Eigen::VectorXd& q) {
   constexpr double kOff = 1e-3;  // m: a foot that stands too is there but for rounding
-  for (const int foot : robot.AllFeet()) {
-    const Transform T_world_sole = T_world_root * robot.legs[Size(foot)].SolePose(q);
-    const Transform& place = robot.T_world_sole[Size(foot)];
-    if (T_world_sole.translation().z() < place.translation().z() - kOff) return false;
+  const std::vector<int> feet = robot.AllFeet();
+  return std::all_of(feet.begin(), feet.end(), [&](int foot) {
+    const Eigen::Vector3d found = (T_world_root * robot.legs[Size(foot)].SolePose(q)).translation();
+    const Eigen::Vector3d place = robot.T_world_sole[Size(foot)].translation();
     const bool stands = std::find(standing.begin(), standing.end(), foot) != standing.end();
-    if (stands && (T_world_sole.translation() - place.translation()).norm() > kOff) return false;
-  }
-  return true;
+    return found.z() >= place.z() - kOff && (!stands || (found - place).norm() <= kOff);
+  });
 }
 
 /// Moves two soles apart, or together, until their centres have the distance `stance`.
