@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "elastocal/math/dense.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
@@ -16,17 +17,64 @@ constexpr int kRounds = 10;
 constexpr int kFewestLengths = 4;
 constexpr double kLeastLength = 0.02;  // m: shorter ones tell nothing of a scale
 
+/// What a length of a joint changes by where the joint is displaced by `move`, m: for a general
+/// joint a displacement in its constant frame, of which r, d and b are the directions -y, x and z.
+double GeneralLength(const Eigen::Vector3d& move, ParameterKind kind) {
+  if (kind == ParameterKind::kR) return -move.y();
+  if (kind == ParameterKind::kD) return move.x();
+  return move.z();
+}
+
+/// What a length of a joint changes by where the robot is larger by one, m.
 double NominalLength(const JointPlacement& placement, ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::kR:
-      return placement.r;
-    case ParameterKind::kD:
-      return placement.d;
-    case ParameterKind::kB:
-      return placement.b;
-    default:
-      return 0.0;
+  const Transform& T = placement.T_parent_pre;
+  if (placement.general) return GeneralLength(T.linear().transpose() * T.translation(), kind);
+  if (kind == ParameterKind::kR) return placement.r;
+  return kind == ParameterKind::kD ? placement.d : placement.b;
+}
+
+/// By how much the lengths change when the common normal between a joint's axis and the one that
+/// continues the chain is moved by one along both: the frame of the first joint moves with it, and
+/// all that the joint carries has to be moved back. `lengths`: indices of the model's parameters.
+Eigen::VectorXd ShiftOfNormal(const ErrorModel& model, const std::vector<int>& lengths, int joint,
+                              int next) {
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lengths.size()));
+  for (Eigen::Index i = 0; i < shift.size(); ++i) {
+    const Parameter& length = model.parameters[Size(lengths[Size(i)])];
+    const JointPlacement& placement = model.placements[Size(length.joint)];
+    if (length.joint == joint && length.kind == ParameterKind::kR) shift[i] = 1.0;
+    if (model.tree.joints[Size(length.joint)].parent_body != joint + 1) continue;
+    if (placement.general) {
+      const Eigen::Vector3d along = placement.T_parent_pre.linear().row(2).transpose();
+      shift[i] = GeneralLength(-along, length.kind);
+    } else if (length.joint == next && length.kind == ParameterKind::kR) {
+      shift[i] = -std::cos(placement.alpha);
+    }
   }
+  return shift;
+}
+
+/// Covariance of the lengths' own errors beside those of one variance, in that variance: the common
+/// normal of two axes that are inclined a little to each other is far away, and errors of the axes'
+/// places and directions move it along both by the more, the less they are inclined.
+Eigen::MatrixXd ShiftsOfNormals(const ErrorModel& model, const std::vector<int>& lengths,
+                                const Eigen::VectorXd& prior_sd) {
+  const auto count = static_cast<Eigen::Index>(lengths.size());
+  Eigen::MatrixXd shifts = Eigen::MatrixXd::Zero(count, count);
+  const double unit = prior_sd[lengths.front()];  // that of all lengths
+  for (std::size_t p = 0; p < model.parameters.size(); ++p) {
+    const Parameter& twist = model.parameters[p];
+    if (twist.kind != ParameterKind::kAlpha || twist.joint < 0) continue;
+    const JointPlacement& placement = model.placements[Size(twist.joint)];
+    const int before = model.tree.joints[Size(twist.joint)].parent_body - 1;
+    if (placement.general || placement.parallel || before < 0) continue;
+    const Eigen::VectorXd shift = ShiftOfNormal(model, lengths, before, twist.joint);
+    const double away = std::hypot(model.placements[Size(before)].r, placement.r);
+    const double turned = prior_sd[static_cast<Eigen::Index>(p)] * away / unit;
+    const double amplified = std::pow(std::tan(placement.alpha), -2);
+    shifts += (1.0 + turned * turned) * amplified * shift * shift.transpose();
+  }
+  return shifts;
 }
 
 }  // namespace
@@ -68,22 +116,28 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
   own_information -= eliminated.leftCols(across.cols());
   const Eigen::VectorXd own_b = b(lengths) - eliminated.rightCols<1>();
   const Eigen::VectorXd own_pattern = pattern(lengths);
+  std::vector<int> parameters;
+  for (const Eigen::Index i : lengths) parameters.push_back(fitted[static_cast<std::size_t>(i)]);
+  const auto own_count = static_cast<Eigen::Index>(lengths.size());
+  const Eigen::MatrixXd own_weight =
+      InverseOfPositive(Eigen::MatrixXd::Identity(own_count, own_count) +
+                        ShiftsOfNormals(model, parameters, result.prior_sd));
   // The prior was widened with the pattern in it; how wide it has to be beside the pattern:
   const double narrowest = 1.0 / result.prior_scale[PriorGroup::kLengths];
   double width = narrowest;
   CommonScale scale;
   for (int round = 0; round < kRounds; ++round) {
     const double weight = 1.0 / (width * width);
-    Eigen::MatrixXd information = own_information;
-    information.diagonal().array() += weight;
+    const Eigen::MatrixXd information = own_information + weight * own_weight;
     const Eigen::MatrixXd covariance = InverseOfPositive(information);
-    const Eigen::VectorXd pull = weight * own_pattern;
+    const Eigen::VectorXd pull = weight * (own_weight * own_pattern);
     const double known = pull.dot(own_pattern) - pull.dot(covariance * pull);
     if (!(known > 0.0)) return std::nullopt;
     scale = {pull.dot(covariance * own_b) / known, 1.0 / std::sqrt(known)};
     const Eigen::VectorXd own = covariance * (own_b + scale.size * pull) - scale.size * own_pattern;
-    const double squares = weight * own.squaredNorm();
-    const double determined = (1.0 - weight * covariance.diagonal().array()).sum();
+    const double squares = weight * own.dot(own_weight * own);
+    const double determined =
+        static_cast<double>(own_count) - weight * own_weight.cwiseProduct(covariance).sum();
     if (determined < 1.0) break;
     width = std::max(narrowest, width * std::sqrt(squares / determined));
   }

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/arm_rest.hpp"
 #include "elastocal/drafting/workspaces.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/motion/plan.hpp"
 #include "elastocal/motion/standing_robot.hpp"
 #include "elastocal/posture/chain_problem.hpp"
 #include "elastocal/posture/mirror.hpp"
@@ -165,32 +167,81 @@ void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
   if (held) draft.rest.source += ", the hands ahead";
 }
 
+/// The robot of the draft on its feet. Throws InputError if it cannot stand on them.
+std::unique_ptr<StandingRobot> StandDraft(const ProjectDraft& draft) {
+  std::vector<Sole> soles;
+  for (const DraftedSole& sole : draft.soles) {
+    soles.push_back({FindLink(draft.tree, sole.link), sole.lower, sole.upper, sole.ball_radius});
+  }
+  auto robot = std::make_unique<StandingRobot>(draft.tree, std::move(soles), MotionLimits{});
+  StandOptions options;
+  options.stance = draft.stance;
+  StandUp(*robot, draft.rest.q, options);
+  return robot;
+}
+
+/// The posture in which the robot stands on all feet with the weight over the fewest, without
+/// `swings`; nothing if its legs do not reach so far.
+std::optional<PlacedPosture> OverFewest(const StandingRobot& robot, int swings) {
+  const std::vector<int> fewest =
+      robot.soles.size() > 1 ? robot.AllFeetBut(swings) : robot.AllFeet();
+  PlacedPosture over{robot.rest, robot.T_world_root};
+  if (!BalanceAtRest(robot, robot.AllFeet(), SupportCentre(robot, fewest), over)) {
+    return std::nullopt;
+  }
+  return over;
+}
+
+/// Why the robot cannot lift a foot as `plan` does; empty if it can.
+std::string WhyNotLifted(const StandingRobot& robot, int foot) {
+  if (robot.soles.size() < 2) return "";
+  PostureTour step;
+  step.standing = robot.AllFeetBut(foot);
+  step.postures = {robot.rest};
+  const PlannedTour planned = PlanTour(robot, step, {});
+  if (planned.motion.q.rows() > 0) return "";
+  const LeftOut& why = planned.left_out.front();
+  std::string text = "it cannot stand without " +
+                     Quote(robot.tree.links[Size(robot.soles[Size(foot)].link)].name) + ": " +
+                     ConstraintName(why.constraint);
+  const bool of_joint =
+      why.constraint == Constraint::kPosition || why.constraint == Constraint::kTorque;
+  if (of_joint) text += " of " + Quote(robot.tree.joints[Size(why.index)].name);
+  return text;
+}
+
+/// Why the robot cannot balance as `plan` does, shifting its weight from foot to foot; empty if it
+/// can, and without soles.
+std::string WhyHeld(const ProjectDraft& draft) {
+  if (draft.soles.empty()) return "";
+  if (!draft.rest.stands) {
+    return "no posture of rest was found in which the soles are flat on one floor";
+  }
+  try {
+    const auto robot = StandDraft(draft);
+    for (const int foot : robot->AllFeet()) {
+      if (std::string why = WhyNotLifted(*robot, foot); !why.empty()) return why;
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 /// The posture of rest and, of a robot that balances, those in which it stands on its feet with the
 /// weight over all and over the fewest of them: its parts do not touch in them, whatever the
 /// spheres that cover them do.
 std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft) {
   std::vector<Eigen::VectorXd> postures = {draft.rest.q};
   if (!draft.stands) return postures;
-  std::vector<Sole> soles;
-  for (const DraftedSole& sole : draft.soles) {
-    soles.push_back({FindLink(draft.tree, sole.link), sole.lower, sole.upper, sole.ball_radius});
-  }
-  StandingRobot robot(draft.tree, std::move(soles), {});
-  StandOptions options;
-  options.stance = draft.stance;
   try {
-    StandUp(robot, draft.rest.q, options);
-  } catch (const InputError&) {
-    return postures;  // `plan` will say why
-  }
-  postures.push_back(robot.rest);
-  for (const int foot : robot.AllFeet()) {
-    const std::vector<int> fewest =
-        robot.soles.size() > 1 ? robot.AllFeetBut(foot) : robot.AllFeet();
-    PlacedPosture over_fewest{robot.rest, robot.T_world_root};
-    if (BalanceAtRest(robot, robot.AllFeet(), SupportCentre(robot, fewest), over_fewest)) {
-      postures.push_back(over_fewest.q);
+    const auto robot = StandDraft(draft);
+    postures.push_back(robot->rest);
+    for (const int foot : robot->AllFeet()) {
+      if (const auto over = OverFewest(*robot, foot)) postures.push_back(over->q);
     }
+  } catch (const InputError&) {
+    // With the hands ahead it does not stand: `plan` will say why.
   }
   return postures;
 }
@@ -235,24 +286,6 @@ void JoinMirrors(ProjectDraft& draft) {
   draft.designs = std::move(joined);
 }
 
-/// Whether the legs have as many joints of their own as `plan` needs to balance: five, or three
-/// where four or more legs end in balls.
-bool CanBalance(const RobotTree& tree, const Limbs& limbs, const std::vector<DraftedSole>& soles) {
-  const bool balls = std::any_of(soles.begin(), soles.end(),
-                                 [](const DraftedSole& sole) { return sole.ball_radius; });
-  if (soles.empty() || (balls && soles.size() < 4)) return false;
-  for (const Limb& limb : limbs.limbs) {
-    if (!limb.leg) continue;
-    const std::vector<int> own = ChainCoordinates(tree, 0, limb.tip_link);
-    if (own.size() < LeastLegJoints(balls)) return false;
-    for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
-      const bool in_leg = std::find(limb.joints.begin(), limb.joints.end(), k) != limb.joints.end();
-      if (!in_leg && IsMovedBy(tree.joints[Size(k)], own)) return false;
-    }
-  }
-  return true;
-}
-
 void WarnOfGuesses(ProjectDraft& draft) {
   draft.warnings.insert(draft.warnings.end(), draft.rest.warnings.begin(),
                         draft.rest.warnings.end());
@@ -271,14 +304,10 @@ void WarnOfGuesses(ProjectDraft& draft) {
         (sole.guessed_height ? "height and size are guesses" : "size is a guess") +
         ", because the URDF has no shape of the foot; measure it");
   }
-  if (!draft.soles.empty() && !draft.rest.stands) {
-    draft.warnings.emplace_back(
-        "no posture of rest was found in which the soles are flat on one floor: the draft takes "
-        "the root link to be held still, for instance on a stand");
-  } else if (!draft.soles.empty() && !draft.stands) {
-    draft.warnings.emplace_back(
-        "the robot does not balance on legs of five joints or more each, or on four of three: the "
-        "draft takes its root link to be held still, for instance on a stand");
+  if (!draft.held_because.empty()) {
+    draft.warnings.push_back(
+        "the draft takes the root link to be held still, for instance on a stand: " +
+        draft.held_because);
   }
   for (const Joint& joint : draft.tree.joints) {
     if (joint.mimic || joint.limits.lower < joint.limits.upper) continue;
@@ -304,8 +333,10 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   draft.tree = ParseUrdf(draft.urdf, source);
   NameTips(described, draft);
   draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics);
-  draft.stands = draft.rest.stands && CanBalance(draft.tree, draft.limbs, draft.soles);
-  if (draft.stands) draft.stance = ChooseStance(draft.tree, draft.soles);
+  draft.stance = ChooseStance(draft.tree, draft.soles);
+  draft.held_because = WhyHeld(draft);
+  draft.stands = !draft.soles.empty() && draft.held_because.empty();
+  if (!draft.stands) draft.stance.reset();
   draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
   constexpr double kMargin = 0.004;  // of the longest branch: 5 mm on a robot of 1.75 m
   draft.sphere_margin =

@@ -35,6 +35,7 @@ struct ProjectDraft {
   std::vector<ChainSetup> designs;
   /// Whether the soles are written: the robot stands on one or two.
   bool stands = false;
+  std::string held_because;           ///< why it does not stand, though there are soles
   std::optional<double> stance;       ///< m, where the feet are too close in the zero posture
   std::vector<std::string> warnings;  ///< what a person should look at first
 };

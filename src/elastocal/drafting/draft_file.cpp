@@ -167,10 +167,8 @@ class DraftWriter {
   void WriteSoles() {
     if (!draft_.stands) {
       text_ += draft_.soles.empty() ? "# No legs were found: the root link is held still.\n"
-                                    : "# The robot does not balance on flat soles of legs with "
-                                      "five joints or more each,\n"
-                                      "# or on four legs with three: the root link is held still, "
-                                      "for instance on a stand.\n";
+                                    : "# The root link is held still, for instance on a stand: " +
+                                          draft_.held_because + ".\n";
       return;
     }
     text_ +=

@@ -28,22 +28,25 @@ std::vector<Transform> RootWay(const Stretch& stretch) {
   return way;
 }
 
-/// Places the legs at every sample, starting from the sample before.
+/// Places the legs at every sample, starting from the sample before. May turn the root link about
+/// the vertical (see PlaceFeet).
 bool PlaceLegs(const StandingRobot& robot, const Stretch& stretch,
-               const std::vector<Transform>& T_world_root, Eigen::MatrixXd& q) {
+               std::vector<Transform>& T_world_root, Eigen::MatrixXd& q) {
   PlacedPosture pose = stretch.begin;
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const PlacedPosture before = pose;
     InterruptionPoint();
     pose = {stretch.q.row(i).transpose(), T_world_root[Size(i)]};
-    const auto place = [&](int foot, const Transform& T_world_sole) {
+    const auto as_before = [&](int foot) {
       for (const int c : robot.legs[Size(foot)].coordinates()) pose.q[c] = before.q[c];
-      return PlaceSole(robot, foot, T_world_sole, pose);
     };
-    for (const int foot : stretch.standing) {
-      if (!place(foot, robot.T_world_sole[Size(foot)])) return false;
+    for (const int foot : stretch.standing) as_before(foot);
+    if (!PlaceFeet(robot, stretch.standing, pose)) return false;
+    if (stretch.led >= 0) {
+      as_before(stretch.led);
+      if (!PlaceSole(robot, stretch.led, stretch.T_world_led[Size(i)], pose)) return false;
     }
-    if (stretch.led >= 0 && !place(stretch.led, stretch.T_world_led[Size(i)])) return false;
+    T_world_root[Size(i)] = pose.T_world_root;
     q.row(i) = pose.q.transpose();
   }
   return true;
@@ -55,9 +58,7 @@ Eigen::Vector2d FollowingShare(const StandingRobot& robot, const Stretch& stretc
   const auto com = [&](const Eigen::Vector2d& move) -> Eigen::Vector2d {
     PlacedPosture pose = stretch.begin;
     pose.T_world_root.translation().head<2>() += move;
-    for (const int foot : stretch.standing) {
-      PlaceSole(robot, foot, robot.T_world_sole[Size(foot)], pose);
-    }
+    PlaceFeet(robot, stretch.standing, pose);
     return (pose.T_world_root * CentreOfMass(robot.tree, robot.inertias, pose.q)).head<2>();
   };
   const Eigen::Vector2d here = com({0, 0});
@@ -69,9 +70,7 @@ double SpeedGain(const StandingRobot& robot, const Stretch& stretch) {
   constexpr double kStep = 1e-3;
   PlacedPosture pose = stretch.begin;
   pose.T_world_root.translation() += Eigen::Vector3d(kStep, kStep, 0.0) / std::sqrt(2.0);
-  for (const int foot : stretch.standing) {
-    PlaceSole(robot, foot, robot.T_world_sole[Size(foot)], pose);
-  }
+  PlaceFeet(robot, stretch.standing, pose);
   return ((pose.q - stretch.begin.q) / kStep).squaredNorm();
 }
 

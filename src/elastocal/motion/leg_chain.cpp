@@ -49,17 +49,19 @@ LegChain::LegChain(const RobotTree& tree, const Sole& sole)
       sole_link_(sole.link),
       on_ball_(sole.ball_radius.has_value()),
       joints_(JointsToBody(tree, tree.links[static_cast<std::size_t>(sole.link)].body)) {
-  coordinates_ = ChainCoordinates(tree, 0, sole_link_);
-  bool own = coordinates_.size() >= LeastLegJoints(on_ball_);
-  for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
-    const bool in_leg = std::find(joints_.begin(), joints_.end(), k) != joints_.end();
-    own = own && (in_leg || !IsMovedBy(tree.joints[static_cast<std::size_t>(k)], coordinates_));
+  coordinates_ = OwnCoordinates(tree, sole_link_);
+  for (const int c : ChainCoordinates(tree, 0, sole_link_)) {
+    const bool own = std::find(coordinates_.begin(), coordinates_.end(), c) != coordinates_.end();
+    if (!own) shared_.push_back(c);
   }
+  turns_root_ = !shared_.empty() && !on_ball_ && coordinates_.size() < 6;
   length_ = LengthOf(tree, sole_link_);
-  if (own) return;
+  if (coordinates_.size() >= LeastLegJoints(on_ball_)) return;
   throw InputError("robot '" + tree.name + "': '" +
                    tree.links[static_cast<std::size_t>(sole_link_)].name + "' is at the end of " +
-                   std::to_string(joints_.size()) + " joints; expected a leg of " +
+                   std::to_string(joints_.size()) + " joints" +
+                   (shared_.empty() ? "" : ", " + std::to_string(coordinates_.size()) + " of them its own") +
+                   "; expected a leg of " +
                    (on_ball_ ? "three" : "five") + " or more joints of its own to balance on");
 }
 
@@ -78,6 +80,7 @@ Transform LegChain::Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) 
     }
     for (const Drive& drive : DrivesOf(joint)) {
       const auto at = std::find(coordinates_.begin(), coordinates_.end(), drive.coordinate);
+      if (at == coordinates_.end()) continue;
       screws.col(at - coordinates_.begin()) += drive.multiplier * screw;
     }
   }
@@ -100,23 +103,40 @@ void LegChain::Prefer(const Eigen::VectorXd& q) {
 }
 
 bool LegChain::Place(const Transform& T_root_sole, Eigen::VectorXd& q) const {
-  return Solve(T_root_sole, false, q);
+  return Solve(T_root_sole, Turns::kNothing, Eigen::Vector3d::UnitZ(), q).has_value();
 }
 
 bool LegChain::PlaceFlat(const Transform& T_root_sole, Eigen::VectorXd& q) const {
-  return Solve(T_root_sole, !on_ball_ && coordinates_.size() < 6, q);
+  const Turns turns = !on_ball_ && coordinates_.size() < 6 ? Turns::kSole : Turns::kNothing;
+  return Solve(T_root_sole, turns, Eigen::Vector3d::UnitZ(), q).has_value();
 }
 
-bool LegChain::Solve(const Transform& T_root_sole, bool any_heading, Eigen::VectorXd& q) const {
+bool LegChain::PlaceUnderRoot(const Transform& T_world_sole, Transform& T_world_root,
+                              Eigen::VectorXd& q) const {
+  const Eigen::Vector3d up = T_world_root.linear().transpose() * Eigen::Vector3d::UnitZ();
+  const auto turned = Solve(T_world_root.inverse() * T_world_sole,
+                            turns_root_ ? Turns::kRoot : Turns::kNothing, up, q);
+  if (!turned) return false;
+  if (turns_root_) T_world_root.linear() = T_world_root.linear() * RotAxis(up, *turned).linear();
+  return true;
+}
+
+std::optional<double> LegChain::Solve(Transform T_root_sole, Turns turns, const Eigen::Vector3d& up,
+                                      Eigen::VectorXd& q) const {
   constexpr int kIterations = 40;
   constexpr double kReached = 1e-11;
   constexpr double kLargestMove = 0.3;  // rad
   Eigen::MatrixXd screws;
+  double turned = 0.0;
   for (int i = 0; i < kIterations; ++i) {
     const Transform found = Evaluate(q, screws);
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();
     if (!on_ball_) turn = RotationVector(T_root_sole.linear() * found.linear().transpose());
-    if (any_heading) {  // the turn about the normal is one more unknown
+    if (turns == Turns::kRoot) {
+      screws.conservativeResize(Eigen::NoChange, screws.cols() + 1);
+      screws.rightCols<1>() << up, Eigen::Vector3d::Zero();
+    }
+    if (turns == Turns::kSole) {  // the turn about the normal is one more unknown
       const Eigen::Vector3d normal = T_root_sole.linear().col(2);
       screws.conservativeResize(Eigen::NoChange, screws.cols() + 1);
       screws.rightCols<1>() << normal, found.translation().cross(normal);
@@ -125,7 +145,9 @@ bool LegChain::Solve(const Transform& T_root_sole, bool any_heading, Eigen::Vect
     const Eigen::Vector3d move = T_root_sole.translation() - found.translation();
     Eigen::VectorXd off;
     if (still_.rows() > 0) off = still_ * (preferred_ - q(coordinates_));
-    if (turn.norm() < kReached && move.norm() < kReached && off.norm() < kReached) return true;
+    if (turn.norm() < kReached && move.norm() < kReached && off.norm() < kReached) {
+      return turned;
+    }
     Eigen::VectorXd wanted(6);
     wanted << turn, move - turn.cross(found.translation());
     if (on_ball_) {
@@ -140,11 +162,15 @@ bool LegChain::Solve(const Transform& T_root_sole, bool any_heading, Eigen::Vect
     }
     Eigen::VectorXd step = LeastStep(screws, wanted);
     const double largest = step.cwiseAbs().maxCoeff();
-    if (!(largest < 1e6)) return false;
+    if (!(largest < 1e6)) return std::nullopt;
     step *= std::min(1.0, kLargestMove / std::max(largest, 1e-12));
     q(coordinates_) += step.head(static_cast<Eigen::Index>(coordinates_.size()));
+    if (turns == Turns::kRoot) {
+      T_root_sole = RotAxis(up, -step[step.size() - 1]) * T_root_sole;
+      turned += step[step.size() - 1];
+    }
   }
-  return false;
+  return std::nullopt;
 }
 
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,18 +15,25 @@ constexpr std::size_t LeastLegJoints(bool on_ball) { return on_ball ? 3 : 5; }
 
 /// A leg: the joints from the root link to a sole. It has five or more entries of q of its own, or
 /// three or more if its sole is a ball, of which only the place counts; joints within it may be
-/// coupled, but not to joints elsewhere. With more than six (three), the leg stays near the posture
-/// from which it is placed, or goes by the one that is preferred; with five, only some poses of the
-/// sole are in reach (those parallel to the root link, where what is missing is the joint about the
-/// vertical).
+/// coupled. A joint that is coupled to one elsewhere (hips that share a motor) stays where it is
+/// when the leg is placed. With more than six (three) entries of its own, the leg stays near the
+/// posture from which it is placed, or goes by the one that is preferred; with five, only some poses
+/// of the sole are in reach (those parallel to the root link, where what is missing is the joint
+/// about the vertical).
 class LegChain {
  public:
-  /// Keeps a reference. Throws InputError for fewer joints, and for coupling to joints elsewhere.
+  /// Keeps a reference. Throws InputError for fewer joints of its own.
   LegChain(const RobotTree& tree, const Sole& sole);
 
   int sole_link() const { return sole_link_; }
   bool on_ball() const { return on_ball_; }
-  const std::vector<int>& coordinates() const { return coordinates_; }  ///< of q, from the root on
+  /// Its own entries of q, from the root on.
+  const std::vector<int>& coordinates() const { return coordinates_; }
+  /// Whether the root link has to turn about the vertical for the foot to keep its pose, because
+  /// too few joints are its own and others are shared with other legs.
+  bool turns_root() const { return turns_root_; }
+  /// The entries of q that it shares with joints elsewhere.
+  const std::vector<int>& shared_coordinates() const { return shared_; }
 
   /// Sum of the distances between the joints from the first one to the sole in the zero posture, m.
   double length() const { return length_; }
@@ -49,8 +57,18 @@ class LegChain {
   /// its normal.
   bool PlaceFlat(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
+  /// The same as `Place` for a pose of the sole in the world. A root link that has to turn (see
+  /// `turns_root`) is turned about the vertical through its origin.
+  bool PlaceUnderRoot(const Transform& T_world_sole, Transform& T_world_root,
+                      Eigen::VectorXd& q) const;
+
  private:
-  bool Solve(const Transform& T_root_sole, bool any_heading, Eigen::VectorXd& q) const;
+  /// What else may turn, beside the leg's joints, while the sole is placed.
+  enum class Turns { kNothing, kSole, kRoot };
+  /// `up`: the axis of a root link that turns, in its frame. Returns nothing if the sole is out of
+  /// reach, and otherwise the angle by which the root link turns, rad.
+  std::optional<double> Solve(Transform T_root_sole, Turns turns, const Eigen::Vector3d& up,
+                              Eigen::VectorXd& q) const;
   /// Pose of the sole; sets `screws` to its derivatives, 6 x coordinates: a rotation and the
   /// velocity of the point at the root's origin.
   Transform Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const;
@@ -59,9 +77,9 @@ class LegChain {
 
   const RobotTree& tree_;
   int sole_link_;
-  bool on_ball_;
+  bool on_ball_, turns_root_ = false;
   double length_ = 0.0;
-  std::vector<int> joints_, coordinates_;
+  std::vector<int> joints_, coordinates_, shared_;
   Eigen::VectorXd preferred_;  ///< by the leg's coordinates; empty: none
   Eigen::MatrixXd still_;      ///< rows: directions of the joints in which the sole stays, there
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/smooth_step.hpp"
 #include "elastocal/robot/inverse_dynamics.hpp"
 
@@ -46,6 +47,12 @@ constexpr double kEnds = 0.5;  // s, hold at either end, in which the root link 
 
 }  // namespace
 
+Transform TiltedSole(const Transform& T_world_sole, const Eigen::Vector2d& tilt) {
+  Transform T = T_world_sole;
+  T.linear() = T.linear() * RotationFromVector({tilt.x(), tilt.y(), 0.0});
+  return T;
+}
+
 PlanOptions SizedOptions(const StandingRobot& robot, PlanOptions options) {
   constexpr double kInset = 0.54, kLift = 0.123;
   if (options.inset <= 0.0) options.inset = kInset * robot.half_support;
@@ -69,9 +76,7 @@ bool MoveBuilder::Balanced(const std::vector<int>& standing, PlacedPosture& pose
     return BalanceAtRest(robot_, standing, SupportCentre(robot_, standing), pose);
   }
   pose.T_world_root = robot_.T_world_root;
-  return std::all_of(standing.begin(), standing.end(), [&](int foot) {
-    return PlaceSole(robot_, foot, robot_.T_world_sole[Size(foot)], pose);
-  });
+  return PlaceFeet(robot_, standing, pose);
 }
 
 std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing, double spare,
@@ -120,8 +125,7 @@ std::optional<PlacedPosture> MoveBuilder::AsGiven(const Eigen::VectorXd& q,
                                                   Refusal& why) const {
   PlacedPosture pose{q, robot_.T_world_root};
   if (!standing.empty()) pose.T_world_root = RootOverFeet(robot_, standing, q);
-  for (const int foot : standing) {
-    if (PlaceSole(robot_, foot, robot_.T_world_sole[Size(foot)], pose)) continue;
+  if (!PlaceFeet(robot_, standing, pose)) {
     why = OutOfReach();
     return std::nullopt;
   }
@@ -250,8 +254,11 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, cons
     });
     if (!stands && from.q[c] != to.q[c]) moving.push_back(c);
   }
+  const bool turns_root = !standing.empty() && robot_.legs[Size(standing.front())].turns_root();
   const Clearances apart = [&](const Eigen::VectorXd& q) {
-    return DistancesAboveFloor(robot_, standing, q);
+    PlacedPosture pose{q, from.T_world_root};
+    if (turns_root && !PlaceFeet(robot_, standing, pose)) pose.q = q;
+    return DistancesAboveFloor(robot_, standing, pose.q);
   };
   JointPath path = PlanJointPath(robot_, apart, from.q, to.q, moving, options_.path);
   for (int i = 0; i <= options_.slower; ++i, path.duration_s *= kSlower) {
@@ -306,7 +313,8 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const PlacedPosture& from,
 
 std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, const PlacedPosture& to,
                                                  const std::vector<int>& standing, int foot,
-                                                 double tilt, Refusal& why) const {
+                                                 const Eigen::Vector2d& tilt,
+                                                 Refusal& why) const {
   Stretch stretch;
   stretch.rate_hz = options_.rate_hz;
   stretch.standing = standing;
@@ -326,7 +334,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, cons
   stretch.led = foot;
   for (Eigen::Index i = 0; i < lifted.size(); ++i) {
     stretch.T_world_led.push_back(Eigen::Translation3d(0.0, 0.0, lifted[i]) *
-                                  robot_.T_world_sole[Size(foot)] * RotY(tilt * second[i]));
+                                  TiltedSole(robot_.T_world_sole[Size(foot)], tilt * second[i]));
   }
   const Eigen::RowVector2d begin = HandOver(standing).transpose();
   const Eigen::RowVector2d way = SupportCentre(robot_, standing).transpose() - begin;

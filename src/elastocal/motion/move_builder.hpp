@@ -9,6 +9,9 @@
 
 namespace elastocal {
 
+/// A sole turned by a rotation vector [rad] about its own x and y axes.
+Transform TiltedSole(const Transform& T_world_sole, const Eigen::Vector2d& tilt);
+
 /// The options with the lengths that follow from the robot's size.
 PlanOptions SizedOptions(const StandingRobot& robot, PlanOptions options);
 
@@ -60,11 +63,11 @@ class MoveBuilder {
   std::optional<Eigen::MatrixXd> Shift(const PlacedPosture& from, const PlacedPosture& to,
                                        const std::vector<int>& onto, Refusal& why) const;
 
-  /// Motion that lifts a foot straight up by options.lift_m while the others stand, and turns it by
-  /// `tilt` about its y axis [rad] on the second half of the way.
+  /// Motion that lifts a foot straight up by options.lift_m while the others stand, and tilts it
+  /// (TiltedSole) on the second half of the way.
   std::optional<Eigen::MatrixXd> Lift(const PlacedPosture& from, const PlacedPosture& to,
-                                      const std::vector<int>& standing, int foot, double tilt,
-                                      Refusal& why) const;
+                                      const std::vector<int>& standing, int foot,
+                                      const Eigen::Vector2d& tilt, Refusal& why) const;
 
   Eigen::Index SamplesOf(double seconds) const;
 

@@ -94,21 +94,24 @@ class TourPlanner {
     const auto shifted = build_.Shift(here_, over, set_.standing, why);
     if (!shifted) return false;
     shifted_ = *shifted;
-    // Flat or, where the ankle does not bend so far, with the toes or the heel down.
+    // Flat or, where the ankle does not bend so far, with the toes, the heel or a side down.
     constexpr std::array<double, 9> kTilts = {0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.45, -0.45};
-    for (const double tilt : kTilts) {
-      Refusal refusal;
-      if (LiftFoot(over, tilt, refusal)) return true;
-      if (tilt == 0.0) why = refusal;
+    for (const Eigen::Vector2d axis : {Eigen::Vector2d::UnitY(), Eigen::Vector2d::UnitX()}) {
+      for (const double tilt : kTilts) {
+        Refusal refusal;
+        if (LiftFoot(over, tilt * axis, refusal)) return true;
+        if (tilt == 0.0) why = refusal;
+      }
     }
     return false;
   }
 
-  /// Lifts the foot on which the set does not stand, the weight being over the others.
-  bool LiftFoot(const PlacedPosture& over, double tilt, Refusal& why) {
+  /// Lifts the foot on which the set does not stand, the weight being over the others. `tilt`: a
+  /// rotation vector about the x and y axes of the sole, rad.
+  bool LiftFoot(const PlacedPosture& over, const Eigen::Vector2d& tilt, Refusal& why) {
     const int swings = SwingingFoot();
     const Transform T_world_lifted = Eigen::Translation3d(0.0, 0.0, options_.lift_m) *
-                                     robot_.T_world_sole[Size(swings)] * RotY(tilt);
+                                     TiltedSole(robot_.T_world_sole[Size(swings)], tilt);
     const auto up = build_.AtRestWithFoot(set_.standing, swings, T_world_lifted, over, why);
     if (!up) return false;
     const auto lifted = build_.Lift(over, *up, set_.standing, swings, tilt, why);

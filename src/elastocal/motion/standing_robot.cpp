@@ -7,6 +7,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/rotation_vector.hpp"
 
 namespace elastocal {
 namespace {
@@ -28,7 +29,9 @@ bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_so
       bent[joints[knee - 1]] -= 0.5 * bend;
       bent[joints[knee]] += bend;
       bent[joints[knee + 1]] -= 0.5 * bend;
-      if (!leg.Place(T_root_sole, bent)) continue;
+      if (!(leg.turns_root() ? leg.PlaceFlat(T_root_sole, bent) : leg.Place(T_root_sole, bent))) {
+        continue;
+      }
       const bool within = std::all_of(joints.begin(), joints.end(), [&](int i) {
         const JointLimits& limits = tree.joints[Size(tree.coordinate_joint[Size(i)])].limits;
         return bent[i] > limits.lower + position_margin && bent[i] < limits.upper - position_margin;
@@ -90,6 +93,14 @@ void SizeSupport(StandingRobot& robot) {
   constexpr double kZmpShare = 0.3;
   robot.half_support = HalfSupport(robot);
   if (robot.limits.zmp_margin < 0.0) robot.limits.zmp_margin = kZmpShare * robot.half_support;
+}
+
+/// By how much a sole is turned about the vertical from where it stands, rad.
+double HeadingOff(const StandingRobot& robot, int foot, const PlacedPosture& pose) {
+  const Eigen::Matrix3d R = pose.T_world_root.linear() *
+                            robot.legs[Size(foot)].SolePose(pose.q).linear() *
+                            robot.T_world_sole[Size(foot)].linear().transpose();
+  return RotationVector(R).z();
 }
 
 /// Where a sole stands on the floor: as it is in the zero posture, a ball as in `posture`.
@@ -214,9 +225,37 @@ Eigen::Vector2d SupportCentre(const StandingRobot& robot, const std::vector<int>
   return sum / static_cast<double>(feet.size());
 }
 
+bool PlaceFeet(const StandingRobot& robot, const std::vector<int>& feet, PlacedPosture& pose) {
+  const auto place = [&] {
+    return std::all_of(feet.begin(), feet.end(), [&](int foot) {
+      const Transform& T_world_sole = robot.T_world_sole[Size(foot)];
+      if (foot != feet.front()) return PlaceSole(robot, foot, T_world_sole, pose);
+      return robot.legs[Size(foot)].PlaceUnderRoot(T_world_sole, pose.T_world_root, pose.q);
+    });
+  };
+  if (!place()) return false;
+  if (feet.size() < 2 || !robot.legs[Size(feet[1])].turns_root()) return true;
+  // Secant steps of the shared joint, on the heading of the second foot.
+  constexpr int kIterations = 20;
+  constexpr double kReached = 1e-11, kLargestMove = 0.1;  // rad
+  double& shared = pose.q[robot.legs[Size(feet[1])].shared_coordinates().front()];
+  double off = HeadingOff(robot, feet[1], pose), step = std::min(kLargestMove, std::max(1e-4, off));
+  for (int i = 0; i < kIterations; ++i) {
+    if (std::abs(off) < kReached) return true;
+    const double before = off;
+    shared += step;
+    if (!place()) return false;
+    off = HeadingOff(robot, feet[1], pose);
+    step = std::clamp(-off * step / (off - before), -kLargestMove, kLargestMove);
+  }
+  return false;
+}
+
 bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_sole,
                PlacedPosture& pose) {
-  return robot.legs[Size(foot)].Place(pose.T_world_root.inverse() * T_world_sole, pose.q);
+  const LegChain& leg = robot.legs[Size(foot)];
+  const Transform T_root_sole = pose.T_world_root.inverse() * T_world_sole;
+  return leg.turns_root() ? leg.PlaceFlat(T_root_sole, pose.q) : leg.Place(T_root_sole, pose.q);
 }
 
 Transform RootOverFeet(const StandingRobot& robot, const std::vector<int>& feet,
@@ -250,9 +289,7 @@ bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
   constexpr double kReached = 1e-10;    // m
   constexpr double kLargestMove = 0.1;  // m
   for (int i = 0; i < kIterations; ++i) {
-    for (const int foot : feet) {
-      if (!PlaceSole(robot, foot, robot.T_world_sole[Size(foot)], pose)) return false;
-    }
+    if (!PlaceFeet(robot, feet, pose)) return false;
     const Eigen::Vector3d found =
         pose.T_world_root * CentreOfMass(robot.tree, robot.inertias, pose.q);
     // Most of the robot moves with the root link, and no part moves further.

@@ -101,7 +101,14 @@ Transform RootOnFloor(const StandingRobot& robot, const Eigen::VectorXd& q);
 bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
                    const Eigen::Vector2d& com, PlacedPosture& pose);
 
-/// Places one leg so that its sole has the given pose in the world.
+/// Places the legs of `feet` so that their soles stand where they stand on the floor. Of legs with
+/// too few joints of their own (see LegChain::turns_root), the first turns the root link about the
+/// vertical, and the joint that they share is moved until the second has its heading too. Returns
+/// false, with the pose changed, if a foot is out of reach.
+bool PlaceFeet(const StandingRobot& robot, const std::vector<int>& feet, PlacedPosture& pose);
+
+/// Places one leg so that its sole has the given pose in the world; of a leg with too few joints of
+/// its own, the sole may turn about its normal.
 bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_sole,
                PlacedPosture& pose);
 

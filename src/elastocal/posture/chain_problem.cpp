@@ -17,17 +17,29 @@ std::vector<int> PathCoordinates(const RobotTree& tree, int link) {
   return ChainCoordinates(tree, 0, link);
 }
 
-/// Spheres on links that the chain moves.
+/// Spheres on links that the chain moves, but not on legs that stand: where they share a joint with
+/// the chain, their other joints keep the foot on the floor.
 std::vector<CollisionSphere> MovedSpheres(const RobotTree& tree, const MotionSetup& motion,
                                           const ChainSetup& chain) {
+  const auto is_on = [&](const CollisionSphere& sphere, int joint) {
+    const std::vector<int> path = JointsToBody(tree, tree.links[sphere.link].body);
+    return std::find(path.begin(), path.end(), joint) != path.end();
+  };
+  const auto is_moved = [&](const CollisionSphere& sphere) {
+    const std::vector<int> path = JointsToBody(tree, tree.links[sphere.link].body);
+    return std::any_of(path.begin(), path.end(), [&](int joint) {
+      return IsMovedBy(tree.joints[joint], chain.coordinates);
+    });
+  };
+  const auto stands = [&](const CollisionSphere& sphere) {
+    return std::any_of(chain.support.begin(), chain.support.end(), [&](int sole) {
+      const std::vector<int> leg = JointsToBody(tree, tree.links[sole].body);
+      return !leg.empty() && is_on(sphere, leg.front());
+    });
+  };
   std::vector<CollisionSphere> moved;
   for (const CollisionSphere& sphere : motion.spheres) {
-    for (int joint : JointsToBody(tree, tree.links[sphere.link].body)) {
-      if (IsMovedBy(tree.joints[joint], chain.coordinates)) {
-        moved.push_back(sphere);
-        break;
-      }
-    }
+    if (is_moved(sphere) && !stands(sphere)) moved.push_back(sphere);
   }
   return moved;
 }
