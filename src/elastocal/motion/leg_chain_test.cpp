@@ -5,6 +5,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/math/rotation_vector.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/test_robots.hpp"
 
@@ -99,7 +100,7 @@ TEST_F(FiveJointLeg, PutsItsSoleFlatWhateverItsHeading) {
   EXPECT_LT((found.linear().col(2) - wanted_.linear().col(2)).norm(), 1e-10);
 }
 
-TEST(LegChain, JointsOfALegMayFollowEachOtherButNoOthers) {
+TEST(LegChain, JointsOfALegMayFollowEachOther) {
   // The second knee bends as much as the first.
   RobotTree tree = OneLeg("zxyyyyx");
   for (const std::size_t k : {4u, 5u, 6u}) tree.joints[k].coordinate -= 1;
@@ -113,12 +114,44 @@ TEST(LegChain, JointsOfALegMayFollowEachOtherButNoOthers) {
   ASSERT_TRUE(leg.Place(wanted, q));
   EXPECT_LT((leg.SolePose(q).matrix() - wanted.matrix()).norm(), 1e-10);
 
-  AddJoint(tree, "tail", 0, Offset(-0.1, 0, 0), {0, 1, 0});
-  MakeLastJointMimic(tree, 0, 1.0, 0.0);
-  ExpectInputError([&] { LegChain(tree, {FindLink(tree, "sole")}); },
-                   {"'sole'", "five or more joints of its own"});
   const RobotTree four = OneLeg("xyyy");
   ExpectInputError([&] { LegChain(four, {FindLink(four, "sole")}); }, {"4 joints"});
+}
+
+TEST(LegChain, AJointThatOthersShareStaysAndTheRootTurnsInstead) {
+  // The tail follows the hip's joint about the vertical.
+  RobotTree tree = OneLeg("zxyyyx");
+  AddJoint(tree, "tail", 0, Offset(-0.1, 0, 0), {0, 1, 0});
+  MakeLastJointMimic(tree, 0, 1.0, 0.0);
+  const LegChain leg(tree, {FindLink(tree, "sole")});
+  EXPECT_TRUE(leg.turns_root());
+  EXPECT_EQ(leg.shared_coordinates(), std::vector<int>{0});
+  EXPECT_EQ(leg.coordinates().size(), 5u);
+  Eigen::VectorXd q(6);
+  q << 0, 0.05, kHip, kKnee, kHip, 0;
+  Transform T_world_root = Transform(Offset(0.2, 0.1, 0.8)) * RotX(0.1) * RotY(0.05);
+  const Transform T_world_sole = T_world_root * leg.SolePose(q);
+  const Eigen::Vector3d place = T_world_root.translation() + Eigen::Vector3d(0.02, 0.01, 0.02);
+  T_world_root.translation() = place;
+  const Eigen::Matrix3d before = T_world_root.linear();
+  q[0] = 0.3;
+  Eigen::VectorXd held = q;
+  EXPECT_FALSE(leg.Place(T_world_root.inverse() * T_world_sole, held));
+  ASSERT_TRUE(leg.PlaceUnderRoot(T_world_sole, T_world_root, q));
+  EXPECT_LT(((T_world_root * leg.SolePose(q)).matrix() - T_world_sole.matrix()).norm(), 1e-9);
+  EXPECT_EQ(q[0], 0.3);
+  EXPECT_EQ(T_world_root.translation(), place);
+  const Eigen::Vector3d turn = RotationVector(T_world_root.linear() * before.transpose());
+  EXPECT_NEAR(turn.z(), -0.3, 0.02);  // by what the hip turns the leg, but for the lean
+  EXPECT_LT(turn.head<2>().norm(), 1e-9);
+
+  const RobotTree alone = OneLeg("zxyyyx");
+  EXPECT_FALSE(LegChain(alone, {FindLink(alone, "sole")}).turns_root());
+  RobotTree short_leg = OneLeg("zxyyy");
+  AddJoint(short_leg, "tail", 0, Offset(-0.1, 0, 0), {0, 1, 0});
+  MakeLastJointMimic(short_leg, 0, 1.0, 0.0);
+  ExpectInputError([&] { LegChain(short_leg, {FindLink(short_leg, "sole")}); },
+                   {"'sole'", "5 joints, 4 of them its own", "five or more joints of its own"});
 }
 
 TEST(LegChain, OfThreeJointsPlacesABallWhateverItsAttitude) {

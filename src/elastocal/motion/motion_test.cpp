@@ -341,6 +341,26 @@ TEST(StandingRobot, LiftsItsFootTiltedWhereTheAnkleBendsLittle) {
   EXPECT_LT(tilt(0), 1e-9);
 }
 
+// Beside the leg that carries it, a lifted foot is further out than its hip: flat, it rolls the more
+// the higher it is.
+TEST(StandingRobot, LiftsItsFootTiltedWhereTheAnkleRollsLittle) {
+  Walker walker = MakeWalker();
+  const int roll = FindJoint(walker.tree, "right_6");
+  const auto largest_roll = [&] {
+    StandingRobot robot(walker.tree, walker.soles, {});
+    StandUp(robot, NeutralPosture(robot.tree, 0.05), {});
+    const PlannedTour planned = PlanTour(robot, {"right", {0}, {}, false, {}}, {});
+    EXPECT_GT(planned.end, planned.begin);
+    EXPECT_FALSE(Broken(CheckMotion(robot, planned.motion), robot.limits));
+    return planned.motion.q.col(robot.tree.joints[Size(roll)].coordinate).cwiseAbs().maxCoeff();
+  };
+  const double flat = largest_roll();
+  JointLimits& limits = walker.tree.joints[Size(roll)].limits;
+  limits.upper = 0.95 * flat + MotionLimits{}.position_margin;
+  limits.lower = -limits.upper;
+  EXPECT_LE(largest_roll(), 0.95 * flat);
+}
+
 TEST(StandingRobot, RefusesWhatCannotStand) {
   Walker walker = MakeWalker();
   Sole on_arm{walker.hand, {-0.1, -0.1}, {0.1, 0.1}};

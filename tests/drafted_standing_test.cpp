@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An invented quadruped, as `init` drafts it: it moves a leg while it stands on the other three, in
-// the plan and on robots of MuJoCo that stand freely on their balls.
+// Robots as `init` drafts them, in the plan and in MuJoCo where they stand freely: an invented
+// quadruped moves a leg while it stands on the balls of the other three, and an invented humanoid
+// whose hips share a motor moves one while it stands on the other.
 
 #include <gtest/gtest.h>
 
@@ -136,6 +137,89 @@ TEST_F(Quadruped, IsRecordedWhileItStandsOnThreeFeet) {
 TEST_F(Quadruped, CommandsAreNotCorrected) {
   ExpectInputError([&] { CompensateMotion(project_, {}, plan_.whole.motion); },
                    {"project.yaml", "front_left_foot", "ball"});
+}
+
+/// The small humanoid, with stronger motors: its own cannot carry it on one leg.
+class SharedHips : public testing::Test {
+ protected:
+  static std::string Urdf(double strength) {
+    std::string urdf = ReadFile(SourceFile("tests/robots/mini_humanoid.urdf"));
+    const std::string key = "effort=\"";
+    for (std::size_t at = urdf.find(key); at != std::string::npos; at = urdf.find(key, at + 1)) {
+      const std::size_t begin = at + key.size(), end = urdf.find('"', begin);
+      const double effort = strength * std::stod(urdf.substr(begin, end - begin));
+      urdf.replace(begin, end - begin, std::to_string(effort));
+    }
+    return urdf;
+  }
+
+  static ProjectDraft Draft(double strength) {
+    return DraftProject(Urdf(strength), "mini_humanoid.urdf", {});
+  }
+
+  void ReadDraft() {
+    const ProjectDraft draft = Draft(1.5);
+    ASSERT_TRUE(draft.stands) << draft.held_because;
+    folder_.Write("robot.urdf", draft.urdf);
+    project_ = ReadProject(folder_.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
+  }
+
+  ScratchFolder folder_;
+  Project project_;
+};
+
+TEST_F(SharedHips, OfWeakMotorsDoNotStand) {
+  const ProjectDraft draft = Draft(1.0);
+  EXPECT_FALSE(draft.stands);
+  EXPECT_FALSE(draft.stance);
+  EXPECT_NE(draft.held_because.find("torque limit of 'right_hip_roll'"), std::string::npos)
+      << draft.held_because;
+}
+
+// The axes of these hips are not those of the ankles, so that each place of the root link asks for
+// another angle of the shared motor.
+TEST_F(SharedHips, KeepBothFeetFlatWhereverTheRootIs) {
+  ReadDraft();
+  const auto robot = StandProjectRobot(project_, {});
+  ASSERT_TRUE(robot->legs[1].turns_root());
+  const int shared = robot->legs[1].shared_coordinates().front();
+  PlacedPosture pose{robot->rest, robot->T_world_root};
+  pose.T_world_root.translation().y() += 0.02;
+  ASSERT_TRUE(PlaceFeet(*robot, {0, 1}, pose));
+  for (const std::size_t foot : {0u, 1u}) {
+    const Transform T_world_sole = pose.T_world_root * robot->legs[foot].SolePose(pose.q);
+    EXPECT_LT((T_world_sole.matrix() - robot->T_world_sole[foot].matrix()).norm(), 1e-9) << foot;
+  }
+  EXPECT_GT(std::abs(pose.q[shared] - robot->rest[shared]), 1e-6);
+  EXPECT_LT(std::abs(pose.q[shared] - robot->rest[shared]), 1e-2);
+}
+
+TEST_F(SharedHips, MoveTheirMotorOnOneLegAndStandInMujoco) {
+  ReadDraft();
+  const ChainSetup* leg = nullptr;
+  for (const ChainSetup& setup : project_.motion.chains) {
+    if (setup.support.size() == 1 && leg == nullptr) leg = &setup;
+  }
+  ASSERT_NE(leg, nullptr);
+  Eigen::VectorXd q = project_.motion.rest;
+  q[leg->coordinates[0]] -= 0.3;  // the shared motor
+  q[leg->coordinates[1]] += 0.1;
+  q[leg->coordinates[2]] -= 0.3;
+  q[leg->coordinates[3]] += 0.4;
+  const MotionPlan plan = PlanMotion(project_, {{leg->name, leg->support, {q}}}, {});
+  ASSERT_TRUE(plan.left_out.empty()) << plan.left_out[0];
+  EXPECT_TRUE(plan.broken().empty());
+  // The standing foot does not move on the floor, so the root link turns over it.
+  const auto heading = [&](Eigen::Index row) {
+    const auto T_root_link = LinkTransforms(project_.tree, plan.whole.motion.q.row(row).transpose());
+    return RotationVector(T_root_link[Size(leg->support[0])].linear()).z();
+  };
+  const Visit& visit = plan.planned[0].visits[0];
+  const Eigen::Index lead = plan.whole.motion.q.rows() - plan.planned[0].motion.q.rows();
+  EXPECT_GT(std::abs(heading(lead + visit.begin + 10) - heading(0)), 0.1);
+  for (const MotionTrial& trial : TryMotion(project_, plan.whole.motion, {.robots = 3})) {
+    EXPECT_TRUE(trial.run.stood) << trial.seed;
+  }
 }
 
 }  // namespace
