@@ -96,7 +96,8 @@ std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
 std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
                                                  const std::vector<int>& standing,
                                                  const PlacedPosture& near, Refusal& why) const {
-  // Leaning or turning the waist moves the support leg away from a swinging one.
+  // Leaning or turning the waist moves the support leg away from a swinging one, and joints away
+  // from their ends.
   constexpr std::array<double, 5> kTilts = {0.0, 0.06, -0.06, 0.12, -0.12};  // rad, about x
   constexpr std::array<double, 5> kTurns = {0.0, 0.12, -0.12, 0.24, -0.24};  // rad, about z
   // Additional distance, if possible, so that there is a way too, as a share of the leg's length.
@@ -113,7 +114,9 @@ std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
         const auto found = AtHeights(q, standing, near, {attitude.linear(), spare}, refusal);
         if (found) return found;
         if (tilt == 0.0 && turn == 0.0) why = refusal;
-        if (why.constraint != Constraint::kClearance) return std::nullopt;
+        if (why.constraint != Constraint::kClearance && why.constraint != Constraint::kPosition) {
+          return std::nullopt;
+        }
       }
     }
   }

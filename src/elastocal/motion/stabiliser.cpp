@@ -204,6 +204,11 @@ void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense&
 Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
   const Transform T_root_reference = T_root_sole_[Size(reference_)];
   Eigen::VectorXd corrected = planned;
+  struct Moved {
+    std::size_t leg;
+    double share, largest;  // rad
+  };
+  std::vector<Moved> standing, lifted;
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     const double height = (T_root_reference.inverse() * T_root_sole_[i]).translation().z();
     const double share =
@@ -218,8 +223,23 @@ Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
     T_moved_sole.linear() = T_moved_sole.linear() * RotationFromVector(share * Level(foot));
     T_moved_sole.translation() +=
         share * (i == 0 ? 0.5 : -0.5) * height_ * T_moved_sole.linear().col(2);
-    if (legs_[i].PlaceFlat(T_moved_sole, corrected)) continue;
-    for (const int c : legs_[i].coordinates()) corrected[c] = planned[c] + correction_[c];
+    const std::vector<int>& leg = legs_[i].coordinates();
+    if (!legs_[i].PlaceFlat(T_moved_sole, corrected)) {
+      corrected(leg) = planned(leg) + correction_(leg);
+    }
+    const Eigen::VectorXd moved = corrected(leg) - planned(leg);
+    (share_[static_cast<Eigen::Index>(i)] > 0.0 ? standing : lifted)
+        .push_back({i, share, moved.cwiseAbs().maxCoeff()});
+  }
+  // Near its full length a lifted leg would have to move by much for little.
+  constexpr double kMoreThanStanding = 2.0;
+  double most = 0.0;
+  for (const Moved& leg : standing) most = std::max(most, kMoreThanStanding * leg.largest);
+  for (const Moved& leg : lifted) {
+    const double kept = std::min(1.0, leg.share * most / std::max(leg.largest, 1e-12));
+    for (const int c : legs_[leg.leg].coordinates()) {
+      corrected[c] = planned[c] + kept * (corrected[c] - planned[c]);
+    }
   }
   return corrected;
 }
