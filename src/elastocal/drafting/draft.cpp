@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/arm_rest.hpp"
@@ -40,22 +41,32 @@ void NameTips(const RobotTree& before, ProjectDraft& draft) {
   }
 }
 
+/// What carries limbs that do not begin on the root link: above it a torso, above legs a waist.
+std::string TrunkName(const Limb& limb) { return limb.leg ? "waist" : "torso"; }
+
+/// Name of the chain of a limb from the root link on.
+std::string WholeName(const Limb& limb) {
+  return limb.from_body == 0 ? limb.name : TrunkName(limb) + "_" + limb.name;
+}
+
 /// Limbs on a moving trunk have two chains: of their own joints, and from the root link. What has
 /// no mirror image is one chain from the root link, and a trunk without a head is one itself.
 void AddChains(ProjectDraft& draft) {
-  bool trunk_done = false;
-  int trunk = 0;
+  std::vector<std::pair<int, std::string>> trunks;  // bodies, with the names of their chains
+  std::set<int> done;
   for (const Limb& limb : draft.limbs.limbs) {
-    const std::string whole = limb.from_body == 0 ? limb.name : "torso_" + limb.name;
-    if (limb.from_body != 0) trunk = limb.from_body;
     if (limb.from_body != 0 && limb.mirror >= 0) {
       draft.chains.push_back({limb.name, BodyLink(draft.tree, limb.from_body), limb.tip_link});
+      const std::pair<int, std::string> trunk(limb.from_body, TrunkName(limb));
+      if (std::find(trunks.begin(), trunks.end(), trunk) == trunks.end()) trunks.push_back(trunk);
     } else if (limb.from_body != 0) {
-      trunk_done = true;
+      done.insert(limb.from_body);
     }
-    draft.chains.push_back({whole, 0, limb.tip_link});
+    draft.chains.push_back({WholeName(limb), 0, limb.tip_link});
   }
-  if (trunk != 0 && !trunk_done) draft.chains.push_back({"torso", 0, BodyLink(draft.tree, trunk)});
+  for (const auto& [body, name] : trunks) {
+    if (done.count(body) == 0) draft.chains.push_back({name, 0, BodyLink(draft.tree, body)});
+  }
 }
 
 std::vector<int> Feet(const ProjectDraft& draft, int without) {
@@ -114,8 +125,7 @@ void AddSetups(ProjectDraft& draft) {
   for (std::size_t i = 0; i < draft.limbs.limbs.size(); ++i) {
     const Limb& limb = draft.limbs.limbs[i];
     const bool paired = limb.mirror >= 0;
-    const std::string whole = limb.from_body == 0 ? limb.name : "torso_" + limb.name;
-    ChainSetup setup = SetupOf(draft, paired ? limb.name : whole,
+    ChainSetup setup = SetupOf(draft, paired ? limb.name : WholeName(limb),
                                paired ? BodyLink(draft.tree, limb.from_body) : 0, limb.tip_link);
     setup.support = Feet(draft, limb.leg ? static_cast<int>(i) : -1);
     if (limb.leg && draft.stands) SetLegWorkspace(draft.tree, limb, draft.rest, setup);
@@ -124,8 +134,8 @@ void AddSetups(ProjectDraft& draft) {
     draft.designs.push_back(std::move(setup));
   }
   for (const DraftedChain& chain : draft.chains) {
-    if (chain.name != "torso") continue;
-    draft.designs.push_back(SetupOf(draft, "torso", 0, chain.tip_link));
+    if (chain.name != "torso" && chain.name != "waist") continue;
+    draft.designs.push_back(SetupOf(draft, chain.name, 0, chain.tip_link));
     draft.designs.back().support = Feet(draft, -1);
   }
 }

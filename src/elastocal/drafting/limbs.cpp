@@ -61,6 +61,21 @@ std::vector<bool> FindTools(const RobotTree& tree) {
   return tool;
 }
 
+/// Marks wheels as tools: ends of the robot that one or two joints carry, all of which turn without
+/// an end.
+void MarkWheels(const RobotTree& tree, std::vector<bool>& tool) {
+  constexpr std::size_t kMostJoints = 2;
+  for (int body = 1; body < tree.body_count(); ++body) {
+    const std::vector<int> joints = JointsToBody(tree, body);
+    const bool turns = std::all_of(joints.begin(), joints.end(), [&](int k) {
+      const Joint& joint = tree.joints[Size(k)];
+      return joint.type == JointType::kRevolute && !std::isfinite(joint.limits.lower);
+    });
+    if (!turns || joints.size() > kMostJoints || !Branches(tree, body).empty()) continue;
+    for (const int k : joints) tool[Size(k) + 1] = Branches(tree, k + 1).size() < 2;
+  }
+}
+
 /// The nearest body towards the root on which several limbs begin.
 int BranchBody(const RobotTree& tree, const std::vector<bool>& tool, int tip) {
   int body = tip;
@@ -175,9 +190,14 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     Limb& limb = limbs[i];
     const double origin = poses[Size(limb.tip_body)].translation().z();
-    limb.leg = limb.from_body == 0 && limb.mirror >= 0 && origin < -kBelow * longest &&
+    limb.leg = limb.mirror >= 0 && origin < -kBelow * longest &&
                lowest[i] < floor + kSameFloor * longest;
   }
+}
+
+/// How many joints carry the body on which the limb begins.
+std::size_t TrunkJoints(const RobotTree& tree, const Limb& limb) {
+  return JointsToBody(tree, limb.from_body).size();
 }
 
 /// "left_leg" and the like, by where the limb's tip is in the zero posture.
@@ -187,6 +207,10 @@ std::string PlaceName(const RobotTree& tree, const std::vector<Limb>& limbs, con
   const Eigen::Vector3d tip = poses[Size(limb.tip_body)].translation();
   const auto legs = std::count_if(limbs.begin(), limbs.end(), [](const Limb& l) { return l.leg; });
   const bool leg = limb.leg;
+  constexpr std::size_t kJointsOfAnArm = 4;
+  if (limb.mirror < 0 && limb.joints.size() - TrunkJoints(tree, limb) >= kJointsOfAnArm) {
+    return "arm";
+  }
   if (limb.mirror < 0) return leg ? "leg" : "head";
   std::string name = tip.y() > 0.0 ? "left_" : "right_";
   if (leg && legs > 2) name = (tip.x() > 0.0 ? "front_" : "hind_") + name;
@@ -198,6 +222,9 @@ std::string PlaceName(const RobotTree& tree, const std::vector<Limb>& limbs, con
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics) {
   Limbs found;
   found.tool = FindTools(tree);
+  const std::vector<bool> fingers = found.tool;
+  MarkWheels(tree, found.tool);
+  if (std::count(found.tool.begin() + 1, found.tool.end(), false) == 0) found.tool = fingers;
   for (int body = 1; body < tree.body_count(); ++body) {
     const std::vector<int> branches = Branches(tree, body);
     const bool ends =

@@ -22,12 +22,13 @@ struct Limb {
 
 struct Limbs {
   std::vector<Limb> limbs;  ///< in the order of the file
-  std::vector<bool> tool;   ///< by body: fingers, which belong to no limb
+  std::vector<bool> tool;   ///< by body: fingers and wheels, which belong to no limb
 };
 
 /// Finds the limbs of a robot from its tree. Bodies that part in several short branches are hands:
-/// what is beyond them are fingers. Legs are limbs on the root link with a mirror image whose ends
-/// are the lowest of the robot in the zero posture, well below the root link. Names are those of
+/// what is beyond them are fingers. Bodies that one or two joints without an end carry are wheels.
+/// Legs are limbs with a mirror image whose ends are the lowest of the robot in the zero posture,
+/// well below the root link. Names are those of
 /// the SRDF's groups, or follow from where the tips are: "left_leg", "right_arm", "head"; they can
 /// name files and differ from each other. The tip is the link that the SRDF names, or the furthest
 /// one of the last body.

@@ -102,6 +102,23 @@ bool Flat(const RobotTree& tree, const std::vector<DraftedSole>& soles, const Ei
   return !soles.empty() && highest - lowest < kSame;
 }
 
+/// The joints of a leg that move no other leg.
+std::vector<int> OwnJoints(const RobotTree& tree, const Limbs& limbs, const Limb& leg) {
+  const auto is_shared = [&](int joint) {
+    const int c = tree.joints[Size(joint)].coordinate;
+    return std::any_of(limbs.limbs.begin(), limbs.limbs.end(), [&](const Limb& other) {
+      return other.leg && other.tip_body != leg.tip_body &&
+             std::any_of(other.joints.begin(), other.joints.end(),
+                         [&](int k) { return IsMovedBy(tree.joints[Size(k)], c); });
+    });
+  };
+  std::vector<int> own;
+  for (const int joint : leg.joints) {
+    if (!is_shared(joint)) own.push_back(joint);
+  }
+  return own;
+}
+
 /// Lowers the root link with the feet where they are in the zero posture, by as much as the legs
 /// allow up to a usual share of their length. Returns whether they stand.
 bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<DraftedSole>& soles,
@@ -114,7 +131,7 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
     Eigen::VectorXd bent = q;
     bool all = true;
     for (const DraftedSole& sole : soles) {
-      const std::vector<int>& joints = limbs.limbs[Size(sole.limb)].joints;
+      const std::vector<int> joints = OwnJoints(tree, limbs, limbs.limbs[Size(sole.limb)]);
       const int link = FindLink(tree, sole.link);
       Transform wanted = zero[Size(link)];
       wanted.translation().z() *= 1.0 - drop;

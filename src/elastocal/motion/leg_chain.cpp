@@ -44,15 +44,17 @@ double LengthOf(const RobotTree& tree, int link) {
 
 }  // namespace
 
-LegChain::LegChain(const RobotTree& tree, const Sole& sole)
+LegChain::LegChain(const RobotTree& tree, const Sole& sole, const std::vector<Sole>& soles)
     : tree_(tree),
       sole_link_(sole.link),
       on_ball_(sole.ball_radius.has_value()),
       joints_(JointsToBody(tree, tree.links[static_cast<std::size_t>(sole.link)].body)) {
-  coordinates_ = OwnCoordinates(tree, sole_link_);
   for (const int c : ChainCoordinates(tree, 0, sole_link_)) {
-    const bool own = std::find(coordinates_.begin(), coordinates_.end(), c) != coordinates_.end();
-    if (!own) shared_.push_back(c);
+    const bool shared = std::any_of(soles.begin(), soles.end(), [&](const Sole& other) {
+      const std::vector<int> others = ChainCoordinates(tree, 0, other.link);
+      return other.link != sole_link_ && std::find(others.begin(), others.end(), c) != others.end();
+    });
+    (shared ? shared_ : coordinates_).push_back(c);
   }
   turns_root_ = !shared_.empty() && !on_ball_ && coordinates_.size() < 6;
   length_ = LengthOf(tree, sole_link_);

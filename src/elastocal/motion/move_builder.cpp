@@ -98,7 +98,6 @@ std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
                                                  const PlacedPosture& near, Refusal& why) const {
   // Leaning or turning the waist moves the support leg away from a swinging one, and joints away
   // from their ends.
-  constexpr std::array<double, 5> kTilts = {0.0, 0.06, -0.06, 0.12, -0.12};  // rad, about x
   constexpr std::array<double, 5> kTurns = {0.0, 0.12, -0.12, 0.24, -0.24};  // rad, about z
   // Additional distance, if possible, so that there is a way too, as a share of the leg's length.
   constexpr double kSpare = 0.0075;
@@ -106,7 +105,7 @@ std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
     return AtHeights(q, standing, near, {robot_.T_world_root.linear(), 0.0}, why);
   }
   for (const double spare : {kSpare * robot_.leg_length, 0.0}) {
-    for (const double tilt : kTilts) {
+    for (const double tilt : kRootTilts) {
       for (const double turn : kTurns) {
         Refusal refusal;
         const Transform attitude =

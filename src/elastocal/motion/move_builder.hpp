@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -8,6 +9,9 @@
 #include "elastocal/motion/refusal.hpp"
 
 namespace elastocal {
+
+/// Inclinations of the root link about the x axis of the world that are tried, rad.
+constexpr std::array<double, 5> kRootTilts = {0.0, 0.06, -0.06, 0.12, -0.12};
 
 /// A sole turned by a rotation vector [rad] about its own x and y axes.
 Transform TiltedSole(const Transform& T_world_sole, const Eigen::Vector2d& tilt);

@@ -81,11 +81,22 @@ class TourPlanner {
     rows_.Add(here_.q.transpose().replicate(samples, 1), set_.standing);
   }
 
-  /// Shifts the weight and lifts the foot on which the set does not stand. Does nothing if the set
-  /// stands on all feet.
+  /// Shifts the weight and lifts the foot on which the set does not stand, the waist upright or, where
+  /// the hips do not bend so far, leaning. Does nothing if the set stands on all feet.
   bool StepOntoFeet(Refusal& why) {
     if (!LiftsAFoot()) return true;
+    for (const double lean : kRootTilts) {
+      Refusal refusal;
+      if (StepLeaning(lean, refusal)) return true;
+      if (lean == 0.0) why = refusal;
+      if (why.constraint != Constraint::kPosition) return false;
+    }
+    return false;
+  }
+
+  bool StepLeaning(double lean, Refusal& why) {
     PlacedPosture over = here_;
+    over.T_world_root.linear() = RotX(lean).linear() * over.T_world_root.linear();
     if (options_.balanced &&
         !BalanceAtRest(robot_, robot_.AllFeet(), build_.HandOver(set_.standing), over)) {
       why = OutOfReach();

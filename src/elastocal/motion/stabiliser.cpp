@@ -33,7 +33,7 @@ Stabiliser::Stabiliser(const RobotTree& tree, const std::vector<Sole>& soles,
       inertias_(BodyInertias(tree)),
       correction_(Eigen::VectorXd::Zero(tree.coordinate_count())) {
   for (const Sole& sole : soles) {
-    legs_.emplace_back(tree, sole);
+    legs_.emplace_back(tree, sole, soles);
     middle_.push_back(sole.centre());
   }
   if (!legs_.empty()) leg_length_ = legs_[0].length();

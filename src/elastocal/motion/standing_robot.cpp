@@ -147,7 +147,7 @@ StandingRobot::StandingRobot(RobotTree robot, std::vector<Sole> feet, const Moti
     : tree(std::move(robot)), inertias(BodyInertias(tree)), soles(std::move(feet)), limits(kept) {
   bool balls = false;
   for (const Sole& sole : soles) {
-    legs.emplace_back(tree, sole);
+    legs.emplace_back(tree, sole, soles);
     balls = balls || sole.ball_radius;
   }
   if (balls && soles.size() < 4) {

@@ -18,13 +18,10 @@ std::vector<int> PathCoordinates(const RobotTree& tree, int link) {
 }
 
 /// Spheres on links that the chain moves, but not on legs that stand: where they share a joint with
-/// the chain, their other joints keep the foot on the floor.
+/// the chain, their own joints keep the foot on the floor.
 std::vector<CollisionSphere> MovedSpheres(const RobotTree& tree, const MotionSetup& motion,
                                           const ChainSetup& chain) {
-  const auto is_on = [&](const CollisionSphere& sphere, int joint) {
-    const std::vector<int> path = JointsToBody(tree, tree.links[sphere.link].body);
-    return std::find(path.begin(), path.end(), joint) != path.end();
-  };
+  const std::vector<int> own = JointsToBody(tree, tree.links[chain.tip_link].body);
   const auto is_moved = [&](const CollisionSphere& sphere) {
     const std::vector<int> path = JointsToBody(tree, tree.links[sphere.link].body);
     return std::any_of(path.begin(), path.end(), [&](int joint) {
@@ -32,9 +29,13 @@ std::vector<CollisionSphere> MovedSpheres(const RobotTree& tree, const MotionSet
     });
   };
   const auto stands = [&](const CollisionSphere& sphere) {
+    const std::vector<int> path = JointsToBody(tree, tree.links[sphere.link].body);
     return std::any_of(chain.support.begin(), chain.support.end(), [&](int sole) {
       const std::vector<int> leg = JointsToBody(tree, tree.links[sole].body);
-      return !leg.empty() && is_on(sphere, leg.front());
+      return std::any_of(leg.begin(), leg.end(), [&](int joint) {
+        return std::find(own.begin(), own.end(), joint) == own.end() &&
+               std::find(path.begin(), path.end(), joint) != path.end();
+      });
     });
   };
   std::vector<CollisionSphere> moved;

@@ -36,17 +36,6 @@ std::vector<int> ChainCoordinates(const RobotTree& tree, int from_link, int tip_
   return coordinates;
 }
 
-std::vector<int> OwnCoordinates(const RobotTree& tree, int tip_link) {
-  const std::vector<int> joints = JointsToBody(tree, tree.links[tip_link].body);
-  std::vector<int> own = ChainCoordinates(tree, 0, tip_link);
-  for (int k = 0; k < static_cast<int>(tree.joints.size()); ++k) {
-    if (std::find(joints.begin(), joints.end(), k) != joints.end()) continue;
-    const auto moves = [&](int c) { return IsMovedBy(tree.joints[k], c); };
-    own.erase(std::remove_if(own.begin(), own.end(), moves), own.end());
-  }
-  return own;
-}
-
 MovingChain::MovingChain(const RobotTree& tree, std::vector<int> coordinates, Eigen::VectorXd rest)
     : tree_(tree), coordinates_(std::move(coordinates)), q_(std::move(rest)), driven_(1) {
   carries_.assign(tree_.joints.size(), std::vector<char>(tree_.joints.size(), 0));

@@ -14,9 +14,6 @@ namespace elastocal {
 /// drives several joints occurs once.
 std::vector<int> ChainCoordinates(const RobotTree& tree, int from_link, int tip_link);
 
-/// Those of ChainCoordinates from the root link on that move no joint outside the chain.
-std::vector<int> OwnCoordinates(const RobotTree& tree, int tip_link);
-
 /// A component of the load of gravity on a joint: the moment of everything that the joint carries,
 /// about a point and along a direction (N.m), or the force along a prismatic joint (N). Point and
 /// direction are fixed to the body that carries the joint.
