@@ -232,8 +232,8 @@ Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
         .push_back({i, share, moved.cwiseAbs().maxCoeff()});
   }
   // Near its full length a lifted leg would have to move by much for little.
-  constexpr double kMoreThanStanding = 2.0;
-  double most = 0.0;
+  constexpr double kMoreThanStanding = 2.0, kUsual = 0.1;  // rad
+  double most = kUsual;
   for (const Moved& leg : standing) most = std::max(most, kMoreThanStanding * leg.largest);
   for (const Moved& leg : lifted) {
     const double kept = std::min(1.0, leg.share * most / std::max(leg.largest, 1e-12));
