@@ -211,13 +211,85 @@ TEST_F(SharedHips, MoveTheirMotorOnOneLegAndStandInMujoco) {
   EXPECT_TRUE(plan.broken().empty());
   // The standing foot does not move on the floor, so the root link turns over it.
   const auto heading = [&](Eigen::Index row) {
-    const auto T_root_link = LinkTransforms(project_.tree, plan.whole.motion.q.row(row).transpose());
+    const auto T_root_link =
+        LinkTransforms(project_.tree, plan.whole.motion.q.row(row).transpose());
     return RotationVector(T_root_link[Size(leg->support[0])].linear()).z();
   };
   const Visit& visit = plan.planned[0].visits[0];
   const Eigen::Index lead = plan.whole.motion.q.rows() - plan.planned[0].motion.q.rows();
   EXPECT_GT(std::abs(heading(lead + visit.begin + 10) - heading(0)), 0.1);
   for (const MotionTrial& trial : TryMotion(project_, plan.whole.motion, {.robots = 3})) {
+    EXPECT_TRUE(trial.run.stood) << trial.seed;
+  }
+}
+
+/// A joint of an invented robot and the link that it carries, which weighs 2 kg.
+std::string JointXml(const std::string& name, const std::string& parent, const std::string& place,
+                     const std::string& axis, const std::string& range,
+                     const std::string& shape = "") {
+  return "<link name='" + name +
+         "'><inertial><mass value='2'/><inertia ixx='0.01' ixy='0' ixz='0'"
+         " iyy='0.01' iyz='0' izz='0.01'/></inertial>" +
+         shape + "</link><joint name='" + name + "_joint' type='revolute'><parent link='" + parent +
+         "'/><child link='" + name + "'/><origin xyz='" + place + "'/><axis xyz='" + axis +
+         "'/><limit " + range + " effort='150' velocity='10'/></joint>\n";
+}
+
+/// A robot whose root link is its trunk: a waist joint carries both legs.
+std::string LegsBelowAWaist() {
+  std::string urdf =
+      "<robot name='below'><link name='trunk'><inertial><origin xyz='0 0 0.2'/><mass value='12'/>"
+      "<inertia ixx='0.2' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.1'/></inertial><collision>"
+      "<origin xyz='0 0 0.2'/><geometry><box size='0.15 0.2 "
+      "0.3'/></geometry></collision></link>\n" +
+      JointXml("waist", "trunk", "0 0 -0.05", "0 0 1", "lower='-1.5' upper='1.5'");
+  for (const std::string side : {"left", "right"}) {
+    const std::string y = side == "left" ? "0.1" : "-0.1";
+    const auto joint = [&](const std::string& name, const std::string& parent,
+                           const std::string& place, const std::string& axis,
+                           const std::string& range, const std::string& shape = "") {
+      urdf += JointXml(side + name, parent == "waist" ? parent : side + parent, place, axis, range,
+                       shape);
+    };
+    joint("_hip_yaw", "waist", "0 " + y + " -0.05", "0 0 1", "lower='-0.5' upper='0.5'");
+    joint("_hip_roll", "_hip_yaw", "0 0 0", "1 0 0", "lower='-0.6' upper='0.6'");
+    joint("_hip", "_hip_roll", "0 0 0", "0 1 0", "lower='-1.8' upper='1'");
+    joint("_knee", "_hip", "0 0 -0.35", "0 1 0", "lower='0' upper='2.3'");
+    joint("_ankle", "_knee", "0 0 -0.35", "0 1 0", "lower='-1.2' upper='0.8'");
+    joint("_foot", "_ankle", "0 0 -0.03", "1 0 0", "lower='-0.6' upper='0.6'",
+          "<collision><origin xyz='0.02 0 -0.03'/><geometry><box size='0.22 0.11 0.02'/>"
+          "</geometry></collision>");
+  }
+  return urdf + "</robot>\n";
+}
+
+TEST(LegsBelowAWaist, StandAndTurnTheWaistAsFarAsTheHipsAllow) {
+  const ProjectDraft draft = DraftProject(LegsBelowAWaist(), "below.urdf", {});
+  ASSERT_TRUE(draft.stands) << draft.held_because;
+  std::vector<std::string> chains;
+  for (const DraftedChain& chain : draft.chains) chains.push_back(chain.name);
+  EXPECT_EQ(chains, (std::vector<std::string>{"left_leg", "waist_left_leg", "right_leg",
+                                              "waist_right_leg", "waist"}));
+  ScratchFolder folder;
+  folder.Write("robot.urdf", draft.urdf);
+  const Project project =
+      ReadProject(folder.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
+  // Feet that stay where they are leave the waist what the hips can turn back, 0.5 rad.
+  const int waist = project.tree.joints[Size(FindJoint(project.tree, "waist_joint"))].coordinate;
+  EXPECT_GT(project.motion.upper[waist], 0.2);
+  EXPECT_LT(project.motion.upper[waist], 0.5);
+  Eigen::VectorXd turned = project.motion.rest, leg = project.motion.rest;
+  turned[waist] = 0.9 * project.motion.upper[waist];
+  const ChainSetup& left = project.motion.chains[0];
+  leg[left.coordinates[2]] -= 0.4;
+  leg[left.coordinates[3]] += 0.5;
+  const std::vector<int> both = project.motion.chains.back().support;
+  ASSERT_EQ(both.size(), 2u);
+  const MotionPlan plan =
+      PlanMotion(project, {{"waist", both, {turned}}, {"left_leg", left.support, {leg}}}, {});
+  ASSERT_TRUE(plan.left_out.empty()) << plan.left_out[0];
+  EXPECT_TRUE(plan.broken().empty());
+  for (const MotionTrial& trial : TryMotion(project, plan.whole.motion, {.robots = 3})) {
     EXPECT_TRUE(trial.run.stood) << trial.seed;
   }
 }

@@ -238,6 +238,41 @@ std::string WhyHeld(const ProjectDraft& draft) {
   return "";
 }
 
+/// How far joints above the legs, which carry them all, can move while all feet keep their places
+/// on the floor: the legs' own joints have to move against them.
+void NarrowWaist(ProjectDraft& draft) {
+  if (!draft.stands) return;
+  constexpr int kSteps = 40;
+  const auto robot = StandDraft(draft);
+  const auto [lower, upper] = RangesOf(draft.tree, 0.05);
+  const auto stands = [&, &lower = lower, &upper = upper](int c, double position) {
+    PlacedPosture pose{robot->rest, robot->T_world_root};
+    pose.q[c] = position;
+    if (!BalanceAtRest(*robot, robot->AllFeet(), SupportCentre(*robot, robot->AllFeet()), pose)) {
+      return false;
+    }
+    return std::all_of(robot->legs.begin(), robot->legs.end(), [&](const LegChain& leg) {
+      const auto& own = leg.coordinates();
+      return (pose.q - lower)(own).minCoeff() >= 0.0 && (upper - pose.q)(own).minCoeff() >= 0.0;
+    });
+  };
+  std::set<int> above;
+  for (const Limb& limb : draft.limbs.limbs) {
+    if (!limb.leg) continue;
+    const auto trunk = ChainCoordinates(draft.tree, 0, BodyLink(draft.tree, limb.from_body));
+    above.insert(trunk.begin(), trunk.end());
+  }
+  for (const int c : above) {
+    const double rest = robot->rest[c];
+    Eigen::Vector2d range(rest, rest);
+    for (const int end : {0, 1}) {
+      const double step = ((end == 0 ? lower[c] : upper[c]) - rest) / kSteps;
+      for (int i = 1; i <= kSteps && stands(c, rest + i * step); ++i) range[end] = rest + i * step;
+    }
+    if (range[0] < range[1]) draft.ranges[c] = range;
+  }
+}
+
 /// The posture of rest and, of a robot that balances, those in which it stands on its feet with the
 /// weight over all and over the fewest of them: its parts do not touch in them, whatever the
 /// spheres that cover them do.
@@ -354,6 +389,7 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   AddChains(draft);
   AddSetups(draft);
   HoldArmsAhead(draft, semantics);
+  NarrowWaist(draft);
   draft.clusters = PlaceClusters(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
   AddContacts(draft, semantics);
   JoinMirrors(draft);

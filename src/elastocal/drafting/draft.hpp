@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct ProjectDraft {
   double sphere_margin = 0.0;  ///< m
   RestPosture rest;
   std::vector<ChainSetup> designs;
+  std::map<int, Eigen::Vector2d> ranges;  ///< of entries of q that use a part of theirs only
   /// Whether the soles are written: the robot stands on one or two.
   bool stands = false;
   std::string held_because;           ///< why it does not stand, though there are soles

@@ -128,9 +128,21 @@ class DraftWriter {
     text_ += list.empty() ? "" : "  rest_deg:\n" + list;
   }
 
+  void WriteRanges() {
+    if (draft_.ranges.empty()) return;
+    text_ += "  range_deg:  # further than this, feet could not stay on the floor\n";
+    for (const auto& [c, range] : draft_.ranges) {
+      const Joint& joint = tree_.joints[Size(tree_.coordinate_joint[Size(c)])];
+      const double unit = joint.type == JointType::kRevolute ? kRadiansPerDegree : kMetresPerMm;
+      text_ += fmt::format("    {}: [{:.1f}, {:.1f}]\n", Word(joint.name), range[0] / unit,
+                           range[1] / unit);
+    }
+  }
+
   void WriteDesign() {
     text_ += "# What the calibration postures keep to, chain by chain.\ndesign:\n";
     WriteRest();
+    WriteRanges();
     text_ += "  chains:\n";
     for (const ChainSetup& setup : draft_.designs) WriteSetup(setup);
     text_ += "\n";

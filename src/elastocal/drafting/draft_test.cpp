@@ -226,6 +226,34 @@ TEST(Draft, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
   }
 }
 
+TEST(Draft, WheelsAreNoLimbsAndALongBranchIsAnArm) {
+  // The pole's left branch gets two more joints, and two wheels are put beside.
+  const auto joint = [](const std::string& name, const std::string& parent, const std::string& type,
+                        const std::string& place) {
+    return "<link name='" + name +
+           "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
+           "ixz='0' iyz='0'/></inertial></link><joint name='" +
+           name + "_joint' type='" + type + "'><parent link='" + parent + "'/><child link='" +
+           name + "'/><origin xyz='" + place + "'/><axis xyz='0 1 0'/>" +
+           (type == "revolute" ? "<limit lower='-1' upper='1' velocity='1' effort='100'/>" : "") +
+           "</joint>";
+  };
+  std::string urdf = PoleUrdf("<box size='0.3 0.3 0.3'/>", "20");
+  const std::string more = joint("l3", "l2", "revolute", "0.2 0 0") +
+                           joint("l4", "l3", "revolute", "0.2 0 0") +
+                           joint("wheel_l", "pole", "continuous", "0 0.2 -0.1") +
+                           joint("wheel_r", "pole", "continuous", "0 -0.2 -0.1");
+  urdf.insert(urdf.rfind("</robot>"), more);
+  const ProjectDraft draft = DraftProject(urdf, "pole.urdf", {});
+  std::vector<std::string> names;
+  for (const Limb& limb : draft.limbs.limbs) names.push_back(limb.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"head", "arm"}));
+  // Where nothing else moves, what turns without an end is a limb all the same.
+  const std::string alone = "<robot name='a'><link name='pole'/>" +
+                            joint("plate", "pole", "continuous", "0 0 1") + "</robot>";
+  EXPECT_EQ(DraftProject(alone, "a.urdf", {}).limbs.limbs.size(), 1u);
+}
+
 TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   for (const std::string side : {"left", "right"}) {

@@ -190,8 +190,8 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     Limb& limb = limbs[i];
     const double origin = poses[Size(limb.tip_body)].translation().z();
-    limb.leg = limb.mirror >= 0 && origin < -kBelow * longest &&
-               lowest[i] < floor + kSameFloor * longest;
+    limb.leg =
+        limb.mirror >= 0 && origin < -kBelow * longest && lowest[i] < floor + kSameFloor * longest;
   }
 }
 

@@ -102,7 +102,7 @@ bool Flat(const RobotTree& tree, const std::vector<DraftedSole>& soles, const Ei
   return !soles.empty() && highest - lowest < kSame;
 }
 
-/// The joints of a leg that move no other leg.
+/// The joints of a leg that move no other leg if six or more do not, and all otherwise.
 std::vector<int> OwnJoints(const RobotTree& tree, const Limbs& limbs, const Limb& leg) {
   const auto is_shared = [&](int joint) {
     const int c = tree.joints[Size(joint)].coordinate;
@@ -116,7 +116,8 @@ std::vector<int> OwnJoints(const RobotTree& tree, const Limbs& limbs, const Limb
   for (const int joint : leg.joints) {
     if (!is_shared(joint)) own.push_back(joint);
   }
-  return own;
+  constexpr std::size_t kOfAPose = 6;
+  return own.size() < kOfAPose ? leg.joints : own;
 }
 
 /// Lowers the root link with the feet where they are in the zero posture, by as much as the legs

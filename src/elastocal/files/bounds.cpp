@@ -138,6 +138,7 @@ std::vector<Bound> MakeBounds() {
       {"standing.soles[].ball_radius_mm", "mm", 0, 1e3, kBody},
       {"standing.stance_mm", "mm", 1, 1e4, kBody},
       {"design.rest_deg.*", "deg or mm", -1e4, 1e4, "joints' limits"},
+      {"design.range_deg.*", "deg or mm", -1e4, 1e4, "joints' limits"},
       {"design.limit_margin", "", 0, 0.4, "beyond, nearly nothing of the range is left"},
       {"design.effort_share", "", 0, 1, "a share"},
       {"design.chains[].cone_deg", "deg", 0.1, 180, "half a turn"},

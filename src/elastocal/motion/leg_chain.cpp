@@ -59,12 +59,12 @@ LegChain::LegChain(const RobotTree& tree, const Sole& sole, const std::vector<So
   turns_root_ = !shared_.empty() && !on_ball_ && coordinates_.size() < 6;
   length_ = LengthOf(tree, sole_link_);
   if (coordinates_.size() >= LeastLegJoints(on_ball_)) return;
-  throw InputError("robot '" + tree.name + "': '" +
-                   tree.links[static_cast<std::size_t>(sole_link_)].name + "' is at the end of " +
-                   std::to_string(joints_.size()) + " joints" +
-                   (shared_.empty() ? "" : ", " + std::to_string(coordinates_.size()) + " of them its own") +
-                   "; expected a leg of " +
-                   (on_ball_ ? "three" : "five") + " or more joints of its own to balance on");
+  throw InputError(
+      "robot '" + tree.name + "': '" + tree.links[static_cast<std::size_t>(sole_link_)].name +
+      "' is at the end of " + std::to_string(joints_.size()) + " joints" +
+      (shared_.empty() ? "" : ", " + std::to_string(coordinates_.size()) + " of them its own") +
+      "; expected a leg of " + (on_ball_ ? "three" : "five") +
+      " or more joints of its own to balance on");
 }
 
 Transform LegChain::Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const {

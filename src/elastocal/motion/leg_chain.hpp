@@ -16,10 +16,10 @@ constexpr std::size_t LeastLegJoints(bool on_ball) { return on_ball ? 3 : 5; }
 /// A leg: the joints from the root link to a sole. It has five or more entries of q of its own, or
 /// three or more if its sole is a ball, of which only the place counts; joints within it may be
 /// coupled. A joint that moves another leg too (a waist above the legs, hips that share a motor)
-/// stays where it is when the leg is placed. With more than six (three) entries of its own, the leg stays near the
-/// posture from which it is placed, or goes by the one that is preferred; with five, only some poses
-/// of the sole are in reach (those parallel to the root link, where what is missing is the joint
-/// about the vertical).
+/// stays where it is when the leg is placed. With more than six (three) entries of its own, the leg
+/// stays near the posture from which it is placed, or goes by the one that is preferred; with five,
+/// only some poses of the sole are in reach (those parallel to the root link, where what is missing
+/// is the joint about the vertical).
 class LegChain {
  public:
   /// Keeps a reference. `soles`: all of the robot, this one among them or not. Throws InputError
@@ -33,7 +33,7 @@ class LegChain {
   /// Whether the root link has to turn about the vertical for the foot to keep its pose, because
   /// too few joints are its own and others are shared with other legs.
   bool turns_root() const { return turns_root_; }
-  /// The entries of q that it shares with other legs.
+  /// The entries of q that it shares with other legs, from the root on.
   const std::vector<int>& shared_coordinates() const { return shared_; }
 
   /// Sum of the distances between the joints from the first one to the sole in the zero posture, m.

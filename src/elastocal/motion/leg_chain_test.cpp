@@ -119,11 +119,11 @@ TEST(LegChain, JointsOfALegMayFollowEachOther) {
 }
 
 TEST(LegChain, AJointThatOthersShareStaysAndTheRootTurnsInstead) {
-  // The tail follows the hip's joint about the vertical.
+  // The other foot follows the hip's joint about the vertical.
   RobotTree tree = OneLeg("zxyyyx");
-  AddJoint(tree, "tail", 0, Offset(-0.1, 0, 0), {0, 1, 0});
+  const Sole other{AddJoint(tree, "other", 0, Offset(0, -0.1, 0), {0, 1, 0})};
   MakeLastJointMimic(tree, 0, 1.0, 0.0);
-  const LegChain leg(tree, {FindLink(tree, "sole")});
+  const LegChain leg(tree, {FindLink(tree, "sole")}, {other});
   EXPECT_TRUE(leg.turns_root());
   EXPECT_EQ(leg.shared_coordinates(), std::vector<int>{0});
   EXPECT_EQ(leg.coordinates().size(), 5u);
@@ -148,9 +148,9 @@ TEST(LegChain, AJointThatOthersShareStaysAndTheRootTurnsInstead) {
   const RobotTree alone = OneLeg("zxyyyx");
   EXPECT_FALSE(LegChain(alone, {FindLink(alone, "sole")}).turns_root());
   RobotTree short_leg = OneLeg("zxyyy");
-  AddJoint(short_leg, "tail", 0, Offset(-0.1, 0, 0), {0, 1, 0});
+  const Sole second{AddJoint(short_leg, "other", 0, Offset(0, -0.1, 0), {0, 1, 0})};
   MakeLastJointMimic(short_leg, 0, 1.0, 0.0);
-  ExpectInputError([&] { LegChain(short_leg, {FindLink(short_leg, "sole")}); },
+  ExpectInputError([&] { LegChain(short_leg, {FindLink(short_leg, "sole")}, {second}); },
                    {"'sole'", "5 joints, 4 of them its own", "five or more joints of its own"});
 }
 

@@ -341,8 +341,8 @@ TEST(StandingRobot, LiftsItsFootTiltedWhereTheAnkleBendsLittle) {
   EXPECT_LT(tilt(0), 1e-9);
 }
 
-// Beside the leg that carries it, a lifted foot is further out than its hip: flat, it rolls the more
-// the higher it is.
+// Beside the leg that carries it, a lifted foot is further out than its hip: flat, it rolls the
+// more the higher it is.
 TEST(StandingRobot, LiftsItsFootTiltedWhereTheAnkleRollsLittle) {
   Walker walker = MakeWalker();
   const int roll = FindJoint(walker.tree, "right_6");

@@ -315,8 +315,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const PlacedPosture& from,
 
 std::optional<Eigen::MatrixXd> MoveBuilder::Lift(const PlacedPosture& from, const PlacedPosture& to,
                                                  const std::vector<int>& standing, int foot,
-                                                 const Eigen::Vector2d& tilt,
-                                                 Refusal& why) const {
+                                                 const Eigen::Vector2d& tilt, Refusal& why) const {
   Stretch stretch;
   stretch.rate_hz = options_.rate_hz;
   stretch.standing = standing;

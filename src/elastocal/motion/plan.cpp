@@ -81,8 +81,8 @@ class TourPlanner {
     rows_.Add(here_.q.transpose().replicate(samples, 1), set_.standing);
   }
 
-  /// Shifts the weight and lifts the foot on which the set does not stand, the waist upright or, where
-  /// the hips do not bend so far, leaning. Does nothing if the set stands on all feet.
+  /// Shifts the weight and lifts the foot on which the set does not stand, the waist upright or,
+  /// where the hips do not bend so far, leaning. Does nothing if the set stands on all feet.
   bool StepOntoFeet(Refusal& why) {
     if (!LiftsAFoot()) return true;
     for (const double lean : kRootTilts) {

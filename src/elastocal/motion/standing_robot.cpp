@@ -238,7 +238,7 @@ bool PlaceFeet(const StandingRobot& robot, const std::vector<int>& feet, PlacedP
   // Secant steps of the shared joint, on the heading of the second foot.
   constexpr int kIterations = 20;
   constexpr double kReached = 1e-11, kLargestMove = 0.1;  // rad
-  double& shared = pose.q[robot.legs[Size(feet[1])].shared_coordinates().front()];
+  double& shared = pose.q[robot.legs[Size(feet[1])].shared_coordinates().back()];
   double off = HeadingOff(robot, feet[1], pose), step = std::min(kLargestMove, std::max(1e-4, off));
   for (int i = 0; i < kIterations; ++i) {
     if (std::abs(off) < kReached) return true;

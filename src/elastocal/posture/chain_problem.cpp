@@ -24,9 +24,8 @@ std::vector<CollisionSphere> MovedSpheres(const RobotTree& tree, const MotionSet
   const std::vector<int> own = JointsToBody(tree, tree.links[chain.tip_link].body);
   const auto is_moved = [&](const CollisionSphere& sphere) {
     const std::vector<int> path = JointsToBody(tree, tree.links[sphere.link].body);
-    return std::any_of(path.begin(), path.end(), [&](int joint) {
-      return IsMovedBy(tree.joints[joint], chain.coordinates);
-    });
+    return std::any_of(path.begin(), path.end(),
+                       [&](int joint) { return IsMovedBy(tree.joints[joint], chain.coordinates); });
   };
   const auto stands = [&](const CollisionSphere& sphere) {
     const std::vector<int> path = JointsToBody(tree, tree.links[sphere.link].body);

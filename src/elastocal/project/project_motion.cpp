@@ -97,6 +97,25 @@ void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& moti
   }
 }
 
+/// Ranges of joints that are narrower than their limits.
+void ReadRanges(const YamlValue& section, const RobotTree& tree, MotionSetup& motion) {
+  for (const auto& [name, value] : section.Entries()) {
+    const int joint = DriverNamedBy(name, value, tree);
+    const int i = tree.joints[joint].coordinate;
+    const double unit = tree.joints[joint].type == JointType::kRevolute ? kOneDegree : kOneMm;
+    const std::vector<YamlValue> ends = value.Items();
+    value.Expect(ends.size() == 2, "two numbers, the lower and the upper end");
+    const double lower = unit * ends[0].Bounded(), upper = unit * ends[1].Bounded();
+    value.Expect(lower < upper && lower < motion.upper[i] && upper > motion.lower[i],
+                 "a range of which a part is within the joint's limits, " +
+                     FormatNumber(motion.lower[i] / unit) + " to " +
+                     FormatNumber(motion.upper[i] / unit));
+    motion.lower[i] = std::max(motion.lower[i], lower);
+    motion.upper[i] = std::min(motion.upper[i], upper);
+  }
+  motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
+}
+
 Sole ReadSole(const YamlValue& value, const RobotTree& tree) {
   value.ExpectKeys({"link", "lower_mm", "upper_mm", "ball_radius_mm"});
   Sole sole;
@@ -154,12 +173,14 @@ void ReadCollision(const YamlValue& section, Project& project) {
 }
 
 void ReadDesign(const YamlValue& section, Project& project) {
-  section.ExpectKeys({"rest_deg", "limit_margin", "effort_share", "chains", "cameras_mm"});
+  section.ExpectKeys(
+      {"rest_deg", "limit_margin", "range_deg", "effort_share", "chains", "cameras_mm"});
   MotionSetup& motion = project.motion;
   if (const auto margin = section.Find("limit_margin")) {
     SetLimits(project.tree, margin->Bounded(), motion);
     motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
   }
+  if (const auto ranges = section.Find("range_deg")) ReadRanges(*ranges, project.tree, motion);
   section.ReadBounded("effort_share", motion.effort_share);
   if (const auto rest = section.Find("rest_deg")) ReadRest(*rest, project.tree, motion);
   if (const auto cameras = section.Find("cameras_mm")) {

@@ -192,6 +192,17 @@ TEST(Project, LeavesDefaultsWhereTheFileSaysNothing) {
             calibration.marker_sd);
 }
 
+TEST(Project, NarrowsTheRangeOfAJoint) {
+  const Project project = Parse("design: {range_deg: {elbow_joint: [-5000, 20]}}");
+  const Project whole = Parse();
+  const int elbow =
+      project.tree.joints[static_cast<std::size_t>(FindJoint(project.tree, "elbow_joint"))]
+          .coordinate;
+  EXPECT_NEAR(project.motion.upper[elbow], 20.0 * M_PI / 180.0, 1e-12);
+  EXPECT_EQ(project.motion.lower[elbow], whole.motion.lower[elbow]);
+  EXPECT_LE(project.motion.rest[elbow], project.motion.upper[elbow]);
+}
+
 TEST(Project, ReadsSettingsInTheirUnits) {
   const Project project = Parse(
       "placement: {parallel_tolerance_deg: 2}\n"
@@ -353,6 +364,9 @@ TEST(Project, ChecksRecordingColumns) {
   ExpectError("recording: {reference_lengths: [{markers: [A, B], length_mm: 0.5, sd_mm: 0.1}]}",
               {"length_mm", "10"});
   ExpectError("recording: {not_recorded_deg: {rail_joint: 0}}", {"rail_joint", "not_recorded_mm"});
+  ExpectError("design: {range_deg: {elbow_joint: [10, -10]}}", {"range_deg", "elbow_joint"});
+  ExpectError("design: {range_deg: {elbow_joint: [10]}}", {"range_deg", "two numbers"});
+  ExpectError("design: {range_deg: {elbow_joint: [1000, 2000]}}", {"within the joint's limits"});
   ExpectError("recording: {not_recorded_mm: {elbow_joint: 0}}", {"not_recorded_deg"});
   ExpectError("recording: {not_recorded_mm: {finger_right_joint: 0}}",
               {"'finger_right_joint' follows joint 'finger_left_joint'"});
