@@ -114,7 +114,17 @@ PostureSampler::PostureSampler(const RobotTree& tree, const std::vector<Leg>& le
       stands_ = false;
     }
   }
-  stands_ = stands_ && legs_.size() <= 2;
+  stands_ = stands_ && legs_.size() <= 2 && StandsOnEither();
+}
+
+bool PostureSampler::StandsOnEither() {
+  constexpr int kTries = 20000;
+  if (legs_.size() < 2) return true;
+  const Random before = random_;
+  const bool stands = TryDrawSwing(stand_, legs_[0], legs_[1], kTries).has_value() &&
+                      TryDrawSwing(stand_, legs_[1], legs_[0], kTries).has_value();
+  random_ = before;
+  return stands;
 }
 
 std::optional<Eigen::VectorXd> PostureSampler::Bend(const Leg& leg, Eigen::VectorXd q,
@@ -238,13 +248,20 @@ std::optional<Eigen::VectorXd> PostureSampler::DrawSupport(Eigen::VectorXd q, co
   return q;
 }
 
-Eigen::VectorXd PostureSampler::DrawSwing(Eigen::VectorXd q, const Leg& swing, const Leg& support) {
-  constexpr int kTries = 200000;
-  for (int i = 0; i < kTries; ++i) {
+std::optional<Eigen::VectorXd> PostureSampler::TryDrawSwing(Eigen::VectorXd q, const Leg& swing,
+                                                            const Leg& support, int tries) {
+  for (int i = 0; i < tries; ++i) {
     DrawJoints(swing.joints, q);
     if (!InWorkspace(options_.foot, swing.foot_link, q)) continue;
-    if (const auto found = DrawSupport(q, swing, support)) return *found;
+    if (auto found = DrawSupport(q, swing, support)) return found;
   }
+  return std::nullopt;
+}
+
+Eigen::VectorXd PostureSampler::DrawSwing(const Eigen::VectorXd& q, const Leg& swing,
+                                          const Leg& support) {
+  constexpr int kTries = 200000;
+  if (const auto found = TryDrawSwing(q, swing, support, kTries)) return *found;
   throw InputError("no posture found in which '" + support.chain +
                    "' supports the robot and the foot of '" + swing.chain +
                    "' is in its workspace");

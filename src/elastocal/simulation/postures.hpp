@@ -59,7 +59,8 @@ class PostureSampler {
   /// The robot stands on all feet with slightly bent knees; without legs, it is in the home
   /// posture.
   const Eigen::VectorXd& stand() const { return stand_; }
-  /// Whether it can do so, and on how many legs robots that balance do: one or two.
+  /// Whether it can do so, on how many legs robots that balance do (one or two), and on each of two
+  /// alone.
   bool stands() const { return stands_; }
 
   /// As in stand(), with the joints of `chain` drawn at random in their ranges. The end of an arm
@@ -70,7 +71,7 @@ class PostureSampler {
   /// The foot of the leg `swing` is in its workspace, while the robot stands on the bent leg
   /// `support` with its foot flat on the floor; all other joints are as in `q`. Throws InputError
   /// if no such posture is found.
-  Eigen::VectorXd DrawSwing(Eigen::VectorXd q, const Leg& swing, const Leg& support);
+  Eigen::VectorXd DrawSwing(const Eigen::VectorXd& q, const Leg& swing, const Leg& support);
 
   /// Draws only the support leg; the other joints are those of `q`. Returns nothing if this draw is
   /// not feasible.
@@ -86,6 +87,11 @@ class PostureSampler {
   bool ArmApart(const NamedChain& chain, const Eigen::VectorXd& q) const;
   bool KneeBent(const Leg& leg, const Eigen::VectorXd& q) const;
   std::optional<Eigen::VectorXd> Bend(const Leg& leg, Eigen::VectorXd q, double drop);
+  /// Whether postures are found on either leg alone; draws nothing that is drawn later.
+  bool StandsOnEither();
+  /// DrawSwing that gives up after some draws.
+  std::optional<Eigen::VectorXd> TryDrawSwing(Eigen::VectorXd q, const Leg& swing,
+                                              const Leg& support, int tries);
 
   const RobotTree& tree_;
   const std::vector<Leg>& legs_;
