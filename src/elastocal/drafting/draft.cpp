@@ -190,6 +190,16 @@ std::unique_ptr<StandingRobot> StandDraft(const ProjectDraft& draft) {
   return robot;
 }
 
+/// The same; nothing if it cannot stand: with the hands ahead, `plan` will say why.
+std::unique_ptr<StandingRobot> TryStandDraft(const ProjectDraft& draft) {
+  if (!draft.stands) return nullptr;
+  try {
+    return StandDraft(draft);
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
 /// The posture in which the robot stands on all feet with the weight over the fewest, without
 /// `swings`; nothing if its legs do not reach so far.
 std::optional<PlacedPosture> OverFewest(const StandingRobot& robot, int swings) {
@@ -241,9 +251,9 @@ std::string WhyHeld(const ProjectDraft& draft) {
 /// How far joints above the legs, which carry them all, can move while all feet keep their places
 /// on the floor: the legs' own joints have to move against them.
 void NarrowWaist(ProjectDraft& draft) {
-  if (!draft.stands) return;
   constexpr int kSteps = 40;
-  const auto robot = StandDraft(draft);
+  const auto robot = TryStandDraft(draft);
+  if (!robot) return;
   const auto [lower, upper] = RangesOf(draft.tree, 0.05);
   const auto stands = [&, &lower = lower, &upper = upper](int c, double position) {
     PlacedPosture pose{robot->rest, robot->T_world_root};
@@ -278,15 +288,11 @@ void NarrowWaist(ProjectDraft& draft) {
 /// spheres that cover them do.
 std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft) {
   std::vector<Eigen::VectorXd> postures = {draft.rest.q};
-  if (!draft.stands) return postures;
-  try {
-    const auto robot = StandDraft(draft);
-    postures.push_back(robot->rest);
-    for (const int foot : robot->AllFeet()) {
-      if (const auto over = OverFewest(*robot, foot)) postures.push_back(over->q);
-    }
-  } catch (const InputError&) {
-    // With the hands ahead it does not stand: `plan` will say why.
+  const auto robot = TryStandDraft(draft);
+  if (!robot) return postures;
+  postures.push_back(robot->rest);
+  for (const int foot : robot->AllFeet()) {
+    if (const auto over = OverFewest(*robot, foot)) postures.push_back(over->q);
   }
   return postures;
 }

@@ -246,6 +246,7 @@ bool PlaceFeet(const StandingRobot& robot, const std::vector<int>& feet, PlacedP
     shared += step;
     if (!place()) return false;
     off = HeadingOff(robot, feet[1], pose);
+    if (off == before) return false;
     step = std::clamp(-off * step / (off - before), -kLargestMove, kLargestMove);
   }
   return false;
