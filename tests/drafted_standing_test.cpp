@@ -194,6 +194,22 @@ TEST_F(SharedHips, KeepBothFeetFlatWhereverTheRootIs) {
   EXPECT_LT(std::abs(pose.q[shared] - robot->rest[shared]), 1e-2);
 }
 
+// The shared motor pitches the waist, against which hips bend whose knees are straight.
+TEST_F(SharedHips, HaveKneesThatAreNotTheirMostBentJoints) {
+  ReadDraft();
+  const auto robot = StandProjectRobot(project_, {});
+  const auto coordinate = [&](const char* joint) {
+    return robot->tree.joints[Size(FindJoint(robot->tree, joint))].coordinate;
+  };
+  EXPECT_EQ(robot->knees,
+            (std::vector<int>{coordinate("left_knee_pitch"), coordinate("right_knee_pitch")}));
+  Eigen::VectorXd q = robot->rest;
+  q[coordinate("left_hip_pitch")] = -0.8;
+  q[coordinate("left_knee_pitch")] = 0.1;
+  const MotionMargins margins = CheckMotion(*robot, {100.0, q.transpose(), {{0}}});
+  EXPECT_NEAR(margins.knee.value, 0.1, 1e-12);
+}
+
 TEST_F(SharedHips, MoveTheirMotorOnOneLegAndStandInMujoco) {
   ReadDraft();
   const ChainSetup* leg = nullptr;

@@ -89,10 +89,7 @@ void CheckFeet(const StandingRobot& robot, const std::vector<int>& standing,
 void CheckKnees(const StandingRobot& robot, const std::vector<int>& standing,
                 const Eigen::VectorXd& q, Eigen::Index sample, MotionMargins& margins) {
   for (const int foot : standing) {
-    // The knee is the most bent joint of a bent leg.
-    double bend = 0.0;
-    for (const int c : robot.legs[Size(foot)].coordinates()) bend = std::max(bend, std::abs(q[c]));
-    Least(margins.knee, bend, sample, foot);
+    Least(margins.knee, std::abs(q[robot.knees[Size(foot)]]), sample, foot);
   }
 }
 

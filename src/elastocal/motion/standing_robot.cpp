@@ -148,6 +148,7 @@ StandingRobot::StandingRobot(RobotTree robot, std::vector<Sole> feet, const Moti
   bool balls = false;
   for (const Sole& sole : soles) {
     legs.emplace_back(tree, sole, soles);
+    knees.push_back(legs.back().coordinates().front());
     balls = balls || sole.ball_radius;
   }
   if (balls && soles.size() < 4) {
@@ -214,6 +215,12 @@ void StandUp(StandingRobot& robot, const Eigen::VectorXd& posture, const StandOp
   }
   robot.rest = pose.q;
   robot.T_world_root = pose.T_world_root;
+  for (const int foot : feet) {
+    const std::vector<int>& leg = robot.legs[Size(foot)].coordinates();
+    robot.knees[Size(foot)] = *std::max_element(leg.begin(), leg.end(), [&](int a, int b) {
+      return std::abs(robot.rest[a]) < std::abs(robot.rest[b]);
+    });
+  }
 }
 
 Eigen::Vector2d SupportCentre(const StandingRobot& robot, const std::vector<int>& feet) {

@@ -37,6 +37,7 @@ struct StandingRobot {
   std::vector<BodyInertia> inertias;
   std::vector<Sole> soles;     ///< of the feet; none: the root is held
   std::vector<LegChain> legs;  ///< one for each sole
+  std::vector<int> knees;      ///< of each leg, the entry of q that is most bent in `rest`
   Clearances clearances;       ///< between its own parts; may be empty
   MotionLimits limits;         ///< with the margin of the zero-moment point in m
   /// The posture of rest: balanced on all feet.

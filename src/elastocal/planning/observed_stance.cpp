@@ -216,10 +216,8 @@ bool ObservedPostureSampler::Feasible(const PlacedPosture& pose) {
       ((project_.motion.upper - pose.q).array() < 0.0).any()) {
     return Blamed("limits of joints");
   }
-  for (const LegChain& leg : robot_->legs) {
-    double bend = 0.0;
-    for (int c : leg.coordinates()) bend = std::max(bend, std::abs(pose.q[c]));
-    if (bend < robot_->limits.least_knee) return Blamed("straight legs");
+  for (const int knee : robot_->knees) {
+    if (std::abs(pose.q[knee]) < robot_->limits.least_knee) return Blamed("straight legs");
   }
   if (robot_->clearances) {
     Eigen::Index nearest = 0;
