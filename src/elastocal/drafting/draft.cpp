@@ -65,7 +65,7 @@ void AddChains(ProjectDraft& draft) {
     draft.chains.push_back({WholeName(limb), 0, limb.tip_link});
   }
   for (const auto& [body, name] : trunks) {
-    if (done.count(body) == 0) draft.chains.push_back({name, 0, BodyLink(draft.tree, body)});
+    if (!done.contains(body)) draft.chains.push_back({name, 0, BodyLink(draft.tree, body)});
   }
 }
 

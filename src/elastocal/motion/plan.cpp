@@ -210,13 +210,15 @@ class TourPlanner {
   void Sine(int coordinate) {
     constexpr double kSmaller = 0.8;
     Refusal why;
-    for (double share = options_.sine.share; share >= options_.sine.least_share;
-         share *= kSmaller) {
+    double share = options_.sine.share;
+    while (share >= options_.sine.least_share) {
       const auto sine =
           build_.Follow(hub_, hub_, set_.standing, build_.SineWay(hub_.q, coordinate, share), why);
-      if (!sine) continue;
-      rows_.Add(*sine, set_.standing);
-      return;
+      if (sine) {
+        rows_.Add(*sine, set_.standing);
+        return;
+      }
+      share *= kSmaller;
     }
     result_.left_out.push_back({-1, coordinate, why.constraint, why.value, why.index, false});
   }
