@@ -251,8 +251,8 @@ std::string JointXml(const std::string& name, const std::string& parent, const s
          "'/><limit " + range + " effort='150' velocity='10'/></joint>\n";
 }
 
-/// A robot whose root link is its trunk: a waist joint carries both legs.
-std::string LegsBelowAWaist() {
+/// A robot whose root link is its trunk: a waist joint carries both legs. Its feet roll or do not.
+std::string LegsBelowAWaistUrdf(bool feet_roll) {
   std::string urdf =
       "<robot name='below'><link name='trunk'><inertial><origin xyz='0 0 0.2'/><mass value='12'/>"
       "<inertia ixx='0.2' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.1'/></inertial><collision>"
@@ -271,16 +271,19 @@ std::string LegsBelowAWaist() {
     joint("_hip_roll", "_hip_yaw", "0 0 0", "1 0 0", "lower='-0.6' upper='0.6'");
     joint("_hip", "_hip_roll", "0 0 0", "0 1 0", "lower='-1.8' upper='1'");
     joint("_knee", "_hip", "0 0 -0.35", "0 1 0", "lower='0' upper='2.3'");
-    joint("_ankle", "_knee", "0 0 -0.35", "0 1 0", "lower='-1.2' upper='0.8'");
-    joint("_foot", "_ankle", "0 0 -0.03", "1 0 0", "lower='-0.6' upper='0.6'",
-          "<collision><origin xyz='0.02 0 -0.03'/><geometry><box size='0.22 0.11 0.02'/>"
-          "</geometry></collision>");
+    const std::string foot =
+        "<collision><origin xyz='0.02 0 -0.03'/><geometry><box size='0.22 0.11 0.02'/>"
+        "</geometry></collision>";
+    joint("_ankle", "_knee", "0 0 -0.35", "0 1 0", "lower='-1.2' upper='0.8'",
+          feet_roll ? "" : foot);
+    if (!feet_roll) continue;
+    joint("_foot", "_ankle", "0 0 -0.03", "1 0 0", "lower='-0.6' upper='0.6'", foot);
   }
   return urdf + "</robot>\n";
 }
 
 TEST(LegsBelowAWaist, StandAndTurnTheWaistAsFarAsTheHipsAllow) {
-  const ProjectDraft draft = DraftProject(LegsBelowAWaist(), "below.urdf", {});
+  const ProjectDraft draft = DraftProject(LegsBelowAWaistUrdf(true), "below.urdf", {});
   ASSERT_TRUE(draft.stands) << draft.held_because;
   std::vector<std::string> chains;
   for (const DraftedChain& chain : draft.chains) chains.push_back(chain.name);
@@ -307,6 +310,24 @@ TEST(LegsBelowAWaist, StandAndTurnTheWaistAsFarAsTheHipsAllow) {
   EXPECT_TRUE(plan.broken().empty());
   for (const MotionTrial& trial : TryMotion(project, plan.whole.motion, {.robots = 3})) {
     EXPECT_TRUE(trial.run.stood) << trial.seed;
+  }
+}
+
+// Without a joint that rolls the foot, the weight cannot be shifted with both soles flat: the draft
+// says so, and the virtual robot is held as well.
+TEST(LegsBelowAWaist, WhoseFeetDoNotRollAreHeld) {
+  const ProjectDraft draft = DraftProject(LegsBelowAWaistUrdf(false), "below.urdf", {});
+  EXPECT_FALSE(draft.stands);
+  EXPECT_FALSE(draft.held_because.empty());
+  ScratchFolder folder;
+  folder.Write("robot.urdf", draft.urdf);
+  const Project project =
+      ReadProject(folder.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
+  EXPECT_TRUE(project.soles.empty());
+  const Simulation simulation = PrepareSimulation(project, {});
+  ASSERT_FALSE(simulation.experiment.trials.empty());
+  for (const PlannedTrial& trial : simulation.experiment.trials) {
+    EXPECT_TRUE(trial.support.empty()) << trial.name;
   }
 }
 

@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <set>
 
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/arm_rest.hpp"
+#include "elastocal/drafting/standing_draft.hpp"
 #include "elastocal/drafting/workspaces.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/motion/plan.hpp"
-#include "elastocal/motion/standing_robot.hpp"
 #include "elastocal/posture/chain_problem.hpp"
 #include "elastocal/posture/mirror.hpp"
 #include "elastocal/robot/moving_chain.hpp"
@@ -175,126 +173,6 @@ void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
     held = true;
   }
   if (held) draft.rest.source += ", the hands ahead";
-}
-
-/// The robot of the draft on its feet. Throws InputError if it cannot stand on them.
-std::unique_ptr<StandingRobot> StandDraft(const ProjectDraft& draft) {
-  std::vector<Sole> soles;
-  for (const DraftedSole& sole : draft.soles) {
-    soles.push_back({FindLink(draft.tree, sole.link), sole.lower, sole.upper, sole.ball_radius});
-  }
-  auto robot = std::make_unique<StandingRobot>(draft.tree, std::move(soles), MotionLimits{});
-  StandOptions options;
-  options.stance = draft.stance;
-  StandUp(*robot, draft.rest.q, options);
-  return robot;
-}
-
-/// The same; nothing if it cannot stand: with the hands ahead, `plan` will say why.
-std::unique_ptr<StandingRobot> TryStandDraft(const ProjectDraft& draft) {
-  if (!draft.stands) return nullptr;
-  try {
-    return StandDraft(draft);
-  } catch (const InputError&) {
-    return nullptr;
-  }
-}
-
-/// The posture in which the robot stands on all feet with the weight over the fewest, without
-/// `swings`; nothing if its legs do not reach so far.
-std::optional<PlacedPosture> OverFewest(const StandingRobot& robot, int swings) {
-  const std::vector<int> fewest =
-      robot.soles.size() > 1 ? robot.AllFeetBut(swings) : robot.AllFeet();
-  PlacedPosture over{robot.rest, robot.T_world_root};
-  if (!BalanceAtRest(robot, robot.AllFeet(), SupportCentre(robot, fewest), over)) {
-    return std::nullopt;
-  }
-  return over;
-}
-
-/// Why the robot cannot lift a foot as `plan` does; empty if it can.
-std::string WhyNotLifted(const StandingRobot& robot, int foot) {
-  if (robot.soles.size() < 2) return "";
-  PostureTour step;
-  step.standing = robot.AllFeetBut(foot);
-  step.postures = {robot.rest};
-  const PlannedTour planned = PlanTour(robot, step, {});
-  if (planned.motion.q.rows() > 0) return "";
-  const LeftOut& why = planned.left_out.front();
-  std::string text = "it cannot stand without " +
-                     Quote(robot.tree.links[Size(robot.soles[Size(foot)].link)].name) + ": " +
-                     ConstraintName(why.constraint);
-  const bool of_joint =
-      why.constraint == Constraint::kPosition || why.constraint == Constraint::kTorque;
-  if (of_joint) text += " of " + Quote(robot.tree.joints[Size(why.index)].name);
-  return text;
-}
-
-/// Why the robot cannot balance as `plan` does, shifting its weight from foot to foot; empty if it
-/// can, and without soles.
-std::string WhyHeld(const ProjectDraft& draft) {
-  if (draft.soles.empty()) return "";
-  if (!draft.rest.stands) {
-    return "no posture of rest was found in which the soles are flat on one floor";
-  }
-  try {
-    const auto robot = StandDraft(draft);
-    for (const int foot : robot->AllFeet()) {
-      if (std::string why = WhyNotLifted(*robot, foot); !why.empty()) return why;
-    }
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-/// How far joints above the legs, which carry them all, can move while all feet keep their places
-/// on the floor: the legs' own joints have to move against them.
-void NarrowWaist(ProjectDraft& draft) {
-  constexpr int kSteps = 40;
-  const auto robot = TryStandDraft(draft);
-  if (!robot) return;
-  const auto [lower, upper] = RangesOf(draft.tree, 0.05);
-  const auto stands = [&, &lower = lower, &upper = upper](int c, double position) {
-    PlacedPosture pose{robot->rest, robot->T_world_root};
-    pose.q[c] = position;
-    if (!BalanceAtRest(*robot, robot->AllFeet(), SupportCentre(*robot, robot->AllFeet()), pose)) {
-      return false;
-    }
-    return std::all_of(robot->legs.begin(), robot->legs.end(), [&](const LegChain& leg) {
-      const auto& own = leg.coordinates();
-      return (pose.q - lower)(own).minCoeff() >= 0.0 && (upper - pose.q)(own).minCoeff() >= 0.0;
-    });
-  };
-  std::set<int> above;
-  for (const Limb& limb : draft.limbs.limbs) {
-    if (!limb.leg) continue;
-    const auto trunk = ChainCoordinates(draft.tree, 0, BodyLink(draft.tree, limb.from_body));
-    above.insert(trunk.begin(), trunk.end());
-  }
-  for (const int c : above) {
-    const double rest = robot->rest[c];
-    Eigen::Vector2d range(rest, rest);
-    for (const int end : {0, 1}) {
-      const double step = ((end == 0 ? lower[c] : upper[c]) - rest) / kSteps;
-      for (int i = 1; i <= kSteps && stands(c, rest + i * step); ++i) range[end] = rest + i * step;
-    }
-    if (range[0] < range[1]) draft.ranges[c] = range;
-  }
-}
-
-/// The posture of rest and, of a robot that balances, those in which it stands on its feet with the
-/// weight over all and over the fewest of them: its parts do not touch in them, whatever the
-/// spheres that cover them do.
-std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft) {
-  std::vector<Eigen::VectorXd> postures = {draft.rest.q};
-  const auto robot = TryStandDraft(draft);
-  if (!robot) return postures;
-  postures.push_back(robot->rest);
-  for (const int foot : robot->AllFeet()) {
-    if (const auto over = OverFewest(*robot, foot)) postures.push_back(over->q);
-  }
-  return postures;
 }
 
 void AddContacts(ProjectDraft& draft, const Semantics& semantics) {

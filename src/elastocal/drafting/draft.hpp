@@ -35,7 +35,7 @@ struct ProjectDraft {
   RestPosture rest;
   std::vector<ChainSetup> designs;
   std::map<int, Eigen::Vector2d> ranges;  ///< of entries of q that use a part of theirs only
-  /// Whether the soles are written: the robot stands on one or two.
+  /// Whether the soles are written: the robot stands on them.
   bool stands = false;
   std::string held_because;           ///< why it does not stand, though there are soles
   std::optional<double> stance;       ///< m, where the feet are too close in the zero posture

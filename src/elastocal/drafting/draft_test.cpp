@@ -106,22 +106,27 @@ TEST(Draft, SpheresCoverTheShapesOfTalosWithin15Millimetres) {
   EXPECT_LT(draft.spheres.size(), 70U);
 }
 
-/// A pole with a slider and two arms, all of one rod each; `shape` is the geometry of the root.
-std::string PoleUrdf(const std::string& shape, const std::string& mass) {
-  const auto joint = [](const std::string& name, const std::string& parent, double y) {
-    return "<link name='" + name +
-           "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
-           "ixz='0' iyz='0'/></inertial></link><joint name='" +
-           name + "_joint' type='revolute'><parent link='" + parent + "'/><child link='" + name +
-           "'/><origin xyz='0.2 " + std::to_string(y) +
-           " 0.3'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='100'/>"
-           "</joint>";
-  };
+/// A link of 1 kg and the joint about y that carries it.
+std::string RodXml(const std::string& name, const std::string& parent, const std::string& place,
+                   const std::string& type = "revolute") {
+  return "<link name='" + name +
+         "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
+         "ixz='0' iyz='0'/></inertial></link><joint name='" +
+         name + "_joint' type='" + type + "'><parent link='" + parent + "'/><child link='" + name +
+         "'/><origin xyz='" + place + "'/><axis xyz='0 1 0'/>" +
+         (type == "revolute" ? "<limit lower='-1' upper='1' velocity='1' effort='100'/>" : "") +
+         "</joint>";
+}
+
+/// A pole with two arms of two rods each; `shape` is the geometry of the root.
+std::string PoleUrdf(const std::string& shape, const std::string& mass,
+                     const std::string& more = "") {
   return "<robot name='pole'><link name='pole'><inertial><mass value='" + mass +
          "'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision>"
          "<geometry>" +
-         shape + "</geometry></collision></link>" + joint("l1", "pole", 0.2) +
-         joint("l2", "l1", 0.0) + joint("r1", "pole", -0.2) + joint("r2", "r1", 0.0) + "</robot>";
+         shape + "</geometry></collision></link>" + RodXml("l1", "pole", "0.2 0.2 0.3") +
+         RodXml("l2", "l1", "0.2 0 0.3") + RodXml("r1", "pole", "0.2 -0.2 0.3") +
+         RodXml("r2", "r1", "0.2 0 0.3") + more + "</robot>";
 }
 
 /// The URDF of TALOS with its boxes as meshes of twelve triangles in `folder`.
@@ -228,29 +233,17 @@ TEST(Draft, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
 
 TEST(Draft, WheelsAreNoLimbsAndALongBranchIsAnArm) {
   // The pole's left branch gets two more joints, and two wheels are put beside.
-  const auto joint = [](const std::string& name, const std::string& parent, const std::string& type,
-                        const std::string& place) {
-    return "<link name='" + name +
-           "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
-           "ixz='0' iyz='0'/></inertial></link><joint name='" +
-           name + "_joint' type='" + type + "'><parent link='" + parent + "'/><child link='" +
-           name + "'/><origin xyz='" + place + "'/><axis xyz='0 1 0'/>" +
-           (type == "revolute" ? "<limit lower='-1' upper='1' velocity='1' effort='100'/>" : "") +
-           "</joint>";
-  };
-  std::string urdf = PoleUrdf("<box size='0.3 0.3 0.3'/>", "20");
-  const std::string more = joint("l3", "l2", "revolute", "0.2 0 0") +
-                           joint("l4", "l3", "revolute", "0.2 0 0") +
-                           joint("wheel_l", "pole", "continuous", "0 0.2 -0.1") +
-                           joint("wheel_r", "pole", "continuous", "0 -0.2 -0.1");
-  urdf.insert(urdf.rfind("</robot>"), more);
-  const ProjectDraft draft = DraftProject(urdf, "pole.urdf", {});
+  const std::string more = RodXml("l3", "l2", "0.2 0 0") + RodXml("l4", "l3", "0.2 0 0") +
+                           RodXml("wheel_l", "pole", "0 0.2 -0.1", "continuous") +
+                           RodXml("wheel_r", "pole", "0 -0.2 -0.1", "continuous");
+  const ProjectDraft draft =
+      DraftProject(PoleUrdf("<box size='0.3 0.3 0.3'/>", "20", more), "pole.urdf", {});
   std::vector<std::string> names;
   for (const Limb& limb : draft.limbs.limbs) names.push_back(limb.name);
   EXPECT_EQ(names, (std::vector<std::string>{"head", "arm"}));
   // Where nothing else moves, what turns without an end is a limb all the same.
   const std::string alone = "<robot name='a'><link name='pole'/>" +
-                            joint("plate", "pole", "continuous", "0 0 1") + "</robot>";
+                            RodXml("plate", "pole", "0 0 1", "continuous") + "</robot>";
   EXPECT_EQ(DraftProject(alone, "a.urdf", {}).limbs.limbs.size(), 1u);
 }
 

@@ -195,11 +195,6 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
   }
 }
 
-/// How many joints carry the body on which the limb begins.
-std::size_t TrunkJoints(const RobotTree& tree, const Limb& limb) {
-  return JointsToBody(tree, limb.from_body).size();
-}
-
 /// "left_leg" and the like, by where the limb's tip is in the zero posture.
 std::string PlaceName(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb) {
   if (limbs.size() == 1) return "arm";
@@ -207,11 +202,11 @@ std::string PlaceName(const RobotTree& tree, const std::vector<Limb>& limbs, con
   const Eigen::Vector3d tip = poses[Size(limb.tip_body)].translation();
   const auto legs = std::count_if(limbs.begin(), limbs.end(), [](const Limb& l) { return l.leg; });
   const bool leg = limb.leg;
-  constexpr std::size_t kJointsOfAnArm = 4;
-  if (limb.mirror < 0 && limb.joints.size() - TrunkJoints(tree, limb) >= kJointsOfAnArm) {
-    return "arm";
+  if (limb.mirror < 0) {
+    constexpr std::size_t kJointsOfAnArm = 4;
+    const std::size_t trunk = JointsToBody(tree, limb.from_body).size();
+    return limb.joints.size() - trunk < kJointsOfAnArm ? "head" : "arm";
   }
-  if (limb.mirror < 0) return leg ? "leg" : "head";
   std::string name = tip.y() > 0.0 ? "left_" : "right_";
   if (leg && legs > 2) name = (tip.x() > 0.0 ? "front_" : "hind_") + name;
   return name + (leg ? "leg" : "arm");

@@ -106,12 +106,12 @@ class TourPlanner {
     if (!shifted) return false;
     shifted_ = *shifted;
     // Flat or, where the ankle does not bend so far, with the toes, the heel or a side down.
-    constexpr std::array<double, 9> kTilts = {0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.45, -0.45};
+    constexpr std::array<double, 8> kTilts = {0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.45, -0.45};
+    if (LiftFoot(over, Eigen::Vector2d::Zero(), why)) return true;
     for (const Eigen::Vector2d axis : {Eigen::Vector2d::UnitY(), Eigen::Vector2d::UnitX()}) {
       for (const double tilt : kTilts) {
         Refusal refusal;
         if (LiftFoot(over, tilt * axis, refusal)) return true;
-        if (tilt == 0.0) why = refusal;
       }
     }
     return false;

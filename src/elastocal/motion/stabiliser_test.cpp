@@ -145,5 +145,35 @@ TEST_F(BipedStabiliser, LetsALiftedLegGoAsPlanned) {
   EXPECT_FALSE(left.SolePose(q).isApprox(left.SolePose(lifted), 1e-6));
 }
 
+// A lifted leg near its full length cannot follow the root link's shift: it would have to swing
+// far.
+TEST_F(BipedStabiliser, AsksLittleOfALiftedLegThatWouldHaveToStretch) {
+  const LegChain left(tree_, soles_[0]), right(tree_, soles_[1]);
+  const auto position = [&](const char* joint) -> double& {
+    return planned_[tree_.joints[static_cast<std::size_t>(FindJoint(tree_, joint))].coordinate];
+  };
+  // Little bent, and as far ahead as it has to be to be just above the floor.
+  const auto height = [&] {
+    return (left.SolePose(planned_).inverse() * right.SolePose(planned_)).translation().z();
+  };
+  position("right_4") = 0.4;
+  for (int i = 0; height() < 0.01 && i < 100; ++i) {
+    position("right_3") = -0.2 - 0.01 * i;
+    position("right_5") = -0.2 + 0.01 * i;
+  }
+  ASSERT_NEAR(height(), 0.012, 0.002);
+  // The root link is turned until the lifted leg, to keep its sole in place, would be stretched
+  // out.
+  sense_.R_world_root = RotationFromVector({0.05, -0.05, 0.0});
+  Stabiliser stabiliser(tree_, soles_);
+  const auto largest = [&](const LegChain& leg, const Eigen::VectorXd& q) {
+    return Eigen::VectorXd((q - planned_)(leg.coordinates())).cwiseAbs().maxCoeff();
+  };
+  for (int i = 0; i < 400; ++i) {
+    const Eigen::VectorXd q = stabiliser.Correct(planned_, {soles_[0].link}, sense_, 0.01);
+    ASSERT_LE(largest(right, q), std::max(0.1, 2.0 * largest(left, q)) + 0.01) << i;
+  }
+}
+
 }  // namespace
 }  // namespace elastocal

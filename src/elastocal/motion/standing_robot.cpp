@@ -17,6 +17,11 @@ Eigen::Vector3d SoleCentre(const Sole& sole, const Transform& T_world_sole) {
   return T_world_sole * Eigen::Vector3d(centre.x(), centre.y(), 0.0);
 }
 
+/// Places a leg; of one with too few joints of its own, the sole may turn about its normal.
+bool PlaceLeg(const LegChain& leg, const Transform& T_root_sole, Eigen::VectorXd& q) {
+  return leg.turns_root() ? leg.PlaceFlat(T_root_sole, q) : leg.Place(T_root_sole, q);
+}
+
 /// Bends a straight leg, the knee one way or the other, until the sole is in place.
 bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_sole,
           double position_margin, Eigen::VectorXd& q) {
@@ -29,9 +34,7 @@ bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_so
       bent[joints[knee - 1]] -= 0.5 * bend;
       bent[joints[knee]] += bend;
       bent[joints[knee + 1]] -= 0.5 * bend;
-      if (!(leg.turns_root() ? leg.PlaceFlat(T_root_sole, bent) : leg.Place(T_root_sole, bent))) {
-        continue;
-      }
+      if (!PlaceLeg(leg, T_root_sole, bent)) continue;
       const bool within = std::all_of(joints.begin(), joints.end(), [&](int i) {
         const JointLimits& limits = tree.joints[Size(tree.coordinate_joint[Size(i)])].limits;
         return bent[i] > limits.lower + position_margin && bent[i] < limits.upper - position_margin;
@@ -261,9 +264,7 @@ bool PlaceFeet(const StandingRobot& robot, const std::vector<int>& feet, PlacedP
 
 bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_sole,
                PlacedPosture& pose) {
-  const LegChain& leg = robot.legs[Size(foot)];
-  const Transform T_root_sole = pose.T_world_root.inverse() * T_world_sole;
-  return leg.turns_root() ? leg.PlaceFlat(T_root_sole, pose.q) : leg.Place(T_root_sole, pose.q);
+  return PlaceLeg(robot.legs[Size(foot)], pose.T_world_root.inverse() * T_world_sole, pose.q);
 }
 
 Transform RootOverFeet(const StandingRobot& robot, const std::vector<int>& feet,
