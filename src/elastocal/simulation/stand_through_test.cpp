@@ -113,5 +113,16 @@ TEST_F(BipedStandsThrough, TheInertialUnitIsMountedAsTheFirstRestShows) {
   EXPECT_LT(turn(Eigen::Matrix3d::Identity()), 0.1 * kLean);
 }
 
+// Where no posture on one leg has the other foot in its workspace, the robot is held.
+TEST(PostureSampler, StandsOnlyWherePosturesOnEitherLegAreFound) {
+  const Biped biped = MakeBiped();
+  const auto legs = FindLegs(biped.tree, biped.chains);
+  EXPECT_TRUE(PostureSampler(biped.tree, legs, {}, 1).stands());
+  PostureOptions options;
+  options.foot.lower.z() = 1.0;  // above the root link
+  options.foot.upper.z() = 1.2;
+  EXPECT_FALSE(PostureSampler(biped.tree, legs, options, 1).stands());
+}
+
 }  // namespace
 }  // namespace elastocal
