@@ -43,8 +43,9 @@ Link ReadLink(const UrdfLink& source) {
   const double ixx = entries.Number("ixx"), ixy = entries.Number("ixy"),
                ixz = entries.Number("ixz"), iyy = entries.Number("iyy"),
                iyz = entries.Number("iyz"), izz = entries.Number("izz");
-  Eigen::Matrix3d inertia;
+  Eigen::Matrix3d inertia;  // moments hardly below zero are a program's rounding
   inertia << ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz;
+  inertia.diagonal() = inertia.diagonal().cwiseMax(0.0);
   link.inertia = T_link_inertial.linear() * inertia * T_link_inertial.linear().transpose();
   return link;
 }
@@ -87,6 +88,11 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
                        FormatNumber(limits.lower) + " is above upper limit " +
                        FormatNumber(limits.upper) + "; they are exchanged");
     std::swap(limits.lower, limits.upper);
+  }
+  if (limits.velocity == 0.0 && limits.lower < limits.upper) {
+    warnings.push_back("joint " + Quote(joint.name) +
+                       ": its velocity limit is 0; it is taken to have none");
+    limits.velocity = kInfinity;
   }
   return limits;
 }

@@ -261,10 +261,8 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   draft.urdf = AddSoleLinks(urdf, described, draft.soles);
   draft.tree = ParseUrdf(draft.urdf, source);
   NameTips(described, draft);
-  draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics);
   draft.stance = ChooseStance(draft.tree, draft.soles);
-  draft.held_because = WhyHeld(draft);
-  draft.stands = !draft.soles.empty() && draft.held_because.empty();
+  RestOnFeet(draft, semantics);
   if (!draft.stands) draft.stance.reset();
   draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
   constexpr double kMargin = 0.004;  // of the longest branch: 5 mm on a robot of 1.75 m

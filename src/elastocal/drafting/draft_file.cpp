@@ -143,7 +143,8 @@ class DraftWriter {
     text_ += "# What the calibration postures keep to, chain by chain.\ndesign:\n";
     WriteRest();
     WriteRanges();
-    text_ += "  chains:\n";
+    text_ +=
+        "  effort_share: 0.85  # of the URDF's effort; plan moves within 0.9 of it\n  chains:\n";
     for (const ChainSetup& setup : draft_.designs) WriteSetup(setup);
     text_ += "\n";
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "elastocal/drafting/limb_names.hpp"
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
@@ -195,23 +196,6 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
   }
 }
 
-/// "left_leg" and the like, by where the limb's tip is in the zero posture.
-std::string PlaceName(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb) {
-  if (limbs.size() == 1) return "arm";
-  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  const Eigen::Vector3d tip = poses[Size(limb.tip_body)].translation();
-  const auto legs = std::count_if(limbs.begin(), limbs.end(), [](const Limb& l) { return l.leg; });
-  const bool leg = limb.leg;
-  if (limb.mirror < 0) {
-    constexpr std::size_t kJointsOfAnArm = 4;
-    const std::size_t trunk = JointsToBody(tree, limb.from_body).size();
-    return limb.joints.size() - trunk < kJointsOfAnArm ? "head" : "arm";
-  }
-  std::string name = tip.y() > 0.0 ? "left_" : "right_";
-  if (leg && legs > 2) name = (tip.x() > 0.0 ? "front_" : "hind_") + name;
-  return name + (leg ? "leg" : "arm");
-}
-
 }  // namespace
 
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics) {
@@ -236,7 +220,7 @@ Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantic
   FindFeet(tree, shapes, found.limbs);
   std::set<std::string> used;
   for (Limb& limb : found.limbs) {
-    std::string name = PlaceName(tree, found.limbs, limb);
+    std::string name = NameLimb(tree, found.limbs, limb);
     for (const SemanticGroup& group : semantics.groups) {
       if (!Names(group, tree, limb)) continue;
       name = group.name;

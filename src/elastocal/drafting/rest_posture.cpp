@@ -5,6 +5,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
@@ -121,14 +123,15 @@ std::vector<int> OwnJoints(const RobotTree& tree, const Limbs& limbs, const Limb
 }
 
 /// Lowers the root link with the feet where they are in the zero posture, by as much as the legs
-/// allow up to a usual share of their length. Returns whether they stand.
+/// allow up to a share of their length. Returns whether they stand.
 bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<DraftedSole>& soles,
-              Eigen::VectorXd& q) {
+              double most_drop, Eigen::VectorXd& q) {
+  constexpr double kStep = 0.01, kFurther = 0.01;
   constexpr double kKnee = 0.8;  // rad: as two joints ahead and behind then move by half of it
   const auto range = RangesOf(tree, 0.03);
   const Eigen::VectorXd &lower = range.first, &upper = range.second;
   const auto zero = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  for (const double drop : {0.06, 0.05, 0.04, 0.03, 0.02, 0.01}) {
+  for (double drop = most_drop; drop > 0.5 * kStep; drop -= kStep) {
     Eigen::VectorXd bent = q;
     bool all = true;
     for (const DraftedSole& sole : soles) {
@@ -137,24 +140,35 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
       Transform wanted = zero[Size(link)];
       wanted.translation().z() *= 1.0 - drop;
       const Placer placer(tree, link, !sole.ball_radius, joints, lower, upper);
-      bool placed = false;
+      std::optional<Eigen::VectorXd> placed;
       for (std::size_t knee = 1; knee + 1 < joints.size() && !placed; ++knee) {
+        // A ball turns where it stands, and the knee may bend either way: further is better.
+        double furthest = -kFurther;
         for (const double bend : {kKnee, -kKnee}) {
+          if (placed && !sole.ball_radius) break;
           Eigen::VectorXd start = bent;
+          const auto coordinate = [&](std::size_t i) {
+            return tree.joints[Size(joints[i])].coordinate;
+          };
           const auto set = [&](std::size_t i, double value) {
-            const int c = tree.joints[Size(joints[i])].coordinate;
+            const int c = coordinate(i);
             start[c] = std::clamp(value, lower[c], upper[c]);
           };
           set(knee - 1, -0.5 * bend);
           set(knee, bend);
           set(knee + 1, -0.5 * bend);
           if (!placer.Place(wanted, start)) continue;
-          bent = start;
-          placed = true;
-          break;
+          double found = 0.0;
+          for (std::size_t i = 0; i < joints.size(); ++i) {
+            found = std::max(found, std::abs(start[coordinate(i)]));
+          }
+          if (found < furthest + kFurther) continue;
+          furthest = found;
+          placed = start;
         }
       }
       all = all && placed;
+      if (placed) bent = *placed;
     }
     if (!all) continue;
     q = bent;
@@ -235,7 +249,8 @@ std::string OutsideLimits(const std::string& state, const Joint& joint, double v
 }  // namespace
 
 RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
-                       const std::vector<DraftedSole>& soles, const Semantics& semantics) {
+                       const std::vector<DraftedSole>& soles, const Semantics& semantics,
+                       double drop) {
   const auto [lower, upper] = RangesOf(tree, 0.021);
   RestPosture rest;
   rest.q = Eigen::VectorXd::Zero(tree.coordinate_count()).cwiseMax(lower).cwiseMin(upper);
@@ -266,7 +281,7 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
   }
   constexpr double kLeastBend = 0.3;
   if (!soles.empty() && (!rest.stands || bend < kLeastBend) &&
-      BendLegs(tree, limbs, soles, rest.q)) {
+      BendLegs(tree, limbs, soles, drop, rest.q)) {
     rest.source += ", with bent knees";
     rest.stands = Flat(tree, soles, rest.q, rest.root_height);
   }
@@ -276,12 +291,8 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
 std::pair<Eigen::VectorXd, Eigen::VectorXd> RangesOf(const RobotTree& tree, double margin) {
   Eigen::VectorXd lower(tree.coordinate_count()), upper(tree.coordinate_count());
   for (int i = 0; i < tree.coordinate_count(); ++i) {
-    const Joint& joint = tree.joints[Size(tree.coordinate_joint[Size(i)])];
-    const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
-    const double least = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
-    const double most = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
-    lower[i] = least + margin * (most - least);
-    upper[i] = most - margin * (most - least);
+    std::tie(lower[i], upper[i]) =
+        PostureRange(tree.joints[Size(tree.coordinate_joint[Size(i)])], margin);
   }
   return {lower, upper};
 }

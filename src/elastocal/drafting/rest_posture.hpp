@@ -18,13 +18,17 @@ struct RestPosture {
   std::vector<std::string> warnings = {};  ///< where the state of the SRDF breaks limits
 };
 
+inline constexpr double kUsualDrop = 0.06;
+
 /// Chooses a posture of rest: a state of the SRDF (half sitting, standing, home, ...) if the robot
 /// stands flat in it, otherwise the zero posture moved into the limits, with the knees of the legs
-/// bent. `tree` has the links of all soles.
+/// bent: the root link is lowered by as much as the legs allow, up to the share `drop` of their
+/// length. `tree` has the links of all soles.
 RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
-                       const std::vector<DraftedSole>& soles, const Semantics& semantics);
+                       const std::vector<DraftedSole>& soles, const Semantics& semantics,
+                       double drop = kUsualDrop);
 
-/// The limits less a share of the range; half a turn or 0.5 m where there are none. By coordinate.
+/// PostureRange less a share of the range, by coordinate.
 std::pair<Eigen::VectorXd, Eigen::VectorXd> RangesOf(const RobotTree& tree, double margin);
 
 }  // namespace elastocal

@@ -5,6 +5,8 @@
 #include <memory>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/motion/plan.hpp"
@@ -49,40 +51,82 @@ std::optional<PlacedPosture> OverFewest(const StandingRobot& robot, int swings) 
   return over;
 }
 
-/// Why the robot cannot lift a foot as `plan` does; empty if it can.
-std::string WhyNotLifted(const StandingRobot& robot, int foot) {
-  if (robot.soles.size() < 2) return "";
+/// The robot lifts a foot once, as `plan` does. Without a motion if it cannot.
+PlannedTour LiftOnce(const StandingRobot& robot, int foot) {
   PostureTour step;
   step.standing = robot.AllFeetBut(foot);
   step.postures = {robot.rest};
-  const PlannedTour planned = PlanTour(robot, step, {});
-  if (planned.motion.q.rows() > 0) return "";
-  const LeftOut& why = planned.left_out.front();
-  std::string text = "it cannot stand without " +
-                     Quote(robot.tree.links[Size(robot.soles[Size(foot)].link)].name) + ": " +
-                     ConstraintName(why.constraint);
-  const bool of_joint =
-      why.constraint == Constraint::kPosition || why.constraint == Constraint::kTorque;
-  if (of_joint) text += " of " + Quote(robot.tree.joints[Size(why.index)].name);
-  return text;
+  return PlanTour(robot, step, {});
+}
+
+/// Why a robot does not stand; `why` is empty if it does.
+struct Refused {
+  std::string why;
+  bool weak = false;  ///< its motors are too weak
+};
+
+/// Whether the robot can lift a foot as `plan` does.
+Refused LiftRefused(const StandingRobot& robot, int foot) {
+  if (robot.soles.size() < 2) return {};
+  const PlannedTour planned = LiftOnce(robot, foot);
+  if (planned.motion.q.rows() > 0) return {};
+  const LeftOut& left_out = planned.left_out.front();
+  Refused refused{"it cannot stand without " +
+                      Quote(robot.tree.links[Size(robot.soles[Size(foot)].link)].name) + ": " +
+                      ConstraintName(left_out.constraint),
+                  left_out.constraint == Constraint::kTorque};
+  if (refused.weak || left_out.constraint == Constraint::kPosition) {
+    refused.why += " of " + Quote(robot.tree.joints[Size(left_out.index)].name);
+  }
+  if (refused.weak) {
+    refused.why += fmt::format(" ({:.0f} % of its effort, {:.0f} may be used)",
+                               100.0 * left_out.value, 100.0 * robot.limits.torque_share);
+  }
+  return refused;
+}
+
+/// Whether the robot of the draft can stand as `plan` asks, with a share of its motors' efforts.
+Refused StandRefused(const ProjectDraft& draft, double torque_share) {
+  if (draft.soles.empty()) return {};
+  if (!draft.rest.stands) {
+    return {"no posture of rest was found in which the soles are flat on one floor"};
+  }
+  try {
+    const auto robot = StandDraft(draft);
+    robot->limits.torque_share = torque_share;
+    for (const int foot : robot->AllFeet()) {
+      if (Refused refused = LiftRefused(*robot, foot); !refused.why.empty()) return refused;
+    }
+  } catch (const InputError& error) {
+    return {error.what()};
+  }
+  return {};
 }
 
 }  // namespace
 
-std::string WhyHeld(const ProjectDraft& draft) {
-  if (draft.soles.empty()) return "";
-  if (!draft.rest.stands) {
-    return "no posture of rest was found in which the soles are flat on one floor";
-  }
-  try {
-    const auto robot = StandDraft(draft);
-    for (const int foot : robot->AllFeet()) {
-      if (std::string why = WhyNotLifted(*robot, foot); !why.empty()) return why;
+void RestOnFeet(ProjectDraft& draft, const Semantics& semantics) {
+  // How far the root link is lowered where the usual posture does not do: a leg that is nearly
+  // straight cannot follow the weight; an ankle that bends little, or a weak motor, leaves a leg
+  // nearly straight. A share of the efforts is left for the postures that will be designed.
+  const std::vector<double> less = {0.04, 0.02}, any = {0.10, 0.15, 0.20, 0.25, 0.04, 0.02};
+  constexpr double kEffortAtRest = 0.85;
+  const auto choose = [&](double drop) {
+    draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics, drop);
+  };
+  choose(kUsualDrop);
+  Refused refused = StandRefused(draft, MotionLimits{}.torque_share);
+  if (!refused.why.empty()) {
+    for (const double drop : refused.weak ? less : any) {
+      choose(drop);
+      if (!StandRefused(draft, kEffortAtRest).why.empty()) continue;
+      refused = {};
+      break;
     }
-  } catch (const InputError& error) {
-    return error.what();
+    if (!refused.why.empty()) choose(kUsualDrop);
   }
-  return "";
+  draft.held_because = refused.why;
+  draft.stands = !draft.soles.empty() && refused.why.empty();
 }
 
 void NarrowWaist(ProjectDraft& draft) {
@@ -125,6 +169,12 @@ std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft) {
   postures.push_back(robot->rest);
   for (const int foot : robot->AllFeet()) {
     if (const auto over = OverFewest(*robot, foot)) postures.push_back(over->q);
+    if (robot->soles.size() < 2) continue;
+    const SampledMotion lift = LiftOnce(*robot, foot).motion;
+    const auto every = static_cast<Eigen::Index>(0.2 * lift.rate_hz);
+    for (Eigen::Index i = 0; i < lift.q.rows(); i += every) {
+      postures.emplace_back(lift.q.row(i).transpose());
+    }
   }
   return postures;
 }

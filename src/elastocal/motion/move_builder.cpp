@@ -276,13 +276,14 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, cons
 
 Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, double share) const {
   const SineOptions& sine = options_.sine;
-  const JointLimits& limits =
-      robot_.tree.joints[Size(robot_.tree.coordinate_joint[Size(coordinate)])].limits;
+  const Joint& joint = robot_.tree.joints[Size(robot_.tree.coordinate_joint[Size(coordinate)])];
+  const auto [lower, upper] = PostureRange(joint);
   const double omega = 2.0 * M_PI * sine.frequency_hz;
-  const double amplitude = std::min(0.5 * share * (limits.upper - limits.lower),
-                                    0.8 * robot_.limits.velocity_share * limits.velocity / omega);
+  const double amplitude =
+      std::min(0.5 * share * (upper - lower),
+               0.8 * robot_.limits.velocity_share * joint.limits.velocity / omega);
   // As the sine shrinks, its middle moves to the posture, which is feasible.
-  const double middle = 0.5 * (limits.lower + limits.upper);
+  const double middle = 0.5 * (lower + upper);
   const double centre = q[coordinate] + share / sine.share * (middle - q[coordinate]);
   const double ramp = 1.0 / sine.frequency_hz;
   const double duration = (sine.periods + 2.0) * ramp;

@@ -112,6 +112,10 @@ class TourPlanner {
       for (const double tilt : kTilts) {
         Refusal refusal;
         if (LiftFoot(over, tilt * axis, refusal)) return true;
+        // Where a tilt mends what was wrong, what stands in its way says more.
+        if (why.constraint == Constraint::kPosition && refusal.constraint != why.constraint) {
+          why = refusal;
+        }
       }
     }
     return false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "elastocal/project/project_sections.hpp"
 #include "elastocal/robot/moving_chain.hpp"
@@ -70,18 +71,13 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
   return setup;
 }
 
-/// The limits with a share of the range left free at either end; half a turn or 0.5 m where there
-/// is none.
+/// Where joints may be, with a share of the range left free at either end.
 void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
   motion.lower.resize(tree.coordinate_count());
   motion.upper.resize(tree.coordinate_count());
   for (int i = 0; i < tree.coordinate_count(); ++i) {
-    const Joint& joint = tree.joints[tree.coordinate_joint[i]];
-    const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
-    const double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
-    const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
-    motion.lower[i] = lower + margin * (upper - lower);
-    motion.upper[i] = upper - margin * (upper - lower);
+    std::tie(motion.lower[i], motion.upper[i]) =
+        PostureRange(tree.joints[tree.coordinate_joint[i]], margin);
   }
 }
 

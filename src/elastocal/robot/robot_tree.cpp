@@ -119,15 +119,27 @@ double RobotSize(const RobotTree& tree) {
   return 2.0 * longest;
 }
 
+std::pair<double, double> PostureRange(const Joint& joint) {
+  const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
+  const double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
+  const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
+  if (joint.type != JointType::kRevolute || !(upper - lower > 2.0 * M_PI)) return {lower, upper};
+  const double middle = std::clamp(0.0, lower + M_PI, upper - M_PI);
+  return {middle - M_PI, middle + M_PI};
+}
+
+std::pair<double, double> PostureRange(const Joint& joint, double margin) {
+  const auto [lower, upper] = PostureRange(joint);
+  const double kept = margin * (upper - lower);
+  return {lower + kept, upper - kept};
+}
+
 namespace {
 
 Eigen::VectorXd DrawPosture(const RobotTree& tree, Random& random) {
   Eigen::VectorXd q(tree.coordinate_count());
   for (int i = 0; i < q.size(); ++i) {
-    const Joint& joint = tree.joints[tree.coordinate_joint[i]];
-    const double range = joint.type == JointType::kRevolute ? M_PI : 0.5;
-    const double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -range;
-    const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : range;
+    const auto [lower, upper] = PostureRange(tree.joints[tree.coordinate_joint[i]]);
     q[i] = random.Uniform(lower, upper);
   }
   return q;

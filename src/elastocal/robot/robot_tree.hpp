@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -111,8 +112,15 @@ std::vector<int> JointsToBody(const RobotTree& tree, int body);
 /// the robot are much further apart.
 double RobotSize(const RobotTree& tree);
 
-/// A posture drawn uniformly within the position limits (infinite limits: half a turn or 0.5 m to
-/// either side) in which the linkages close. Size `coordinate_count()`.
+/// Where a joint is moved for a measurement, rad or m: within its limits, and half a turn or 0.5 m
+/// to either side of zero where it has none. Limits further apart than one turn (motors that count
+/// turns) hold no posture twice: the turn that is left has its middle as near zero as they allow.
+std::pair<double, double> PostureRange(const Joint& joint);
+
+/// The same, less a share `margin` of the range at either end.
+std::pair<double, double> PostureRange(const Joint& joint, double margin);
+
+/// A posture drawn uniformly within PostureRange in which the linkages close. Size `coordinate_count()`.
 Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random);
 
 }  // namespace elastocal

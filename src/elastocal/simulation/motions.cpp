@@ -153,9 +153,7 @@ class Planner {
   /// Largest sine of a joint around the middle of its range.
   std::pair<double, double> SineRange(int coordinate) const {
     const Joint& joint = tree_.joints[Size(tree_.coordinate_joint[Size(coordinate)])];
-    const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
-    const double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
-    const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
+    const auto [lower, upper] = PostureRange(joint);
     const double by_speed =
         options_.speed_share * joint.limits.velocity / (2.0 * M_PI * options_.sine_hz);
     return {0.5 * (lower + upper), std::min(0.5 * options_.sine_share * (upper - lower), by_speed)};

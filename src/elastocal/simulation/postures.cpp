@@ -12,14 +12,9 @@ namespace {
 
 constexpr double kDescribedHeight = 1.083;  // of the robot for which EndWorkspace is given, m
 
-/// Range of a coordinate without the margin; half a turn or 0.5 m if it is unlimited.
+/// Range of a coordinate without the margin.
 std::pair<double, double> Range(const RobotTree& tree, int coordinate, double margin) {
-  const Joint& joint = tree.joints[Size(tree.coordinate_joint[Size(coordinate)])];
-  const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
-  const double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
-  const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
-  const double kept = margin * (upper - lower);
-  return {lower + kept, upper - kept};
+  return PostureRange(tree.joints[Size(tree.coordinate_joint[Size(coordinate)])], margin);
 }
 
 /// Coordinates of joints, without mimic joints.

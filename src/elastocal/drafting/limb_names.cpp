@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/drafting/limb_names.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "elastocal/math/numbers.hpp"
+
+namespace elastocal {
+namespace {
+
+bool IsUpper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
+bool IsSmall(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
+
+/// The words of a name in small letters: "l", "knee" and "pitch" of "l_knee_pitch" and
+/// "LKneePitch".
+std::vector<std::string> WordsOf(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) {
+      words.emplace_back();
+      continue;
+    }
+    const bool begins =
+        i == 0 || IsSmall(name[i - 1]) || (i + 1 < name.size() && IsSmall(name[i + 1]));
+    if (IsUpper(c) && begins) words.emplace_back();
+    words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return words;
+}
+
+int SideByName(const std::string& name) {
+  constexpr std::array kLeft = {"left", "l", "lf", "fl", "lh", "hl", "rl"};
+  constexpr std::array kRight = {"right", "r", "rf", "fr", "rh", "hr", "rr"};
+  const std::vector<std::string> words = WordsOf(name);
+  const auto says = [&](const auto& sides) {
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+      return std::find(sides.begin(), sides.end(), word) != sides.end();
+    });
+  };
+  return static_cast<int>(says(kLeft)) - static_cast<int>(says(kRight));
+}
+
+}  // namespace
+
+int SideByNames(const RobotTree& tree, const Limb& limb) {
+  const auto trunk = static_cast<std::ptrdiff_t>(JointsToBody(tree, limb.from_body).size());
+  int votes = SideByName(tree.links[Size(limb.tip_link)].name);
+  std::for_each(limb.joints.begin() + trunk, limb.joints.end(),
+                [&](int k) { votes += SideByName(tree.joints[Size(k)].name); });
+  return votes > 0 ? 1 : votes < 0 ? -1 : 0;
+}
+
+std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb) {
+  if (limbs.size() == 1) return "arm";
+  const Eigen::Vector3d tip =
+      LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()))[Size(limb.tip_link)]
+          .translation();
+  const auto legs = std::count_if(limbs.begin(), limbs.end(), [](const Limb& l) { return l.leg; });
+  int side = SideByNames(tree, limb);
+  if (limb.mirror < 0) {
+    constexpr std::size_t kJointsOfAnArm = 4;
+    const std::size_t trunk = JointsToBody(tree, limb.from_body).size();
+    if (limb.joints.size() - trunk < kJointsOfAnArm) return "head";
+    return side > 0 ? "left_arm" : side < 0 ? "right_arm" : "arm";
+  }
+  if (side * SideByNames(tree, limbs[Size(limb.mirror)]) >= 0) side = tip.y() > 0.0 ? 1 : -1;
+  std::string name = side > 0 ? "left_" : "right_";
+  if (limb.leg && legs > 2) name = (tip.x() > 0.0 ? "front_" : "hind_") + name;
+  return name + (limb.leg ? "leg" : "arm");
+}
+
+}  // namespace elastocal

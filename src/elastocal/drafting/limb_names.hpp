@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/drafting/limbs.hpp"
+
+namespace elastocal {
+
+/// The side of the robot that the names of a limb's joints and tip say: 1 left, -1 right, 0 none.
+/// "left_knee", "LKneePitch", "l_knee", "knee_l" and, of four legs, "FL_calf" and "LF_KFE" are
+/// left.
+int SideByNames(const RobotTree& tree, const Limb& limb);
+
+/// "left_leg" and the like: the side by the names in the URDF where they say one, since a root link
+/// may face any way, and by where the tip is in the zero posture otherwise.
+std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb);
+
+}  // namespace elastocal
