@@ -128,6 +128,31 @@ void ExpectWarning(const RobotTree& tree, const std::string& part) {
   EXPECT_NE(tree.warnings[0].find(part), std::string::npos) << tree.warnings[0];
 }
 
+TEST(UrdfReader, AVelocityLimitOfZeroIsNoneWhereTheJointCanMove) {
+  const auto parse = [](const std::string& ends) {
+    return ParseLinks(
+        LinkXml("a") + LinkXml("b") +
+        JointXml("finger", "revolute", "a", "b", "<limit " + ends + " velocity='0' effort='0'/>"));
+  };
+  const RobotTree moves = parse("lower='0' upper='1'");
+  EXPECT_TRUE(std::isinf(moves.joints[0].limits.velocity));
+  ExpectWarning(moves, "'finger': its velocity limit is 0");
+  const RobotTree rigid = parse("");
+  EXPECT_EQ(rigid.joints[0].limits.velocity, 0.0);
+  EXPECT_TRUE(rigid.warnings.empty());
+}
+
+TEST(UrdfReader, AMomentOfInertiaBelowZeroByRoundingIsZero) {
+  const auto parse = [](const std::string& ixx) {
+    return ParseLinks("<link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='" +
+                      ixx + "' ixy='0' ixz='0' iyy='2e-5' iyz='0' izz='3e-5'/></inertial></link>" +
+                      JointXml("j", "revolute", "a", "b"));
+  };
+  EXPECT_EQ(parse("-5.42101e-20").links[1].inertia(0, 0), 0.0);
+  EXPECT_EQ(parse("1e-5").links[1].inertia(0, 0), 1e-5);
+  ExpectInputError([&] { parse("-1e-6"); }, {"'ixx'", "'-1e-6'", "link 'b'"});
+}
+
 TEST(UrdfReader, FloatingAndPlanarJointsPartTheRobotFromTheRest) {
   const std::string arm = LinkXml("a") + LinkXml("b") + JointXml("hip", "revolute", "a", "b");
   // A ball in its hand, with something that turns on it.

@@ -18,22 +18,11 @@
 #include "elastocal/project/project.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
+#include "tests/draft_files.hpp"
 #include "tests/expect_input_error.hpp"
-#include "tests/scratch_folder.hpp"
-#include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
-
-ProjectDraft DraftFile(const std::string& file) {
-  return DraftProject(ReadFile(SourceFile(file)), file, {});
-}
-
-/// The draft as its reader sees it.
-Project ReadBack(const ProjectDraft& draft, const ScratchFolder& folder) {
-  folder.Write("robot.urdf", draft.urdf);
-  return ReadProject(folder.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
-}
 
 double Length(const Project& project, int marker, int other) {
   return (project.markers[Size(marker)].p_link_marker - project.markers[Size(other)].p_link_marker)
@@ -367,39 +356,6 @@ TEST(Draft, OtherPeoplesRobotsCanBeReadBack) {
     }
   }
   if (found == 0) GTEST_SKIP() << "no shared robots";
-}
-
-TEST(Draft, AQuadrupedStandsOnBalls) {
-  const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
-  EXPECT_TRUE(draft.stands);
-  const ScratchFolder folder;
-  const Project project = ReadBack(draft, folder);
-  ASSERT_EQ(project.soles.size(), 4u);
-  for (const Sole& sole : project.soles) EXPECT_NEAR(sole.ball_radius.value(), 0.022, 1e-9);
-  for (const ChainSetup& setup : project.motion.chains) {
-    EXPECT_EQ(setup.support.size(), 3u) << setup.name;
-  }
-  StandingRobot robot(project.tree, project.soles, {});
-  StandUp(robot, project.motion.rest, {});
-  for (const int foot : robot.AllFeet()) {
-    EXPECT_NEAR(robot.T_world_sole[Size(foot)].translation().z(), 0.022, 1e-12);
-    // The root link on any three feet is where it is on all.
-    const Transform T = RootOverFeet(robot, robot.AllFeetBut(foot), robot.rest);
-    EXPECT_LT((T.matrix() - robot.T_world_root.matrix()).norm(), 1e-9);
-  }
-  // A third of the least height of a triangle of three feet, 0.48 m long and 0.32 m wide.
-  EXPECT_NEAR(robot.half_support, 0.48 * 0.32 / std::hypot(0.48, 0.32) / 3.0, 2e-3);
-}
-
-TEST(Draft, FewerThanFourBallsAreRefused) {
-  const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
-  const ScratchFolder folder;
-  folder.Write("robot.urdf", draft.urdf);
-  std::string text = FormatDraft(draft, "robot.urdf");
-  const std::string last = "    - {link: hind_right_foot, ball_radius_mm: 22}\n";
-  text.erase(text.find(last), last.size());
-  ExpectInputError([&] { ReadProject(folder.Write("project.yaml", text)); },
-                   {"project.yaml", "four or more soles"});
 }
 
 }  // namespace

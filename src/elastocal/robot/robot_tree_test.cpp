@@ -94,5 +94,26 @@ TEST(RobotTree, RandomPosturesFillTheLimits) {
   EXPECT_TRUE((largest.array() >= (upper - margin).array()).all()) << largest;
 }
 
+TEST(RobotTree, PosturesUseOneTurnOfAJointThatCountsTurns) {
+  RobotTree tree = RailArm();
+  Joint& joint = tree.joints[1];
+  ASSERT_EQ(joint.type, JointType::kRevolute);
+  const auto range = [&](double lower, double upper) {
+    joint.limits = {lower, upper, 0, 0};
+    return PostureRange(joint);
+  };
+  EXPECT_EQ(range(-2.0, 3.0), std::pair(-2.0, 3.0));
+  EXPECT_EQ(range(-10.0, 10.0), std::pair(-M_PI, M_PI));
+  EXPECT_EQ(range(1.0, 11.0), std::pair(1.0, 1.0 + 2.0 * M_PI));
+  EXPECT_EQ(range(-9.0, -1.0), std::pair(-1.0 - 2.0 * M_PI, -1.0));
+  EXPECT_EQ(range(-kInfinity, 2.0), std::pair(-M_PI, 2.0));
+  joint.limits = {-1.0, 3.0, 0, 0};
+  EXPECT_EQ(PostureRange(joint, 0.25), std::pair(0.0, 2.0));
+  // A rail of ten metres stays one.
+  tree.joints[0].type = JointType::kPrismatic;
+  tree.joints[0].limits = {-5.0, 5.0, 0, 0};
+  EXPECT_EQ(PostureRange(tree.joints[0]), std::pair(-5.0, 5.0));
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drafts of robots that stand on their feet.
+#include "elastocal/drafting/standing_draft.hpp"
+
+#include <cmath>
+#include <regex>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/motion/standing_robot.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/draft_files.hpp"
+#include "tests/expect_input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+TEST(StandingDraft, AQuadrupedStandsOnBalls) {
+  const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
+  EXPECT_TRUE(draft.stands);
+  const ScratchFolder folder;
+  const Project project = ReadBack(draft, folder);
+  ASSERT_EQ(project.soles.size(), 4u);
+  for (const Sole& sole : project.soles) EXPECT_NEAR(sole.ball_radius.value(), 0.022, 1e-9);
+  for (const ChainSetup& setup : project.motion.chains) {
+    EXPECT_EQ(setup.support.size(), 3u) << setup.name;
+  }
+  StandingRobot robot(project.tree, project.soles, {});
+  StandUp(robot, project.motion.rest, {});
+  for (const int foot : robot.AllFeet()) {
+    EXPECT_NEAR(robot.T_world_sole[Size(foot)].translation().z(), 0.022, 1e-12);
+    // The root link on any three feet is where it is on all.
+    const Transform T = RootOverFeet(robot, robot.AllFeetBut(foot), robot.rest);
+    EXPECT_LT((T.matrix() - robot.T_world_root.matrix()).norm(), 1e-9);
+  }
+  // A third of the least height of a triangle of three feet, 0.48 m long and 0.32 m wide.
+  EXPECT_NEAR(robot.half_support, 0.48 * 0.32 / std::hypot(0.48, 0.32) / 3.0, 2e-3);
+}
+
+// As of ANYmal: joints that count turns, and feet that are not under the hips when the legs hang.
+TEST(StandingDraft, LegsBendAsFarAsStandingNeeds) {
+  std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
+  for (const char* limits : {"lower=\"-1.2\" upper=\"2.6\"", "lower=\"-2.6\" upper=\"0.1\""}) {
+    urdf = std::regex_replace(urdf, std::regex(limits), "lower=\"-9.4\" upper=\"9.4\"");
+  }
+  for (const char* side : {"left", "right"}) {
+    for (const auto& [end, x] : {std::pair("front", "0.07"), std::pair("hind", "-0.07")}) {
+      const std::string link = std::string(end) + "_" + side + "_foot\"/>";
+      const std::size_t child = urdf.find("<child link=\"" + link);
+      const std::size_t at = urdf.find("0 0 ", urdf.find("<origin", child));
+      urdf.replace(at, 1, x);
+    }
+  }
+  const ProjectDraft draft = DraftProject(urdf, "quadruped.urdf", {});
+  ASSERT_TRUE(draft.stands) << draft.held_because;
+  // Of the two ways in which a knee can bend, those that are bent further: towards each other.
+  const auto knee = [&](const std::string& leg) {
+    for (const Joint& joint : draft.tree.joints) {
+      if (joint.name == leg + "_knee") return draft.rest.q[joint.coordinate];
+    }
+    return 0.0;
+  };
+  EXPECT_GT(knee("front_left"), 0.8);
+  EXPECT_LT(knee("hind_left"), -0.8);
+  EXPECT_NEAR(knee("front_left"), -knee("hind_right"), 1e-3);
+}
+
+TEST(StandingDraft, FewerThanFourBallsAreRefused) {
+  const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
+  const ScratchFolder folder;
+  folder.Write("robot.urdf", draft.urdf);
+  std::string text = FormatDraft(draft, "robot.urdf");
+  const std::string last = "    - {link: hind_right_foot, ball_radius_mm: 22}\n";
+  text.erase(text.find(last), last.size());
+  ExpectInputError([&] { ReadProject(folder.Write("project.yaml", text)); },
+                   {"project.yaml", "four or more soles"});
+}
+
+}  // namespace
+}  // namespace elastocal

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "elastocal/drafting/draft.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+
+/// The draft of a robot of the repository.
+inline ProjectDraft DraftFile(const std::string& file) {
+  return DraftProject(ReadFile(SourceFile(file)), file, {});
+}
+
+/// The draft as its reader sees it.
+inline Project ReadBack(const ProjectDraft& draft, const ScratchFolder& folder) {
+  folder.Write("robot.urdf", draft.urdf);
+  return ReadProject(folder.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
+}
+
+}  // namespace elastocal
