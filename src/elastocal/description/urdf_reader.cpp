@@ -210,6 +210,25 @@ class TreeBuilder {
       mimic.Fail("joint " + Quote(joint.name) +
                  " mimics others with a multiplier or offset that is not finite");
     }
+    CheckMimicLimits(joint);
+  }
+
+  /// Limits within which the joint could not follow are wrong; most often a sign was forgotten.
+  void CheckMimicLimits(Joint& joint) {
+    constexpr double kHardlyAny = 0.05;  // of the range
+    const JointLimits& leader = tree_.joints[tree_.coordinate_joint[joint.coordinate]].limits;
+    const auto [lower, upper] = std::minmax({joint.multiplier * leader.lower + joint.offset,
+                                             joint.multiplier * leader.upper + joint.offset});
+    const double common =
+        std::min<double>(upper, joint.limits.upper) - std::max<double>(lower, joint.limits.lower);
+    if (!std::isfinite(upper - lower) || !(upper > lower)) return;
+    if (joint.limits.lower == joint.limits.upper || common > kHardlyAny * (upper - lower)) return;
+    tree_.warnings.push_back("joint " + Quote(joint.name) +
+                             " mimics another joint, which moves it " + FormatNumber(lower) +
+                             " to " + FormatNumber(upper) +
+                             ", outside its own limits; it is taken to have none");
+    joint.limits.lower = -kInfinity;
+    joint.limits.upper = kInfinity;
   }
 
   const UrdfOutline& outline_;

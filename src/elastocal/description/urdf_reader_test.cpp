@@ -142,6 +142,22 @@ TEST(UrdfReader, AVelocityLimitOfZeroIsNoneWhereTheJointCanMove) {
   EXPECT_TRUE(rigid.warnings.empty());
 }
 
+TEST(UrdfReader, LimitsInWhichAMimicJointCouldNotFollowAreNone) {
+  const auto parse = [](const std::string& multiplier) {
+    const std::string limit = "<limit lower='0' upper='0.5' effort='1' velocity='1'/>";
+    return ParseLinks(LinkXml("a") + LinkXml("b") + LinkXml("c") +
+                      JointXml("leader", "revolute", "a", "b", limit) +
+                      JointXml("follower", "revolute", "b", "c",
+                               limit + "<mimic joint='leader' multiplier='" + multiplier + "'/>"));
+  };
+  const RobotTree forgotten = parse("-1");
+  EXPECT_EQ(forgotten.joints[1].limits.lower, -std::numeric_limits<double>::infinity());
+  ExpectWarning(forgotten, "'follower' mimics another joint, which moves it -0.5 to 0");
+  const RobotTree right = parse("0.5");
+  EXPECT_EQ(right.joints[1].limits.upper, 0.5);
+  EXPECT_TRUE(right.warnings.empty());
+}
+
 TEST(UrdfReader, AMomentOfInertiaBelowZeroByRoundingIsZero) {
   const auto parse = [](const std::string& ixx) {
     return ParseLinks("<link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='" +
