@@ -52,8 +52,8 @@ struct RecordingColumns {
 };
 
 /// Which parts of the robot are estimated as elastic (eq. 5 to 7). Where patterns are not given, a
-/// table of postures has none, and a recording of trials has torsion of all joints and bending of
-/// the legs' joints, which carry the robot.
+/// table of postures has none, and a recording of trials has torsion of all joints, and bending of
+/// those that twist and of the legs' joints, which carry the robot.
 struct ElasticityChoice {
   std::optional<std::vector<std::string>> torsion = {};  ///< joints that give way about their axis
   std::optional<std::vector<std::string>> bending = {};  ///< ... and across it

@@ -228,8 +228,13 @@ ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& tr
     elasticity.torsion =
         MatchingJoints(project.tree, choice.torsion.value_or(std::vector<std::string>{"*"}));
   }
-  std::vector<int> bending(on_floor.begin(), on_floor.end());
-  if (choice.bending) bending = MatchingJoints(project.tree, *choice.bending);
+  std::vector<int> bending;
+  if (choice.bending) {
+    bending = MatchingJoints(project.tree, *choice.bending);
+  } else {
+    on_floor.insert(elasticity.torsion.begin(), elasticity.torsion.end());
+    bending.assign(on_floor.begin(), on_floor.end());
+  }
   for (int joint : bending) {
     const Joint& bent = project.tree.joints[joint];
     if (bent.type != JointType::kRevolute) continue;

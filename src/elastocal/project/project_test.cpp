@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -373,6 +374,28 @@ TEST(Project, ChecksRecordingColumns) {
   EXPECT_EQ(Parse("recording: {not_recorded_mm: {rail_joint: 250}}")
                 .recording.not_recorded.at("rail_joint"),
             0.25);
+}
+
+TEST(Project, JointsOfARecordingBendWhereTheyTwist) {
+  const auto bending = [](const std::string& more, const std::vector<Trial>& trials) {
+    const ErrorModel model = MakeProjectModel(Parse(more), trials);
+    std::set<std::string> joints;
+    for (const Parameter& parameter : model.parameters) {
+      if (parameter.kind == ParameterKind::kBending) {
+        joints.insert(model.tree.joints[static_cast<std::size_t>(parameter.joint)].name);
+      }
+    }
+    return joints;
+  };
+  const std::vector<Trial> held(1);
+  const std::set<std::string> all = bending("", held);
+  EXPECT_TRUE(all.contains("elbow_joint"));
+  EXPECT_FALSE(all.contains("rail_joint"));  // it slides
+  EXPECT_GE(all.size(), 5u);
+  EXPECT_EQ(bending("elasticity: {torsion: [elbow_joint]}", held),
+            std::set<std::string>{"elbow_joint"});
+  EXPECT_TRUE(bending("elasticity: {bending: []}", held).empty());
+  EXPECT_TRUE(bending("", {}).empty());  // of a table the data decide
 }
 
 TEST(Project, NamesValuesOutOfRange) {
