@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include <Eigen/Cholesky>
+
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/math/transform.hpp"
 
 namespace elastocal {
 namespace {
@@ -51,6 +54,45 @@ std::vector<double> BodyDistances(const RobotTree& tree, const std::vector<Marke
   return distances;
 }
 
+/// The same of a body that may turn about a point: the distance of the point of the body that stays
+/// nearest to one place, in each frame looked at in which three of its markers or more are seen.
+std::vector<double> PivotDistances(const RobotTree& tree, const std::vector<Marker>& markers,
+                                   int body, const MarkerTrajectories& trajectories) {
+  constexpr double kNear = 1e-3;  // weight of the point's distance from the markers, per frame
+  const int stride = 1 + trajectories.frame_count() / kMostLooked;
+  std::vector<Transform> poses;
+  for (int i = 0; i < trajectories.frame_count(); i += stride) {
+    Eigen::Matrix3Xd on_body(3, 0), seen(3, 0);
+    for (std::size_t m = 0; m < markers.size(); ++m) {
+      const Link& link = tree.links[markers[m].link];
+      const Eigen::Vector3d position =
+          trajectories.positions.row(i).segment<3>(3 * static_cast<Eigen::Index>(m)).transpose();
+      if (link.body != body || !position.allFinite()) continue;
+      on_body.conservativeResize(3, on_body.cols() + 1);
+      seen.conservativeResize(3, seen.cols() + 1);
+      on_body.rightCols<1>() = link.T_body_link * markers[m].p_link_marker;
+      seen.rightCols<1>() = position;
+    }
+    if (seen.cols() >= 3) poses.push_back(FitRigid(on_body, seen));
+  }
+  // The point c of the body and its place p, by least squares of R c + t - p.
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  normal.topLeftCorner<3, 3>().diagonal().setConstant(kNear * static_cast<double>(poses.size()));
+  for (const Transform& pose : poses) {
+    Eigen::Matrix<double, 3, 6> rows;
+    rows << pose.linear(), -Eigen::Matrix3d::Identity();
+    normal += rows.transpose() * rows;
+    right -= rows.transpose() * pose.translation();
+  }
+  const Eigen::Matrix<double, 6, 1> found = normal.ldlt().solve(right);
+  std::vector<double> distances;
+  for (const Transform& pose : poses) {
+    distances.push_back((pose * Eigen::Vector3d(found.head<3>()) - found.tail<3>()).norm());
+  }
+  return distances;
+}
+
 bool EndsAChain(const RobotTree& tree, int body) {
   return body > 0 && std::none_of(tree.joints.begin(), tree.joints.end(),
                                   [&](const Joint& joint) { return joint.parent_body == body; });
@@ -63,9 +105,12 @@ std::optional<MovedSupport> FindMovedSupport(const RobotTree& tree,
                                              const MarkerTrajectories& trajectories) {
   if (trial.free_root) return std::nullopt;
   const std::vector<int> support = trial.support.empty() ? std::vector<int>{0} : trial.support;
+  // Three feet and more are balls, about which the shanks turn.
+  constexpr std::size_t kBalls = 3;
+  const auto distances_of = support.size() < kBalls ? BodyDistances : PivotDistances;
   for (int link : support) {
     const std::vector<double> distances =
-        BodyDistances(tree, markers, tree.links[link].body, trajectories);
+        distances_of(tree, markers, tree.links[link].body, trajectories);
     const auto moved = std::count_if(distances.begin(), distances.end(),
                                      [](double distance) { return distance > kDisplaced; });
     if (distances.size() < kLeastLooked ||

@@ -19,7 +19,8 @@ struct MovedSupport {
 };
 
 /// A support of the trial that is more than 20 mm from where it mostly is in more than a quarter of
-/// the frames in which it is seen: further than a foot slips. `markers`: of the robot, one for each
+/// the frames in which it is seen: further than a foot slips. Of three feet and more, which are
+/// balls, that point of the body counts about which it turns. `markers`: of the robot, one for each
 /// of the trajectories.
 std::optional<MovedSupport> FindMovedSupport(const RobotTree& tree,
                                              const std::vector<Marker>& markers, const Trial& trial,

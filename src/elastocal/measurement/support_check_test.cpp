@@ -50,5 +50,32 @@ TEST_F(SupportCheck, WhatStandsIsNotAccused) {
   EXPECT_FALSE(Find({.name = "free", .chains = {}, .support = {}, .free_root = true}));
 }
 
+// A shank that turns about the ball at its end: its markers move by 0.1 m and more.
+TEST_F(SupportCheck, AShankMayTurnAboutItsBall) {
+  const Eigen::Vector3d ball(0.02, -0.01, -0.3), place(1.0, 2.0, 0.02);
+  const auto turn_about_ball = [&](double slip) {
+    for (int m = 0; m < robot_.model.marker_count(); ++m) {
+      const Marker& marker = robot_.model.markers[m];
+      if (!marker.name.starts_with("LFOOT")) continue;
+      const Eigen::Vector3d on_body =
+          robot_.biped.tree.links[marker.link].T_body_link * marker.p_link_marker;
+      for (Eigen::Index i = 0; i < swinging_.positions.rows(); ++i) {
+        const double share = static_cast<double>(i) / 400.0;
+        const Eigen::Matrix3d R = (RotX(0.5 * share) * RotY(0.8 * share * share)).linear();
+        swinging_.positions.row(i).segment<3>(3 * m) =
+            (place + Eigen::Vector3d(slip * share, 0, 0) + R * (on_body - ball)).transpose();
+      }
+    }
+  };
+  const Trial on_balls = {
+      .name = "balls", .chains = {}, .support = {robot_.left, robot_.left, robot_.left}};
+  turn_about_ball(0.0);
+  EXPECT_FALSE(Find(on_balls));
+  EXPECT_TRUE(Find({.name = "flat", .chains = {}, .support = {robot_.left}}));
+  turn_about_ball(0.3);
+  ASSERT_TRUE(Find(on_balls));
+  EXPECT_GT(Find(on_balls)->distance, 0.05);
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "elastocal/math/input_error.hpp"
+#include "elastocal/simulation/motion_recorder.hpp"
 #include "elastocal/simulation/standing_feet.hpp"
 
 namespace elastocal {
@@ -11,9 +11,7 @@ namespace {
 
 void CheckStanding(const Transform& T_world_waist, double height, double time_s) {
   constexpr double kLeastHeight = 0.7;
-  if (T_world_waist.translation().z() > kLeastHeight * height) return;
-  throw InputError("the robot fell after " + std::to_string(time_s) +
-                   " s: a robot that stands freely needs motions that keep its balance");
+  if (!(T_world_waist.translation().z() > kLeastHeight * height)) throw Fallen(time_s);
 }
 
 }  // namespace
@@ -21,48 +19,22 @@ void CheckStanding(const Transform& T_world_waist, double height, double time_s)
 TrueMotion PlayMotion(const TrueRobot& robot, const std::vector<int>& support, const Motion& motion,
                       const Transform& T_camera_world, const PhysicsOptions& options) {
   constexpr double kLongestCreep = 4.0;  // s; friction may go on creeping
-  TrueMotion result;
-  for (const Marker& marker : robot.markers) result.marker_names.push_back(marker.name);
-  for (int k : robot.tree.coordinate_joint) {
-    result.joint_names.push_back(robot.tree.joints[static_cast<std::size_t>(k)].name);
-  }
-  const auto frames = static_cast<Eigen::Index>(std::lround(motion.duration_s() * result.rate_hz));
-  const auto joints = static_cast<Eigen::Index>(result.joint_names.size());
-  result.markers.resize(frames, 3 * static_cast<Eigen::Index>(robot.markers.size()));
-  result.encoders.resize(frames, joints);
-  result.torques.resize(frames, joints);
-
+  MotionRecorder recorder(robot, motion, T_camera_world);
   VirtualRobot body(robot, support, PostureAt(motion, 0.0), options);
   body.Settle(kLongestCreep);
   const double height = body.WaistPose().translation().z();
-  for (std::size_t s = 0; s < support.size(); ++s) {
-    result.T_camera_foot.push_back(T_camera_world * body.SolePose(static_cast<int>(s)));
-  }
+  recorder.Begin(body, support.size());
   int steps = 0;
-  for (Eigen::Index i = 0; i < frames; ++i) {
-    const double time_s = static_cast<double>(i) / result.rate_hz;
+  for (Eigen::Index i = 0; i < recorder.frames(); ++i) {
+    const double time_s = static_cast<double>(i) / recorder.motion.rate_hz;
     for (; steps * body.time_step_s() < time_s - 1e-9; ++steps) {
       body.Command(PostureAt(motion, (steps + 1) * body.time_step_s()));
       body.Step();
     }
-    Eigen::Matrix3Xd markers = body.MarkerPositions();
-    if (robot.creeping_marker >= 0) {
-      const int link = robot.markers[static_cast<std::size_t>(robot.creeping_marker)].link;
-      markers.col(robot.creeping_marker) +=
-          robot.creep * time_s / 3600.0 * body.LinkPose(link).linear().col(0);
-    }
-    result.markers.row(i) = (T_camera_world * markers).reshaped().transpose();
-    const Eigen::VectorXd encoders = body.Encoders();
-    const Eigen::VectorXd torques = body.Torques();
-    for (Eigen::Index c = 0; c < joints; ++c) {
-      const int k = robot.tree.coordinate_joint[static_cast<std::size_t>(c)];
-      result.encoders(i, c) = encoders[k];
-      result.torques(i, c) = torques[k];
-    }
-    result.T_camera_waist.push_back(T_camera_world * body.WaistPose());
+    recorder.Record(i, body);
     if (StandsFreely(support, options)) CheckStanding(body.WaistPose(), height, time_s);
   }
-  return result;
+  return std::move(recorder.motion);
 }
 
 }  // namespace elastocal

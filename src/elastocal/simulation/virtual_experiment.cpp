@@ -7,6 +7,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/simulation/balanced_motion.hpp"
 #include "elastocal/simulation/driving_base.hpp"
 #include "elastocal/simulation/faults.hpp"
 #include "elastocal/simulation/standing_feet.hpp"
@@ -130,8 +131,13 @@ SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) 
   const PlannedTrial& trial = experiment.trials[index];
   SimulatedTrial result;
   try {
-    result.motion = PlayMotion(experiment.robot, trial.support, trial.motion,
-                               experiment.T_camera_world[index], experiment.options.physics);
+    const PhysicsOptions& physics = experiment.options.physics;
+    const Transform& T_camera_world = experiment.T_camera_world[index];
+    result.motion =
+        CountBalls(trial.support, physics) >= kBallsThatStand
+            ? PlayBalanced(experiment.robot, experiment.described_tree, trial.support, trial.motion,
+                           T_camera_world, physics)
+            : PlayMotion(experiment.robot, trial.support, trial.motion, T_camera_world, physics);
   } catch (const InputError& error) {
     throw InputError("trial '" + trial.name + "': " + error.what());
   }

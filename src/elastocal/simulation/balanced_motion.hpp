@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "elastocal/simulation/true_motion.hpp"
+
+namespace elastocal {
+
+/// PlayMotion for feet that are balls, which nothing holds to the floor: the robot's controller
+/// keeps it over them with the stabiliser, which knows the robot as `described`. Encoders and
+/// torques are those of the corrected motion. Throws InputError if the robot falls.
+TrueMotion PlayBalanced(const TrueRobot& robot, const RobotTree& described,
+                        const std::vector<int>& support, const Motion& motion,
+                        const Transform& T_camera_world, const PhysicsOptions& options);
+
+}  // namespace elastocal
