@@ -125,6 +125,15 @@ TEST_F(Quadruped, IsRecordedWhileItStandsOnThreeFeet) {
   ASSERT_EQ(simulation.experiment.trials.size(), 1u);
   EXPECT_EQ(simulation.experiment.trials[0].support, project_.motion.chains[0].support);
   const TrueMotion played = RunTrial(simulation.experiment, 0).motion;
+  EXPECT_TRUE(played.markers.allFinite());
+  EXPECT_TRUE(played.encoders.allFinite() && played.torques.allFinite());
+  ASSERT_EQ(played.T_camera_waist.size(), static_cast<std::size_t>(played.frame_count()));
+  // The stabiliser has corrected the legs.
+  const VirtualExperiment& experiment = simulation.experiment;
+  const TrueMotion uncorrected =
+      PlayMotion(experiment.robot, experiment.trials[0].support, experiment.trials[0].motion,
+                 experiment.T_camera_world[0], experiment.options.physics);
+  EXPECT_GT((uncorrected.encoders - played.encoders).cwiseAbs().maxCoeff(), 2e-3);
   const double height = played.T_camera_waist[0].translation().z();
   EXPECT_GT(height, 0.4);
   for (const Transform& T : played.T_camera_waist) {
