@@ -280,7 +280,7 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
     rest.source += ", leaning where motors could not hold the weight otherwise";
   }
   constexpr double kLeastBend = 0.3;
-  if (!soles.empty() && (!rest.stands || bend < kLeastBend) &&
+  if (!soles.empty() && (!rest.stands || bend < kLeastBend || drop > kUsualDrop) &&
       BendLegs(tree, limbs, soles, drop, rest.q)) {
     rest.source += ", with bent knees";
     rest.stands = Flat(tree, soles, rest.q, rest.root_height);

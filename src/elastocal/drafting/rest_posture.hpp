@@ -23,7 +23,7 @@ inline constexpr double kUsualDrop = 0.06;
 /// Chooses a posture of rest: a state of the SRDF (half sitting, standing, home, ...) if the robot
 /// stands flat in it, otherwise the zero posture moved into the limits, with the knees of the legs
 /// bent: the root link is lowered by as much as the legs allow, up to the share `drop` of their
-/// length. `tree` has the links of all soles.
+/// length; if that is more than usual, from whatever posture. `tree` has the links of all soles.
 RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
                        const std::vector<DraftedSole>& soles, const Semantics& semantics,
                        double drop = kUsualDrop);
