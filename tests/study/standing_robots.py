@@ -3,9 +3,9 @@
 """Robots that many laboratories have, from their URDF to a calibration while they stand: init, design, plan on
 three virtual robots, simulate, calibrate, without an edit. Prints a table (Markdown) for docs/robots.md.
 
-  standing_robots.py --program build/release/bin/elastocal --work /tmp/robots [NAME...]
+  standing_robots.py --program build/release/bin/elastocal --work /tmp/robots [NAME or FILE.urdf...]
 
-The URDFs are written here after the published joints, limits and masses, as one remembers them; without meshes, and
+Files are taken as they are. The URDFs of the names are written here after the published joints, limits and masses, as one remembers them; without meshes, and
 with the shapes that the makers' files have as primitives. They stand for the kinds of robots, not for the makers' files.
 """
 
@@ -284,6 +284,17 @@ def run(program, *words, check=True):
     return done
 
 
+class GivenUrdf:
+    """A URDF of somebody else."""
+
+    def __init__(self, file):
+        self.file, self.name = pathlib.Path(file), pathlib.Path(file).stem
+
+    def write(self, folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        return pathlib.Path(shutil.copy(self.file, folder))
+
+
 def take(program, robot, folder):
     """One line of the table."""
     begin = time.monotonic()
@@ -319,13 +330,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True)
-    parser.add_argument("robots", nargs="*", default=list(ROBOTS), help=", ".join(ROBOTS))
+    parser.add_argument("robots", nargs="*", default=list(ROBOTS), help=", ".join(ROBOTS) + "; or files")
     options = parser.parse_args()
     print("| robot | postures visited | motion, s | virtual robots that stand to the end | nominal, mm | URDF, mm | "
           "with elasticity, mm | verdict | time, s |\n|" + "---|" * 9)
     for name in options.robots:
         try:
-            print(take(options.program, ROBOTS[name](), options.work / name), flush=True)
+            robot = ROBOTS[name]() if name in ROBOTS else GivenUrdf(name)
+            print(take(options.program, robot, options.work / robot.name), flush=True)
         except RuntimeError as error:
             print(f"| {name} | {error} |" + " |" * 7, flush=True)
 
