@@ -71,6 +71,8 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
   return setup;
 }
 
+constexpr double kLimitMargin = 0.02;  // share of a range that is left free at either end
+
 /// Where joints may be, with a share of the range left free at either end.
 void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
   motion.lower.resize(tree.coordinate_count());
@@ -78,6 +80,17 @@ void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
   for (int i = 0; i < tree.coordinate_count(); ++i) {
     std::tie(motion.lower[i], motion.upper[i]) =
         PostureRange(tree.joints[tree.coordinate_joint[i]], margin);
+  }
+}
+
+/// A joint that counts turns is moved in the turn about its position of rest.
+void CentreTurns(const YamlValue& section, const RobotTree& tree, double margin,
+                 MotionSetup& motion) {
+  for (const auto& [name, value] : section.Entries()) {
+    const Joint& joint = tree.joints[DriverNamedBy(name, value, tree)];
+    if (joint.type != JointType::kRevolute) continue;
+    std::tie(motion.lower[joint.coordinate], motion.upper[joint.coordinate]) =
+        PostureRange(joint, margin, kOneDegree * value.Bounded());
   }
 }
 
@@ -172,13 +185,15 @@ void ReadDesign(const YamlValue& section, Project& project) {
   section.ExpectKeys(
       {"rest_deg", "limit_margin", "range_deg", "effort_share", "chains", "cameras_mm"});
   MotionSetup& motion = project.motion;
-  if (const auto margin = section.Find("limit_margin")) {
-    SetLimits(project.tree, margin->Bounded(), motion);
-    motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
-  }
+  double limit_margin = kLimitMargin;
+  section.ReadBounded("limit_margin", limit_margin);
+  SetLimits(project.tree, limit_margin, motion);
+  motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
+  const auto rest = section.Find("rest_deg");
+  if (rest) CentreTurns(*rest, project.tree, limit_margin, motion);
   if (const auto ranges = section.Find("range_deg")) ReadRanges(*ranges, project.tree, motion);
   section.ReadBounded("effort_share", motion.effort_share);
-  if (const auto rest = section.Find("rest_deg")) ReadRest(*rest, project.tree, motion);
+  if (rest) ReadRest(*rest, project.tree, motion);
   if (const auto cameras = section.Find("cameras_mm")) {
     for (const YamlValue& camera : cameras->Items()) motion.cameras.push_back(PointFromMm(camera));
   }
@@ -196,7 +211,6 @@ void ReadDesign(const YamlValue& section, Project& project) {
 }
 
 void SetMotionDefaults(Project& project) {
-  constexpr double kLimitMargin = 0.02;
   SetLimits(project.tree, kLimitMargin, project.motion);
   project.motion.rest = Eigen::VectorXd::Zero(project.tree.coordinate_count())
                             .cwiseMax(project.motion.lower)

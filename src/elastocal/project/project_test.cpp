@@ -376,6 +376,30 @@ TEST(Project, ChecksRecordingColumns) {
             0.25);
 }
 
+TEST(Project, AJointThatCountsTurnsIsMovedAboutItsPositionOfRest) {
+  const ScratchFolder folder;
+  const std::string joint =
+      "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='revolute'>"
+      "<parent link='a'/><child link='b'/><limit lower='-6.28318' upper='6.28318' effort='1' "
+      "velocity='1'/></joint></robot>";
+  folder.Write("r.urdf", joint);
+  const auto parse = [&](const std::string& design) {
+    return ReadProject(folder.Write(
+        "p.yaml",
+        "robot: {urdf: r.urdf}\nmarkers: {single: [{name: M, link: b, position_mm: [1, 2, "
+        "3]}]}\ndesign: {limit_margin: 0, " +
+            design + "}\n"));
+  };
+  const Project usual = parse("rest_deg: {j: 0}");
+  EXPECT_DOUBLE_EQ(usual.motion.lower[0], -M_PI);
+  const Project turned = parse("rest_deg: {j: 200}");
+  EXPECT_NEAR(turned.motion.lower[0], 0.0, 1e-4);  // as far as the limit allows
+  EXPECT_NEAR(turned.motion.upper[0], 2.0 * M_PI, 1e-4);
+  EXPECT_DOUBLE_EQ(turned.motion.rest[0], 200.0 * M_PI / 180.0);
+  ExpectInputError([&] { parse("rest_deg: {j: 200}, range_deg: {j: [10, 20]}"); },
+                   {"p.yaml:3: ", "10 to 20"});
+}
+
 TEST(Project, JointsOfARecordingBendWhereTheyTwist) {
   const auto bending = [](const std::string& more, const std::vector<Trial>& trials) {
     const ErrorModel model = MakeProjectModel(Parse(more), trials);

@@ -119,17 +119,16 @@ double RobotSize(const RobotTree& tree) {
   return 2.0 * longest;
 }
 
-std::pair<double, double> PostureRange(const Joint& joint) {
-  const double unlimited = joint.type == JointType::kRevolute ? M_PI : 0.5;
-  const double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
-  const double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
-  if (joint.type != JointType::kRevolute || !(upper - lower > 2.0 * M_PI)) return {lower, upper};
-  const double middle = std::clamp(0.0, lower + M_PI, upper - M_PI);
-  return {middle - M_PI, middle + M_PI};
-}
-
-std::pair<double, double> PostureRange(const Joint& joint, double margin) {
-  const auto [lower, upper] = PostureRange(joint);
+std::pair<double, double> PostureRange(const Joint& joint, double margin, double around) {
+  const bool turns = joint.type == JointType::kRevolute;
+  const double unlimited = turns ? M_PI : 0.5;
+  double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
+  double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
+  if (turns && upper - lower > 2.0 * M_PI) {
+    const double middle = std::clamp(around, lower + M_PI, upper - M_PI);
+    lower = middle - M_PI;
+    upper = middle + M_PI;
+  }
   const double kept = margin * (upper - lower);
   return {lower + kept, upper - kept};
 }

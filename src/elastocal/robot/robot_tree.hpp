@@ -114,13 +114,13 @@ double RobotSize(const RobotTree& tree);
 
 /// Where a joint is moved for a measurement, rad or m: within its limits, and half a turn or 0.5 m
 /// to either side of zero where it has none. Limits further apart than one turn (motors that count
-/// turns) hold no posture twice: the turn that is left has its middle as near zero as they allow.
-std::pair<double, double> PostureRange(const Joint& joint);
+/// turns) hold no posture twice: the turn that is left has its middle as near `around` as they
+/// allow. A share `margin` of the range is left free at either end.
+std::pair<double, double> PostureRange(const Joint& joint, double margin = 0.0,
+                                       double around = 0.0);
 
-/// The same, less a share `margin` of the range at either end.
-std::pair<double, double> PostureRange(const Joint& joint, double margin);
-
-/// A posture drawn uniformly within PostureRange in which the linkages close. Size `coordinate_count()`.
+/// A posture drawn uniformly within PostureRange in which the linkages close. Size
+/// `coordinate_count()`.
 Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random);
 
 }  // namespace elastocal

@@ -107,6 +107,9 @@ TEST(RobotTree, PosturesUseOneTurnOfAJointThatCountsTurns) {
   EXPECT_EQ(range(1.0, 11.0), std::pair(1.0, 1.0 + 2.0 * M_PI));
   EXPECT_EQ(range(-9.0, -1.0), std::pair(-1.0 - 2.0 * M_PI, -1.0));
   EXPECT_EQ(range(-kInfinity, 2.0), std::pair(-M_PI, 2.0));
+  joint.limits = {-10.0, 10.0, 0, 0};
+  EXPECT_EQ(PostureRange(joint, 0.0, 4.0), std::pair(4.0 - M_PI, 4.0 + M_PI));
+  EXPECT_EQ(PostureRange(joint, 0.0, 9.0), std::pair(10.0 - 2.0 * M_PI, 10.0));
   joint.limits = {-1.0, 3.0, 0, 0};
   EXPECT_EQ(PostureRange(joint, 0.25), std::pair(0.0, 2.0));
   // A rail of ten metres stays one.
