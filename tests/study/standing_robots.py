@@ -5,8 +5,9 @@ three virtual robots, simulate, calibrate, without an edit. Prints a table (Mark
 
   standing_robots.py --program build/release/bin/elastocal --work /tmp/robots [NAME or FILE.urdf...]
 
-Files are taken as they are. The URDFs of the names are written here after the published joints, limits and masses, as one remembers them; without meshes, and
-with the shapes that the makers' files have as primitives. They stand for the kinds of robots, not for the makers' files.
+Files are taken as they are. The URDFs of the names are written here after the published joints, limits and masses, as
+one remembers them; without meshes, and with the shapes that the makers' files have as primitives. They stand for the
+kinds of robots, not for the makers' files.
 """
 
 import argparse
@@ -290,9 +291,8 @@ class GivenUrdf:
     def __init__(self, file):
         self.file, self.name = pathlib.Path(file), pathlib.Path(file).stem
 
-    def write(self, folder):
-        folder.mkdir(parents=True, exist_ok=True)
-        return pathlib.Path(shutil.copy(self.file, folder))
+    def write(self, _):
+        return self.file
 
 
 def take(program, robot, folder):
@@ -338,7 +338,7 @@ def main():
         try:
             robot = ROBOTS[name]() if name in ROBOTS else GivenUrdf(name)
             print(take(options.program, robot, options.work / robot.name), flush=True)
-        except RuntimeError as error:
+        except (RuntimeError, OSError) as error:
             print(f"| {name} | {error} |" + " |" * 7, flush=True)
 
 

@@ -73,6 +73,15 @@ Eigen::Vector3d ReadAxis(const UrdfJoint& joint, std::vector<std::string>& warni
   return xyz.stableNormalized().normalized();
 }
 
+/// A joint that can move has a velocity: a limit of 0 is a place that was left empty.
+void ReadNoSpeedLimit(const UrdfJoint& joint, JointLimits& limits,
+                      std::vector<std::string>& warnings) {
+  if (limits.velocity != 0.0 || !(limits.lower < limits.upper)) return;
+  warnings.push_back("joint " + Quote(joint.name) +
+                     ": its velocity limit is 0; it is taken to have none");
+  limits.velocity = kInfinity;
+}
+
 JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warnings) {
   JointLimits limits = {-kInfinity, kInfinity, kInfinity, kInfinity};
   const bool continuous = joint.type == "continuous";
@@ -80,7 +89,10 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
   const XmlElement limit = joint.element.Get("limit");
   limits.velocity = limit.Number("velocity");
   limits.effort = limit.Number("effort");
-  if (continuous) return limits;
+  if (continuous) {
+    ReadNoSpeedLimit(joint, limits, warnings);
+    return limits;
+  }
   limits.lower = limit.NumberOr("lower", 0.0);
   limits.upper = limit.NumberOr("upper", 0.0);
   if (limits.lower > limits.upper) {
@@ -89,11 +101,7 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
                        FormatNumber(limits.upper) + "; they are exchanged");
     std::swap(limits.lower, limits.upper);
   }
-  if (limits.velocity == 0.0 && limits.lower < limits.upper) {
-    warnings.push_back("joint " + Quote(joint.name) +
-                       ": its velocity limit is 0; it is taken to have none");
-    limits.velocity = kInfinity;
-  }
+  ReadNoSpeedLimit(joint, limits, warnings);
   return limits;
 }
 
@@ -210,19 +218,19 @@ class TreeBuilder {
       mimic.Fail("joint " + Quote(joint.name) +
                  " mimics others with a multiplier or offset that is not finite");
     }
-    CheckMimicLimits(joint);
+    DropWrongMimicLimits(joint);
   }
 
-  /// Limits within which the joint could not follow are wrong; most often a sign was forgotten.
-  void CheckMimicLimits(Joint& joint) {
-    constexpr double kHardlyAny = 0.05;  // of the range
-    const JointLimits& leader = tree_.joints[tree_.coordinate_joint[joint.coordinate]].limits;
-    const auto [lower, upper] = std::minmax({joint.multiplier * leader.lower + joint.offset,
-                                             joint.multiplier * leader.upper + joint.offset});
+  /// Limits within which the joint cannot follow its driver are wrong; most often a sign was
+  /// forgotten.
+  void DropWrongMimicLimits(Joint& joint) {
+    const JointLimits& driver = tree_.joints[tree_.coordinate_joint[joint.coordinate]].limits;
+    const auto [lower, upper] = std::minmax({joint.multiplier * driver.lower + joint.offset,
+                                             joint.multiplier * driver.upper + joint.offset});
     const double common =
         std::min<double>(upper, joint.limits.upper) - std::max<double>(lower, joint.limits.lower);
     if (!std::isfinite(upper - lower) || !(upper > lower)) return;
-    if (joint.limits.lower == joint.limits.upper || common > kHardlyAny * (upper - lower)) return;
+    if (joint.limits.lower == joint.limits.upper || common > 0.0) return;
     tree_.warnings.push_back("joint " + Quote(joint.name) +
                              " mimics another joint, which moves it " + FormatNumber(lower) +
                              " to " + FormatNumber(upper) +

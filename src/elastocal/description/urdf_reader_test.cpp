@@ -137,6 +137,10 @@ TEST(UrdfReader, AVelocityLimitOfZeroIsNoneWhereTheJointCanMove) {
   const RobotTree moves = parse("lower='0' upper='1'");
   EXPECT_TRUE(std::isinf(moves.joints[0].limits.velocity));
   ExpectWarning(moves, "'finger': its velocity limit is 0");
+  const RobotTree wheel =
+      ParseLinks(LinkXml("a") + LinkXml("b") +
+                 JointXml("wheel", "continuous", "a", "b", "<limit velocity='0' effort='1'/>"));
+  EXPECT_TRUE(std::isinf(wheel.joints[0].limits.velocity));
   const RobotTree rigid = parse("");
   EXPECT_EQ(rigid.joints[0].limits.velocity, 0.0);
   EXPECT_TRUE(rigid.warnings.empty());

@@ -15,6 +15,9 @@
 
 namespace elastocal {
 
+/// Share of the motors' efforts that drafted postures use.
+inline constexpr double kDraftedEffort = 0.85;
+
 /// A chain of a draft.
 struct DraftedChain {
   std::string name;

@@ -144,7 +144,9 @@ class DraftWriter {
     WriteRest();
     WriteRanges();
     text_ +=
-        "  effort_share: 0.85  # of the URDF's effort; plan moves within 0.9 of it\n  chains:\n";
+        fmt::format("  effort_share: {}  # of the URDF's effort; plan moves within 0.9 of it\n",
+                    kDraftedEffort);
+    text_ += "  chains:\n";
     for (const ChainSetup& setup : draft_.designs) WriteSetup(setup);
     text_ += "\n";
   }

@@ -14,12 +14,10 @@
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/motion/standing_robot.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 #include "tests/draft_files.hpp"
-#include "tests/expect_input_error.hpp"
 
 namespace elastocal {
 namespace {

@@ -66,9 +66,11 @@ std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, cons
     if (limb.joints.size() - trunk < kJointsOfAnArm) return "head";
     return side > 0 ? "left_arm" : side < 0 ? "right_arm" : "arm";
   }
-  if (side * SideByNames(tree, limbs[Size(limb.mirror)]) >= 0) side = tip.y() > 0.0 ? 1 : -1;
+  const bool named = side * SideByNames(tree, limbs[Size(limb.mirror)]) < 0;
+  const bool one_of_four = limb.leg && legs > 2;  // which is ahead is seen, not read
+  if (!named || one_of_four) side = tip.y() > 0.0 ? 1 : -1;
   std::string name = side > 0 ? "left_" : "right_";
-  if (limb.leg && legs > 2) name = (tip.x() > 0.0 ? "front_" : "hind_") + name;
+  if (one_of_four) name = (tip.x() > 0.0 ? "front_" : "hind_") + name;
   return name + (limb.leg ? "leg" : "arm");
 }
 

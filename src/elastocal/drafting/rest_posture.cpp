@@ -36,6 +36,10 @@ class Placer {
 
   /// Moves the joints within their limits until the link has its place, attitude and heading.
   bool Place(const Transform& wanted, Eigen::VectorXd& q) const {
+    for (const int k : joints_) {
+      const int c = tree_.joints[Size(k)].coordinate;
+      q[c] = std::clamp(q[c], lower_[c], upper_[c]);
+    }
     constexpr int kIterations = 200;
     constexpr double kReached = 1e-6, kDamping = 1e-6, kLargestStep = 0.2;
     for (int i = 0; i < kIterations; ++i) {
@@ -122,14 +126,45 @@ std::vector<int> OwnJoints(const RobotTree& tree, const Limbs& limbs, const Limb
   return own.size() < kOfAPose ? leg.joints : own;
 }
 
+/// Largest angle of the joints, rad.
+double Bend(const RobotTree& tree, const std::vector<int>& joints, const Eigen::VectorXd& q) {
+  double bend = 0.0;
+  for (const int k : joints) bend = std::max(bend, std::abs(q[tree.joints[Size(k)].coordinate]));
+  return bend;
+}
+
+/// `q` with a leg bent so that its foot has its place: at one of its joints, either way.
+std::optional<Eigen::VectorXd> PlaceBent(const RobotTree& tree, const std::vector<int>& joints,
+                                         const Placer& placer, const Transform& wanted,
+                                         bool on_ball, const Eigen::VectorXd& q) {
+  constexpr double kKnee = 0.8;  // rad: as two joints ahead and behind then move by half of it
+  constexpr double kFurther = 0.01;
+  std::optional<Eigen::VectorXd> placed;
+  for (std::size_t knee = 1; knee + 1 < joints.size() && !placed; ++knee) {
+    for (const double bend : {kKnee, -kKnee}) {
+      Eigen::VectorXd start = q;
+      const auto set = [&](std::size_t i, double value) {
+        start[tree.joints[Size(joints[i])].coordinate] = value;
+      };
+      set(knee - 1, -0.5 * bend);
+      set(knee, bend);
+      set(knee + 1, -0.5 * bend);
+      if (!placer.Place(wanted, start)) continue;
+      // On a ball the leg can bend either way; bent further, it reaches further.
+      if (placed && Bend(tree, joints, start) < Bend(tree, joints, *placed) + kFurther) continue;
+      placed = start;
+      if (!on_ball) break;
+    }
+  }
+  return placed;
+}
+
 /// Lowers the root link with the feet where they are in the zero posture, by as much as the legs
 /// allow up to a share of their length. Returns whether they stand.
 bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<DraftedSole>& soles,
               double most_drop, Eigen::VectorXd& q) {
-  constexpr double kStep = 0.01, kFurther = 0.01;
-  constexpr double kKnee = 0.8;  // rad: as two joints ahead and behind then move by half of it
-  const auto range = RangesOf(tree, 0.03);
-  const Eigen::VectorXd &lower = range.first, &upper = range.second;
+  constexpr double kStep = 0.01;
+  const auto [lower, upper] = RangesOf(tree, 0.03);
   const auto zero = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   for (double drop = most_drop; drop > 0.5 * kStep; drop -= kStep) {
     Eigen::VectorXd bent = q;
@@ -140,33 +175,8 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
       Transform wanted = zero[Size(link)];
       wanted.translation().z() *= 1.0 - drop;
       const Placer placer(tree, link, !sole.ball_radius, joints, lower, upper);
-      std::optional<Eigen::VectorXd> placed;
-      for (std::size_t knee = 1; knee + 1 < joints.size() && !placed; ++knee) {
-        // A ball turns where it stands, and the knee may bend either way: further is better.
-        double furthest = -kFurther;
-        for (const double bend : {kKnee, -kKnee}) {
-          if (placed && !sole.ball_radius) break;
-          Eigen::VectorXd start = bent;
-          const auto coordinate = [&](std::size_t i) {
-            return tree.joints[Size(joints[i])].coordinate;
-          };
-          const auto set = [&](std::size_t i, double value) {
-            const int c = coordinate(i);
-            start[c] = std::clamp(value, lower[c], upper[c]);
-          };
-          set(knee - 1, -0.5 * bend);
-          set(knee, bend);
-          set(knee + 1, -0.5 * bend);
-          if (!placer.Place(wanted, start)) continue;
-          double found = 0.0;
-          for (std::size_t i = 0; i < joints.size(); ++i) {
-            found = std::max(found, std::abs(start[coordinate(i)]));
-          }
-          if (found < furthest + kFurther) continue;
-          furthest = found;
-          placed = start;
-        }
-      }
+      const auto placed =
+          PlaceBent(tree, joints, placer, wanted, sole.ball_radius.has_value(), bent);
       all = all && placed;
       if (placed) bent = *placed;
     }
@@ -251,7 +261,8 @@ std::string OutsideLimits(const std::string& state, const Joint& joint, double v
 RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
                        const std::vector<DraftedSole>& soles, const Semantics& semantics,
                        double drop) {
-  const auto [lower, upper] = RangesOf(tree, 0.021);
+  constexpr double kMargin = 0.021;
+  const auto [lower, upper] = RangesOf(tree, kMargin);
   RestPosture rest;
   rest.q = Eigen::VectorXd::Zero(tree.coordinate_count()).cwiseMax(lower).cwiseMin(upper);
   rest.source = "the zero posture, within the limits";
@@ -263,8 +274,8 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
       if (!(value->second >= joint.limits.lower && value->second <= joint.limits.upper)) {
         rest.warnings.push_back(OutsideLimits(state->first, joint, value->second));
       }
-      q[joint.coordinate] =
-          std::clamp(value->second, lower[joint.coordinate], upper[joint.coordinate]);
+      const auto [least, most] = PostureRange(joint, kMargin, value->second);
+      q[joint.coordinate] = std::clamp(value->second, least, most);
     }
     rest.q = q;
     rest.source = "the state '" + state->first + "' of the SRDF";
@@ -272,9 +283,7 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
   rest.stands = Flat(tree, soles, rest.q, rest.root_height);
   double bend = 0.0;
   for (const DraftedSole& sole : soles) {
-    for (const int k : limbs.limbs[Size(sole.limb)].joints) {
-      bend = std::max(bend, std::abs(rest.q[tree.joints[Size(k)].coordinate]));
-    }
+    bend = std::max(bend, Bend(tree, limbs.limbs[Size(sole.limb)].joints, rest.q));
   }
   if (LeanIntoTorques(tree, limbs, rest.q)) {
     rest.source += ", leaning where motors could not hold the weight otherwise";

@@ -2,6 +2,7 @@
 #include "elastocal/drafting/standing_draft.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -108,9 +109,8 @@ Refused StandRefused(const ProjectDraft& draft, double torque_share) {
 void RestOnFeet(ProjectDraft& draft, const Semantics& semantics) {
   // How far the root link is lowered where the usual posture does not do: a leg that is nearly
   // straight cannot follow the weight; an ankle that bends little, or a weak motor, leaves a leg
-  // nearly straight. A share of the efforts is left for the postures that will be designed.
+  // nearly straight. These need as little effort as the postures that will be designed.
   const std::vector<double> less = {0.04, 0.02}, any = {0.10, 0.15, 0.20, 0.25, 0.04, 0.02};
-  constexpr double kEffortAtRest = 0.85;
   const auto choose = [&](double drop) {
     draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics, drop);
   };
@@ -119,7 +119,7 @@ void RestOnFeet(ProjectDraft& draft, const Semantics& semantics) {
   if (!refused.why.empty()) {
     for (const double drop : refused.weak ? less : any) {
       choose(drop);
-      if (!StandRefused(draft, kEffortAtRest).why.empty()) continue;
+      if (!StandRefused(draft, kDraftedEffort).why.empty()) continue;
       refused = {};
       break;
     }
@@ -171,7 +171,7 @@ std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft) {
     if (const auto over = OverFewest(*robot, foot)) postures.push_back(over->q);
     if (robot->soles.size() < 2) continue;
     const SampledMotion lift = LiftOnce(*robot, foot).motion;
-    const auto every = static_cast<Eigen::Index>(0.2 * lift.rate_hz);
+    const auto every = std::max<Eigen::Index>(1, std::lround(0.2 * lift.rate_hz));
     for (Eigen::Index i = 0; i < lift.q.rows(); i += every) {
       postures.emplace_back(lift.q.row(i).transpose());
     }

@@ -43,6 +43,7 @@ TEST(StandingDraft, AQuadrupedStandsOnBalls) {
 TEST(StandingDraft, LegsBendAsFarAsStandingNeeds) {
   std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
   for (const char* limits : {"lower=\"-1.2\" upper=\"2.6\"", "lower=\"-2.6\" upper=\"0.1\""}) {
+    ASSERT_NE(urdf.find(limits), std::string::npos);
     urdf = std::regex_replace(urdf, std::regex(limits), "lower=\"-9.4\" upper=\"9.4\"");
   }
   for (const char* side : {"left", "right"}) {

@@ -54,11 +54,15 @@ std::vector<double> BodyDistances(const RobotTree& tree, const std::vector<Marke
   return distances;
 }
 
-/// The same of a body that may turn about a point: the distance of the point of the body that stays
-/// nearest to one place, in each frame looked at in which three of its markers or more are seen.
+/// The same of a body that may turn about a ball near the support link's origin: the distance of
+/// the ball from where it mostly is, in each frame looked at in which the markers tell the body's
+/// pose.
 std::vector<double> PivotDistances(const RobotTree& tree, const std::vector<Marker>& markers,
-                                   int body, const MarkerTrajectories& trajectories) {
-  constexpr double kNear = 1e-3;  // weight of the point's distance from the markers, per frame
+                                   int support, const MarkerTrajectories& trajectories) {
+  constexpr double kNear = 1e-3;     // weight of the distance from the origin, per frame
+  constexpr double kFurthest = 0.4;  // of the shank: its other end, the knee, is not the ball
+  const int body = tree.links[support].body;
+  const Eigen::Vector3d origin = tree.links[support].T_body_link.translation();
   const int stride = 1 + trajectories.frame_count() / kMostLooked;
   std::vector<Transform> poses;
   for (int i = 0; i < trajectories.frame_count(); i += stride) {
@@ -73,23 +77,31 @@ std::vector<double> PivotDistances(const RobotTree& tree, const std::vector<Mark
       on_body.rightCols<1>() = link.T_body_link * markers[m].p_link_marker;
       seen.rightCols<1>() = position;
     }
-    if (seen.cols() >= 3) poses.push_back(FitRigid(on_body, seen));
+    if (TellPose(on_body)) poses.push_back(FitRigid(on_body, seen));
   }
-  // The point c of the body and its place p, by least squares of R c + t - p.
+  // The ball c on the body and its place p, by least squares of R c + t - p.
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-  normal.topLeftCorner<3, 3>().diagonal().setConstant(kNear * static_cast<double>(poses.size()));
+  const double near = kNear * static_cast<double>(poses.size());
+  normal.topLeftCorner<3, 3>().diagonal().setConstant(near);
+  right.head<3>() = near * origin;
   for (const Transform& pose : poses) {
     Eigen::Matrix<double, 3, 6> rows;
     rows << pose.linear(), -Eigen::Matrix3d::Identity();
     normal += rows.transpose() * rows;
     right -= rows.transpose() * pose.translation();
   }
-  const Eigen::Matrix<double, 6, 1> found = normal.ldlt().solve(right);
-  std::vector<double> distances;
+  Eigen::Vector3d ball = normal.ldlt().solve(right).head<3>();
+  if (!((ball - origin).norm() < kFurthest * origin.norm())) ball = origin;
+  std::vector<double> along[3];
   for (const Transform& pose : poses) {
-    distances.push_back((pose * Eigen::Vector3d(found.head<3>()) - found.tail<3>()).norm());
+    const Eigen::Vector3d place = pose * ball;
+    for (int axis = 0; axis < 3; ++axis) along[axis].push_back(place[axis]);
   }
+  std::vector<double> distances;
+  if (poses.empty()) return distances;
+  const Eigen::Vector3d usual(MedianAlong(along[0]), MedianAlong(along[1]), MedianAlong(along[2]));
+  for (const Transform& pose : poses) distances.push_back((pose * ball - usual).norm());
   return distances;
 }
 
@@ -107,10 +119,10 @@ std::optional<MovedSupport> FindMovedSupport(const RobotTree& tree,
   const std::vector<int> support = trial.support.empty() ? std::vector<int>{0} : trial.support;
   // Three feet and more are balls, about which the shanks turn.
   constexpr std::size_t kBalls = 3;
-  const auto distances_of = support.size() < kBalls ? BodyDistances : PivotDistances;
   for (int link : support) {
     const std::vector<double> distances =
-        distances_of(tree, markers, tree.links[link].body, trajectories);
+        support.size() < kBalls ? BodyDistances(tree, markers, tree.links[link].body, trajectories)
+                                : PivotDistances(tree, markers, link, trajectories);
     const auto moved = std::count_if(distances.begin(), distances.end(),
                                      [](double distance) { return distance > kDisplaced; });
     if (distances.size() < kLeastLooked ||

@@ -19,9 +19,9 @@ struct MovedSupport {
 };
 
 /// A support of the trial that is more than 20 mm from where it mostly is in more than a quarter of
-/// the frames in which it is seen: further than a foot slips. Of three feet and more, which are
-/// balls, that point of the body counts about which it turns. `markers`: of the robot, one for each
-/// of the trajectories.
+/// the frames in which it is seen: further than a foot slips. Three feet and more are taken
+/// for balls: of each, that point near the link's origin counts about which its body turns.
+/// `markers`: of the robot, one for each of the trajectories.
 std::optional<MovedSupport> FindMovedSupport(const RobotTree& tree,
                                              const std::vector<Marker>& markers, const Trial& trial,
                                              const MarkerTrajectories& trajectories);

@@ -52,8 +52,9 @@ TEST_F(SupportCheck, WhatStandsIsNotAccused) {
 
 // A shank that turns about the ball at its end: its markers move by 0.1 m and more.
 TEST_F(SupportCheck, AShankMayTurnAboutItsBall) {
-  const Eigen::Vector3d ball(0.02, -0.01, -0.3), place(1.0, 2.0, 0.02);
-  const auto turn_about_ball = [&](double slip) {
+  const Eigen::Vector3d origin = robot_.biped.tree.links[robot_.left].T_body_link.translation();
+  const Eigen::Vector3d place(1.0, 2.0, 0.02);
+  const auto turn_about = [&](const Eigen::Vector3d& ball, double slip) {
     for (int m = 0; m < robot_.model.marker_count(); ++m) {
       const Marker& marker = robot_.model.markers[m];
       if (!marker.name.starts_with("LFOOT")) continue;
@@ -67,14 +68,18 @@ TEST_F(SupportCheck, AShankMayTurnAboutItsBall) {
       }
     }
   };
+  // Three feet are balls; this robot has two.
   const Trial on_balls = {
       .name = "balls", .chains = {}, .support = {robot_.left, robot_.left, robot_.left}};
-  turn_about_ball(0.0);
+  turn_about(0.9 * origin, 0.0);
   EXPECT_FALSE(Find(on_balls));
   EXPECT_TRUE(Find({.name = "flat", .chains = {}, .support = {robot_.left}}));
-  turn_about_ball(0.3);
+  turn_about(0.9 * origin, 0.3);
   ASSERT_TRUE(Find(on_balls));
   EXPECT_GT(Find(on_balls)->distance, 0.05);
+  // A shank that swings about its knee does not stand.
+  turn_about(origin + Eigen::Vector3d(0.0, 0.0, 0.3), 0.0);
+  EXPECT_TRUE(Find(on_balls));
 }
 
 }  // namespace

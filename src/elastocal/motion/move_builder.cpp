@@ -277,7 +277,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, cons
 Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, double share) const {
   const SineOptions& sine = options_.sine;
   const Joint& joint = robot_.tree.joints[Size(robot_.tree.coordinate_joint[Size(coordinate)])];
-  const auto [lower, upper] = PostureRange(joint);
+  const auto [lower, upper] = PostureRange(joint, 0.0, robot_.rest[coordinate]);
   const double omega = 2.0 * M_PI * sine.frequency_hz;
   const double amplitude =
       std::min(0.5 * share * (upper - lower),

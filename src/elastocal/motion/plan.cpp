@@ -85,36 +85,44 @@ class TourPlanner {
   /// where the hips do not bend so far, leaning. Does nothing if the set stands on all feet.
   bool StepOntoFeet(Refusal& why) {
     if (!LiftsAFoot()) return true;
+    bool joint_at_end = false;
     for (const double lean : kRootTilts) {
-      Refusal refusal;
-      if (StepLeaning(lean, refusal)) return true;
-      if (lean == 0.0) why = refusal;
-      if (why.constraint != Constraint::kPosition) return false;
+      Refusal flat, tilted;
+      if (StepLeaning(lean, flat, tilted)) return true;
+      if (lean == 0.0) {
+        joint_at_end = flat.constraint == Constraint::kPosition;
+        why = joint_at_end && tilted.constraint != Constraint::kPosition ? tilted : flat;
+      }
+      if (!joint_at_end) return false;
     }
     return false;
   }
 
-  bool StepLeaning(double lean, Refusal& why) {
+  /// `why`: with the foot flat. `tilted`: with the foot tilted so that no joint is at its end,
+  /// where something else is wrong then; otherwise `why`.
+  bool StepLeaning(double lean, Refusal& why, Refusal& tilted) {
     PlacedPosture over = here_;
     over.T_world_root.linear() = RotX(lean).linear() * over.T_world_root.linear();
     if (options_.balanced &&
         !BalanceAtRest(robot_, robot_.AllFeet(), build_.HandOver(set_.standing), over)) {
-      why = OutOfReach();
+      why = tilted = OutOfReach();
       return false;
     }
     const auto shifted = build_.Shift(here_, over, set_.standing, why);
+    tilted = why;
     if (!shifted) return false;
     shifted_ = *shifted;
     // Flat or, where the ankle does not bend so far, with the toes, the heel or a side down.
     constexpr std::array<double, 8> kTilts = {0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.45, -0.45};
     if (LiftFoot(over, Eigen::Vector2d::Zero(), why)) return true;
+    tilted = why;
     for (const Eigen::Vector2d axis : {Eigen::Vector2d::UnitY(), Eigen::Vector2d::UnitX()}) {
       for (const double tilt : kTilts) {
         Refusal refusal;
         if (LiftFoot(over, tilt * axis, refusal)) return true;
-        // Where a tilt mends what was wrong, what stands in its way says more.
-        if (why.constraint == Constraint::kPosition && refusal.constraint != why.constraint) {
-          why = refusal;
+        if (refusal.constraint != Constraint::kPosition &&
+            tilted.constraint == Constraint::kPosition) {
+          tilted = refusal;
         }
       }
     }

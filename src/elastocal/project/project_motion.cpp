@@ -106,8 +106,10 @@ void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& moti
   }
 }
 
-/// Ranges of joints that are narrower than their limits.
-void ReadRanges(const YamlValue& section, const RobotTree& tree, MotionSetup& motion) {
+/// Ranges of joints that are narrower than their limits; of a joint that counts turns, the turn
+/// too.
+void ReadRanges(const YamlValue& section, const RobotTree& tree, double margin,
+                MotionSetup& motion) {
   for (const auto& [name, value] : section.Entries()) {
     const int joint = DriverNamedBy(name, value, tree);
     const int i = tree.joints[joint].coordinate;
@@ -115,6 +117,8 @@ void ReadRanges(const YamlValue& section, const RobotTree& tree, MotionSetup& mo
     const std::vector<YamlValue> ends = value.Items();
     value.Expect(ends.size() == 2, "two numbers, the lower and the upper end");
     const double lower = unit * ends[0].Bounded(), upper = unit * ends[1].Bounded();
+    std::tie(motion.lower[i], motion.upper[i]) =
+        PostureRange(tree.joints[joint], margin, 0.5 * (lower + upper));
     value.Expect(lower < upper && lower < motion.upper[i] && upper > motion.lower[i],
                  "a range of which a part is within the joint's limits, " +
                      FormatNumber(motion.lower[i] / unit) + " to " +
@@ -191,7 +195,8 @@ void ReadDesign(const YamlValue& section, Project& project) {
   motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
   const auto rest = section.Find("rest_deg");
   if (rest) CentreTurns(*rest, project.tree, limit_margin, motion);
-  if (const auto ranges = section.Find("range_deg")) ReadRanges(*ranges, project.tree, motion);
+  if (const auto ranges = section.Find("range_deg"))
+    ReadRanges(*ranges, project.tree, limit_margin, motion);
   section.ReadBounded("effort_share", motion.effort_share);
   if (rest) ReadRest(*rest, project.tree, motion);
   if (const auto cameras = section.Find("cameras_mm")) {

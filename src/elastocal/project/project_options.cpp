@@ -232,7 +232,7 @@ ErrorModel MakeProjectModel(const Project& project, const std::vector<Trial>& tr
   if (choice.bending) {
     bending = MatchingJoints(project.tree, *choice.bending);
   } else {
-    on_floor.insert(elasticity.torsion.begin(), elasticity.torsion.end());
+    if (trials_given) on_floor.insert(elasticity.torsion.begin(), elasticity.torsion.end());
     bending.assign(on_floor.begin(), on_floor.end());
   }
   for (int joint : bending) {

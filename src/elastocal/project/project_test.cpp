@@ -398,6 +398,9 @@ TEST(Project, AJointThatCountsTurnsIsMovedAboutItsPositionOfRest) {
   EXPECT_DOUBLE_EQ(turned.motion.rest[0], 200.0 * M_PI / 180.0);
   ExpectInputError([&] { parse("rest_deg: {j: 200}, range_deg: {j: [10, 20]}"); },
                    {"p.yaml:3: ", "10 to 20"});
+  const Project narrow = parse("range_deg: {j: [190, 270]}");  // chooses the turn too
+  EXPECT_DOUBLE_EQ(narrow.motion.lower[0], 190.0 * M_PI / 180.0);
+  EXPECT_DOUBLE_EQ(narrow.motion.upper[0], 270.0 * M_PI / 180.0);
 }
 
 TEST(Project, JointsOfARecordingBendWhereTheyTwist) {
@@ -420,6 +423,7 @@ TEST(Project, JointsOfARecordingBendWhereTheyTwist) {
             std::set<std::string>{"elbow_joint"});
   EXPECT_TRUE(bending("elasticity: {bending: []}", held).empty());
   EXPECT_TRUE(bending("", {}).empty());  // of a table the data decide
+  EXPECT_TRUE(bending("elasticity: {torsion: [elbow_joint]}", {}).empty());
 }
 
 TEST(Project, NamesValuesOutOfRange) {

@@ -125,7 +125,7 @@ std::pair<double, double> PostureRange(const Joint& joint, double margin, double
   double lower = std::isfinite(joint.limits.lower) ? joint.limits.lower : -unlimited;
   double upper = std::isfinite(joint.limits.upper) ? joint.limits.upper : unlimited;
   if (turns && upper - lower > 2.0 * M_PI) {
-    const double middle = std::clamp(around, lower + M_PI, upper - M_PI);
+    const double middle = std::max(lower + M_PI, std::min(around, upper - M_PI));
     lower = middle - M_PI;
     upper = middle + M_PI;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/simulation/balanced_motion.hpp"
 
-#include <cmath>
+#include <utility>
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/simulation/motion_recorder.hpp"
@@ -11,6 +11,7 @@
 namespace elastocal {
 namespace {
 
+/// The motion, one look later: the robot is looked at from the end of the first sample on.
 JointMotion Sampled(const Motion& motion, const std::vector<int>& support, Eigen::Index samples,
                     double rate_hz) {
   JointMotion sampled;
@@ -19,7 +20,7 @@ JointMotion Sampled(const Motion& motion, const std::vector<int>& support, Eigen
   sampled.support.assign(Size(samples), support);
   for (Eigen::Index i = 0; i < samples; ++i) {
     sampled.time_s[i] = static_cast<double>(i) / rate_hz;
-    sampled.q.row(i) = PostureAt(motion, sampled.time_s[i]).transpose();
+    sampled.q.row(i) = PostureAt(motion, sampled.time_s[i] - 1.0 / rate_hz).transpose();
   }
   return sampled;
 }
@@ -32,7 +33,7 @@ TrueMotion PlayBalanced(const TrueRobot& robot, const RobotTree& described,
   std::vector<Sole> soles;
   for (const int foot : support) soles.push_back(SoleOf(foot, options));
   MotionRecorder recorder(robot, motion, T_camera_world);
-  // The robot is looked at from the end of the first sample on, and rounding may cost a look.
+  // Rounding may cost a look.
   const JointMotion sampled =
       Sampled(motion, support, recorder.frames() + 2, recorder.motion.rate_hz);
   Stabiliser stabiliser(described, soles);
@@ -40,8 +41,9 @@ TrueMotion PlayBalanced(const TrueRobot& robot, const RobotTree& described,
   through.stabiliser = &stabiliser;
   Eigen::Index frame = 0;
   through.watch = [&](Eigen::Index, const Eigen::VectorXd&, const VirtualRobot& body) {
+    if (frame >= recorder.frames()) return;
     if (frame == 0) recorder.Begin(body, support.size());
-    if (frame < recorder.frames()) recorder.Record(frame++, body);
+    recorder.Record(frame++, body);
   };
   const StandingRun run = StandThrough(robot, soles, sampled, options, through);
   if (!run.stood) throw Fallen(run.time_s);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/simulation/true_motion.hpp"
 
-#include <cmath>
+#include <utility>
 
 #include "elastocal/simulation/motion_recorder.hpp"
 #include "elastocal/simulation/standing_feet.hpp"
