@@ -44,7 +44,9 @@ class TrialSampler {
     const SpeedsFrom seen_speeds = SpeedsForClock(speeds);
     FitClock(seen_speeds);
     if (summary().clock.state != ClockState::kReliable) {
-      return Refuse(Describe(summary().clock) + CauseOfBadClock(seen_speeds));
+      const std::string cause = CauseOfBadClock(seen_speeds);
+      if (!cause.empty() || !RestsBearIt()) return Refuse(Describe(summary().clock) + cause);
+      summary().clock.state = ClockState::kReliable;
     }
     LeaveOutUnlogged(speeds);
     Average(ChooseFrames(speeds));
@@ -165,6 +167,14 @@ class TrialSampler {
                                               coordinates_, trajectories_.rate_hz);
     summary().clock = EstimateTrialClock(seen.speeds, trajectories_.rate_hz, logged,
                                          options_.expected_lag_s, ClockSettings());
+  }
+
+  /// Whether the lag is hardly worse known than asked, and the robot moves from rest to rest.
+  /// Errors of the description make the speeds of a robot with few moves fit badly.
+  bool RestsBearIt() const {
+    constexpr double kWorse = 5.0 / 3.0;
+    return result_.summary.clock.state == ClockState::kImprecise && !trial_.of_motion() &&
+           result_.summary.clock.sd_s <= kWorse * options_.largest_rest_lag_sd_s;
   }
 
   std::string CauseOfBadClock(const SpeedsFrom& seen) const {

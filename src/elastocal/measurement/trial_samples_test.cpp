@@ -171,6 +171,17 @@ TEST(SampleTrial, TellsTheClockOfARobotThatDrivesBetweenItsRests) {
   EXPECT_EQ(Sample(without, {}, trial).summary.refused, "");
 }
 
+TEST(SampleTrial, RestsBearALagThatIsLittleWorseKnownThanAsked) {
+  const ScriptedTrial played = PlayStanding();
+  MeasurementOptions options;
+  const double sd = Sample(played).summary.clock.sd_s;
+  ASSERT_GT(sd, 1e-5);
+  options.largest_rest_lag_sd_s = sd / 1.5;
+  EXPECT_EQ(Sample(played, options).summary.refused, "");
+  options.largest_rest_lag_sd_s = sd / 1.8;
+  EXPECT_NE(Sample(played, options).summary.refused.find("too little motion"), std::string::npos);
+}
+
 // The speeds of a leg one of whose joints has the wrong sign are others; where they do not fit any
 // more, the log that would fit tells why.
 TEST(SampleTrial, NamesTheSignAndTheExchangeThatSpoilTheClock) {
