@@ -23,7 +23,8 @@ inline constexpr double kUsualDrop = 0.06;  // of the legs' length
 /// Chooses a posture of rest: a state of the SRDF (half sitting, standing, home, ...) if the robot
 /// stands flat in it, otherwise the zero posture moved into the limits, with the knees of the legs
 /// bent: the root link is lowered by as much as the legs allow, up to the share `drop` of their
-/// length. A share above the usual one bends the legs of a state of the SRDF too. `tree` has the links of all soles.
+/// length. A share above the usual one bends the legs of a state of the SRDF too. `tree` has the
+/// links of all soles.
 RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
                        const std::vector<DraftedSole>& soles, const Semantics& semantics,
                        double drop = kUsualDrop);

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a project says of how its robot moves and bends.
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/project/project.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+/// A project on the arm of the tests with one marker.
+Project ParseArm(const std::string& more) {
+  return ParseProject(
+      "robot: {urdf: arm6.urdf}\nmarkers: {single: [{name: M, link: tool, position_mm: [1, 2, "
+      "3]}]}\n" +
+          more,
+      SourceFile("tests/robots/p.yaml"));
+}
+
+TEST(ProjectModel, AJointThatCountsTurnsIsMovedAboutItsPositionOfRest) {
+  const ScratchFolder folder;
+  const std::string joint =
+      "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='revolute'>"
+      "<parent link='a'/><child link='b'/><limit lower='-6.28318' upper='6.28318' effort='1' "
+      "velocity='1'/></joint></robot>";
+  folder.Write("r.urdf", joint);
+  const auto parse = [&](const std::string& design) {
+    return ReadProject(folder.Write(
+        "p.yaml",
+        "robot: {urdf: r.urdf}\nmarkers: {single: [{name: M, link: b, position_mm: [1, 2, "
+        "3]}]}\ndesign: {limit_margin: 0, " +
+            design + "}\n"));
+  };
+  const Project usual = parse("rest_deg: {j: 0}");
+  EXPECT_DOUBLE_EQ(usual.motion.lower[0], -M_PI);
+  const Project turned = parse("rest_deg: {j: 200}");
+  EXPECT_NEAR(turned.motion.lower[0], 0.0, 1e-4);  // as far as the limit allows
+  EXPECT_NEAR(turned.motion.upper[0], 2.0 * M_PI, 1e-4);
+  EXPECT_DOUBLE_EQ(turned.motion.rest[0], 200.0 * M_PI / 180.0);
+  ExpectInputError([&] { parse("rest_deg: {j: 200}, range_deg: {j: [10, 20]}"); },
+                   {"p.yaml:3: ", "10 to 20"});
+  const Project narrow = parse("range_deg: {j: [190, 270]}");  // chooses the turn too
+  EXPECT_DOUBLE_EQ(narrow.motion.lower[0], 190.0 * M_PI / 180.0);
+  EXPECT_DOUBLE_EQ(narrow.motion.upper[0], 270.0 * M_PI / 180.0);
+}
+
+TEST(ProjectModel, JointsOfARecordingBendWhereTheyTwist) {
+  const auto bending = [](const std::string& more, const std::vector<Trial>& trials) {
+    const ErrorModel model = MakeProjectModel(ParseArm(more), trials);
+    std::set<std::string> joints;
+    for (const Parameter& parameter : model.parameters) {
+      if (parameter.kind == ParameterKind::kBending) {
+        joints.insert(model.tree.joints[static_cast<std::size_t>(parameter.joint)].name);
+      }
+    }
+    return joints;
+  };
+  const std::vector<Trial> held(1);
+  const std::set<std::string> all = bending("", held);
+  EXPECT_TRUE(all.contains("elbow_joint"));
+  EXPECT_FALSE(all.contains("rail_joint"));  // it slides
+  EXPECT_GE(all.size(), 5u);
+  EXPECT_EQ(bending("elasticity: {torsion: [elbow_joint]}", held),
+            std::set<std::string>{"elbow_joint"});
+  EXPECT_TRUE(bending("elasticity: {bending: []}", held).empty());
+  EXPECT_TRUE(bending("", {}).empty());  // of a table the data decide
+  EXPECT_TRUE(bending("elasticity: {torsion: [elbow_joint]}", {}).empty());
+}
+
+}  // namespace
+}  // namespace elastocal
