@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -200,7 +201,7 @@ class TreeBuilder {
         if (outline_.joints[next].leader < 0) break;
         followers.push_back(next);
       }
-      for (auto next = followers.rbegin(); next != followers.rend(); ++next) Follow(*next);
+      for (const int follower : std::views::reverse(followers)) Follow(follower);
     }
   }
 
