@@ -166,7 +166,8 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
   constexpr double kStep = 0.01;
   const auto [lower, upper] = RangesOf(tree, 0.03);
   const auto zero = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  for (double drop = most_drop; drop > 0.5 * kStep; drop -= kStep) {
+  for (auto steps = std::lround(most_drop / kStep); steps > 0; --steps) {
+    const double drop = kStep * static_cast<double>(steps);
     Eigen::VectorXd bent = q;
     bool all = true;
     for (const DraftedSole& sole : soles) {

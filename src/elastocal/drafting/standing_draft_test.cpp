@@ -42,9 +42,9 @@ TEST(StandingDraft, AQuadrupedStandsOnBalls) {
 // As of ANYmal: joints that count turns, and feet that are not under the hips when the legs hang.
 TEST(StandingDraft, LegsBendAsFarAsStandingNeeds) {
   std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
-  for (const char* limits : {"lower=\"-1.2\" upper=\"2.6\"", "lower=\"-2.6\" upper=\"0.1\""}) {
+  for (const char* limits : {R"(lower="-1.2" upper="2.6")", R"(lower="-2.6" upper="0.1")"}) {
     ASSERT_NE(urdf.find(limits), std::string::npos);
-    urdf = std::regex_replace(urdf, std::regex(limits), "lower=\"-9.4\" upper=\"9.4\"");
+    urdf = std::regex_replace(urdf, std::regex(limits), R"(lower="-9.4" upper="9.4")");
   }
   for (const char* side : {"left", "right"}) {
     for (const auto& [end, x] : {std::pair("front", "0.07"), std::pair("hind", "-0.07")}) {
