@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -201,7 +200,8 @@ class TreeBuilder {
         if (outline_.joints[next].leader < 0) break;
         followers.push_back(next);
       }
-      for (const int follower : std::views::reverse(followers)) Follow(follower);
+      std::reverse(followers.begin(), followers.end());
+      for (const int follower : followers) Follow(follower);
     }
   }
 
