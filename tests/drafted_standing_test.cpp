@@ -144,6 +144,14 @@ TEST_F(Quadruped, IsRecordedWhileItStandsOnThreeFeet) {
   EXPECT_EQ(LargestWaistDeflection(simulation.experiment, 0, played).translation, 0.0);
 }
 
+TEST_F(Quadruped, ARecordingInWhichItFallsIsRefused) {
+  SimulationOptions options;
+  options.motion = plan_.whole.motion;
+  Simulation simulation = PrepareSimulation(project_, options);
+  simulation.experiment.options.physics.gravity_tilt_x = 0.8;
+  ExpectInputError([&] { RunTrial(simulation.experiment, 0); }, {"trial 'motion", "fell after"});
+}
+
 TEST_F(Quadruped, CommandsAreNotCorrected) {
   ExpectInputError([&] { CompensateMotion(project_, {}, plan_.whole.motion); },
                    {"project.yaml", "front_left_foot", "ball"});

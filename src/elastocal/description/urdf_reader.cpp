@@ -74,7 +74,7 @@ Eigen::Vector3d ReadAxis(const UrdfJoint& joint, std::vector<std::string>& warni
 }
 
 /// A joint that can move has a velocity: a limit of 0 is a place that was left empty.
-void ReadNoSpeedLimit(const UrdfJoint& joint, JointLimits& limits,
+void DropZeroSpeedLimit(const UrdfJoint& joint, JointLimits& limits,
                       std::vector<std::string>& warnings) {
   if (limits.velocity != 0.0 || !(limits.lower < limits.upper)) return;
   warnings.push_back("joint " + Quote(joint.name) +
@@ -90,7 +90,7 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
   limits.velocity = limit.Number("velocity");
   limits.effort = limit.Number("effort");
   if (continuous) {
-    ReadNoSpeedLimit(joint, limits, warnings);
+    DropZeroSpeedLimit(joint, limits, warnings);
     return limits;
   }
   limits.lower = limit.NumberOr("lower", 0.0);
@@ -101,7 +101,7 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
                        FormatNumber(limits.upper) + "; they are exchanged");
     std::swap(limits.lower, limits.upper);
   }
-  ReadNoSpeedLimit(joint, limits, warnings);
+  DropZeroSpeedLimit(joint, limits, warnings);
   return limits;
 }
 

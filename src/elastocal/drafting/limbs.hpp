@@ -28,10 +28,9 @@ struct Limbs {
 /// Finds the limbs of a robot from its tree. Bodies that part in several short branches are hands:
 /// what is beyond them are fingers. Bodies that one or two joints without an end carry are wheels.
 /// Legs are limbs with a mirror image whose ends are the lowest of the robot in the zero posture,
-/// well below the root link. Names are those of
-/// the SRDF's groups, or of NameLimb: "left_leg", "right_arm", "head"; they can name files and
-/// differ from each other. The tip is the link that the SRDF names, or the furthest one of the last
-/// body.
+/// well below the root link. Names are those of the SRDF's groups, or of NameLimb: "left_leg",
+/// "right_arm", "head"; they can name files and differ from each other. The tip is the link that
+/// the SRDF names, or the furthest one of the last body.
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics);
 
 }  // namespace elastocal

@@ -2,6 +2,7 @@
 // Drafts of robots that stand on their feet.
 #include "elastocal/drafting/standing_draft.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
@@ -66,6 +67,26 @@ TEST(StandingDraft, LegsBendAsFarAsStandingNeeds) {
   EXPECT_GT(knee("front_left"), 0.8);
   EXPECT_LT(knee("hind_left"), -0.8);
   EXPECT_NEAR(knee("front_left"), -knee("hind_right"), 1e-3);
+}
+
+TEST(StandingDraft, RestsWithEachFootLifted) {
+  const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
+  const std::vector<Eigen::VectorXd> postures = RestingPostures(draft);
+  for (const DraftedSole& sole : draft.soles) {
+    double highest = 0.0;
+    for (const Eigen::VectorXd& q : postures) {
+      const std::vector<Transform> poses = LinkTransforms(draft.tree, q);
+      double others = 0.0;
+      for (const DraftedSole& other : draft.soles) {
+        others = std::max(others, -poses[Size(FindLink(draft.tree, other.link))].translation().z());
+      }
+      const double height = poses[Size(FindLink(draft.tree, sole.link))].translation().z();
+      highest = std::max(highest, height + others);
+    }
+    EXPECT_GT(highest, 0.03) << sole.link;
+  }
+  const ScratchFolder folder;
+  EXPECT_EQ(ReadBack(draft, folder).motion.effort_share, kDraftedEffort);
 }
 
 TEST(StandingDraft, FewerThanFourBallsAreRefused) {

@@ -79,6 +79,7 @@ std::vector<double> PivotDistances(const RobotTree& tree, const std::vector<Mark
     }
     if (TellPose(on_body)) poses.push_back(FitRigid(on_body, seen));
   }
+  if (poses.empty()) return {};
   // The ball c on the body and its place p, by least squares of R c + t - p.
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
@@ -99,7 +100,6 @@ std::vector<double> PivotDistances(const RobotTree& tree, const std::vector<Mark
     for (int axis = 0; axis < 3; ++axis) along[axis].push_back(place[axis]);
   }
   std::vector<double> distances;
-  if (poses.empty()) return distances;
   const Eigen::Vector3d usual(MedianAlong(along[0]), MedianAlong(along[1]), MedianAlong(along[2]));
   for (const Transform& pose : poses) distances.push_back((pose * ball - usual).norm());
   return distances;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Balanced motions of a small biped, from the legs' kinematics to a whole set of postures.
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -241,6 +242,22 @@ TEST_F(BalancedWalker, SwingsJointsToAndFro) {
     const auto column = planned.motion.q.col(c);
     EXPECT_GT(column.maxCoeff() - column.minCoeff(), 0.5);
   }
+}
+
+TEST(SinesOfAMotion, AreFiniteForAJointWithoutLimits) {
+  Walker walker = MakeWalker();
+  const double infinity = std::numeric_limits<double>::infinity();
+  walker.tree.joints[0].limits.lower = -infinity;
+  walker.tree.joints[0].limits.upper = infinity;
+  StandingRobot robot(walker.tree, {}, {});
+  StandUp(robot, NeutralPosture(walker.tree, 0.1), {});
+  PostureTour set{.name = "held", .standing = {}, .postures = {}};
+  set.sines = {0};
+  const PlannedTour planned = PlanTour(robot, set, {});
+  EXPECT_TRUE(planned.left_out.empty());
+  ASSERT_GT(planned.motion.q.rows(), 0);
+  EXPECT_TRUE(planned.motion.q.allFinite());
+  EXPECT_GT(planned.motion.q.col(0).maxCoeff(), 0.3);
 }
 
 TEST_F(BalancedWalker, ThreadsDoNotMatter) {
