@@ -75,7 +75,7 @@ Eigen::Vector3d ReadAxis(const UrdfJoint& joint, std::vector<std::string>& warni
 
 /// A joint that can move has a velocity: a limit of 0 is a place that was left empty.
 void DropZeroSpeedLimit(const UrdfJoint& joint, JointLimits& limits,
-                      std::vector<std::string>& warnings) {
+                        std::vector<std::string>& warnings) {
   if (limits.velocity != 0.0 || !(limits.lower < limits.upper)) return;
   warnings.push_back("joint " + Quote(joint.name) +
                      ": its velocity limit is 0; it is taken to have none");
