@@ -11,6 +11,7 @@
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/model_comparison.hpp"
+#include "tests/standing_robot.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -21,6 +22,7 @@ constexpr double kRate = 10.0;         // Hz
 constexpr double kCorrelation = 0.95;  // of the model error, from one moment to the next
 constexpr double kShared = 0.5e-3;     // m, of the model error
 constexpr double kNoise = 0.1e-3;      // m, of single markers
+constexpr int kCycles = 10;
 
 /// An arm that moves slowly while it is recorded ten times a second. Each body is displaced by a
 /// model error of its own, a first-order process in time.
@@ -65,6 +67,32 @@ struct SlowArm {
     return recording;
   }
 
+  /// The same arm goes through one cycle of 30 moments ten times. The error of a body is drawn for
+  /// each moment of the cycle, and is the same each time.
+  Recording RecordCycles(std::uint64_t seed) const {
+    constexpr int kCycle = kMoments / kCycles;
+    Random random(seed);
+    Recording recording = MakeSyntheticRecording(model, truth, {.postures = kMoments});
+    recording.time_s = Eigen::VectorXd::LinSpaced(kMoments, 0.0, (kMoments - 1) / kRate);
+    const Geometry geometry = ApplyErrors(model, truth);
+    std::vector<Eigen::Matrix3Xd> shared(kCycle, {3, model.tree.body_count()});
+    for (Eigen::Matrix3Xd& of_moment : shared) {
+      for (auto&& of_body : of_moment.colwise()) of_body = random.NormalVector(3, kShared);
+    }
+    for (int i = 0; i < kMoments; ++i) {
+      recording.q.row(i) = recording.q.row(i % kCycle);
+      const Eigen::Matrix3Xd positions =
+          MarkerPositions(model, geometry, recording.q.row(i).transpose());
+      for (int m = 0; m < model.marker_count(); ++m) {
+        const int body = model.tree.links[model.markers[m].link].body;
+        recording.markers.block<1, 3>(i, 3 * m) =
+            (positions.col(m) + shared[i % kCycle].col(body) + random.NormalVector(3, kNoise))
+                .transpose();
+      }
+    }
+    return recording;
+  }
+
   CalibrationResult Estimate(const Recording& recording) const {
     return Calibrate(model, recording, base, ModelKind::kGeometric, {});
   }
@@ -93,9 +121,9 @@ TEST(Motion, IntervalsHoldTheTruthWhereNeighboursShareTheirError) {
     Recording recording = arm.Record(seed);
     const CalibrationResult result = arm.Estimate(recording);
     ASSERT_EQ(result.noise.motion.size(), 1u);
-    EXPECT_NEAR(result.noise.motion[0].lag_one, kCorrelation, 0.08);
-    EXPECT_GT(result.noise.motion[0].samples_each, 8.0);
-    EXPECT_LT(result.noise.motion[0].samples_each, 80.0);
+    EXPECT_NEAR(result.noise.motion[0].bodies.lag_one, kCorrelation, 0.08);
+    EXPECT_GT(result.noise.motion[0].bodies.samples_each, 8.0);
+    EXPECT_LT(result.noise.motion[0].bodies.samples_each, 80.0);
     const auto here = arm.Inside(result);
     inside += here.first;
     all += here.second;
@@ -107,6 +135,123 @@ TEST(Motion, IntervalsHoldTheTruthWhereNeighboursShareTheirError) {
   std::printf("%d of %d inside; %d as independent postures\n", inside, all, inside_independent);
   EXPECT_GT(inside, 0.85 * all);
   EXPECT_LT(inside_independent, 0.7 * all);
+}
+
+// Errors that are drawn anew for each moment of a cycle are not correlated with their neighbours',
+// but with themselves a cycle later.
+TEST(Motion, AMotionThatRepeatsItselfTellsNoMoreThanOnce) {
+  const SlowArm arm;
+  int inside = 0;
+  int all = 0;
+  int inside_independent = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Recording recording = arm.RecordCycles(seed);
+    const CalibrationResult result = arm.Estimate(recording);
+    EXPECT_NEAR(result.noise.motion[0].bodies.lag_one, 0.0, 0.2);
+    EXPECT_GT(result.noise.motion[0].bodies.samples_each, 0.7 * kCycles);
+    EXPECT_LT(result.noise.motion[0].bodies.samples_each, 1.8 * kCycles);
+    const auto here = arm.Inside(result);
+    inside += here.first;
+    all += here.second;
+    recording.time_s.resize(0);
+    inside_independent += arm.Inside(arm.Estimate(recording)).first;
+  }
+  std::printf("%d of %d inside; %d as independent postures\n", inside, all, inside_independent);
+  EXPECT_GT(inside, 0.85 * all);
+  EXPECT_LT(inside_independent, 0.8 * all);
+}
+
+/// A humanoid on one leg, then the other: 16 rests each, and then slowly from rest to rest, which
+/// is recorded ten times on each way. What the model does not know displaces and turns all but the
+/// standing foot: anew for each rest, a first-order process in time along the ways.
+struct SlowLegs {
+  StandingRobot robot{16};
+  Eigen::VectorXd truth = robot.DrawTruth(3);
+
+  SlowLegs() {
+    for (const std::size_t leg : {3u, 4u}) {
+      PlayedTrial slow = robot.trials[leg];
+      const Eigen::MatrixXd& rests = robot.trials[leg].q;
+      slow.trial.name += "_slow";
+      slow.trial.moments = true;
+      slow.q.resize(10 * (rests.rows() - 1), rests.cols());
+      for (Eigen::Index i = 0; i < slow.q.rows(); ++i) {
+        const double way = static_cast<double>(i % 10) / 10.0;
+        slow.q.row(i) = (1.0 - way) * rests.row(i / 10) + way * rests.row(i / 10 + 1);
+      }
+      robot.trials.push_back(slow);
+    }
+  }
+
+  Recording Record(std::uint64_t seed) const {
+    Recording recording = robot.Record(
+        truth, {.marker_sd = 5e-5, .torque_sensors = robot.project.torque_sensors, .seed = seed});
+    recording.time_s = Eigen::VectorXd::LinSpaced(recording.posture_count(), 0.0,
+                                                  (recording.posture_count() - 1) / kRate);
+    Random random(seed);
+    Vector6d error = random.NormalVector(6, kTied);  // m, rad
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      const Trial& trial = recording.trials[recording.trial[i]];
+      if (trial.support.size() != 1) continue;
+      const double kept = trial.moments ? kCorrelation : 0.0;
+      error = kept * error + random.NormalVector(6, kTied * std::sqrt(1.0 - kept * kept));
+      const int foot = robot.model.tree.links[trial.support.front()].body;
+      const Eigen::Vector3d centre = recording.markers.block<1, 3>(i, 0).transpose();
+      for (int m = 0; m < robot.model.marker_count(); ++m) {
+        if (robot.model.tree.links[robot.model.markers[m].link].body == foot) continue;
+        const Eigen::Vector3d at = recording.markers.block<1, 3>(i, 3 * m).transpose();
+        recording.markers.block<1, 3>(i, 3 * m) +=
+            (error.head<3>() + error.tail<3>().cross(at - centre)).transpose();
+      }
+    }
+    return recording;
+  }
+
+  static constexpr double kTied = 0.3e-3;  // m, rad
+
+  /// Of the legs' offsets: how many of their intervals hold the truth, of how many.
+  std::pair<int, int> Inside(const CalibrationResult& result) const {
+    std::pair<int, int> inside = {0, 0};
+    for (int i = 0; i < robot.model.parameter_count(); ++i) {
+      const Parameter& parameter = robot.model.parameters[i];
+      if (parameter.kind != ParameterKind::kTheta || !parameter.name.starts_with("leg_")) continue;
+      if (result.status[i] != ParameterStatus::kEstimated) continue;
+      const double error = std::abs(result.delta[i] - truth[i]) / result.sd[i];
+      inside.first += error < result.interval_factor ? 1 : 0;
+      ++inside.second;
+    }
+    return inside;
+  }
+};
+
+// The pose of the waist is unknown in each moment, so that bodies share no error; what the
+// constraint of the standing foot leaves does.
+TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
+  const SlowLegs legs;
+  int inside = 0;
+  int all = 0;
+  int inside_independent = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Recording recording = legs.Record(seed);
+    const auto estimate = [&] {
+      return Calibrate(legs.robot.model, recording, legs.robot.base, ModelKind::kFull, {});
+    };
+    const CalibrationResult result = estimate();
+    ASSERT_EQ(result.noise.motion.size(), 3u);  // arms, and each leg
+    for (const std::size_t leg : {1u, 2u}) {
+      EXPECT_NEAR(result.noise.motion[leg].waist.lag_one, kCorrelation, 0.08);
+      EXPECT_GT(result.noise.motion[leg].waist.samples_each, 10.0);
+      EXPECT_EQ(result.noise.motion[leg].bodies.samples_each, 1.0);
+    }
+    const auto here = legs.Inside(result);
+    inside += here.first;
+    all += here.second;
+    for (Trial& trial : recording.trials) trial.moments = false;
+    inside_independent += legs.Inside(estimate()).first;
+  }
+  std::printf("%d of %d inside; %d as independent postures\n", inside, all, inside_independent);
+  EXPECT_GT(inside, 0.9 * all);
+  EXPECT_LT(inside_independent, 0.8 * all);
 }
 
 // What shares its error with a left-out moment is left out as well.

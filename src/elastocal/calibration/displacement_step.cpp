@@ -65,7 +65,7 @@ Linearised Linearise(const FitProblem& problem, const Selection& selection,
   for (int b = 0; b < static_cast<int>(residuals.body.residual_blocks.size()); ++b) {
     const auto& block = residuals.body.residual_blocks[b];
     if (!block.active) continue;
-    linear.freedom += block.size * (b < counted ? residuals.body.Count(b) : 1.0);
+    linear.freedom += b < counted ? residuals.body.Counts(b).sum() : block.size;
   }
   for (int size : residuals.body.parameter_blocks) linear.freedom -= size;
   for (int b = 0; b < residuals.body.body_count(); ++b) {

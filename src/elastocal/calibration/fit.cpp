@@ -21,8 +21,9 @@ constexpr double kStepTolerance = 1e-2;      // of an unknown's standard deviati
 constexpr double kVarianceTolerance = 1e-2;  // relative, of a standard deviation, by its share
 constexpr double kWeightTolerance = 1e-2;
 constexpr double kMotionTolerance = 0.1;  // relative, of samples: where their sum ends is uncertain
-constexpr double kRoughly = 10.0;         // times these
-constexpr int kRoughIterations = 5;       // of a solve whose weights will change anyway
+constexpr int kMotionRounds = 5;
+constexpr double kRoughly = 10.0;    // times these
+constexpr int kRoughIterations = 5;  // of a solve whose weights will change anyway
 constexpr int kMaxSolves = 6;  // for the last digits, where the iterations of one do not suffice
 constexpr int kMaxPolishing = 20;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
@@ -94,12 +95,15 @@ double WeightChange(const RobustWeights& before, const RobustWeights& after) {
 /// The largest relative change of what a moment of a motion counts.
 double MotionChange(const Noise& before, const Noise& after) {
   if (before.motion.size() != after.motion.size()) return 1.0;
-  double change = 0.0;
+  const auto change = [](const Autocorrelation& a, const Autocorrelation& b) {
+    return std::abs(std::log(a.samples_each / b.samples_each));
+  };
+  double largest = 0.0;
   for (std::size_t g = 0; g < after.motion.size(); ++g) {
-    change = std::max(
-        change, std::abs(std::log(after.motion[g].samples_each / before.motion[g].samples_each)));
+    largest = std::max({largest, change(after.motion[g].bodies, before.motion[g].bodies),
+                        change(after.motion[g].waist, before.motion[g].waist)});
   }
-  return change;
+  return largest;
 }
 
 /// One Gauss-Newton step and, from the same linearisation, noise, weights and prior scale: they
@@ -107,17 +111,18 @@ double MotionChange(const Noise& before, const Noise& after) {
 /// explains of each row, by residual block, takes most of the time: where it is not empty, it is
 /// taken as it is from the update before.
 bool UpdateByStep(const FitProblem& problem, const Selection& selection,
-                  const std::vector<int>& free, Robustness robustness,
-                  std::vector<Eigen::VectorXd>& explained, Fit& fit) {
+                  const std::vector<int>& free, Robustness robustness, ExplainedRows& explained,
+                  Fit& fit) {
   FitResiduals residuals(problem, selection, free, fit);
   BodyResiduals& body = residuals.body;
   const Eigen::VectorXd x = body.Start();
   body.Evaluate(x, true);
   const double cost = CostOf(body);
   const NormalEquations equations(body);
-  const bool anew = explained.empty();
+  const bool anew = explained.all.empty();
   if (anew) {
-    explained = equations.ExplainedVariances(TakeCovariance(problem, free, equations, fit));
+    explained.all = equations.ExplainedVariances(TakeCovariance(problem, free, equations, fit));
+    explained.by_pose = equations.ExplainedByNuisance();
   }
   const Eigen::VectorXd step =
       BoundedStep(equations.information(), equations.gradient(), x(equations.unknowns()),
@@ -141,21 +146,32 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
       CollectComponents(problem, selection, fit.noise, body, explained);
   fit.degrees_of_freedom = DegreesOfFreedom(problem.options, components);
   Noise noise = EstimateNoise(problem.options, fit.noise, components, robustness);
-  if (anew && robustness == Robustness::kMoments) {
-    noise.motion = FindMotionCorrelation(problem, selection, noise, body);
-  }
   const RobustWeights weights = EstimateWeights(problem, selection, noise, body, robustness);
   PriorScale scale = fit.prior_scale;
   if (anew && problem.options.widen_prior) scale = EstimatePriorScale(problem, fit);
   const bool settled = small &&
                        NoiseChange(fit.noise, noise, components) < tolerance * kVarianceTolerance &&
                        ScaleChange(fit.prior_scale, scale) < tolerance * kVarianceTolerance &&
-                       WeightChange(fit.weights, weights) < tolerance * kWeightTolerance &&
-                       MotionChange(fit.noise, noise) < kMotionTolerance;
+                       WeightChange(fit.weights, weights) < tolerance * kWeightTolerance;
   fit.noise = noise;
   fit.weights = weights;
   fit.prior_scale = scale;
   return settled;
+}
+
+/// Of a fit that has settled: by its residuals, how errors are correlated in motions. Whether that
+/// is much the same as before. (Sooner, noise and correlation would swing.)
+bool UpdateMotion(const FitProblem& problem, const Selection& selection,
+                  const std::vector<int>& free, const ExplainedRows& explained, Fit& fit) {
+  const std::vector<int> motion = MotionOfPostures(problem.recording);
+  if (std::all_of(motion.begin(), motion.end(), [](int of) { return of < 0; })) return true;
+  FitResiduals residuals(problem, selection, free, fit);
+  residuals.body.Evaluate(residuals.body.Start(), false);
+  Noise noise = fit.noise;
+  noise.motion = FindMotionCorrelation(problem, selection, noise, residuals.body, explained);
+  const bool same = MotionChange(fit.noise, noise) < kMotionTolerance;
+  fit.noise = noise;
+  return same;
 }
 
 /// From a solution for loads as they were: steps after each of which the loads follow it. The
@@ -250,14 +266,19 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const Fit& start, Robustness robustness,
                   int updates) {
   Fit fit = start;
-  std::vector<Eigen::VectorXd> explained;
+  ExplainedRows explained;
   bool settled = false;
+  int rounds = 0;  // of correlations in motions
   const int most = std::min(updates, problem.options.max_iterations);
   for (int update = 0; update < most && !settled; ++update) {
     const bool anew = update % 2 == 0;  // with the same for longer, the noise would swing
-    if (anew) explained.clear();
+    if (anew) explained = {};
     settled = UpdateByStep(problem, selection, free, robustness, explained, fit) &&
               (anew || robustness == Robustness::kMedians);
+    if (settled && robustness == Robustness::kMoments && rounds < kMotionRounds) {
+      settled = UpdateMotion(problem, selection, free, explained, fit);
+      ++rounds;
+    }
   }
   if (!settled) fit.settled = fit.settled && updates < kMaxUpdates;
   return fit;

@@ -11,77 +11,154 @@ namespace elastocal {
 namespace {
 
 constexpr int kLeastMotionPairs = 10;
-constexpr double kLeastShare = 0.05;  // of the displacement's variance that bodies share
+constexpr double kLeastShare = 0.05;      // of the errors of the model in the variance of a row
+constexpr double kLeastLeftByPose = 0.1;  // of a row, by the poses
+constexpr double kChance = 3.0;           // standard deviations of a correlation that is none
 
-/// Mean displacement of the markers of one body, m, by posture.
-using BodyTrack = std::map<int, Eigen::Vector3d>;
-
-/// Sums over pairs of moments at one distance.
-struct LagSum {
-  double products = 0.0;
-  int pairs = 0;
+/// First posture and number of postures of each motion. They follow each other.
+struct Motion {
+  int first = 0, count = 0;
 };
 
-LagSum SumAtLag(const std::vector<const BodyTrack*>& tracks, const std::vector<int>& motion,
-                int lag) {
-  LagSum sum;
-  for (const BodyTrack* track : tracks) {
-    for (const auto& [posture, displacement] : *track) {
-      const auto later = track->find(posture + lag);
-      if (later == track->end() || motion[posture + lag] != motion[posture]) continue;
-      sum.products += displacement.dot(later->second) / 3.0;
-      ++sum.pairs;
-    }
-  }
-  return sum;
-}
-
-/// `shared`: variance of the displacement without the noise of single markers, m^2.
-MotionCorrelation Correlate(const std::vector<const BodyTrack*>& tracks,
-                            const std::vector<int>& motion, double shared) {
-  MotionCorrelation found;
-  for (int lag = 1;; ++lag) {
-    const LagSum sum = SumAtLag(tracks, motion, lag);
-    if (sum.pairs < kLeastMotionPairs) break;
-    const double correlation = std::min(1.0, sum.products / sum.pairs / shared);
-    if (lag == 1) found.lag_one = correlation;
-    if (!(correlation > 0.0)) break;
-    found.samples_each += 2.0 * correlation;
+std::vector<Motion> FindMotions(const std::vector<int>& motion) {
+  std::vector<Motion> found;
+  for (int i = 0; i < static_cast<int>(motion.size()); ++i) {
+    if (motion[i] < 0) continue;
+    if (motion[i] == static_cast<int>(found.size())) found.push_back({i, 0});
+    ++found[motion[i]].count;
   }
   return found;
 }
+
+/// What is followed through the postures: the displacement of one body, or what the constraint
+/// leaves. 0 where nothing was seen.
+struct Track {
+  Eigen::MatrixXd values;   // rows x postures
+  Eigen::RowVectorXd seen;  // 1 or 0
+};
+
+/// The first rows of a residual block.
+struct BlockRows {
+  Eigen::ArrayXd residual;
+  Eigen::ArrayXd counts;        // BodyResiduals::Counts
+  Eigen::ArrayXd by_pose;       // ExplainedRows::by_pose
+  Eigen::ArrayXd left_by_pose;  // ExplainedRows::LeftByPose
+};
+
+BlockRows RowsOf(const BodyResiduals& residuals, const ExplainedRows& explained, int block,
+                 Eigen::Index rows) {
+  const Eigen::ArrayXd counts = residuals.Counts(block);
+  return {residuals.Residual(block).head(rows).array(), counts.head(rows),
+          explained.by_pose[block].head(rows).array(),
+          explained.LeftByPose(block, counts).head(rows)};
+}
+
+/// The tracks of a group.
+class Tracks {
+ public:
+  explicit Tracks(int postures) : postures_(postures) {}
+
+  /// `share`: of the errors of the model in the variance of each row.
+  void Add(int body, int posture, const BlockRows& rows, double share) {
+    const auto [at, added] = tracks_.try_emplace(body);
+    if (added) {
+      at->second = {Eigen::MatrixXd::Zero(rows.residual.size(), postures_),
+                    Eigen::RowVectorXd::Zero(postures_)};
+    }
+    // In standard deviations of the errors of the model in one moment, as if no pose were
+    // estimated.
+    at->second.values.col(posture) =
+        rows.residual / ((1.0 - rows.by_pose).max(kLeastLeftByPose) * (share * rows.counts).sqrt());
+    at->second.seen[posture] = 1.0;
+    squares_ += rows.residual.square().sum();
+    left_ += rows.left_by_pose.sum();
+  }
+
+  Autocorrelation Correlation(const std::vector<Motion>& motions) const {
+    Autocorrelation found;
+    // The parameters take up a part of the errors, whatever their distance.
+    const double left = left_ > 0.0 ? squares_ / left_ : 0.0;
+    const LagSum together = SumAtLag(motions, 0);
+    if (!(left > 0.0) || together.rows <= 0.0) return found;
+    const double spread = together.products / together.rows / left;  // of one value
+    int longest = 0;
+    for (const Motion& motion : motions) longest = std::max(longest, motion.count);
+    bool falls = true;     // not yet to zero
+    double squares = 1.0;  // 1 + 2 sum rho_k^2, of values
+    for (int lag = 1; lag < longest; ++lag) {
+      const LagSum sum = SumAtLag(motions, lag);
+      if (sum.pairs < kLeastMotionPairs) break;
+      const double correlation = std::clamp(sum.products / sum.rows / left, -1.0, 1.0);
+      if (lag == 1) found.lag_one = correlation;
+      falls = falls && correlation > 0.0;
+      if (falls) squares += 2.0 * std::pow(correlation / spread, 2);
+      const double chance = spread * std::sqrt(squares / sum.rows);
+      if (!falls && correlation < kChance * chance) continue;
+      found.samples_each += 2.0 * correlation * (1.0 - static_cast<double>(lag) / longest);
+    }
+    return found;
+  }
+
+ private:
+  /// Over all pairs of moments at one distance.
+  struct LagSum {
+    double products = 0.0, pairs = 0.0, rows = 0.0;
+  };
+
+  LagSum SumAtLag(const std::vector<Motion>& motions, int lag) const {
+    LagSum sum;
+    for (const Motion& motion : motions) {
+      const int count = motion.count - lag;
+      if (count <= 0) continue;
+      for (const auto& [body, track] : tracks_) {
+        sum.products += track.values.middleCols(motion.first, count)
+                            .cwiseProduct(track.values.middleCols(motion.first + lag, count))
+                            .sum();
+        const double pairs = track.seen.segment(motion.first, count)
+                                 .dot(track.seen.segment(motion.first + lag, count));
+        sum.pairs += pairs;
+        sum.rows += pairs * static_cast<double>(track.values.rows());
+      }
+    }
+    return sum;
+  }
+
+  int postures_;
+  std::map<int, Track> tracks_;  // by body
+  double squares_ = 0.0;         // of residuals
+  double left_ = 0.0;            // what they would be if only poses were estimated
+};
 
 }  // namespace
 
 std::vector<MotionCorrelation> FindMotionCorrelation(const FitProblem& problem,
                                                      const Selection& selection, const Noise& noise,
-                                                     const BodyResiduals& residuals) {
+                                                     const BodyResiduals& residuals,
+                                                     const ExplainedRows& explained) {
   const std::vector<int> motion = MotionOfPostures(problem.recording);
-  if (std::all_of(motion.begin(), motion.end(), [](int of) { return of < 0; })) return {};
-  std::vector<std::map<int, BodyTrack>> tracks(noise.group_count());  // by group and body
-  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(noise.group_count());
-  Eigen::ArrayXd by_markers = squares;
-  Eigen::ArrayXd count = squares;
+  const std::vector<Motion> motions = FindMotions(motion);
+  if (motions.empty()) return {};
+  const Tracks none(static_cast<int>(motion.size()));
+  std::vector<Tracks> bodies(noise.group_count(), none);
+  std::vector<Tracks> waist(noise.group_count(), none);
   for (int b = 0; b < residuals.body_count(); ++b) {
     const BodyObservation& body = selection.bodies[b];
     if (!body.used || motion[body.posture] < 0) continue;
     const int group = problem.group[body.posture];
-    const auto markers = static_cast<double>(body.markers.size());
-    const Eigen::Vector3d displacement =
-        residuals.Residual(b).head<3>().cwiseProduct(residuals.Sds(b).head<3>()) /
-        std::sqrt(markers);
-    tracks[group][body.body][body.posture] = displacement;
-    squares[group] += displacement.squaredNorm() / 3.0;
-    by_markers[group] += noise.Variance(group, NoiseSource::kMarker) / markers;
-    count[group] += 1.0;
+    const double share = body.Shares(noise, group, NoiseSource::kBodyPosition)[0];
+    if (share < kLeastShare) continue;
+    bodies[group].Add(body.body, body.posture, RowsOf(residuals, explained, b, 3), share);
   }
-  std::vector<MotionCorrelation> found(noise.group_count());
+  for (std::size_t t = 0; t < residuals.tied_postures().size(); ++t) {
+    const int posture = residuals.tied_postures()[t];
+    if (motion[posture] < 0 || selection.tied[posture] == 0) continue;
+    const int block = residuals.TieBlock(static_cast<int>(t));
+    waist[problem.group[posture]].Add(0, posture, RowsOf(residuals, explained, block, 6), 1.0);
+  }
+  std::vector<MotionCorrelation> found;
   for (int g = 0; g < noise.group_count(); ++g) {
-    const double shared = (squares[g] - by_markers[g]) / std::max(1.0, count[g]);
-    if (!(shared * count[g] > kLeastShare * squares[g])) continue;
-    std::vector<const BodyTrack*> of_group;
-    for (const auto& [body, track] : tracks[g]) of_group.push_back(&track);
-    found[g] = Correlate(of_group, motion, shared);
+    found.push_back(
+        {.bodies = bodies[g].Correlation(motions), .waist = waist[g].Correlation(motions)});
   }
   return found;
 }

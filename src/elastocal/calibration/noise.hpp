@@ -24,10 +24,17 @@ inline constexpr int kNoiseSourceCount = 4;
 /// marker, body_position, waist_position, waist_rotation
 const char* NoiseSourceName(NoiseSource source);
 
-/// How much neighbouring moments of a motion tell (FindMotionCorrelation).
-struct MotionCorrelation {
-  double lag_one = 0.0;       ///< correlation of what bodies share, from one moment to the next
+/// How much neighbouring moments of a motion tell.
+struct Autocorrelation {
+  double lag_one = 0.0;       ///< correlation from one moment to the next
   double samples_each = 1.0;  ///< so many moments tell as much as one posture by itself
+};
+
+/// Of what bodies share, and of what the constraint of the standing foot (eq. 14) leaves
+/// (FindMotionCorrelation).
+struct MotionCorrelation {
+  Autocorrelation bodies;
+  Autocorrelation waist;
 };
 
 /// Standard deviations by group of postures and source: chains differ in how well the model fits

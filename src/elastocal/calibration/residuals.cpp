@@ -173,7 +173,7 @@ Eigen::VectorXd BodyResiduals::BodySds(std::size_t body) const {
     variances.head(shared) /= weight.shared;
     variances.tail(variances.size() - shared) /= weight.own;
   }
-  return (variances / CountOfPosture(of.posture)).sqrt();
+  return (variances / Counts(static_cast<int>(body))).sqrt();
 }
 
 Vector6d BodyResiduals::TieSds(int posture) const {
@@ -183,18 +183,25 @@ Vector6d BodyResiduals::TieSds(int posture) const {
   sds.tail<3>().setConstant(in_.noise(group, NoiseSource::kWaistRotation));
   if (in_.options.support_form == SupportForm::kFootRooted) sds.setConstant(kExactLeg);
   if (!in_.weights.ties.empty()) sds /= std::sqrt(in_.weights.ties[posture]);
-  return sds / std::sqrt(CountOfPosture(posture));
+  return sds * std::sqrt(SamplesEach(posture, &MotionCorrelation::waist));
 }
 
-double BodyResiduals::CountOfPosture(int posture) const {
+double BodyResiduals::SamplesEach(int posture, Autocorrelation MotionCorrelation::*of) const {
   if (motion_[posture] < 0 || in_.noise.motion.empty()) return 1.0;
-  return 1.0 / in_.noise.motion[in_.group[posture]].samples_each;
+  return (in_.noise.motion[in_.group[posture]].*of).samples_each;
 }
 
-double BodyResiduals::Count(int block) const {
-  const bool body = block < body_count();
-  return CountOfPosture(body ? in_.selection.bodies[block].posture
-                             : tied_postures_[block - body_count()]);
+Eigen::ArrayXd BodyResiduals::Counts(int block) const {
+  if (block >= body_count()) {
+    const double each =
+        SamplesEach(tied_postures_[block - body_count()], &MotionCorrelation::waist);
+    return Eigen::ArrayXd::Constant(6, 1.0 / each);
+  }
+  const BodyObservation& body = in_.selection.bodies[block];
+  const double each = SamplesEach(body.posture, &MotionCorrelation::bodies);
+  if (each == 1.0) return Eigen::ArrayXd::Ones(body.size());
+  return 1.0 / (1.0 + (each - 1.0) * body.Shares(in_.noise, in_.group[body.posture],
+                                                 NoiseSource::kBodyPosition));
 }
 
 bool BodyResiduals::IsStandingFoot(int posture, int body) const {

@@ -70,10 +70,10 @@ class BodyResiduals : public LeastSquaresProblem {
   const std::vector<int>& tied_postures() const { return tied_postures_; }
   int TieBlock(int tie) const { return body_count() + tie; }
 
-  /// As how many postures the one of a body or constraint counts: 1, or less where it is a moment
-  /// of a motion, whose neighbours tell the same (Noise::motion). Standard deviations are larger by
-  /// the root of its inverse.
-  double Count(int block) const;
+  /// As how many postures the one of a body or constraint counts, by row: 1, or less where it is a
+  /// moment of a motion, whose neighbours share their model error with it (Noise::motion); noise of
+  /// single markers they do not share. Standard deviations are larger by the root of its inverse.
+  Eigen::ArrayXd Counts(int block) const;
 
   /// Rows in units of the residual's standard deviation of what would displace the markers of a
   /// body by the columns of `displacement` (3 markers x any, m).
@@ -94,7 +94,9 @@ class BodyResiduals : public LeastSquaresProblem {
   void MakeEarlierBlock(const EarlierPart& earlier);
   Eigen::VectorXd BodySds(std::size_t body) const;
   Vector6d TieSds(int posture) const;
-  double CountOfPosture(int posture) const;
+  /// How many moments like this one tell as much as one posture, by the correlation of bodies or of
+  /// the waist; 1 of other postures.
+  double SamplesEach(int posture, Autocorrelation MotionCorrelation::*of) const;
   /// Whether the body is the foot that the posture stands on.
   bool IsStandingFoot(int posture, int body) const;
   void EvaluateBody(int block, bool with_jacobians);

@@ -19,10 +19,13 @@ std::vector<int> ClusterOfPostures(const FitProblem& problem, const Noise& noise
   const std::vector<int> motion = MotionOfPostures(problem.recording);
   std::vector<int> cluster(motion.size());
   int size = 0;
+  const auto samples_each = [&](int posture) {
+    const MotionCorrelation& of = noise.motion[problem.group[posture]];
+    return std::max(of.bodies.samples_each, of.waist.samples_each);
+  };
   for (int i = 0; i < static_cast<int>(motion.size()); ++i) {
     const bool joins = i > 0 && !noise.motion.empty() && motion[i] >= 0 &&
-                       motion[i] == motion[i - 1] &&
-                       size < 2.0 * noise.motion[problem.group[i]].samples_each;
+                       motion[i] == motion[i - 1] && size < 2.0 * samples_each(i);
     cluster[i] = i == 0 ? 0 : cluster[i - 1] + (joins ? 0 : 1);
     size = joins ? size + 1 : 1;
   }
@@ -140,7 +143,8 @@ void UpdatePosterior(const FitProblem& problem, const Selection& selection,
   const Eigen::MatrixXd covariance = TakeCovariance(problem, parameters, equations, fit);
   const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
   fit.degrees_of_freedom = DegreesOfFreedom(
-      problem.options, CollectComponents(problem, selection, fit.noise, body, explained));
+      problem.options, CollectComponents(problem, selection, fit.noise, body,
+                                         {explained, equations.ExplainedByNuisance()}));
   fit.posterior.effective_parameters = 0.0;
   const int observations = body.body_count() + static_cast<int>(body.tied_postures().size());
   for (int block = 0; block < observations; ++block) {

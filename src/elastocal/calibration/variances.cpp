@@ -16,16 +16,16 @@ constexpr double kLeastRowsLeft = 0.01;  // of the rows is left over where it is
 constexpr double kHuberQuantile = 0.99;  // of the distance of a body within which it counts whole
 constexpr double kLeastSharedSd = 1e-3;  // of the marker noise [m, rad]: as good as none
 
-/// `postures`: as how many the residuals count.
+/// `counts`: as how many postures the rows count; `left`: what the fit leaves of them.
 void Add(const Eigen::ArrayXd& shares, const Eigen::VectorXd& residual,
-         const Eigen::VectorXd& explained, double postures, VarianceComponent& component) {
-  const double rows = postures * shares.sum();
+         const Eigen::ArrayXd& counts, const Eigen::ArrayXd& left, VarianceComponent& component) {
+  const double rows = (counts * shares).sum();
   if (rows <= 0.0) return;
   const double squares = (shares * residual.array().square()).sum();
   component.squares += squares;
   component.rows += rows;
-  component.explained += (shares * explained.array()).sum();
-  component.weight += postures * shares.square().sum();
+  component.explained += (shares * (counts - left)).sum();
+  component.weight += (counts * shares.square()).sum();
   component.means.push_back(squares / rows);
 }
 
@@ -59,27 +59,30 @@ double VarianceComponent::Factor(Robustness robustness) const {
 
 VarianceComponents CollectComponents(const FitProblem& problem, const Selection& selection,
                                      const Noise& noise, const BodyResiduals& residuals,
-                                     const std::vector<Eigen::VectorXd>& explained) {
+                                     const ExplainedRows& explained) {
   VarianceComponents components(noise.group_count());
   for (int b = 0; b < residuals.body_count(); ++b) {
     const BodyObservation& body = selection.bodies[b];
     if (!body.used) continue;
     const int group = problem.group[body.posture];
+    const Eigen::ArrayXd counts = residuals.Counts(b);
+    const Eigen::ArrayXd left = explained.Left(b, counts);
     for (NoiseSource source : {NoiseSource::kMarker, NoiseSource::kBodyPosition}) {
-      Add(body.Shares(noise, group, source), residuals.Residual(b), explained[b],
-          residuals.Count(b), components[group][static_cast<int>(source)]);
+      Add(body.Shares(noise, group, source), residuals.Residual(b), counts, left,
+          components[group][static_cast<int>(source)]);
     }
   }
   for (std::size_t t = 0; t < residuals.tied_postures().size(); ++t) {
     const int posture = residuals.tied_postures()[t];
     if (selection.tied[posture] == 0) continue;
     const int block = residuals.TieBlock(static_cast<int>(t));
+    const Eigen::ArrayXd counts = residuals.Counts(block);
+    const Eigen::ArrayXd left = explained.Left(block, counts);
     auto& of_group = components[problem.group[posture]];
     for (NoiseSource source : {NoiseSource::kWaistPosition, NoiseSource::kWaistRotation}) {
       Eigen::ArrayXd shares = Eigen::ArrayXd::Zero(6);
       shares.segment<3>(source == NoiseSource::kWaistPosition ? 0 : 3).setOnes();
-      Add(shares, residuals.Residual(block), explained[block], residuals.Count(block),
-          of_group[static_cast<int>(source)]);
+      Add(shares, residuals.Residual(block), counts, left, of_group[static_cast<int>(source)]);
     }
   }
   return components;

@@ -27,11 +27,28 @@ struct VarianceComponent {
 /// By group and source.
 using VarianceComponents = std::vector<std::array<VarianceComponent, kNoiseSourceCount>>;
 
-/// Components from the residuals as last evaluated. `explained`: of the rows of each residual
-/// block.
+/// What the fit explains of each row of each residual block, of a variance of 1.
+struct ExplainedRows {
+  std::vector<Eigen::VectorXd> all;
+  std::vector<Eigen::VectorXd> by_pose;  ///< part of it by what a posture has of its own: the waist
+
+  /// What the rest of a block's variance is, if the poses alone were estimated and a row counts as
+  /// `counts` (BodyResiduals::Counts): its errors are smaller than its standard deviation by the
+  /// root of it, but what the other rows of the posture make of the pose is not.
+  Eigen::ArrayXd LeftByPose(int block, const Eigen::ArrayXd& counts) const {
+    const Eigen::ArrayXd pose = by_pose[block].array();
+    return (1.0 - pose) * (counts + (1.0 - counts) * pose);
+  }
+  /// The same, everything being estimated.
+  Eigen::ArrayXd Left(int block, const Eigen::ArrayXd& counts) const {
+    return LeftByPose(block, counts) - (all[block] - by_pose[block]).array();
+  }
+};
+
+/// Components from the residuals as last evaluated.
 VarianceComponents CollectComponents(const FitProblem& problem, const Selection& selection,
                                      const Noise& noise, const BodyResiduals& residuals,
-                                     const std::vector<Eigen::VectorXd>& explained);
+                                     const ExplainedRows& explained);
 
 /// The noise that components leave which were found with the noise `before`: restricted maximum
 /// likelihood, by Harville's fixed point. What the options give stays as given. A group whose

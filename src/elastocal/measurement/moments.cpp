@@ -8,12 +8,10 @@ constexpr double kNextMoment_s = 0.5;
 
 bool Follows(const Recording& recording, int posture) {
   if (recording.time_s.size() == 0) return false;
-  if (!recording.trials.empty()) {
-    const int trial = recording.trial[posture];
-    if (trial != recording.trial[posture - 1] || !recording.trials[trial].of_motion()) return false;
-  }
   const double step = recording.time_s[posture] - recording.time_s[posture - 1];
-  return step > 0.0 && step < kNextMoment_s;
+  if (recording.trials.empty()) return step > 0.0 && step < kNextMoment_s;
+  const int trial = recording.trial[posture];
+  return trial == recording.trial[posture - 1] && recording.trials[trial].of_motion() && step > 0.0;
 }
 
 }  // namespace

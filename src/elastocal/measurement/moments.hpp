@@ -8,8 +8,8 @@
 namespace elastocal {
 
 /// The motion that each posture is a moment of, numbered from 0; -1: of none. Two postures that
-/// follow each other are moments of one motion if less than half a second is between them: in a
-/// trial whose samples are those of a motion, and in a table of postures with times. What the model
+/// follow each other are moments of one motion in a trial whose samples are those of a motion, and
+/// in a table of postures with times if less than half a second is between them. What the model
 /// does not explain hardly changes from one to the other.
 std::vector<int> MotionOfPostures(const Recording& recording);
 

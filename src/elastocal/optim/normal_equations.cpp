@@ -271,6 +271,22 @@ std::vector<Eigen::VectorXd> NormalEquations::ExplainedVariances(
   return variances;
 }
 
+std::vector<Eigen::VectorXd> NormalEquations::ExplainedByNuisance() const {
+  std::vector<Eigen::VectorXd> variances;
+  for (std::size_t block = 0; block < layout_.size(); ++block) {
+    variances.emplace_back(
+        Eigen::VectorXd::Zero(problem_.Residual(static_cast<int>(block)).size()));
+  }
+  for (const Group& group : groups_) {
+    for (int block : group.blocks) {
+      const Columns E = NuisanceJacobian(block);
+      variances[block] =
+          group.factor.solve(E.transpose()).transpose().cwiseProduct(E).rowwise().sum();
+    }
+  }
+  return variances;
+}
+
 Eigen::MatrixXd NormalEquations::Scores(const std::vector<Eigen::VectorXd>& residuals,
                                         const std::vector<int>& cluster, int clusters) const {
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(information_.rows(), clusters);

@@ -43,6 +43,9 @@ class NormalEquations {
   /// Its diagonal, for all residual blocks (in less time than block by block).
   std::vector<Eigen::VectorXd> ExplainedVariances(const Eigen::MatrixXd& covariance) const;
 
+  /// What of it the nuisance would explain if the unknowns were known.
+  std::vector<Eigen::VectorXd> ExplainedByNuisance() const;
+
   /// Parts of the gradient, J' Q r, that clusters of residual blocks make: unknowns x clusters.
   /// `residuals`, by block, stand for those of the problem; `cluster`: of each block, -1: none.
   /// Blocks that share a nuisance block belong to one cluster.

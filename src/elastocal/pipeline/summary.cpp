@@ -269,8 +269,11 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
           1e3 * result.noise.sd(static_cast<Eigen::Index>(g), source);
     }
     if (g < result.noise.motion.size()) {
-      noise["motion_correlation"] = result.noise.motion[g].lag_one;
-      noise["motion_samples_each"] = result.noise.motion[g].samples_each;
+      const MotionCorrelation& motion = result.noise.motion[g];
+      noise["motion_correlation"] = motion.bodies.lag_one;
+      noise["motion_samples_each"] = motion.bodies.samples_each;
+      noise["waist_motion_correlation"] = motion.waist.lag_one;
+      noise["waist_motion_samples_each"] = motion.waist.samples_each;
     }
     json["noise"].push_back(noise);
   }
