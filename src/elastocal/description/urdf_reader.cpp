@@ -73,13 +73,19 @@ Eigen::Vector3d ReadAxis(const UrdfJoint& joint, std::vector<std::string>& warni
   return xyz.stableNormalized().normalized();
 }
 
-/// A joint that can move has a velocity: a limit of 0 is a place that was left empty.
-void DropZeroSpeedLimit(const UrdfJoint& joint, JointLimits& limits,
-                        std::vector<std::string>& warnings) {
-  if (limits.velocity != 0.0 || !(limits.lower < limits.upper)) return;
-  warnings.push_back("joint " + Quote(joint.name) +
-                     ": its velocity limit is 0; it is taken to have none");
-  limits.velocity = kInfinity;
+/// A joint that can move has a velocity, and a motor or a spring: a limit of 0 is a place that was
+/// left empty.
+void DropZeroLimits(const UrdfJoint& joint, JointLimits& limits,
+                    std::vector<std::string>& warnings) {
+  if (!(limits.lower < limits.upper)) return;
+  const auto drop = [&](const char* name, double& limit) {
+    if (limit != 0.0) return;
+    warnings.push_back("joint " + Quote(joint.name) + ": its " + name +
+                       " limit is 0; it is taken to have none");
+    limit = kInfinity;
+  };
+  drop("velocity", limits.velocity);
+  drop("effort", limits.effort);
 }
 
 JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warnings) {
@@ -90,7 +96,7 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
   limits.velocity = limit.Number("velocity");
   limits.effort = limit.Number("effort");
   if (continuous) {
-    DropZeroSpeedLimit(joint, limits, warnings);
+    DropZeroLimits(joint, limits, warnings);
     return limits;
   }
   limits.lower = limit.NumberOr("lower", 0.0);
@@ -101,7 +107,7 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
                        FormatNumber(limits.upper) + "; they are exchanged");
     std::swap(limits.lower, limits.upper);
   }
-  DropZeroSpeedLimit(joint, limits, warnings);
+  DropZeroLimits(joint, limits, warnings);
   return limits;
 }
 

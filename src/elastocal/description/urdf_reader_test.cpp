@@ -128,7 +128,7 @@ void ExpectWarning(const RobotTree& tree, const std::string& part) {
   EXPECT_NE(tree.warnings[0].find(part), std::string::npos) << tree.warnings[0];
 }
 
-TEST(UrdfReader, AVelocityLimitOfZeroIsNoneWhereTheJointCanMove) {
+TEST(UrdfReader, VelocityAndEffortOfZeroAreNoLimitsWhereTheJointCanMove) {
   const auto parse = [](const std::string& ends) {
     return ParseLinks(
         LinkXml("a") + LinkXml("b") +
@@ -136,13 +136,18 @@ TEST(UrdfReader, AVelocityLimitOfZeroIsNoneWhereTheJointCanMove) {
   };
   const RobotTree moves = parse("lower='0' upper='1'");
   EXPECT_TRUE(std::isinf(moves.joints[0].limits.velocity));
-  ExpectWarning(moves, "'finger': its velocity limit is 0");
+  EXPECT_TRUE(std::isinf(moves.joints[0].limits.effort));
+  ASSERT_EQ(moves.warnings.size(), 2u);
+  EXPECT_NE(moves.warnings[0].find("'finger': its velocity limit is 0"), std::string::npos);
+  EXPECT_NE(moves.warnings[1].find("'finger': its effort limit is 0"), std::string::npos);
   const RobotTree wheel =
       ParseLinks(LinkXml("a") + LinkXml("b") +
                  JointXml("wheel", "continuous", "a", "b", "<limit velocity='0' effort='1'/>"));
   EXPECT_TRUE(std::isinf(wheel.joints[0].limits.velocity));
+  EXPECT_EQ(wheel.joints[0].limits.effort, 1.0);
   const RobotTree rigid = parse("");
   EXPECT_EQ(rigid.joints[0].limits.velocity, 0.0);
+  EXPECT_EQ(rigid.joints[0].limits.effort, 0.0);
   EXPECT_TRUE(rigid.warnings.empty());
 }
 

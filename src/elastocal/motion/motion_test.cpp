@@ -191,6 +191,25 @@ TEST_F(BalancedWalker, VisitsPosturesOnOneFoot) {
   }
 }
 
+// Parts that would be further from each other if the waist leaned are no reason to lean: the lifted
+// foot would be elsewhere, and the motion would jump there.
+TEST_F(BalancedWalker, LiftsAFootToWhereItIsTold) {
+  const MoveBuilder build(robot_, SizedOptions(robot_, {}));
+  const Transform wanted = Eigen::Translation3d(0.0, 0.0, 0.05) * robot_.T_world_sole[1];
+  const PlacedPosture near{robot_.rest, robot_.T_world_root};
+  Refusal why;
+  const auto alone = build.AtRestWithFoot({0}, 1, wanted, near, why);
+  ASSERT_TRUE(alone);
+  robot_.clearances = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
+    const double leans = (q - alone->q).norm();
+    return Eigen::VectorXd::Constant(1, robot_.limits.clearance + 1e-3 + 0.1 * leans);
+  };
+  const auto up = build.AtRestWithFoot({0}, 1, wanted, near, why);
+  ASSERT_TRUE(up);
+  const Transform found = up->T_world_root * robot_.legs[1].SolePose(up->q);
+  EXPECT_LT((found.matrix() - wanted.matrix()).norm(), 1e-9);
+}
+
 TEST_F(BalancedWalker, WithoutBalanceTheZeroMomentPointLeavesTheFoot) {
   PostureTour set{.name = "left", .standing = {1}, .postures = {robot_.rest}};
   PlanOptions options;

@@ -182,7 +182,11 @@ std::optional<PlacedPosture> MoveBuilder::AtRestWithFoot(const std::vector<int>&
     const Eigen::Vector3d before = pose.T_world_root.translation();
     if (!PlaceSole(robot_, foot, T_world_sole, pose) || !Balanced(standing, pose)) break;
     if (i > 0 && (pose.T_world_root.translation() - before).norm() < kReached) {
-      return AtRest(pose.q, standing, pose, why);
+      // Not AtRest: another attitude of the root link would take the foot elsewhere.
+      const auto refusal = KeepAtRest(standing, 0.0, pose);
+      if (!refusal) return pose;
+      why = *refusal;
+      return std::nullopt;
     }
   }
   why = OutOfReach();
