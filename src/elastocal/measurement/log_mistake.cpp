@@ -38,7 +38,7 @@ std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>&
 }  // namespace
 
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
-                                         int standing, const SmoothedLog& log,
+                                         const std::vector<int>& standing, const SmoothedLog& log,
                                          const std::vector<int>& coordinates,
                                          const Eigen::MatrixXd& speeds, double rate_hz,
                                          const std::optional<double>& expected_lag_s,

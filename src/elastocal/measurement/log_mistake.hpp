@@ -22,7 +22,7 @@ struct LogMistake {
 /// EstimateTrialClock, `markers` to `rate_hz` as for PredictSpeeds. Joints that hardly move are
 /// passed over.
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
-                                         int standing, const SmoothedLog& log,
+                                         const std::vector<int>& standing, const SmoothedLog& log,
                                          const std::vector<int>& coordinates,
                                          const Eigen::MatrixXd& speeds, double rate_hz,
                                          const std::optional<double>& expected_lag_s,

@@ -18,13 +18,15 @@ struct LoggedSpeeds {
   Eigen::MatrixXd speeds;  ///< times x markers, m/s
 };
 
-/// Speeds of the markers `markers` relative to the link `standing`, by nominal forward kinematics
+/// Speeds of the markers `markers` relative to the links `standing`, by nominal forward kinematics
 /// of the logged joint positions `log` (whose columns are the coordinates `coordinates`), about
-/// `rate_hz` times a second. If `standing` is at rest in the laboratory, cameras see the same
-/// speeds, whatever their frame.
-LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& markers, int standing,
-                           const SmoothedLog& log, const std::vector<int>& coordinates,
-                           double rate_hz);
+/// `rate_hz` times a second. If these are at rest in the laboratory, cameras see the same speeds,
+/// whatever their frame. Of one or two links, the first does not move; of three and more, their
+/// origins do not, as far as nominal kinematics allows: feet that are balls roll, and what is above
+/// them turns about their centres.
+LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& markers,
+                           const std::vector<int>& standing, const SmoothedLog& log,
+                           const std::vector<int>& coordinates, double rate_hz);
 
 /// Estimates lag and drift of the robot's clock from the mean speed of all markers (section 5.1).
 /// `measured` (frames x markers, m/s, NaN where unknown; markers as in `logged`) must have passed

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/stable_samples.hpp"
 #include "tests/test_robots.hpp"
 #include "tests/trial_player.hpp"
@@ -29,7 +30,7 @@ std::vector<int> AllMarkers() {
 }
 
 LoggedSpeeds Predict(const MarkedRobot& robot, const JointLog& log, int standing) {
-  return PredictSpeeds(robot, AllMarkers(), standing, SmoothLog(log, {}), {0, 1, 2, 3, 4, 5},
+  return PredictSpeeds(robot, AllMarkers(), {standing}, SmoothLog(log, {}), {0, 1, 2, 3, 4, 5},
                        100.0);
 }
 
@@ -51,6 +52,51 @@ TEST(PredictSpeeds, AreThoseThatCamerasSee) {
     }
     EXPECT_EQ(logged.speeds.col(9).maxCoeff() > 0.01, standing == 6);
   }
+}
+
+// A root link that leans and shifts on three legs, each a crane of three axes; the feet turn with
+// it about their centres, which stay where they are.
+TEST(PredictSpeeds, TurnAboutTheCentresOfThreeFeet) {
+  MarkedRobot robot;
+  robot.tree = MakeRoot();
+  std::vector<int> feet;
+  const Eigen::Matrix3d places{{0.3, -0.2, -0.3}, {0.0, 0.25, -0.25}, {-0.5, -0.5, -0.4}};
+  for (int k = 0; k < 3; ++k) {
+    int link = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      link = AddJoint(robot.tree, "leg_" + std::to_string(3 * k + axis), link, Offset(0, 0, 0),
+                      Eigen::Vector3d::Unit(axis), JointType::kPrismatic);
+    }
+    feet.push_back(link);
+  }
+  robot.markers.push_back({"ROOT", 0, {0.2, 0.1, 0.3}});
+  const auto root_at = [](double time) {
+    return Offset(0.03 * std::sin(time), 0.02 * std::sin(2.0 * time), 0.0) *
+           RotAxis(Eigen::Vector3d::UnitX(), 0.1 * std::sin(time));
+  };
+  const auto positions_at = [&](double time) -> Eigen::Matrix3d {
+    return root_at(time).inverse() * places;
+  };
+  JointLog log;
+  log.time_s = Eigen::VectorXd::LinSpaced(1001, 0.0, 10.0);
+  log.positions.resize(1001, 9);
+  log.torques.setConstant(1001, 9, kNaN);
+  for (Eigen::Index i = 0; i < 1001; ++i) {
+    log.positions.row(i) = positions_at(log.time_s[i]).reshaped().transpose();
+  }
+  for (int k = 0; k < 9; ++k) log.names.push_back("leg_" + std::to_string(k));
+  robot.q_not_logged = positions_at(0.0).reshaped();
+  std::vector<int> coordinates(9);
+  std::iota(coordinates.begin(), coordinates.end(), 0);
+  const LoggedSpeeds logged =
+      PredictSpeeds(robot, {0}, feet, SmoothLog(log, {}), coordinates, 100.0);
+  for (Eigen::Index i = 100; i + 100 < logged.time_s.size(); ++i) {  // the filter's ends aside
+    const auto marker = [&](double time) { return root_at(time) * robot.markers[0].p_link_marker; };
+    const double time = logged.time_s[i];
+    EXPECT_NEAR(logged.speeds(i, 0), (marker(time + 1e-4) - marker(time - 1e-4)).norm() / 2e-4,
+                5e-5);
+  }
+  EXPECT_GT(logged.speeds.maxCoeff(), 0.04);
 }
 
 TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {

@@ -138,9 +138,9 @@ class TrialSampler {
     smoothed_log_ = SmoothLog(log_, options_.smoothing);
   }
 
-  // Speeds of the markers as seen from a link.
+  // Speeds of the markers as seen from links.
   struct SpeedsFrom {
-    int link = 0;
+    std::vector<int> links;
     Eigen::MatrixXd speeds;
   };
 
@@ -150,10 +150,10 @@ class TrialSampler {
       if (const auto seen = SeeFromMarkedBody(robot_, markers_, trajectories_)) {
         Eigen::MatrixXd relative = MarkerSpeeds(seen->trajectories);
         ForgetEdges(seen->trajectories, smoothed_log_.margin_s, relative);
-        return {seen->link, std::move(relative)};
+        return {{seen->link}, std::move(relative)};
       }
     }
-    return {trial_.support.empty() ? 0 : trial_.support[0], speeds};
+    return {trial_.support.empty() ? std::vector<int>{0} : trial_.support, speeds};
   }
 
   ClockOptions ClockSettings() const {
@@ -163,7 +163,7 @@ class TrialSampler {
   }
 
   void FitClock(const SpeedsFrom& seen) {
-    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.link, smoothed_log_,
+    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.links, smoothed_log_,
                                               coordinates_, trajectories_.rate_hz);
     summary().clock = EstimateTrialClock(seen.speeds, trajectories_.rate_hz, logged,
                                          options_.expected_lag_s, ClockSettings());
@@ -178,7 +178,7 @@ class TrialSampler {
   }
 
   std::string CauseOfBadClock(const SpeedsFrom& seen) const {
-    const auto mistake = FindLogMistake(robot_, markers_, seen.link, smoothed_log_, coordinates_,
+    const auto mistake = FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_,
                                         seen.speeds, trajectories_.rate_hz, options_.expected_lag_s,
                                         ClockSettings(), result_.summary.clock.peak);
     return mistake ? "; " + Describe(*mistake, log_.names) : "";
