@@ -18,6 +18,7 @@
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 #include "tests/draft_files.hpp"
+#include "tests/test_robots.hpp"
 
 namespace elastocal {
 namespace {
@@ -290,6 +291,22 @@ TEST(Draft, NamesRestAndPairsComeFromTheSrdf) {
   EXPECT_THROW(ParseSemantics("<robot><group/></robot>", "x.srdf"), InputError);
   EXPECT_THROW(ParseSemantics("<srdf/>", "x.srdf"), InputError);
   EXPECT_THROW(ParseSemantics(urdf, "a URDF"), InputError);
+}
+
+TEST(Draft, SectionsOfATelescopeAreNotChecked) {
+  const auto pairs = [](const Eigen::Vector3d& third_axis, JointType third_type) {
+    RobotTree tree = MakeRoot();
+    const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+    int link = AddJoint(tree, "first", 0, Offset(0, 0, 0), x, JointType::kPrismatic);
+    link = AddJoint(tree, "second", link, Offset(0, 0, 0), x, JointType::kPrismatic);
+    const int tip = AddJoint(tree, "third", link, Offset(0, 0, 0), third_axis, third_type);
+    const std::vector<CollisionSphere> spheres = {{"root", 0, {0, 0, 0}, 0.1},
+                                                  {"tip", tip, {0, 0, 0}, 0.1}};
+    return PairsMovedBy(tree, spheres, {0, 1, 2}, {}).size();
+  };
+  EXPECT_EQ(pairs(Eigen::Vector3d::UnitX(), JointType::kPrismatic), 0U);
+  EXPECT_EQ(pairs(Eigen::Vector3d::UnitY(), JointType::kPrismatic), 1U);
+  EXPECT_EQ(pairs(Eigen::Vector3d::UnitX(), JointType::kRevolute), 1U);
 }
 
 TEST(Draft, PairsThatTouchInAnyPostureOfRestAreNotChecked) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -136,6 +137,28 @@ bool Neighbours(const RobotTree& tree, int a, int b) {
          (carrier(b) >= 0 && carrier(carrier(b)) == a);
 }
 
+/// Whether all joints between two bodies are prismatic, with parallel axes: sections of a
+/// telescope.
+bool SlideAlongEachOther(const RobotTree& tree, int one, int other) {
+  const std::vector<int> to_one = JointsToBody(tree, one), to_other = JointsToBody(tree, other);
+  std::vector<int> between;
+  std::set_symmetric_difference(to_one.begin(), to_one.end(), to_other.begin(), to_other.end(),
+                                std::back_inserter(between));
+  if (std::any_of(between.begin(), between.end(), [&](int joint) {
+        return tree.joints[Size(joint)].type != JointType::kPrismatic;
+      })) {
+    return false;
+  }
+  const auto poses = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  const auto axis = [&](int joint) -> Eigen::Vector3d {
+    const Joint& of = tree.joints[Size(joint)];
+    return poses[Size(of.child_link)].linear() * of.axis;
+  };
+  return std::all_of(between.begin(), between.end(), [&](int joint) {
+    return axis(joint).cross(axis(between.front())).norm() < 1e-3;
+  });
+}
+
 /// Whether a place of the chain's tip is in its box made wider by a quarter.
 bool NearBox(const ChainSetup& chain, const Eigen::Vector3d& tip) {
   constexpr double kWider = 0.25;
@@ -183,7 +206,7 @@ std::vector<SpherePair> PairsMovedBy(const RobotTree& tree,
       const int one = tree.links[Size(spheres[a].link)].body;
       const int other = tree.links[Size(spheres[b].link)].body;
       if (!moved[Size(one)] && !moved[Size(other)]) continue;
-      if (Neighbours(tree, one, other)) continue;
+      if (Neighbours(tree, one, other) || SlideAlongEachOther(tree, one, other)) continue;
       if (LeftOutBySemantics(tree, semantics, one, other)) continue;
       pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
     }

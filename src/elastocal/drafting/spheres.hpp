@@ -23,8 +23,8 @@ std::vector<CollisionSphere> CoverRobot(const RobotTree& tree, const RobotShapes
                                         const Limbs& limbs, const Eigen::VectorXd& rest);
 
 /// Pairs of spheres whose distance changes with the joints `coordinates` and that do not lie
-/// against each other by design: not on neighbouring bodies, and not listed by the SRDF as never
-/// checked.
+/// against each other by design: not on neighbouring bodies nor on two sections of a telescope
+/// (prismatic joints with parallel axes between them), and not listed by the SRDF as never checked.
 std::vector<SpherePair> PairsMovedBy(const RobotTree& tree,
                                      const std::vector<CollisionSphere>& spheres,
                                      const std::vector<int>& coordinates,
