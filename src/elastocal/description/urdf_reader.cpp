@@ -27,7 +27,16 @@ Transform ToTransform(const UrdfOrigin& origin) {
   return Eigen::Translation3d(origin.xyz) * rotation.normalized();
 }
 
-Link ReadLink(const UrdfLink& source) {
+/// Moments in kg.mm^2 or g.mm^2, as some CAD programs write them, would be those of a body of the
+/// size of a street.
+bool InWrongUnit(const Eigen::Matrix3d& inertia, double mass) {
+  constexpr double kLargestRadius_m = 10.0;  // of gyration
+  constexpr double kNotable = 10.0;          // kg.m^2: a mere frame's do no harm
+  const double moment = 0.5 * inertia.trace();
+  return moment > kNotable && moment > mass * kLargestRadius_m * kLargestRadius_m;
+}
+
+Link ReadLink(const UrdfLink& source, std::vector<std::string>& warnings) {
   Link link;
   link.name = source.name;
   link.T_body_link = Transform::Identity();
@@ -46,6 +55,12 @@ Link ReadLink(const UrdfLink& source) {
   Eigen::Matrix3d inertia;  // moments hardly below zero are a program's rounding
   inertia << ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz;
   inertia.diagonal() = inertia.diagonal().cwiseMax(0.0);
+  if (InWrongUnit(inertia, link.mass)) {
+    warnings.push_back("link " + Quote(link.name) +
+                       ": its inertia is that of a body more than 20 m wide, as if it were not in "
+                       "kg.m^2; it is taken to have a mass only");
+    return link;
+  }
   link.inertia = T_link_inertial.linear() * inertia * T_link_inertial.linear().transpose();
   return link;
 }
@@ -146,7 +161,7 @@ class TreeBuilder {
     tree_link_.resize(outline_.links.size(), -1);
     for (int i : order) {
       tree_link_[i] = static_cast<int>(tree_.links.size());
-      tree_.links.push_back(ReadLink(outline_.links[i]));
+      tree_.links.push_back(ReadLink(outline_.links[i], tree_.warnings));
     }
   }
 

@@ -151,6 +151,21 @@ TEST(UrdfReader, VelocityAndEffortOfZeroAreNoLimitsWhereTheJointCanMove) {
   EXPECT_TRUE(rigid.warnings.empty());
 }
 
+TEST(UrdfReader, AnInertiaInAnotherUnitIsNone) {
+  const auto parse = [](const std::string& moment) {
+    return ParseLinks("<link name='a'><inertial><mass value='0.158'/><inertia ixx='" + moment +
+                      "' ixy='0' ixz='0' iyy='" + moment + "' iyz='0' izz='" + moment +
+                      "'/></inertial></link>");
+  };
+  const RobotTree wrong = parse("6.9e4");
+  EXPECT_EQ(wrong.links[0].mass, 0.158);
+  EXPECT_TRUE(wrong.links[0].inertia.isZero());
+  ExpectWarning(wrong, "link 'a': its inertia is that of a body more than 20 m wide");
+  const RobotTree placeholder = parse("1.0");
+  EXPECT_EQ(placeholder.links[0].inertia(0, 0), 1.0);
+  EXPECT_TRUE(placeholder.warnings.empty());
+}
+
 TEST(UrdfReader, LimitsInWhichAMimicJointCouldNotFollowAreNone) {
   const auto parse = [](const std::string& multiplier) {
     const std::string limit = "<limit lower='0' upper='0.5' effort='1' velocity='1'/>";
