@@ -163,8 +163,11 @@ class SuspicionSearch {
     std::vector<int> others;
     std::set_difference(postures.begin(), postures.end(), longest.begin(), longest.end(),
                         std::back_inserter(others));
-    // The first posture may have been reached before it froze.
-    const double before = Typical(Shown(c, longest) - Logged(c, longest));
+    // A joint that rests while others move is logged in one place as well, and the markers show it
+    // in one. The first posture may have been reached before it froze.
+    const Eigen::VectorXd shown = Shown(c, longest);
+    if (Typical(shown.array() - Median(shown)) < 0.5 * LeastDiscrepancy(c)) return;
+    const double before = Typical(shown - Logged(c, longest));
     const double after = Typical(Shown(c, others) - Logged(c, others));
     if (before < LeastDiscrepancy(c) || after > kFarBetter * before) return;
     Add(LogContradiction::kFrozen, c, -1, longest, before, after);

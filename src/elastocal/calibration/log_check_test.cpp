@@ -140,6 +140,16 @@ TEST_F(LogCheckTest, AFrozenJointIsTold) {
   EXPECT_EQ(WithoutMistake(changed, found.front()).posture_count(), 2 * kPlayed - 6);
 }
 
+// It rests while others move, and the markers show it elsewhere, but in one place.
+TEST_F(LogCheckTest, AJointAtRestIsNotFrozen) {
+  Recording rests = recording_;
+  auto right_4 = rests.q.col(Coordinate("right_4")).segment(kPlayed + 5, 6);
+  right_4.setConstant(right_4[0] + 0.1);
+  See(rests);
+  right_4.array() -= 0.1;
+  EXPECT_EQ(First(rests), "");
+}
+
 TEST_F(LogCheckTest, ExchangedLabelsAreTold) {
   Recording changed = recording_;
   const auto clusters = Clusters();
