@@ -115,6 +115,7 @@ def main():
             named_count += bool(hits)
             said = hits[0] if hits else next((l for l in told if l.startswith("Verdict")), told[-2:][0])
             said = re.sub(r"^(elastocal: \w+: |Verdict: (do not )?deploy\. )", "", said.strip())
+            said = said.replace(f"{folder}/", "")
             lines.append(f"| {name} | {done.returncode} | {'yes' if hits else 'no'} | {ratio} | "
                          f"{said[:110].replace('|', '/')} |")
             print(lines[-1], flush=True)

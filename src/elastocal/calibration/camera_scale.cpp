@@ -12,7 +12,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastScale = 3e-3;
-constexpr double kCertain = 4.5;  // standard deviations
+constexpr double kCertain = 3.5;  // standard deviations: one clean recording in a thousand
 constexpr int kRounds = 10;
 constexpr int kFewestLengths = 4;
 constexpr double kLeastLength = 0.02;  // m: shorter ones tell nothing of a scale

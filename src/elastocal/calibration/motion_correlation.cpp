@@ -14,6 +14,8 @@ constexpr int kLeastMotionPairs = 10;
 constexpr double kLeastShare = 0.05;      // of the errors of the model in the variance of a row
 constexpr double kLeastLeftByPose = 0.1;  // of a row, by the poses
 constexpr double kChance = 3.0;           // standard deviations of a correlation that is none
+// Distances are looked at up to so many pairs, but in any case so many of them: long tables.
+constexpr int kMostPairs = 20'000'000, kLags = 500;
 
 /// First posture and number of postures of each motion. They follow each other.
 struct Motion {
@@ -83,9 +85,10 @@ class Tracks {
     const double spread = together.products / together.rows / left;  // of one value
     int longest = 0;
     for (const Motion& motion : motions) longest = std::max(longest, motion.count);
+    const int lags = std::min(longest, std::max(kLags, kMostPairs / std::max(1, postures_)));
     bool falls = true;     // not yet to zero
     double squares = 1.0;  // 1 + 2 sum rho_k^2, of values
-    for (int lag = 1; lag < longest; ++lag) {
+    for (int lag = 1; lag < lags; ++lag) {
       const LagSum sum = SumAtLag(motions, lag);
       if (sum.pairs < kLeastMotionPairs) break;
       const double correlation = std::clamp(sum.products / sum.rows / left, -1.0, 1.0);
