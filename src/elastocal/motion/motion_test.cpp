@@ -194,7 +194,8 @@ TEST_F(BalancedWalker, VisitsPosturesOnOneFoot) {
 // Parts that would be further from each other if the waist leaned are no reason to lean: the lifted
 // foot would be elsewhere, and the motion would jump there.
 TEST_F(BalancedWalker, LiftsAFootToWhereItIsTold) {
-  const MoveBuilder build(robot_, SizedOptions(robot_, {}));
+  const PlanOptions options = SizedOptions(robot_, {});
+  const MoveBuilder build(robot_, options);
   const Transform wanted = Eigen::Translation3d(0.0, 0.0, 0.05) * robot_.T_world_sole[1];
   const PlacedPosture near{robot_.rest, robot_.T_world_root};
   Refusal why;
