@@ -40,6 +40,23 @@ std::pair<int, int> OffsetsInside(const ErrorModel& model, const Eigen::VectorXd
   return inside;
 }
 
+/// Intervals that hold the truth, and how many do where the moments are taken for independent.
+struct Tally {
+  int inside = 0, all = 0, independent = 0;
+
+  void Add(std::pair<int, int> as_motion, std::pair<int, int> as_postures) {
+    inside += as_motion.first;
+    all += as_motion.second;
+    independent += as_postures.first;
+  }
+
+  void Expect(double least, double most_independent) const {
+    std::printf("%d of %d inside; %d as independent postures\n", inside, all, independent);
+    EXPECT_GT(inside, least * all);
+    EXPECT_LT(independent, most_independent * all);
+  }
+};
+
 /// An arm that moves slowly while it is recorded ten times a second. Each body is displaced by a
 /// model error of its own, a first-order process in time.
 struct SlowArm {
@@ -119,9 +136,7 @@ struct SlowArm {
 // Taken for independent, the moments promise several times what they hold.
 TEST(Motion, IntervalsHoldTheTruthWhereNeighboursShareTheirError) {
   const SlowArm arm;
-  int inside = 0;
-  int all = 0;
-  int inside_independent = 0;
+  Tally tally;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Recording recording = arm.Record(seed);
     const CalibrationResult result = arm.Estimate(recording);
@@ -129,41 +144,31 @@ TEST(Motion, IntervalsHoldTheTruthWhereNeighboursShareTheirError) {
     EXPECT_NEAR(result.noise.motion[0].bodies.lag_one, kCorrelation, 0.08);
     EXPECT_GT(result.noise.motion[0].bodies.samples_each, 8.0);
     EXPECT_LT(result.noise.motion[0].bodies.samples_each, 80.0);
-    const auto here = OffsetsInside(arm.model, arm.truth, result);
-    inside += here.first;
-    all += here.second;
     recording.time_s.resize(0);  // the same numbers, as postures that know nothing of each other
     const CalibrationResult independent = arm.Estimate(recording);
     EXPECT_TRUE(independent.noise.motion.empty());
-    inside_independent += OffsetsInside(arm.model, arm.truth, independent).first;
+    tally.Add(OffsetsInside(arm.model, arm.truth, result),
+              OffsetsInside(arm.model, arm.truth, independent));
   }
-  std::printf("%d of %d inside; %d as independent postures\n", inside, all, inside_independent);
-  EXPECT_GT(inside, 0.88 * all);
-  EXPECT_LT(inside_independent, 0.5 * all);
+  tally.Expect(0.88, 0.5);
 }
 
 // Errors that are drawn anew for each moment of a cycle are not correlated with their neighbours',
 // but with themselves a cycle later.
 TEST(Motion, AMotionThatRepeatsItselfTellsNoMoreThanOnce) {
   const SlowArm arm;
-  int inside = 0;
-  int all = 0;
-  int inside_independent = 0;
+  Tally tally;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Recording recording = arm.RecordCycles(seed);
     const CalibrationResult result = arm.Estimate(recording);
     EXPECT_NEAR(result.noise.motion[0].bodies.lag_one, 0.0, 0.2);
     EXPECT_GT(result.noise.motion[0].bodies.samples_each, 0.7 * kCycles);
     EXPECT_LT(result.noise.motion[0].bodies.samples_each, 1.8 * kCycles);
-    const auto here = OffsetsInside(arm.model, arm.truth, result);
-    inside += here.first;
-    all += here.second;
     recording.time_s.resize(0);
-    inside_independent += OffsetsInside(arm.model, arm.truth, arm.Estimate(recording)).first;
+    tally.Add(OffsetsInside(arm.model, arm.truth, result),
+              OffsetsInside(arm.model, arm.truth, arm.Estimate(recording)));
   }
-  std::printf("%d of %d inside; %d as independent postures\n", inside, all, inside_independent);
-  EXPECT_GT(inside, 0.85 * all);
-  EXPECT_LT(inside_independent, 0.8 * all);
+  tally.Expect(0.85, 0.8);
 }
 
 /// A humanoid on one leg, then the other: 16 rests each, and then slowly from rest to rest, which
@@ -219,9 +224,7 @@ struct SlowLegs {
 // constraint of the standing foot leaves does.
 TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
   const SlowLegs legs;
-  int inside = 0;
-  int all = 0;
-  int inside_independent = 0;
+  Tally tally;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Recording recording = legs.Record(seed);
     const auto estimate = [&] {
@@ -234,15 +237,11 @@ TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
       EXPECT_GT(result.noise.motion[leg].waist.samples_each, 10.0);
       EXPECT_EQ(result.noise.motion[leg].bodies.samples_each, 1.0);
     }
-    const auto here = OffsetsInside(legs.robot.model, legs.truth, result, "leg_");
-    inside += here.first;
-    all += here.second;
     for (Trial& trial : recording.trials) trial.moments = false;
-    inside_independent += OffsetsInside(legs.robot.model, legs.truth, estimate(), "leg_").first;
+    tally.Add(OffsetsInside(legs.robot.model, legs.truth, result, "leg_"),
+              OffsetsInside(legs.robot.model, legs.truth, estimate(), "leg_"));
   }
-  std::printf("%d of %d inside; %d as independent postures\n", inside, all, inside_independent);
-  EXPECT_GT(inside, 0.9 * all);
-  EXPECT_LT(inside_independent, 0.8 * all);
+  tally.Expect(0.9, 0.8);
 }
 
 // What shares its error with a left-out moment is left out as well.
