@@ -81,8 +81,8 @@ struct SlowArm {
     }
     std::vector<Eigen::Matrix3Xd> shared = {DrawShared(random, kShared)};
     for (int i = 1; i < kMoments; ++i) {
-      shared.push_back(kCorrelation * shared.back() +
-                       DrawShared(random, kShared * std::sqrt(1.0 - std::pow(kCorrelation, 2))));
+      shared.emplace_back(kCorrelation * shared.back() +
+                          DrawShared(random, kShared * std::sqrt(1.0 - std::pow(kCorrelation, 2))));
     }
     See(shared, random, recording);
     return recording;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/motion/move_builder.hpp"
 #include "elastocal/motion/plan.hpp"
