@@ -121,8 +121,7 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   const NormalEquations equations(body);
   const bool anew = explained.all.empty();
   if (anew) {
-    explained.all = equations.ExplainedVariances(TakeCovariance(problem, free, equations, fit));
-    explained.by_pose = equations.ExplainedByNuisance();
+    explained = equations.ExplainedVariances(TakeCovariance(problem, free, equations, fit));
   }
   const Eigen::VectorXd step =
       BoundedStep(equations.information(), equations.gradient(), x(equations.unknowns()),

@@ -43,16 +43,16 @@ struct Track {
 struct BlockRows {
   Eigen::ArrayXd residual;
   Eigen::ArrayXd counts;        // BodyResiduals::Counts
-  Eigen::ArrayXd by_pose;       // ExplainedRows::by_pose
-  Eigen::ArrayXd left_by_pose;  // ExplainedRows::LeftByPose
+  Eigen::ArrayXd by_pose;       // ExplainedRows::by_nuisance
+  Eigen::ArrayXd left_by_pose;  // LeftByPose
 };
 
 BlockRows RowsOf(const BodyResiduals& residuals, const ExplainedRows& explained, int block,
                  Eigen::Index rows) {
   const Eigen::ArrayXd counts = residuals.Counts(block);
   return {residuals.Residual(block).head(rows).array(), counts.head(rows),
-          explained.by_pose[block].head(rows).array(),
-          explained.LeftByPose(block, counts).head(rows)};
+          explained.by_nuisance[block].head(rows).array(),
+          LeftByPose(explained, block, counts).head(rows)};
 }
 
 /// The tracks of a group.

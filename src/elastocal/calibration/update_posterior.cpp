@@ -141,18 +141,17 @@ void UpdatePosterior(const FitProblem& problem, const Selection& selection,
   body.Evaluate(body.Start(), true);
   const NormalEquations equations(body);
   const Eigen::MatrixXd covariance = TakeCovariance(problem, parameters, equations, fit);
-  const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
+  const ExplainedRows explained = equations.ExplainedVariances(covariance);
   fit.degrees_of_freedom = DegreesOfFreedom(
-      problem.options, CollectComponents(problem, selection, fit.noise, body,
-                                         {explained, equations.ExplainedByNuisance()}));
+      problem.options, CollectComponents(problem, selection, fit.noise, body, explained));
   fit.posterior.effective_parameters = 0.0;
   const int observations = body.body_count() + static_cast<int>(body.tied_postures().size());
   for (int block = 0; block < observations; ++block) {
     if (body.residual_blocks[block].active) {
-      fit.posterior.effective_parameters += explained[block].sum();
+      fit.posterior.effective_parameters += explained.all[block].sum();
     }
   }
-  WidenByClusters(problem, residuals, selection, equations, covariance, explained, fit);
+  WidenByClusters(problem, residuals, selection, equations, covariance, explained.all, fit);
   fit.posterior.data_information = DataInformation(problem, residuals.prior, parameters, equations);
 }
 

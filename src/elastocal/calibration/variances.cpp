@@ -29,6 +29,12 @@ void Add(const Eigen::ArrayXd& shares, const Eigen::VectorXd& residual,
   component.means.push_back(squares / rows);
 }
 
+/// What the fit leaves of the variance of a block's rows.
+Eigen::ArrayXd Left(const ExplainedRows& explained, int block, const Eigen::ArrayXd& counts) {
+  return LeftByPose(explained, block, counts) -
+         (explained.all[block] - explained.by_nuisance[block]).array();
+}
+
 /// Huber's weights, which keep the quantiles that they need: most bodies have as many rows.
 class HuberWeight {
  public:
@@ -57,6 +63,11 @@ double VarianceComponent::Factor(Robustness robustness) const {
   return std::sqrt(total / left);
 }
 
+Eigen::ArrayXd LeftByPose(const ExplainedRows& explained, int block, const Eigen::ArrayXd& counts) {
+  const Eigen::ArrayXd pose = explained.by_nuisance[block].array();
+  return (1.0 - pose) * (counts + (1.0 - counts) * pose);
+}
+
 VarianceComponents CollectComponents(const FitProblem& problem, const Selection& selection,
                                      const Noise& noise, const BodyResiduals& residuals,
                                      const ExplainedRows& explained) {
@@ -66,7 +77,7 @@ VarianceComponents CollectComponents(const FitProblem& problem, const Selection&
     if (!body.used) continue;
     const int group = problem.group[body.posture];
     const Eigen::ArrayXd counts = residuals.Counts(b);
-    const Eigen::ArrayXd left = explained.Left(b, counts);
+    const Eigen::ArrayXd left = Left(explained, b, counts);
     for (NoiseSource source : {NoiseSource::kMarker, NoiseSource::kBodyPosition}) {
       Add(body.Shares(noise, group, source), residuals.Residual(b), counts, left,
           components[group][static_cast<int>(source)]);
@@ -77,7 +88,7 @@ VarianceComponents CollectComponents(const FitProblem& problem, const Selection&
     if (selection.tied[posture] == 0) continue;
     const int block = residuals.TieBlock(static_cast<int>(t));
     const Eigen::ArrayXd counts = residuals.Counts(block);
-    const Eigen::ArrayXd left = explained.Left(block, counts);
+    const Eigen::ArrayXd left = Left(explained, block, counts);
     auto& of_group = components[problem.group[posture]];
     for (NoiseSource source : {NoiseSource::kWaistPosition, NoiseSource::kWaistRotation}) {
       Eigen::ArrayXd shares = Eigen::ArrayXd::Zero(6);

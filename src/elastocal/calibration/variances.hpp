@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastocal/calibration/fit.hpp"
+#include "elastocal/optim/normal_equations.hpp"
 
 namespace elastocal {
 
@@ -27,23 +28,11 @@ struct VarianceComponent {
 /// By group and source.
 using VarianceComponents = std::vector<std::array<VarianceComponent, kNoiseSourceCount>>;
 
-/// What the fit explains of each row of each residual block, of a variance of 1.
-struct ExplainedRows {
-  std::vector<Eigen::VectorXd> all;
-  std::vector<Eigen::VectorXd> by_pose;  ///< part of it by what a posture has of its own: the waist
-
-  /// What the rest of a block's variance is, if the poses alone were estimated and a row counts as
-  /// `counts` (BodyResiduals::Counts): its errors are smaller than its standard deviation by the
-  /// root of it, but what the other rows of the posture make of the pose is not.
-  Eigen::ArrayXd LeftByPose(int block, const Eigen::ArrayXd& counts) const {
-    const Eigen::ArrayXd pose = by_pose[block].array();
-    return (1.0 - pose) * (counts + (1.0 - counts) * pose);
-  }
-  /// The same, everything being estimated.
-  Eigen::ArrayXd Left(int block, const Eigen::ArrayXd& counts) const {
-    return LeftByPose(block, counts) - (all[block] - by_pose[block]).array();
-  }
-};
+/// What is left of the variance of a block's rows, if the waist's pose alone were estimated
+/// (ExplainedRows::by_nuisance) and a row counts as `counts` (BodyResiduals::Counts): its errors
+/// are smaller than its standard deviation by the root of it, but what the other rows of the
+/// posture make of the pose is not.
+Eigen::ArrayXd LeftByPose(const ExplainedRows& explained, int block, const Eigen::ArrayXd& counts);
 
 /// Components from the residuals as last evaluated.
 VarianceComponents CollectComponents(const FitProblem& problem, const Selection& selection,

@@ -205,7 +205,7 @@ bool UpdateFit(const ObservedRobot& model, const Observations& observations,
   const double cost = CostOf(residuals);
   const NormalEquations equations(residuals);
   Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
-  const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance);
+  const std::vector<Eigen::VectorXd> explained = equations.ExplainedVariances(covariance).all;
   const Eigen::VectorXd step =
       BoundedStep(equations.information(), equations.gradient(), x, residuals.nonnegative);
   const bool small = -equations.gradient().dot(step) < kSlightStep * (1.0 + cost);

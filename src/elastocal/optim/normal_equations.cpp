@@ -240,9 +240,11 @@ Eigen::MatrixXd NormalEquations::Explained(int block, const Eigen::MatrixXd& cov
   return explained;
 }
 
-std::vector<Eigen::VectorXd> NormalEquations::ExplainedVariances(
-    const Eigen::MatrixXd& covariance) const {
-  std::vector<Eigen::VectorXd> variances(layout_.size());
+ExplainedRows NormalEquations::ExplainedVariances(const Eigen::MatrixXd& covariance) const {
+  ExplainedRows explained;
+  std::vector<Eigen::VectorXd>& variances = explained.all;
+  variances.resize(layout_.size());
+  explained.by_nuisance.resize(layout_.size());
   for (const std::vector<int>& blocks : alike_) {
     const std::vector<int>& at = layout_[blocks.front()].unknowns;
     const Eigen::MatrixXd gradients = OwnGradients(blocks);
@@ -252,39 +254,25 @@ std::vector<Eigen::VectorXd> NormalEquations::ExplainedVariances(
     for (int block : blocks) {
       variances[block] = all.segment(row, problem_.Residual(block).size());
       row += variances[block].size();
+      explained.by_nuisance[block] = Eigen::VectorXd::Zero(variances[block].size());
     }
   }
   // C gain', of all groups at once.
   const Eigen::MatrixXd reach = Product(covariance, gains_);
   for (const Group& group : groups_) {
     const auto own = reach.middleCols(group.row, group.size);
-    const Eigen::MatrixXd spread =
-        Gain(group).lazyProduct(own) +
+    const Eigen::MatrixXd nuisance =
         group.factor.solve(Eigen::MatrixXd::Identity(group.size, group.size));
+    const Eigen::MatrixXd spread = Gain(group).lazyProduct(own) + nuisance;
     for (int block : group.blocks) {
       const Columns E = NuisanceJacobian(block);
       const Eigen::MatrixXd of_block = own(layout_[block].unknowns, Eigen::all);
       const Eigen::MatrixXd across = OwnJacobian(block).lazyProduct(of_block);
       variances[block] += (E * spread - 2.0 * across).cwiseProduct(E).rowwise().sum();
+      explained.by_nuisance[block] = (E * nuisance).cwiseProduct(E).rowwise().sum();
     }
   }
-  return variances;
-}
-
-std::vector<Eigen::VectorXd> NormalEquations::ExplainedByNuisance() const {
-  std::vector<Eigen::VectorXd> variances;
-  for (std::size_t block = 0; block < layout_.size(); ++block) {
-    variances.emplace_back(
-        Eigen::VectorXd::Zero(problem_.Residual(static_cast<int>(block)).size()));
-  }
-  for (const Group& group : groups_) {
-    for (int block : group.blocks) {
-      const Columns E = NuisanceJacobian(block);
-      variances[block] =
-          group.factor.solve(E.transpose()).transpose().cwiseProduct(E).rowwise().sum();
-    }
-  }
-  return variances;
+  return explained;
 }
 
 Eigen::MatrixXd NormalEquations::Scores(const std::vector<Eigen::VectorXd>& residuals,

@@ -11,6 +11,13 @@
 
 namespace elastocal {
 
+/// What a fit explains of the unit variance of each row, by residual block.
+struct ExplainedRows {
+  std::vector<Eigen::VectorXd> all;
+  std::vector<Eigen::VectorXd> by_nuisance;  ///< part of it that the nuisance would explain if the
+                                             ///< unknowns were known
+};
+
 /// The normal equations of a least-squares problem linearised at a point, its nuisance blocks
 /// eliminated (Schur complement), as H step = -gradient. With residuals in units of their standard
 /// deviations, the inverse of H is the covariance of the unknowns, the nuisance being unknown as
@@ -41,10 +48,7 @@ class NormalEquations {
   Eigen::MatrixXd Explained(int block, const Eigen::MatrixXd& covariance) const;
 
   /// Its diagonal, for all residual blocks (in less time than block by block).
-  std::vector<Eigen::VectorXd> ExplainedVariances(const Eigen::MatrixXd& covariance) const;
-
-  /// What of it the nuisance would explain if the unknowns were known.
-  std::vector<Eigen::VectorXd> ExplainedByNuisance() const;
+  ExplainedRows ExplainedVariances(const Eigen::MatrixXd& covariance) const;
 
   /// Parts of the gradient, J' Q r, that clusters of residual blocks make: unknowns x clusters.
   /// `residuals`, by block, stand for those of the problem; `cluster`: of each block, -1: none.

@@ -49,11 +49,15 @@ TEST_F(NormalEquationsTest, ExplainedIsTheCovarianceOfThePrediction) {
   const NormalEquations equations = At(Eigen::VectorXd::Zero(9));
   const Eigen::MatrixXd covariance = equations.information().inverse();
   const Eigen::MatrixXd whole = problem_.Information().inverse();
-  const auto variances = equations.ExplainedVariances(covariance);
+  const ExplainedRows explained = equations.ExplainedVariances(covariance);
+  const Eigen::MatrixXd known = Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
   for (int block = 0; block < blocks(); ++block) {
     const Eigen::MatrixXd expected = Rows(block) * whole * Rows(block).transpose();
     EXPECT_LT((equations.Explained(block, covariance) - expected).norm(), 1e-9) << block;
-    EXPECT_LT((variances[block] - expected.diagonal()).norm(), 1e-9) << block;
+    EXPECT_LT((explained.all[block] - expected.diagonal()).norm(), 1e-9) << block;
+    EXPECT_LT((explained.by_nuisance[block] - equations.Explained(block, known).diagonal()).norm(),
+              1e-9)
+        << block;
   }
 }
 
