@@ -47,6 +47,10 @@ Eigen::ArrayXd BodyObservation::Shares(const Noise& noise, int group, NoiseSourc
   return Eigen::ArrayXd::Zero(all.size());
 }
 
+Eigen::ArrayXd BodyObservation::Counts(const Noise& noise, int group, double samples_each) const {
+  return 1.0 / (1.0 + (samples_each - 1.0) * Shares(noise, group, NoiseSource::kBodyPosition));
+}
+
 BodyObservation MakeBodyObservation(int posture, int body, std::vector<int> markers,
                                     const Eigen::Matrix3Xd& positions) {
   const Eigen::Index count = positions.cols();

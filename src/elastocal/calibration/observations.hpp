@@ -37,6 +37,9 @@ struct BodyObservation {
   Eigen::ArrayXd Variances(const Noise& noise, int group) const;
   /// Part of `source` in it: 0 to 1.
   Eigen::ArrayXd Shares(const Noise& noise, int group, NoiseSource source) const;
+  /// As how many postures each row counts, where so many moments tell as much of the position's
+  /// variance as one posture; noise of single markers is their own.
+  Eigen::ArrayXd Counts(const Noise& noise, int group, double samples_each) const;
 };
 
 /// `positions`: of the markers, 3 x markers, m.

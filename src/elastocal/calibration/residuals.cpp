@@ -193,15 +193,12 @@ double BodyResiduals::SamplesEach(int posture, Autocorrelation MotionCorrelation
 
 Eigen::ArrayXd BodyResiduals::Counts(int block) const {
   if (block >= body_count()) {
-    const double each =
-        SamplesEach(tied_postures_[block - body_count()], &MotionCorrelation::waist);
-    return Eigen::ArrayXd::Constant(6, 1.0 / each);
+    const int posture = tied_postures_[block - body_count()];
+    return Eigen::ArrayXd::Constant(6, 1.0 / SamplesEach(posture, &MotionCorrelation::waist));
   }
-  const BodyObservation& body = in_.selection.bodies[block];
-  const double each = SamplesEach(body.posture, &MotionCorrelation::bodies);
-  if (each == 1.0) return Eigen::ArrayXd::Ones(body.size());
-  return 1.0 / (1.0 + (each - 1.0) * body.Shares(in_.noise, in_.group[body.posture],
-                                                 NoiseSource::kBodyPosition));
+  const BodyObservation& of = in_.selection.bodies[block];
+  return of.Counts(in_.noise, in_.group[of.posture],
+                   SamplesEach(of.posture, &MotionCorrelation::bodies));
 }
 
 bool BodyResiduals::IsStandingFoot(int posture, int body) const {
