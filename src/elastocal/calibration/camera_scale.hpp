@@ -21,7 +21,7 @@ struct CommonScale {
 std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
                                                const CalibrationOptions& options);
 
-/// The same if no robot has that: more than 0.3 % and 4.5 standard deviations.
+/// The same if no robot has that: more than 0.3 % and 3.5 standard deviations.
 std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
                                           const CalibrationOptions& options);
 
