@@ -7,12 +7,13 @@
 
 #include "elastocal/math/dense.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr double kLeastScale = 3e-3;
-constexpr double kCertain = 3.5;  // standard deviations: one clean recording in a thousand
+constexpr double kFalseAlarm = 1e-3;  // probability that a clean recording is accused
 constexpr int kRounds = 10;
 constexpr int kFewestLengths = 4;
 constexpr double kLeastLength = 0.02;  // m: shorter ones tell nothing of a scale
@@ -133,11 +134,13 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
     const Eigen::VectorXd pull = weight * (own_weight * own_pattern);
     const double known = pull.dot(own_pattern) - pull.dot(covariance * pull);
     if (!(known > 0.0)) return std::nullopt;
-    scale = {pull.dot(covariance * own_b) / known, 1.0 / std::sqrt(known)};
+    scale.size = pull.dot(covariance * own_b) / known;
+    scale.sd = 1.0 / std::sqrt(known);
     const Eigen::VectorXd own = covariance * (own_b + scale.size * pull) - scale.size * own_pattern;
     const double squares = weight * own.dot(own_weight * own);
     const double determined =
         static_cast<double>(own_count) - weight * own_weight.cwiseProduct(covariance).sum();
+    scale.degrees_of_freedom = std::max(1.0, determined);
     if (determined < 1.0) break;
     width = std::max(narrowest, width * std::sqrt(squares / determined));
   }
@@ -148,7 +151,8 @@ std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
                                           const CalibrationOptions& options) {
   const auto scale = EstimateCommonScale(result, options);
   const bool wrong =
-      scale && std::abs(scale->size) > kLeastScale && std::abs(scale->size) > kCertain * scale->sd;
+      scale && std::abs(scale->size) > kLeastScale &&
+      StudentTwoSidedTail(scale->size / scale->sd, scale->degrees_of_freedom) < kFalseAlarm;
   return wrong ? scale : std::nullopt;
 }
 

@@ -12,6 +12,7 @@ namespace elastocal {
 struct CommonScale {
   double size = 0.0;  ///< the factor less 1
   double sd = 0.0;
+  double degrees_of_freedom = 1.0;  ///< of `sd`: how many lengths tell how far they err themselves
 };
 
 /// How far all lengths of a robot are off by the same factor, beside what each is off by itself
@@ -21,7 +22,8 @@ struct CommonScale {
 std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
                                                const CalibrationOptions& options);
 
-/// The same if no robot has that: more than 0.3 % and 3.5 standard deviations.
+/// The same if no robot has that: more than 0.3 %, and as many standard deviations as one clean
+/// recording in a thousand has by Student's t (3.5 for a humanoid, 4.6 for an arm of seven joints).
 std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
                                           const CalibrationOptions& options);
 

@@ -280,7 +280,9 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["cluster_factor"] = result.posterior.cluster_factor;
   json["gauge"] = GaugeText(result.gauge);
   if (run.common_scale) {
-    json["common_scale"] = {{"size", run.common_scale->size}, {"sd", run.common_scale->sd}};
+    json["common_scale"] = {{"size", run.common_scale->size},
+                            {"sd", run.common_scale->sd},
+                            {"degrees_of_freedom", run.common_scale->degrees_of_freedom}};
   }
   json["effective_parameters"] = result.posterior.effective_parameters;
   json["rmse_3d_mm"] =
