@@ -192,6 +192,8 @@ TEST_F(SharedHips, OfWeakMotorsDoNotStand) {
   EXPECT_FALSE(draft.stance);
   EXPECT_NE(draft.held_because.find("torque limit of 'right_hip_roll'"), std::string::npos)
       << draft.held_because;
+  EXPECT_EQ(draft.held_because.find("before its gear"), std::string::npos);
+  EXPECT_NE(Draft(0.1).held_because.find("before its gear"), std::string::npos);
 }
 
 // The axes of these hips are not those of the ankles, so that each place of the root link asks for

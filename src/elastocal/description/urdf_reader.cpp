@@ -37,6 +37,7 @@ bool InWrongUnit(const Eigen::Matrix3d& inertia, double mass) {
 }
 
 Link ReadLink(const UrdfLink& source, std::vector<std::string>& warnings) {
+  constexpr double kRounding = 1e-9;  // kg.m^2: moments hardly below zero are a program's rounding
   Link link;
   link.name = source.name;
   link.T_body_link = Transform::Identity();
@@ -52,9 +53,11 @@ Link ReadLink(const UrdfLink& source, std::vector<std::string>& warnings) {
   const double ixx = entries.Number("ixx"), ixy = entries.Number("ixy"),
                ixz = entries.Number("ixz"), iyy = entries.Number("iyy"),
                iyz = entries.Number("iyz"), izz = entries.Number("izz");
-  Eigen::Matrix3d inertia;  // moments hardly below zero are a program's rounding
+  Eigen::Matrix3d inertia;
   inertia << ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz;
-  inertia.diagonal() = inertia.diagonal().cwiseMax(0.0);
+  for (double& moment : inertia.diagonal()) {
+    if (moment < 0.0 && moment > -kRounding) moment = 0.0;
+  }
   if (InWrongUnit(inertia, link.mass)) {
     warnings.push_back("link " + Quote(link.name) +
                        ": its inertia is that of a body more than 20 m wide, as if it were not in "

@@ -261,7 +261,7 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   draft.urdf = AddSoleLinks(urdf, described, draft.soles);
   draft.tree = ParseUrdf(draft.urdf, source);
   NameTips(described, draft);
-  draft.stance = ChooseStance(draft.tree, draft.soles);
+  draft.stance = ChooseStance(draft.tree, draft.limbs, draft.soles);
   RestOnFeet(draft, semantics);
   if (!draft.stands) draft.stance.reset();
   draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs, draft.rest.q);

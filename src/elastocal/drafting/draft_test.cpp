@@ -235,6 +235,18 @@ TEST(Draft, WheelsAreNoLimbsAndALongBranchIsAnArm) {
   EXPECT_EQ(DraftProject(alone, "a.urdf", {}).limbs.limbs.size(), 1u);
 }
 
+// As of Pepper, whose base is the end of its leg.
+TEST(Draft, WheelsBesideEachOtherAreNoLimbsWhereverTheyAre) {
+  const std::string more = RodXml("hip", "pole", "0 0 -0.2") + RodXml("base", "hip", "0 0 -0.3") +
+                           RodXml("wheel_l", "base", "0 0.2 -0.1", "continuous") +
+                           RodXml("wheel_r", "base", "0 -0.2 -0.1", "continuous");
+  const ProjectDraft draft =
+      DraftProject(PoleUrdf("<box size='0.3 0.3 0.3'/>", "20", more), "pole.urdf", {});
+  std::vector<std::string> names;
+  for (const Limb& limb : draft.limbs.limbs) names.push_back(limb.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"left_arm", "right_arm", "leg"}));
+}
+
 TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   for (const std::string side : {"left", "right"}) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <initializer_list>
 
 #include "elastocal/math/numbers.hpp"
 
@@ -43,6 +44,19 @@ int SideByName(const std::string& name) {
   return static_cast<int>(says(kLeft)) - static_cast<int>(says(kRight));
 }
 
+/// Whether the name of the tip or of one of a limb's own joints has one of these words.
+bool Says(const RobotTree& tree, const Limb& limb, std::initializer_list<const char*> sought) {
+  const auto says = [&](const std::string& name) {
+    const std::vector<std::string> words = WordsOf(name);
+    return std::find_first_of(words.begin(), words.end(), sought.begin(), sought.end()) !=
+           words.end();
+  };
+  const auto trunk = static_cast<std::ptrdiff_t>(JointsToBody(tree, limb.from_body).size());
+  return says(tree.links[Size(limb.tip_link)].name) ||
+         std::any_of(limb.joints.begin() + trunk, limb.joints.end(),
+                     [&](int k) { return says(tree.joints[Size(k)].name); });
+}
+
 }  // namespace
 
 int SideByNames(const RobotTree& tree, const Limb& limb) {
@@ -63,7 +77,10 @@ std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, cons
   if (limb.mirror < 0) {
     constexpr std::size_t kJointsOfAnArm = 4;
     const std::size_t trunk = JointsToBody(tree, limb.from_body).size();
-    if (limb.joints.size() - trunk < kJointsOfAnArm) return "head";
+    if (Says(tree, limb, {"head", "neck"})) return "head";
+    if (limb.joints.size() - trunk < kJointsOfAnArm) {
+      return Says(tree, limb, {"hip", "knee", "ankle"}) ? "leg" : "head";
+    }
     return side > 0 ? "left_arm" : side < 0 ? "right_arm" : "arm";
   }
   const bool named = side * SideByNames(tree, limbs[Size(limb.mirror)]) < 0;

@@ -42,6 +42,23 @@ TEST(LimbNames, TellTheSideInTheWaysThatUrdfsDo) {
   EXPECT_EQ(SideOf("l_knee", "r_knee"), 0);
 }
 
+TEST(LimbNames, AHeadSaysSoAndALegToo) {
+  const auto name = [](const std::string& first, const std::string& tip, std::size_t joints) {
+    RobotTree tree = PlanarArm();
+    tree.joints[0].name = first;
+    Limb limb;
+    limb.joints.assign(joints, 0);
+    limb.tip_link = tree.joints[1].child_link;
+    tree.links[Size(limb.tip_link)].name = tip;
+    return NameLimb(tree, {limb, limb}, limb);
+  };
+  EXPECT_EQ(name("lowerNeckPitch", "camera", 4), "head");
+  EXPECT_EQ(name("yaw", "head_camera", 4), "head");
+  EXPECT_EQ(name("shoulder", "camera", 4), "arm");
+  EXPECT_EQ(name("KneePitch", "base", 3), "leg");
+  EXPECT_EQ(name("yaw", "camera", 3), "head");
+}
+
 TEST(LimbNames, SidesAreThoseOfTheNames) {
   // The embedded robot turned about: its root link looks back.
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));

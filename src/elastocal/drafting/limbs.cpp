@@ -62,17 +62,25 @@ std::vector<bool> FindTools(const RobotTree& tree) {
   return tool;
 }
 
+bool TurnsWithoutEnd(const Joint& joint) {
+  return joint.type == JointType::kRevolute && !std::isfinite(joint.limits.lower);
+}
+
 /// Marks wheels as tools: ends of the robot that one or two joints carry, all of which turn without
-/// an end.
+/// an end, and several such ends of one body, wherever it is.
 void MarkWheels(const RobotTree& tree, std::vector<bool>& tool) {
   constexpr std::size_t kMostJoints = 2;
+  const auto wheel = [&](int body) {
+    return Branches(tree, body).empty() && TurnsWithoutEnd(tree.joints[Size(body) - 1]);
+  };
   for (int body = 1; body < tree.body_count(); ++body) {
+    if (!wheel(body)) continue;
+    const std::vector<int> beside = Branches(tree, tree.joints[Size(body) - 1].parent_body);
+    tool[Size(body)] = tool[Size(body)] || std::count_if(beside.begin(), beside.end(), wheel) > 1;
     const std::vector<int> joints = JointsToBody(tree, body);
-    const bool turns = std::all_of(joints.begin(), joints.end(), [&](int k) {
-      const Joint& joint = tree.joints[Size(k)];
-      return joint.type == JointType::kRevolute && !std::isfinite(joint.limits.lower);
-    });
-    if (!turns || joints.size() > kMostJoints || !Branches(tree, body).empty()) continue;
+    const bool turns = std::all_of(joints.begin(), joints.end(),
+                                   [&](int k) { return TurnsWithoutEnd(tree.joints[Size(k)]); });
+    if (!turns || joints.size() > kMostJoints) continue;
     for (const int k : joints) tool[Size(k) + 1] = Branches(tree, k + 1).size() < 2;
   }
 }
@@ -175,11 +183,12 @@ void PairMirrors(const RobotTree& tree, std::vector<Limb>& limbs) {
   }
 }
 
+/// Legs are measured from the root link or, where that is a frame on the floor, from the hips.
 void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb>& limbs) {
-  constexpr double kSameFloor = 0.08, kBelow = 0.25;
+  constexpr double kSameFloor = 0.08, kBelow = 0.25;  // of the longest limb
   const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   const double longest = LongestBranch(tree);
-  std::vector<double> lowest(limbs.size(), 0.0);
+  std::vector<double> lowest(limbs.size(), std::numeric_limits<double>::infinity());
   double floor = 0.0;
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     const int body = limbs[i].tip_body;
@@ -188,15 +197,21 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
     }
     floor = std::min(floor, lowest[i]);
   }
+  const bool root_on_floor = floor > -kSameFloor * longest;
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     Limb& limb = limbs[i];
-    const double origin = poses[Size(limb.tip_body)].translation().z();
-    limb.leg =
-        limb.mirror >= 0 && origin < -kBelow * longest && lowest[i] < floor + kSameFloor * longest;
+    const double top = root_on_floor ? LegTop(tree, limb) : 0.0;
+    const bool far_below = poses[Size(limb.tip_body)].translation().z() < top - kBelow * longest;
+    limb.leg = limb.mirror >= 0 && far_below && lowest[i] < floor + kSameFloor * longest;
   }
 }
 
 }  // namespace
+
+double LegTop(const RobotTree& tree, const Limb& limb) {
+  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  return std::max(0.0, poses[Size(limb.joints.front()) + 1].translation().z());
+}
 
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics) {
   Limbs found;

@@ -26,11 +26,16 @@ struct Limbs {
 };
 
 /// Finds the limbs of a robot from its tree. Bodies that part in several short branches are hands:
-/// what is beyond them are fingers. Bodies that one or two joints without an end carry are wheels.
-/// Legs are limbs with a mirror image whose ends are the lowest of the robot in the zero posture,
-/// well below the root link. Names are those of the SRDF's groups, or of NameLimb: "left_leg",
-/// "right_arm", "head"; they can name files and differ from each other. The tip is the link that
-/// the SRDF names, or the furthest one of the last body.
+/// what is beyond them are fingers. Bodies that one or two joints without an end carry are wheels,
+/// and so are several ends of one body that turn without an end. Legs are limbs with a mirror image
+/// whose ends are the lowest of the robot in the zero posture, well below the root link (below
+/// their own first joint where the root link is a frame on the floor). Names are those of the
+/// SRDF's groups, or of NameLimb: "left_leg", "right_arm", "head"; they can name files and differ
+/// from each other. The tip is the link that the SRDF names, or the furthest one of the last body.
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics);
+
+/// How high a leg begins in the zero posture, m above the root link: its first joint, or the root
+/// link itself where that is higher.
+double LegTop(const RobotTree& tree, const Limb& limb);
 
 }  // namespace elastocal

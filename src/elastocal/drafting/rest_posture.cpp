@@ -174,7 +174,8 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
       const std::vector<int> joints = OwnJoints(tree, limbs, limbs.limbs[Size(sole.limb)]);
       const int link = FindLink(tree, sole.link);
       Transform wanted = zero[Size(link)];
-      wanted.translation().z() *= 1.0 - drop;
+      const double top = LegTop(tree, limbs.limbs[Size(sole.limb)]);
+      wanted.translation().z() += drop * (top - wanted.translation().z());
       const Placer placer(tree, link, !sole.ball_radius, joints, lower, upper);
       const auto placed =
           PlaceBent(tree, joints, placer, wanted, sole.ball_radius.has_value(), bent);

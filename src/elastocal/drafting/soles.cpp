@@ -149,8 +149,9 @@ std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& sha
   return soles;
 }
 
-std::optional<double> ChooseStance(const RobotTree& tree, const std::vector<DraftedSole>& soles) {
-  constexpr double kRoom = 0.08;  // between the soles, as a share of the height of the root link
+std::optional<double> ChooseStance(const RobotTree& tree, const Limbs& limbs,
+                                   const std::vector<DraftedSole>& soles) {
+  constexpr double kRoom = 0.08;  // between the soles, as a share of the height of the leg
   if (soles.size() != 2) return {};
   const auto T_root_link = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   const auto corners = [&](const DraftedSole& sole) {
@@ -165,7 +166,7 @@ std::optional<double> ChooseStance(const RobotTree& tree, const std::vector<Draf
   const double distance = between.norm();
   const Eigen::RowVector3d along = between.transpose() / distance;
   const double gap = (along * b).minCoeff() - (along * a).maxCoeff();
-  const double room = kRoom * -a.row(2).mean();
+  const double room = kRoom * (LegTop(tree, limbs.limbs[Size(soles[0].limb)]) - a.row(2).mean());
   if (gap >= room) return {};
   return distance + room - gap;
 }

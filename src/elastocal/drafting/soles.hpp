@@ -36,7 +36,8 @@ std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& sha
 
 /// Distance between the centres of two soles, m, at which feet do not touch where errors of the
 /// robot bring them nearer: given if they are closer in the zero posture.
-std::optional<double> ChooseStance(const RobotTree& tree, const std::vector<DraftedSole>& soles);
+std::optional<double> ChooseStance(const RobotTree& tree, const Limbs& limbs,
+                                   const std::vector<DraftedSole>& soles);
 
 /// The URDF with the links that soles add, fixed to the feet and without mass.
 std::string AddSoleLinks(const std::string& urdf, const RobotTree& tree,

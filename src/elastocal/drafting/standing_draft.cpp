@@ -80,8 +80,12 @@ Refused LiftRefused(const StandingRobot& robot, int foot) {
     refused.why += " of " + Quote(robot.tree.joints[Size(left_out.index)].name);
   }
   if (refused.weak) {
-    refused.why += fmt::format(" ({:.0f} % of its effort, {:.0f} may be used)",
-                               100.0 * left_out.value, 100.0 * robot.limits.torque_share);
+    constexpr double kAbsurd = 3.0;
+    refused.why += fmt::format(" ({:.0f} % of its effort, {:.0f} may be used{})",
+                               100.0 * left_out.value, 100.0 * robot.limits.torque_share,
+                               left_out.value > kAbsurd
+                                   ? "; is the effort in the URDF that of a motor before its gear?"
+                                   : "");
   }
   return refused;
 }

@@ -40,6 +40,25 @@ TEST(StandingDraft, AQuadrupedStandsOnBalls) {
   EXPECT_NEAR(robot.half_support, 0.48 * 0.32 / std::hypot(0.48, 0.32) / 3.0, 2e-3);
 }
 
+// As of Berkeley's small humanoid.
+TEST(StandingDraft, TheRootLinkMayBeAFrameOnTheFloor) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  const ProjectDraft usual = DraftProject(urdf, "talos.urdf", {});
+  urdf.insert(urdf.find("<link"), R"(<link name="floor"/><joint name="up" type="fixed">
+      <parent link="floor"/><child link="base_link"/><origin xyz="0 0 1.08305"/></joint>)");
+  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
+  ASSERT_EQ(draft.tree.links.front().name, "floor");
+  EXPECT_TRUE(draft.stands) << draft.held_because;
+  ASSERT_EQ(draft.limbs.limbs.size(), usual.limbs.limbs.size());
+  for (std::size_t i = 0; i < draft.limbs.limbs.size(); ++i) {
+    EXPECT_EQ(draft.limbs.limbs[i].name, usual.limbs.limbs[i].name);
+    EXPECT_EQ(draft.limbs.limbs[i].leg, usual.limbs.limbs[i].leg);
+  }
+  EXPECT_EQ(draft.stance.has_value(), usual.stance.has_value());
+  // Legs are measured from the hips here, which are 0.27 m below the usual root link: less bent.
+  EXPECT_LT((draft.rest.q - usual.rest.q).cwiseAbs().maxCoeff(), 0.15);
+}
+
 // As of ANYmal: joints that count turns, and feet that are not under the hips when the legs hang.
 TEST(StandingDraft, LegsBendAsFarAsStandingNeeds) {
   std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
