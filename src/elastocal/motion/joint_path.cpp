@@ -10,6 +10,7 @@
 #include "elastocal/math/bspline.hpp"
 #include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/rrt_connect.hpp"
 
 namespace elastocal {
 namespace {
@@ -57,6 +58,23 @@ class WayAround {
   /// Least distance that the way should keep, except at its ends.
   double wanted() const { return clearance_; }
 
+  /// Pushes the way away from what is too near, and keeps the best one.
+  void Bend(int iterations, JointPath& path) const {
+    constexpr double kFirstStep = 0.15;  // of the way point that moves most, rad
+    constexpr double kShrink = 0.96;
+    Eigen::MatrixXd control = path.control;
+    double length = kFirstStep;
+    for (int i = 0; i < iterations && path.clearance < wanted(); ++i) {
+      if (!StepAway(length, control)) break;
+      length *= kShrink;
+      const double clearance = Clearance(control);
+      if (clearance <= path.clearance) continue;
+      path.clearance = clearance;
+      path.control = control;
+    }
+  }
+
+ private:
   /// Takes one step of the given length. Returns false if no parts are too near, or if way points
   /// cannot help.
   bool StepAway(double length, Eigen::MatrixXd& control) const {
@@ -84,7 +102,6 @@ class WayAround {
     return true;
   }
 
- private:
   Eigen::VectorXd At(const Eigen::MatrixXd& control, Eigen::Index sample) const {
     InterruptionPoint();
     return clearances_(control.transpose() * basis_.row(sample).transpose());
@@ -117,6 +134,65 @@ class WayAround {
   Eigen::LDLT<Eigen::MatrixXd> solver_;
 };
 
+/// The postures between two others in which parts are `clearance` apart; its dimensions are the
+/// `moving` coordinates, and all others stay half way.
+FreeSpace PosturesBetween(const StandingRobot& robot, const Clearances& clearances,
+                          const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                          const std::vector<int>& moving, double clearance) {
+  FreeSpace space;
+  const double margin = robot.limits.position_margin;
+  space.lower.resize(static_cast<Eigen::Index>(moving.size()));
+  space.upper = space.lower;
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const int c = moving[i];
+    const Joint& joint = robot.tree.joints[Size(robot.tree.coordinate_joint[Size(c)])];
+    const auto [lower, upper] = PostureRange(joint, 0.0, robot.rest[c]);
+    space.lower[static_cast<Eigen::Index>(i)] = std::min({lower + margin, from[c], to[c]});
+    space.upper[static_cast<Eigen::Index>(i)] = std::max({upper - margin, from[c], to[c]});
+  }
+  space.free = [&, clearance, q = Eigen::VectorXd(0.5 * (from + to))](const Eigen::VectorXd& x) {
+    InterruptionPoint();
+    Eigen::VectorXd there = q;
+    there(moving) = x;
+    return Least(clearances(there)) >= clearance;
+  };
+  return space;
+}
+
+/// Leads a way that is not free along a detour, if that keeps parts further from each other. The
+/// detour is one of the coordinates that differ at the ends.
+void GoByDetour(const StandingRobot& robot, const Clearances& clearances,
+                const std::vector<int>& moving, const JointPathOptions& options,
+                double least_at_ends, JointPath& path) {
+  constexpr double kSame = 1e-3;                // rad or m
+  constexpr double kSpare = 1.1, kShare = 0.7;  // the spline cuts corners; ends may be at limits
+  const Eigen::VectorXd from = path.control.row(0).transpose();
+  const Eigen::VectorXd to = path.control.bottomRows<1>().transpose();
+  std::vector<int> differing;
+  for (const int c : moving) {
+    if (std::abs(to[c] - from[c]) > kSame) differing.push_back(c);
+  }
+  if (differing.empty()) differing = moving;
+  const double clearance = std::min(
+      options.clearance, std::max(kSpare * robot.limits.clearance, kShare * least_at_ends));
+  const FreeSpace space = PosturesBetween(robot, clearances, from, to, differing, clearance);
+  const auto corners = ConnectByTrees(space, from(differing), to(differing));
+  if (!corners) return;
+  const int way_points = options.way_points * static_cast<int>(corners->rows() - 1);
+  const Eigen::MatrixXd metric = VelocityMetric(way_points + 6);
+  const Eigen::VectorXd fractions = WayFractions(metric);
+  Eigen::MatrixXd way(way_points, from.size());
+  for (int i = 0; i < way_points; ++i) {
+    way.row(i) = (from + fractions[i] * (to - from)).transpose();
+  }
+  way(Eigen::all, differing) = AlongPolygon(*corners, way_points);
+  JointPath detour{RestToRestSpline(from, way, to), 0.0, 0.0};
+  const WayAround around(robot, clearances, moving, options, metric, least_at_ends);
+  detour.clearance = around.Clearance(detour.control);
+  around.Bend(options.iterations, detour);
+  if (detour.clearance > path.clearance) path = detour;
+}
+
 /// Shortest duration of a way for which all joints stay below their velocity limits, s.
 double LeastDuration(const StandingRobot& robot, const Eigen::MatrixXd& control) {
   constexpr int kSamples = 101;
@@ -139,9 +215,6 @@ double LeastDuration(const StandingRobot& robot, const Eigen::MatrixXd& control)
 JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances,
                         const Eigen::VectorXd& from, const Eigen::VectorXd& to,
                         const std::vector<int>& moving, const JointPathOptions& options) {
-  constexpr double kFirstStep =
-      0.15;  // length of the first step: rad, of the way point that moves most
-  constexpr double kShrink = 0.96;
   const Eigen::MatrixXd metric = VelocityMetric(options.way_points + 6);
   const Eigen::VectorXd fractions = WayFractions(metric);
   Eigen::MatrixXd way_points(options.way_points, from.size());
@@ -155,15 +228,9 @@ JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances
     const double at_ends = std::min(Least(clearances(from)), Least(clearances(to)));
     const WayAround around(robot, clearances, moving, options, metric, at_ends);
     path.clearance = around.Clearance(path.control);
-    Eigen::MatrixXd control = path.control;
-    double length = kFirstStep;
-    for (int i = 0; i < options.iterations && path.clearance < around.wanted(); ++i) {
-      if (!around.StepAway(length, control)) break;
-      length *= kShrink;
-      const double clearance = around.Clearance(control);
-      if (clearance <= path.clearance) continue;
-      path.clearance = clearance;
-      path.control = control;
+    around.Bend(options.iterations, path);
+    if (path.clearance < around.wanted()) {
+      GoByDetour(robot, clearances, moving, options, at_ends, path);
     }
   }
   path.duration_s = std::max(options.duration_s, LeastDuration(robot, path.control));

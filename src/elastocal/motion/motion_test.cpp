@@ -178,6 +178,26 @@ TEST_F(BalancedWalker, GoesAroundWhatIsInTheWay) {
   }
 }
 
+// A wall in the space of the joints, with a door at one end: no push along the gradient finds it.
+TEST_F(BalancedWalker, GoesThroughADoorFarFromTheStraightWay) {
+  double door = 0.9;
+  robot_.clearances = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
+    const double wall = std::abs(q[2]) - 0.2;
+    return Eigen::VectorXd::Constant(1, 0.1 * std::max(wall, q[1] - door));
+  };
+  Eigen::VectorXd from = Posture(0, 0, -1.0), to = Posture(0, 0.01, 1.0);
+  const JointPath path = PlanJointPath(robot_, robot_.clearances, from, to, {1, 2}, {});
+  EXPECT_GE(path.clearance, JointPathOptions{}.clearance);
+  const Eigen::MatrixXd way = SamplePath(path, 100.0);
+  EXPECT_EQ(way.row(0).transpose(), from);
+  EXPECT_EQ(way.bottomRows<1>().transpose(), to);
+  for (Eigen::Index i = 0; i < way.rows(); ++i) {
+    EXPECT_GT(robot_.clearances(way.row(i).transpose())[0], 0.01);
+  }
+  door = 10.0;  // none: the way is the pushed one
+  EXPECT_LT(PlanJointPath(robot_, robot_.clearances, from, to, {1, 2}, {}).clearance, 0.0);
+}
+
 TEST_F(BalancedWalker, LeavesOutWhatItCannotDoAndSaysWhy) {
   PostureTour set{.name = "left", .standing = {1}, .postures = {}};
   Eigen::VectorXd far = robot_.rest;

@@ -2,9 +2,14 @@
 #include "elastocal/posture/chain_problem.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <utility>
 
+#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/priority_qr.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/math/rrt_connect.hpp"
 #include "elastocal/posture/clearance.hpp"
 #include "elastocal/posture/torque_limit.hpp"
 #include "elastocal/posture/workspace.hpp"
@@ -74,6 +79,28 @@ MarkerVisibility MakeVisibility(const ErrorModel& model, const MotionSetup& moti
     }
     return visible;
   };
+}
+
+/// Whether a chain can move from rest to a posture past the robot's own parts. Empty where nothing
+/// can touch, or touches at rest already.
+std::function<bool(const Eigen::VectorXd&)> MakeReachability(const RobotTree& tree,
+                                                             const MotionSetup& motion,
+                                                             const ChainSetup& chain) {
+  const auto free = [moving = std::make_shared<MovingChain>(tree, chain.coordinates, motion.rest),
+                     spheres = motion.spheres, pairs = chain.contacts,
+                     margin = motion.sphere_margin](const Eigen::VectorXd& x) {
+    InterruptionPoint();
+    moving->Move(x);
+    return SphereDistances(spheres, pairs, moving->link_poses()).minCoeff() >= margin;
+  };
+  const Eigen::VectorXd rest = motion.rest(chain.coordinates);
+  if (chain.contacts.empty() || !free(rest)) return {};
+  FreeSpace space;
+  space.lower = motion.lower(chain.coordinates);
+  space.upper = motion.upper(chain.coordinates);
+  space.free = free;
+  return [reachable = std::make_shared<ReachableSpace>(std::move(space), rest)](
+             const Eigen::VectorXd& x) { return reachable->Reaches(x); };
 }
 
 RootPose RootOf(const MotionSetup& motion) {
@@ -158,6 +185,7 @@ FeasibleSet MakeFeasibleSet(const RobotTree& tree, const MotionSetup& motion,
   if (!chain.contacts.empty()) {
     set.constraints.push_back(
         std::make_unique<SphereClearance>(motion.spheres, chain.contacts, motion.sphere_margin));
+    set.reachable = MakeReachability(tree, motion, chain);
   }
   if (chain.floor_z) {
     set.constraints.push_back(

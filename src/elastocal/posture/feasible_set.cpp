@@ -69,6 +69,9 @@ Violation WorstViolation(FeasibleSet& set, const Eigen::VectorXd& x) {
            [&] { return constraint->Name(row); });
     }
   }
+  if (worst.amount <= kFeasible && set.reachable && !set.reachable(x)) {
+    return {1.0, "way from the posture of rest past the robot's own parts"};
+  }
   return worst;
 }
 

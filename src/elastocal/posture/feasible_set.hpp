@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,8 +14,8 @@
 
 namespace elastocal {
 
-/// The postures that a chain may take (paper section 3.1, eq. 8-11): limits of the coordinates, and
-/// constraints. A posture x consists of the chain's coordinates, rad or m.
+/// The postures that a chain may take (paper section 3.1, eq. 8-11): limits of the coordinates,
+/// constraints, and what can be reached. A posture x consists of the chain's coordinates, rad or m.
 struct FeasibleSet {
   MovingChain chain;
   Eigen::VectorXd lower, upper;  ///< eq. 8
@@ -22,6 +23,8 @@ struct FeasibleSet {
   int end_link = 0;  ///< link by whose pose random postures are drawn
   bool has_workspace = false;
   Workspace workspace = {};
+  /// Whether the robot can move there from rest past its own parts; empty: anywhere.
+  std::function<bool(const Eigen::VectorXd& x)> reachable = {};
   int repair_joints = 3;  ///< number of first coordinates that move to separate spheres
 
   int variable_count() const { return chain.size(); }
@@ -34,7 +37,8 @@ struct FeasibleSet {
 void EvaluateConstraints(FeasibleSet& set, const Eigen::VectorXd& x, Eigen::VectorXd& values,
                          Eigen::MatrixXd& jacobian);
 
-/// The limit that a posture breaks most, and by how much; 0 if it is feasible.
+/// The limit that a posture breaks most, and by how much; 0 if it is feasible. One that keeps all
+/// limits and cannot be reached breaks the way to it, by 1.
 struct Violation {
   double amount =
       0.0;  ///< rad or m for limits of coordinates, otherwise in units of the PostureConstraint

@@ -73,6 +73,42 @@ TEST(FeasibleSampler, SameSeedSamePostures) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(*first.Draw(), *second.Draw());
 }
 
+// Spheres beside the leg that the knee cannot pass: what is beyond them keeps all limits.
+TEST(FeasibleSampler, DrawsOnlyWhatCanBeReached) {
+  constexpr double kWall = 0.5;  // rad of hip_roll
+  const RobotTree tree = MakeLegRobot();
+  MotionSetup motion = LegMotion(tree);
+  ChainSetup setup = LegSetup(tree);
+  setup.coordinates = {1, 2, 3};
+  setup.box.reset();
+  setup.floor_z.reset();
+  setup.largest_turn = M_PI;
+  for (int i = -6; i <= 6; ++i) {
+    Eigen::VectorXd q = motion.rest;
+    q[1] = kWall;
+    q[2] = 0.2 * i;
+    const int knee = FindLink(tree, "knee_link");
+    const Eigen::Vector3d centre =
+        LinkTransforms(tree, q)[static_cast<std::size_t>(knee)].translation();
+    setup.contacts.emplace_back(1, static_cast<int>(motion.spheres.size()));
+    motion.spheres.push_back({"WALL", 0, centre, 0.05});
+  }
+  FeasibleSet set = MakeFeasibleSet(tree, motion, setup);
+  FeasibleSampler sampler(set, 1);
+  for (int i = 0; i < 100; ++i) {
+    const auto x = sampler.Draw();
+    ASSERT_TRUE(x);
+    EXPECT_LT((*x)[0], kWall);
+  }
+  const Eigen::Vector3d beyond(0.9, 0.0, 1.0);
+  EXPECT_EQ(WorstViolation(set, beyond).amount, 1.0);
+  EXPECT_NE(WorstViolation(set, beyond).what.find("way from the posture of rest"),
+            std::string::npos);
+  setup.contacts.resize(setup.contacts.size() - 4);  // a door at one end
+  FeasibleSet open = MakeFeasibleSet(tree, motion, setup);
+  EXPECT_EQ(WorstViolation(open, beyond).amount, 0.0);
+}
+
 TEST(FeasibleSampler, BlamesTheLimitThatLeavesNothing) {
   const RobotTree tree = MakeLegRobot();
   const MotionSetup motion = LegMotion(tree);
