@@ -11,6 +11,7 @@
 #include "elastocal/calibration/variances.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/moments.hpp"
+#include "elastocal/optim/bounded_step.hpp"
 
 namespace elastocal {
 namespace {

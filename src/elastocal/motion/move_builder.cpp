@@ -113,7 +113,8 @@ std::optional<PlacedPosture> MoveBuilder::AtRest(const Eigen::VectorXd& q,
         const auto found = AtHeights(q, standing, near, {attitude.linear(), spare}, refusal);
         if (found) return found;
         if (tilt == 0.0 && turn == 0.0) why = refusal;
-        if (why.constraint != Constraint::kClearance && why.constraint != Constraint::kPosition) {
+        if (why.constraint != Constraint::kClearance && why.constraint != Constraint::kPosition &&
+            why.constraint != Constraint::kFloor) {
           return std::nullopt;
         }
       }
@@ -143,13 +144,14 @@ std::optional<PlacedPosture> MoveBuilder::AtHeights(const Eigen::VectorXd& q,
                                                     const std::vector<int>& standing,
                                                     const PlacedPosture& near, const Manner& manner,
                                                     Refusal& why) const {
-  constexpr int kHeights = 5;
+  constexpr int kSteps = 5, kHalvings = 3;
   constexpr double kAboveFloor = 0.037, kLower = 0.037;  // shares of the leg's length
+  std::optional<double> too_low, too_high;
   PlacedPosture pose{q, near.T_world_root};
   pose.T_world_root.linear() = manner.attitude;
   double& height = pose.T_world_root.translation().z();
   height = robot_.T_world_root.translation().z();
-  for (int i = 0; i < kHeights; ++i) {
+  for (int i = 0; i < kSteps + kHalvings; ++i) {
     for (const int foot : standing) {
       for (const int c : robot_.legs[Size(foot)].coordinates()) pose.q[c] = near.q[c];
     }
@@ -157,14 +159,19 @@ std::optional<PlacedPosture> MoveBuilder::AtHeights(const Eigen::VectorXd& q,
     if (!refusal) return pose;
     if (i == 0) why = *refusal;
     if (refusal->constraint == Constraint::kFloor) {
+      too_low = height;
       height += kAboveFloor * robot_.leg_length - refusal->value;
     } else if (refusal->constraint == Constraint::kReach ||
                refusal->constraint == Constraint::kKnee) {
+      too_high = height;
       height -= kLower * robot_.leg_length;
     } else {
       why = *refusal;
       break;
     }
+    if (i + 1 < kSteps) continue;
+    if (!too_low || !too_high) break;
+    height = 0.5 * (*too_low + *too_high);
   }
   return std::nullopt;
 }

@@ -7,6 +7,7 @@
 
 #include "elastocal/calibration/posterior.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/optim/bounded_step.hpp"
 #include "elastocal/optim/normal_equations.hpp"
 
 namespace elastocal {

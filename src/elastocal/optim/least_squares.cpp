@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "elastocal/math/interruption.hpp"
+#include "elastocal/optim/bounded_step.hpp"
 #include "elastocal/optim/normal_equations.hpp"
 
 namespace elastocal {

@@ -14,9 +14,7 @@ namespace {
 /// is of the order of one or more.
 constexpr double kRidge = 1e-12;
 constexpr Eigen::Index kBatchRows = 384;  // of nuisance, eliminated in one product
-constexpr int kMostActiveSets = 20;
 constexpr double kLeastLeft = 1e-6;       // of an added unknown, beside the others
-constexpr double kSlightGradient = 1e-9;  // no reason to leave a bound
 
 }  // namespace
 
@@ -371,43 +369,6 @@ double CostOf(const LeastSquaresProblem& problem) {
     squares += problem.Residual(static_cast<int>(block)).squaredNorm();
   }
   return 0.5 * squares;
-}
-
-Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient,
-                            const Eigen::VectorXd& x, const std::vector<int>& nonnegative) {
-  std::vector<char> held(static_cast<std::size_t>(x.size()), 0);
-  for (int i : nonnegative) held[i] = x[i] <= 0.0 && gradient[i] >= 0.0;
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
-  for (int round = 0; round < kMostActiveSets; ++round) {
-    std::vector<int> free;
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      if (held[i]) {
-        step[i] = -x[i];
-      } else {
-        step[i] = 0.0;
-        free.push_back(static_cast<int>(i));
-      }
-    }
-    const Eigen::VectorXd slope = gradient + information * step;
-    const Eigen::MatrixXd own = information(free, free);
-    step(free) = -SolvePositive(own, slope(free));
-    bool changed = false;
-    for (int i : nonnegative) {
-      if (held[i] || x[i] + step[i] >= 0.0) continue;
-      held[i] = 1;
-      changed = true;
-    }
-    if (changed) continue;
-    const Eigen::VectorXd left = gradient + information * step;
-    for (int i : nonnegative) {
-      if (!held[i] || left[i] >= -kSlightGradient) continue;
-      held[i] = 0;
-      changed = true;
-    }
-    if (!changed) break;
-  }
-  for (int i : nonnegative) step[i] = std::max(step[i], -x[i]);
-  return step;
 }
 
 }  // namespace elastocal

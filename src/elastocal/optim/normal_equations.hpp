@@ -128,9 +128,4 @@ class NormalEquations {
 /// The cost of a problem as last evaluated, see LeastSquaresProblem.
 double CostOf(const LeastSquaresProblem& problem);
 
-/// The step that minimises g'd + d'Hd/2 where the entries `nonnegative` of x + d may not become
-/// negative (an active set; `information` positive definite).
-Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& information, const Eigen::VectorXd& gradient,
-                            const Eigen::VectorXd& x, const std::vector<int>& nonnegative);
-
 }  // namespace elastocal

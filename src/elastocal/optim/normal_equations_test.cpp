@@ -144,20 +144,5 @@ TEST_F(NormalEquationsTest, WithoutNuisanceTheyAreTheWholeProblem) {
   EXPECT_EQ(equations.NuisanceDecrease(), 0.0);
 }
 
-TEST(BoundedStep, StopsAtZeroAndLeavesItAgain) {
-  // (d0 - 1)^2 + (d0 + d1)^2 from x = (0, 0.25): free d1 = -1 would make x1 = -0.75.
-  Eigen::Matrix2d H;
-  H << 4, 2, 2, 2;
-  const Eigen::Vector2d g(-2, 0);
-  const Eigen::Vector2d x(0.0, 0.25);
-  EXPECT_LT((BoundedStep(H, g, x, {}) - Eigen::Vector2d(1, -1)).norm(), 1e-12);
-  // d1 = -0.25 held: 2 (d0 - 1) + 2 (d0 - 0.25) = 0.
-  EXPECT_LT((BoundedStep(H, g, x, {1}) - Eigen::Vector2d(0.625, -0.25)).norm(), 1e-12);
-  // At the bound, with a slope that leads away from it: held at once. Towards inside: free.
-  EXPECT_EQ(BoundedStep(H, Eigen::Vector2d(2, 0), Eigen::Vector2d(0, 5), {0}),
-            Eigen::Vector2d(0, 0));
-  EXPECT_LT((BoundedStep(H, g, Eigen::Vector2d(0, 5), {0}) - Eigen::Vector2d(1, -1)).norm(), 1e-12);
-}
-
 }  // namespace
 }  // namespace elastocal

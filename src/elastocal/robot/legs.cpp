@@ -2,29 +2,33 @@
 #include "elastocal/robot/legs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace elastocal {
 
 std::vector<Leg> FindLegs(const RobotTree& tree, const std::vector<NamedChain>& chains) {
-  constexpr double kSameFloor = 0.02;
+  constexpr double kSameFloor = 0.02, kLeastLeg = 0.1;  // of the robot's size
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(tree.coordinate_count());
   const std::vector<Transform> T_root_link = LinkTransforms(tree, zero);
   const double tolerance = kSameFloor * RobotSize(tree);
+  const auto height = [&](int link) { return T_root_link[link].translation().z(); };
   double lowest = std::numeric_limits<double>::infinity();
-  for (const NamedChain& chain : chains) {
-    lowest = std::min(lowest, T_root_link[chain.tip_link].translation().z());
-  }
+  for (const NamedChain& chain : chains) lowest = std::min(lowest, height(chain.tip_link));
+  const bool root_on_floor = std::abs(lowest) <= tolerance;
   std::vector<Leg> legs;
   for (const NamedChain& chain : chains) {
-    const double height = T_root_link[chain.tip_link].translation().z();
     const bool known = std::any_of(legs.begin(), legs.end(),
                                    [&](const Leg& leg) { return leg.foot_link == chain.tip_link; });
     const std::vector<int> joints = JointsToBody(tree, tree.links[chain.tip_link].body);
     if (known || chain.from_link != 0 || joints.empty()) continue;
-    if (height > lowest + tolerance || height > -tolerance) continue;
+    const double tip = height(chain.tip_link);
+    const double top = height(tree.joints[joints.front()].child_link);
+    const bool hangs = root_on_floor ? top - tip > kLeastLeg * RobotSize(tree) : tip <= -tolerance;
+    if (!hangs || tip > lowest + tolerance) continue;
     legs.push_back({chain.name, chain.tip_link, joints, T_root_link[chain.tip_link].linear()});
   }
+  if (root_on_floor && legs.size() < 2) legs.clear();  // an arm that reaches down to the floor
   return legs;
 }
 

@@ -25,8 +25,9 @@ struct Leg {
 
 /// Finds the legs of a robot: the chains from the root whose tips are below the root and, in the
 /// zero posture with the root link upright, not more than 2 % of the robot's size above the lowest
-/// tip. A foot at the end of several chains counts once. A robot on a table (an arm) may have no
-/// legs.
+/// tip. Where the root link is a frame on the floor, as low as the lowest tip, legs are two chains
+/// or more that begin well above it. A foot at the end of several chains counts once. A robot on a
+/// table (an arm) may have no legs.
 std::vector<Leg> FindLegs(const RobotTree& tree, const std::vector<NamedChain>& chains);
 
 /// Height of the root link above the soles at the zero posture, m; 0 without legs.

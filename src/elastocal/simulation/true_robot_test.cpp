@@ -40,6 +40,19 @@ TEST(FindLegs, AreTheChainsDownToTheFloor) {
   EXPECT_FALSE(InLeg(legs, 1));
 }
 
+TEST(FindLegs, TheRootLinkMayBeAFrameOnTheFloor) {
+  Biped biped = MakeBiped();
+  for (Joint& joint : biped.tree.joints) {
+    if (joint.parent_link == 0) joint.T_parent_child.translation().z() += 1.082;
+  }
+  const std::vector<Leg> legs = FindLegs(biped.tree, biped.chains);
+  ASSERT_EQ(legs.size(), 2u);
+  EXPECT_EQ(legs[0].chain, "left");
+  EXPECT_NEAR(StandingHeight(biped.tree, legs), 0.0, 1e-12);
+  // One alone is an arm that hangs down to the floor.
+  EXPECT_TRUE(FindLegs(biped.tree, {biped.chains[0]}).empty());
+}
+
 TEST(FindLegs, AnArmOnATableHasNone) {
   const RobotTree tree = PlanarArm();
   EXPECT_TRUE(FindLegs(tree, {{"arm", 0, 3}}).empty());
