@@ -178,7 +178,8 @@ void GoByDetour(const StandingRobot& robot, const Clearances& clearances,
   const FreeSpace space = PosturesBetween(robot, clearances, from, to, differing, clearance);
   const auto corners = ConnectByTrees(space, from(differing), to(differing));
   if (!corners) return;
-  const int way_points = options.way_points * static_cast<int>(corners->rows() - 1);
+  const int sides = static_cast<int>(corners->rows()) - 1;
+  const int way_points = options.way_points * sides;
   const Eigen::MatrixXd metric = VelocityMetric(way_points + 6);
   const Eigen::VectorXd fractions = WayFractions(metric);
   Eigen::MatrixXd way(way_points, from.size());
@@ -186,7 +187,7 @@ void GoByDetour(const StandingRobot& robot, const Clearances& clearances,
     way.row(i) = (from + fractions[i] * (to - from)).transpose();
   }
   way(Eigen::all, differing) = AlongPolygon(*corners, way_points);
-  JointPath detour{RestToRestSpline(from, way, to), 0.0, 0.0};
+  JointPath detour{RestToRestSpline(from, way, to), options.duration_s * sides, 0.0};
   const WayAround around(robot, clearances, moving, options, metric, least_at_ends);
   detour.clearance = around.Clearance(detour.control);
   around.Bend(options.iterations, detour);
@@ -223,6 +224,7 @@ JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances
   }
   JointPath path;
   path.control = RestToRestSpline(from, way_points, to);
+  path.duration_s = options.duration_s;
   path.clearance = std::numeric_limits<double>::infinity();
   if (clearances) {
     const double at_ends = std::min(Least(clearances(from)), Least(clearances(to)));
@@ -233,7 +235,7 @@ JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances
       GoByDetour(robot, clearances, moving, options, at_ends, path);
     }
   }
-  path.duration_s = std::max(options.duration_s, LeastDuration(robot, path.control));
+  path.duration_s = std::max(path.duration_s, LeastDuration(robot, path.control));
   return path;
 }
 
