@@ -117,6 +117,16 @@ std::string PoleUrdf(const std::string& shape, const std::string& mass,
          RodXml("r2", "r1", "0.2 0 0.3") + more + "</robot>";
 }
 
+/// Names of the limbs of the pole with more links.
+std::vector<std::string> LimbsOfPole(const std::string& more) {
+  std::vector<std::string> names;
+  const std::string urdf = PoleUrdf("<box size='0.3 0.3 0.3'/>", "20", more);
+  for (const Limb& limb : DraftProject(urdf, "pole.urdf", {}).limbs.limbs) {
+    names.push_back(limb.name);
+  }
+  return names;
+}
+
 /// The URDF of TALOS with its boxes as meshes of twelve triangles in `folder`.
 std::string TalosOfMeshes(const ScratchFolder& folder) {
   const std::regex box("<box size=\"([^ ]*) ([^ ]*) ([^\"]*)\"/>");
@@ -224,11 +234,7 @@ TEST(Draft, WheelsAreNoLimbsAndALongBranchIsAnArm) {
   const std::string more = RodXml("l3", "l2", "0.2 0 0") + RodXml("l4", "l3", "0.2 0 0") +
                            RodXml("wheel_l", "pole", "0 0.2 -0.1", "continuous") +
                            RodXml("wheel_r", "pole", "0 -0.2 -0.1", "continuous");
-  const ProjectDraft draft =
-      DraftProject(PoleUrdf("<box size='0.3 0.3 0.3'/>", "20", more), "pole.urdf", {});
-  std::vector<std::string> names;
-  for (const Limb& limb : draft.limbs.limbs) names.push_back(limb.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"head", "arm"}));
+  EXPECT_EQ(LimbsOfPole(more), (std::vector<std::string>{"head", "arm"}));
   // Where nothing else moves, what turns without an end is a limb all the same.
   const std::string alone = "<robot name='a'><link name='pole'/>" +
                             RodXml("plate", "pole", "0 0 1", "continuous") + "</robot>";
@@ -240,11 +246,7 @@ TEST(Draft, WheelsBesideEachOtherAreNoLimbsWhereverTheyAre) {
   const std::string more = RodXml("hip", "pole", "0 0 -0.2") + RodXml("base", "hip", "0 0 -0.3") +
                            RodXml("wheel_l", "base", "0 0.2 -0.1", "continuous") +
                            RodXml("wheel_r", "base", "0 -0.2 -0.1", "continuous");
-  const ProjectDraft draft =
-      DraftProject(PoleUrdf("<box size='0.3 0.3 0.3'/>", "20", more), "pole.urdf", {});
-  std::vector<std::string> names;
-  for (const Limb& limb : draft.limbs.limbs) names.push_back(limb.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"left_arm", "right_arm", "leg"}));
+  EXPECT_EQ(LimbsOfPole(more), (std::vector<std::string>{"left_arm", "right_arm", "leg"}));
 }
 
 TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {

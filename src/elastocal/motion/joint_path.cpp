@@ -30,6 +30,13 @@ Eigen::VectorXd WayFractions(const Eigen::MatrixXd& metric) {
               .solve(metric.block(3, free + 3, free, 3).rowwise().sum());
 }
 
+/// Way points of the straight way, way points x coordinates.
+Eigen::MatrixXd StraightWay(const Eigen::MatrixXd& metric, const Eigen::VectorXd& from,
+                            const Eigen::VectorXd& to) {
+  const Eigen::VectorXd fractions = WayFractions(metric);
+  return from.transpose().replicate(fractions.size(), 1) + fractions * (to - from).transpose();
+}
+
 double Least(const Eigen::VectorXd& distances) {
   return distances.size() > 0 ? distances.minCoeff() : std::numeric_limits<double>::infinity();
 }
@@ -181,11 +188,7 @@ void GoByDetour(const StandingRobot& robot, const Clearances& clearances,
   const int sides = static_cast<int>(corners->rows()) - 1;
   const int way_points = options.way_points * sides;
   const Eigen::MatrixXd metric = VelocityMetric(way_points + 6);
-  const Eigen::VectorXd fractions = WayFractions(metric);
-  Eigen::MatrixXd way(way_points, from.size());
-  for (int i = 0; i < way_points; ++i) {
-    way.row(i) = (from + fractions[i] * (to - from)).transpose();
-  }
+  Eigen::MatrixXd way = StraightWay(metric, from, to);
   way(Eigen::all, differing) = AlongPolygon(*corners, way_points);
   JointPath detour{RestToRestSpline(from, way, to), options.duration_s * sides, 0.0};
   const WayAround around(robot, clearances, moving, options, metric, least_at_ends);
@@ -217,13 +220,8 @@ JointPath PlanJointPath(const StandingRobot& robot, const Clearances& clearances
                         const Eigen::VectorXd& from, const Eigen::VectorXd& to,
                         const std::vector<int>& moving, const JointPathOptions& options) {
   const Eigen::MatrixXd metric = VelocityMetric(options.way_points + 6);
-  const Eigen::VectorXd fractions = WayFractions(metric);
-  Eigen::MatrixXd way_points(options.way_points, from.size());
-  for (int i = 0; i < options.way_points; ++i) {
-    way_points.row(i) = (from + fractions[i] * (to - from)).transpose();
-  }
   JointPath path;
-  path.control = RestToRestSpline(from, way_points, to);
+  path.control = RestToRestSpline(from, StraightWay(metric, from, to), to);
   path.duration_s = options.duration_s;
   path.clearance = std::numeric_limits<double>::infinity();
   if (clearances) {

@@ -10,7 +10,7 @@
 namespace elastocal {
 
 struct JointPathOptions {
-  double duration_s = 5.0;  ///< longer if joints would be faster than their limits
+  double duration_s = 5.0;  ///< longer on a detour, or if joints would be faster than their limits
   int way_points = 5;
   double clearance = 0.015;  ///< least distance between parts on the way, m; ends may be nearer
   double check_step =
@@ -30,7 +30,9 @@ struct JointPath {
 /// each other than the clearance, way points of `moving` coordinates are pushed along the gradient
 /// of the squared lack of distance, in the metric of velocity, so that ways stay smooth. They stay
 /// inside the joints' ranges, and the convex hull of the control points keeps the whole way there.
-/// All other coordinates follow the straight way. Clearance is checked between the knots too.
+/// All other coordinates follow the straight way. Where that leaves parts too near, the way points
+/// are put on a detour (ConnectByTrees) of those `moving` coordinates that differ at the ends, and
+/// pushed again; it takes `duration_s` for each side. Clearance is checked between the knots too.
 ///
 /// A way that is not free is not an error: JointPath::clearance says how near parts come.
 /// `clearances` gives the distances to keep, which may include more than the robot's own parts; it
