@@ -9,6 +9,7 @@
 
 #include "elastocal/drafting/limb_names.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/robot/legs.hpp"
 
 namespace elastocal {
 namespace {
@@ -200,18 +201,13 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
   const bool root_on_floor = floor > -kSameFloor * longest;
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     Limb& limb = limbs[i];
-    const double top = root_on_floor ? LegTop(tree, limb) : 0.0;
+    const double top = root_on_floor ? LegTop(tree, limb.joints) : 0.0;
     const bool far_below = poses[Size(limb.tip_body)].translation().z() < top - kBelow * longest;
     limb.leg = limb.mirror >= 0 && far_below && lowest[i] < floor + kSameFloor * longest;
   }
 }
 
 }  // namespace
-
-double LegTop(const RobotTree& tree, const Limb& limb) {
-  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  return std::max(0.0, poses[Size(limb.joints.front()) + 1].translation().z());
-}
 
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics) {
   Limbs found;

@@ -34,8 +34,4 @@ struct Limbs {
 /// from each other. The tip is the link that the SRDF names, or the furthest one of the last body.
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics);
 
-/// How high a leg begins in the zero posture, m above the root link: its first joint, or the root
-/// link itself where that is higher.
-double LegTop(const RobotTree& tree, const Limb& limb);
-
 }  // namespace elastocal

@@ -13,6 +13,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/legs.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -174,7 +175,7 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
       const std::vector<int> joints = OwnJoints(tree, limbs, limbs.limbs[Size(sole.limb)]);
       const int link = FindLink(tree, sole.link);
       Transform wanted = zero[Size(link)];
-      const double top = LegTop(tree, limbs.limbs[Size(sole.limb)]);
+      const double top = LegTop(tree, limbs.limbs[Size(sole.limb)].joints);
       wanted.translation().z() += drop * (top - wanted.translation().z());
       const Placer placer(tree, link, !sole.ball_radius, joints, lower, upper);
       const auto placed =

@@ -10,6 +10,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/motion/leg_chain.hpp"
+#include "elastocal/robot/legs.hpp"
 #include "elastocal/robot/moving_chain.hpp"
 
 namespace elastocal {
@@ -166,7 +167,8 @@ std::optional<double> ChooseStance(const RobotTree& tree, const Limbs& limbs,
   const double distance = between.norm();
   const Eigen::RowVector3d along = between.transpose() / distance;
   const double gap = (along * b).minCoeff() - (along * a).maxCoeff();
-  const double room = kRoom * (LegTop(tree, limbs.limbs[Size(soles[0].limb)]) - a.row(2).mean());
+  const double room =
+      kRoom * (LegTop(tree, limbs.limbs[Size(soles[0].limb)].joints) - a.row(2).mean());
   if (gap >= room) return {};
   return distance + room - gap;
 }

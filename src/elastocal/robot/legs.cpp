@@ -32,10 +32,17 @@ std::vector<Leg> FindLegs(const RobotTree& tree, const std::vector<NamedChain>& 
   return legs;
 }
 
+double LegTop(const RobotTree& tree, const std::vector<int>& joints) {
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(tree.coordinate_count());
+  const int first = tree.joints[joints.front()].child_link;
+  return std::max(0.0, LinkTransforms(tree, zero)[first].translation().z());
+}
+
 double StandingHeight(const RobotTree& tree, const std::vector<Leg>& legs) {
   if (legs.empty()) return 0.0;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(tree.coordinate_count());
-  return -LinkTransforms(tree, zero)[legs.front().foot_link].translation().z();
+  const double foot = LinkTransforms(tree, zero)[legs.front().foot_link].translation().z();
+  return LegTop(tree, legs.front().joints) - foot;
 }
 
 bool InLeg(const std::vector<Leg>& legs, int joint) {

@@ -30,7 +30,12 @@ struct Leg {
 /// table (an arm) may have no legs.
 std::vector<Leg> FindLegs(const RobotTree& tree, const std::vector<NamedChain>& chains);
 
-/// Height of the root link above the soles at the zero posture, m; 0 without legs.
+/// How high a leg begins in the zero posture, m above the root link: its first joint, or the root
+/// link itself where that is higher (0). `joints`: from the root link to the foot.
+double LegTop(const RobotTree& tree, const std::vector<int>& joints);
+
+/// Height of the root link, or of the first joint of a leg where that is higher, above the soles at
+/// the zero posture, m; 0 without legs.
 double StandingHeight(const RobotTree& tree, const std::vector<Leg>& legs);
 
 /// Whether a joint belongs to a leg.

@@ -28,6 +28,17 @@ class BipedStandsThrough : public testing::Test {
     return motion;
   }
 
+  /// Ankles forwards, and nothing behind.
+  JointMotion TooFar() const {
+    JointMotion motion = Bow(0.0);
+    for (int i = 0; i < 31; ++i) {
+      for (const Leg& leg : robot_.legs) {
+        motion.q(i, leg.joints[4]) += 0.4 * std::min(1.0, i / 20.0);
+      }
+    }
+    return motion;
+  }
+
   /// A trunk heavier in front than described.
   void PutWeightAhead(double distance) {
     RobotTree& tree = robot_.tree;
@@ -57,13 +68,20 @@ TEST_F(BipedStandsThrough, StandsAndPressesWhereStaticsSay) {
 }
 
 TEST_F(BipedStandsThrough, FallsWhereItBowsTooFar) {
-  JointMotion motion = Bow(0.0);
-  for (int i = 0; i < 31; ++i) {  // ankles forwards, and nothing behind
-    for (const Leg& leg : robot_.legs) motion.q(i, leg.joints[4]) += 0.4 * std::min(1.0, i / 20.0);
-  }
-  const StandingRun run = StandThrough(robot_, soles_, motion, {});
+  const StandingRun run = StandThrough(robot_, soles_, TooFar(), {});
   EXPECT_FALSE(run.stood);
   EXPECT_LT(run.time_s, 3.0);
+}
+
+// It stands and falls as before, though its root link is as low as the soles.
+TEST_F(BipedStandsThrough, WithARootLinkOnTheFloor) {
+  const Eigen::Vector3d up(0.0, 0.0, StandingHeight(robot_.tree, robot_.legs));
+  robot_.tree.links[0].com += up;
+  for (Joint& joint : robot_.tree.joints) {
+    if (joint.parent_link == 0) joint.T_parent_child.translation() += up;
+  }
+  EXPECT_TRUE(StandThrough(robot_, soles_, Bow(0.0), {}).stood);
+  EXPECT_FALSE(StandThrough(robot_, soles_, TooFar(), {}).stood);
 }
 
 TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
