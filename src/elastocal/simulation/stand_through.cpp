@@ -55,9 +55,9 @@ double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles) {
 /// moment of a spring that would hold its weight twice over and of a damper, in the world's axes.
 class Hands {
  public:
-  Hands(const TrueRobot& robot, const VirtualRobot& body)
-      : stiffness_(2.0 * TotalMass(robot.tree) * kGravity.norm() *
-                   body.WaistPose().translation().z()),
+  /// `height`: of what they hold, m.
+  Hands(const TrueRobot& robot, const VirtualRobot& body, double height)
+      : stiffness_(2.0 * TotalMass(robot.tree) * kGravity.norm() * height),
         before_(body.WaistPose().linear()) {}
 
   Vector6d Hold(const VirtualRobot& body, double interval_s) {
@@ -128,7 +128,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
       R_root_unit = body.WaistPose().linear().transpose() * *options.R_world_root_at_rest;
     }
   } else {  // the hands let go slowly, so that a robot with errors stands by itself at the end
-    Hands hands(robot, body);
+    Hands hands(robot, body, height);
     const long looks = std::lround(kLongestSettling / interval);
     for (long i = 0; i < looks; ++i) {
       const double held = 1.0 - static_cast<double>(i + 1) / static_cast<double>(looks);
