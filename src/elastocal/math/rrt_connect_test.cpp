@@ -55,10 +55,12 @@ TEST(ReachableSpace, IsTheRoomsThatADoorJoins) {
   const ReachableSpace joined(Rooms(0.3), kHere), closed(Rooms(0.0), kHere);
   Random random(2);
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector2d x(random.Uniform(-2.0, 2.0), random.Uniform(0.0, 2.0));
-    if (!Rooms(0.3).free(x)) continue;
+    Eigen::Vector2d x;
+    x[0] = random.Uniform(-2.0, 2.0);
+    x[1] = random.Uniform(0.0, 2.0);
+    if (!Rooms(0.0).free(x)) continue;  // in the wall or the door
     EXPECT_TRUE(joined.Reaches(x)) << x.transpose();
-    EXPECT_EQ(closed.Reaches(x), x[0] < 0.1) << x.transpose();
+    EXPECT_EQ(closed.Reaches(x), x[0] < 0.0) << x.transpose();
   }
 }
 
