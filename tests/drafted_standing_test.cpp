@@ -106,6 +106,17 @@ TEST_F(Quadruped, ItsStabiliserKnowsTheFloorUnderItsBalls) {
   EXPECT_NEAR(leaning.turn().x(), -turn.x(), 2e-3);
 }
 
+// A leg that hangs straight down: upright, the root link is too low for the foot or too high for
+// the other legs.
+TEST_F(Quadruped, VisitsPosturesForWhichOneHeightIsLeft) {
+  const ChainSetup& setup = project_.motion.chains[0];
+  Eigen::VectorXd q = project_.motion.rest;
+  q(setup.coordinates) = Eigen::Vector3d(0.0458, -0.3488, 0.046);
+  const MotionPlan plan = PlanMotion(project_, {{setup.name, setup.support, {q}}}, {});
+  EXPECT_TRUE(plan.left_out.empty()) << plan.left_out[0];
+  EXPECT_TRUE(plan.broken().empty());
+}
+
 TEST_F(Quadruped, RobotsWithErrorsStandThrough) {
   for (const MotionTrial& trial : TryMotion(project_, plan_.whole.motion, {.robots = 3})) {
     EXPECT_TRUE(trial.run.stood) << trial.seed;

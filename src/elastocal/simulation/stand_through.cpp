@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "elastocal/math/rotation_vector.hpp"
-#include "elastocal/robot/legs.hpp"
 #include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
@@ -15,7 +14,6 @@ namespace {
 constexpr double kLongestSettling = 4.0;  // s
 constexpr double kLook = 0.01;            // s between two looks at the robot
 constexpr double kLoaded = 0.05;  // share of the weight on a sole from which on it is loaded
-constexpr double kFallen = 0.7;  // share of the height of its hips below which the robot has fallen
 
 /// The samples before and after a time, and the share of the second one. `at` moves along with the
 /// time.
@@ -109,10 +107,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
   for (const Sole& sole : soles) feet.push_back(sole.link);
   const Eigen::MatrixXd& commanded = options.commanded != nullptr ? *options.commanded : motion.q;
   VirtualRobot body(robot, feet, commanded.row(0).transpose(), physics);
-  // The root link, or the hips where that is a frame on the floor.
-  const Eigen::Vector3d top(
-      0.0, 0.0, robot.legs.empty() ? 0.0 : LegTop(robot.tree, robot.legs.front().joints));
-  const double height = (body.WaistPose() * top).z();
+  const double height = body.Height();
   const long per_look = std::max(1L, std::lround(kLook / body.time_step_s()));
   const double interval = static_cast<double>(per_look) * body.time_step_s();
   Eigen::Matrix3d R_root_unit = Eigen::Matrix3d::Identity();
@@ -154,7 +149,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
     body.Step();
     if (i % per_look != 0) continue;
     const Transform waist = body.WaistPose();
-    if (!((waist * top).z() > kFallen * height)) return run;
+    if (body.FallenFrom(height)) return run;
     const double upright = waist.linear().col(2).dot(begin.linear().col(2));
     run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
     run.tracking = std::max(run.tracking,

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/simulation/true_motion.hpp"
 
+#include <string>
 #include <utility>
 
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/simulation/motion_recorder.hpp"
 #include "elastocal/simulation/standing_feet.hpp"
 
 namespace elastocal {
-namespace {
-
-void CheckStanding(const Transform& T_world_waist, double height, double time_s) {
-  constexpr double kLeastHeight = 0.7;
-  if (!(T_world_waist.translation().z() > kLeastHeight * height)) throw Fallen(time_s);
-}
-
-}  // namespace
-
 TrueMotion PlayMotion(const TrueRobot& robot, const std::vector<int>& support, const Motion& motion,
                       const Transform& T_camera_world, const PhysicsOptions& options) {
   constexpr double kLongestCreep = 4.0;  // s; friction may go on creeping
   MotionRecorder recorder(robot, motion, T_camera_world);
   VirtualRobot body(robot, support, PostureAt(motion, 0.0), options);
   body.Settle(kLongestCreep);
-  const double height = body.WaistPose().translation().z();
+  const double height = body.Height();
   recorder.Begin(body, support.size());
   int steps = 0;
   for (Eigen::Index i = 0; i < recorder.frames(); ++i) {
@@ -32,7 +25,11 @@ TrueMotion PlayMotion(const TrueRobot& robot, const std::vector<int>& support, c
       body.Step();
     }
     recorder.Record(i, body);
-    if (StandsFreely(support, options)) CheckStanding(body.WaistPose(), height, time_s);
+    if (StandsFreely(support, options) && body.FallenFrom(height)) throw Fallen(time_s);
+    if (body.Unstable()) {
+      throw InputError("the simulation became unstable after " + std::to_string(time_s) +
+                       " s: are inertias too small for the robot's motors and springs?");
+    }
   }
   return std::move(recorder.motion);
 }

@@ -13,6 +13,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/interruption.hpp"
+#include "elastocal/robot/legs.hpp"
 
 namespace elastocal {
 namespace {
@@ -34,7 +35,12 @@ std::string WithLinkNames(std::string message, const RobotTree& tree) {
   return message;
 }
 
+/// MuJoCo would write its warnings to a file in the current folder; Unstable says them.
+void NoWarning(const char* /*message*/) {}
+
 ModelPointer Compile(const std::string& xml, const RobotTree& tree) {
+  static const bool quiet = (mju_user_warning = NoWarning) != nullptr;
+  static_cast<void>(quiet);
   const auto files = std::make_unique<mjVFS>();  // two megabytes: too large for the stack
   mj_defaultVFS(files.get());
   const char* name = "robot.xml";
@@ -79,7 +85,8 @@ struct VirtualRobot::Simulation {
   std::vector<Address> motors, springs;  // by joint
   std::vector<int> bodies, soles;        // MuJoCo's, by body of the tree and by support
   std::vector<PhysicalPlate> plates;
-  Eigen::VectorXd bristle;  // by joint, state of friction in [-1, 1]
+  Eigen::VectorXd bristle;                        // by joint, state of friction in [-1, 1]
+  Eigen::Vector3d top = Eigen::Vector3d::Zero();  // in the root link: what is high while it stands
 
   Simulation(const TrueRobot& true_robot, const MjcfModel& mjcf,
              const std::vector<PhysicalPlate>& with_plates)
@@ -88,6 +95,7 @@ struct VirtualRobot::Simulation {
         data(mj_makeData(model.get()), &mj_deleteData),
         plates(with_plates),
         bristle(Eigen::VectorXd::Zero(true_robot.offset.size())) {
+    if (!robot.legs.empty()) top.z() = LegTop(robot.tree, robot.legs.front().joints);
     for (std::size_t k = 0; k < robot.tree.joints.size(); ++k) {
       motors.push_back(FindAddress(*model, "m" + std::to_string(k)));
       springs.push_back(FindAddress(*model, "e" + std::to_string(k)));
@@ -201,6 +209,20 @@ bool VirtualRobot::Settle(double longest_s) {
     if (resting == kStepsAtRest) return true;
   }
   return false;
+}
+
+double VirtualRobot::Height() const { return (WaistPose() * simulation_->top).z(); }
+
+bool VirtualRobot::FallenFrom(double height) const {
+  constexpr double kFallen = 0.7;
+  return Unstable() || !(Height() > kFallen * height);
+}
+
+bool VirtualRobot::Unstable() const {
+  const auto& warnings = simulation_->data->warning;
+  return warnings[mjWARN_BADQPOS].number + warnings[mjWARN_BADQVEL].number +
+             warnings[mjWARN_BADQACC].number >
+         0;
 }
 
 void VirtualRobot::PushWaist(const Vector6d& wrench) {

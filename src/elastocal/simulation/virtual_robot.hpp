@@ -43,6 +43,14 @@ class VirtualRobot {
   Eigen::VectorXd Encoders() const;
   Eigen::VectorXd Torques() const;
 
+  /// Height of what falls when the robot does, m: the root link, or the hips where that is a frame
+  /// on the floor.
+  double Height() const;
+  /// Whether it is below 70 % of a height that it had at rest, or Unstable.
+  bool FallenFrom(double height) const;
+  /// Whether numbers have grown beyond all bounds, after which MuJoCo starts anew.
+  bool Unstable() const;
+
   Transform WaistPose() const;         ///< of the root link in the world
   Transform LinkPose(int link) const;  ///< of any link of the tree
   /// Pose of a sole in `support`. It differs from its link's pose by the deflection between ankle

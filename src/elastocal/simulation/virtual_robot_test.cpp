@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/simulation/virtual_robot.hpp"
 
+#include <filesystem>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "elastocal/math/random.hpp"
@@ -28,6 +31,22 @@ TrueRobot Pendulum() {
   AddJoint(tree, "swing", 0, Transform::Identity(), {0, 1, 0});
   GiveMass(tree, 2.0, {0.5, 0, 0});
   return NominalRobot(tree, {{"TIP", 1, {1.0, 0, 0}}}, {}, {0});
+}
+
+// MuJoCo starts anew then, as if nothing had been, and writes a file where the user works.
+TEST(VirtualRobot, SaysThatItIsUnstable) {
+  std::filesystem::remove("MUJOCO_LOG.TXT");
+  VirtualRobot body(Pendulum(), {}, Eigen::VectorXd::Zero(1));
+  body.Step();
+  EXPECT_FALSE(body.Unstable());
+  EXPECT_FALSE(body.FallenFrom(body.Height() - 0.1));
+  body.Command(Eigen::VectorXd::Constant(1, std::numeric_limits<double>::quiet_NaN()));
+  body.Step();
+  body.Command(Eigen::VectorXd::Zero(1));
+  body.Step();
+  EXPECT_TRUE(body.Unstable());
+  EXPECT_TRUE(body.FallenFrom(body.Height() - 0.1));
+  EXPECT_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT"));
 }
 
 TEST(VirtualRobot, SpringOfOneJointGivesWayToItsLoad) {
