@@ -53,11 +53,11 @@ std::string AssessedText(const ChainAssessment& chain, const RobotTree& tree, in
   for (std::size_t i = 0; i < a.violations.size(); ++i) {
     if (a.violations[i].amount <= kFeasible) continue;
     if (++broken <= 3) {
-      text += fmt::format("  posture {} breaks the {} by {:.3g}\n", i + 1, a.violations[i].what,
-                          a.violations[i].amount);
+      text += fmt::format("  posture {} {}\n", i + 1, a.violations[i].Describe());
     }
   }
-  if (broken > 3) text += fmt::format("  and {} more postures break limits\n", broken - 3);
+  if (broken > 3)
+    text += fmt::format("  and {} more postures break limits or cannot be reached\n", broken - 3);
   if (a.indices.o1 == 0.0) {
     text += "  these postures do not determine all parameters (O1 = 0)\n";
   } else {

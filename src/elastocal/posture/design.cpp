@@ -93,11 +93,12 @@ ChainDesign MirrorDesign(const ChainDesign& design, const MirrorMap& mirror,
     if (violation.amount > kFeasible) {
       const auto drawn = sampler.Draw();
       if (!drawn) {
-        mirrored.notes.push_back("a posture was left out: " + violation.what);
+        mirrored.notes.push_back("a posture was left out: its mirror image " +
+                                 violation.Describe());
         continue;
       }
       mirrored.notes.push_back("posture " + std::to_string(set.size() + 1) +
-                               " was replaced: its mirror image breaks the " + violation.what);
+                               " was replaced: its mirror image " + violation.Describe());
       replaced.push_back(set.size());
       x = *drawn;
     }

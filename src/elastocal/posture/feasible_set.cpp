@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/posture/feasible_set.hpp"
 
+#include <iomanip>
+#include <sstream>
+
 #include "elastocal/math/interruption.hpp"
 
 namespace elastocal {
@@ -51,7 +54,7 @@ Violation WorstViolation(FeasibleSet& set, const Eigen::VectorXd& x) {
   Violation worst;
   const auto note = [&](double value, double lower, double upper, const auto& name) {
     const double amount = std::max(lower - value, value - upper);
-    if (amount > worst.amount) worst = {amount, name()};
+    if (amount > worst.amount) worst = {.amount = amount, .what = name()};
   };
   const RobotTree& tree = set.chain.tree();
   for (int i = 0; i < set.variable_count(); ++i) {
@@ -70,9 +73,16 @@ Violation WorstViolation(FeasibleSet& set, const Eigen::VectorXd& x) {
     }
   }
   if (worst.amount <= kFeasible && set.reachable && !set.reachable(x)) {
-    return {1.0, "way from the posture of rest past the robot's own parts"};
+    return {1.0, "way from the posture of rest past the robot's own parts", true};
   }
   return worst;
+}
+
+std::string Violation::Describe() const {
+  if (unreachable) return "cannot be reached: no " + what + " was found";
+  std::ostringstream text;
+  text << "breaks the " << what << " by " << std::setprecision(3) << amount;
+  return text.str();
 }
 
 }  // namespace elastocal

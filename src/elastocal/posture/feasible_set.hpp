@@ -43,6 +43,10 @@ struct Violation {
   double amount =
       0.0;  ///< rad or m for limits of coordinates, otherwise in units of the PostureConstraint
   std::string what;
+  bool unreachable = false;  ///< no limit is broken, but the robot cannot move there
+
+  /// What a posture does, as the end of a sentence: "breaks the limit of arm_1_joint by 0.12".
+  std::string Describe() const;
 };
 Violation WorstViolation(FeasibleSet& set, const Eigen::VectorXd& x);
 

@@ -102,8 +102,12 @@ TEST(FeasibleSampler, DrawsOnlyWhatCanBeReached) {
   }
   const Eigen::Vector3d beyond(0.9, 0.0, 1.0);
   EXPECT_EQ(WorstViolation(set, beyond).amount, 1.0);
-  EXPECT_NE(WorstViolation(set, beyond).what.find("way from the posture of rest"),
-            std::string::npos);
+  EXPECT_EQ(
+      WorstViolation(set, beyond).Describe(),
+      "cannot be reached: no way from the posture of rest past the robot's own parts was found");
+  EXPECT_EQ(
+      WorstViolation(set, Eigen::Vector3d(0.0, 0.0, 9.0)).Describe().find("breaks the limit of"),
+      0U);
   setup.contacts.resize(setup.contacts.size() - 4);  // a door at one end
   FeasibleSet open = MakeFeasibleSet(tree, motion, setup);
   EXPECT_EQ(WorstViolation(open, beyond).amount, 0.0);
