@@ -306,7 +306,7 @@ def plan(
     lift_mm: Optional[float] = None,
     inset_mm: Optional[float] = None,
     approach_mm: Optional[float] = None,
-    torque_share: float = ...,
+    torque_share: Optional[float] = None,
     velocity_share: float = ...,
     balanced: bool = True,
     robots: int = 0,

@@ -52,18 +52,19 @@ JointMotion MotionFromDict(const py::dict& given, const Project& project) {
 
 MotionPlanOptions PlanOptionsOf(double move_s, double rest_s, std::optional<double> zmp_margin_mm,
                                 std::optional<double> lift_mm, std::optional<double> inset_mm,
-                                std::optional<double> approach_mm, double torque_share,
-                                double velocity_share, bool balanced, int threads) {
+                                std::optional<double> approach_mm,
+                                std::optional<double> torque_share, double velocity_share,
+                                bool balanced, int threads) {
   ExpectBounded("plan --move-s", move_s);
   ExpectBounded("plan --rest-s", rest_s);
-  ExpectBounded("plan --torque-share", torque_share);
+  if (torque_share) ExpectBounded("plan --torque-share", *torque_share);
   ExpectBounded("plan --velocity-share", velocity_share);
   ExpectWithin("threads", threads, 1, 64);
   MotionPlanOptions options;
   options.plan.path.duration_s = move_s;
   options.plan.hold_s = rest_s;
   options.plan.balanced = balanced;
-  options.limits.torque_share = torque_share;
+  options.torque_share = torque_share;
   options.limits.velocity_share = velocity_share;
   options.threads = threads;
   const auto set = [](const char* option, const std::optional<double>& given, double& metres) {
@@ -94,7 +95,7 @@ PyPlan PlanFor(const Project& project, const py::object& postures,
                const std::optional<std::string>& kind, int count, double move_s, double rest_s,
                std::optional<double> zmp_margin_mm, std::optional<double> lift_mm,
                std::optional<double> inset_mm, std::optional<double> approach_mm,
-               double torque_share, double velocity_share, bool balanced, int robots,
+               std::optional<double> torque_share, double velocity_share, bool balanced, int robots,
                double floor_friction, double leg_geometry_scale, bool stabilised, int threads,
                std::uint64_t seed, const Progress& progress) {
   if (postures.is_none() != kind.has_value()) {
@@ -223,7 +224,7 @@ void AddMotions(py::module_& module) {
       "kind"_a = std::nullopt, "count"_a = plan.validation.random_postures,
       "move_s"_a = plan.plan.path.duration_s, "rest_s"_a = plan.plan.hold_s,
       "zmp_margin_mm"_a = std::nullopt, "lift_mm"_a = std::nullopt, "inset_mm"_a = std::nullopt,
-      "approach_mm"_a = std::nullopt, "torque_share"_a = plan.limits.torque_share,
+      "approach_mm"_a = std::nullopt, "torque_share"_a = std::nullopt,
       "velocity_share"_a = plan.limits.velocity_share, "balanced"_a = true, "robots"_a = 0,
       "floor_friction"_a = tries.floor_friction, "leg_geometry_scale"_a = tries.leg_errors,
       "stabilised"_a = true, "threads"_a = plan.threads, "seed"_a = 1, "progress"_a = Progress(),

@@ -215,7 +215,11 @@ void AddPlan(CLI::App& app, Action& action) {
   length(
       "--approach-mm", options->approach_mm,
       "Of touches: height above its table from which a plate goes straight down, mm; default: 50");
-  number("--torque-share", plan.limits.torque_share, "Share of the torque limits to be used");
+  command
+      ->add_option("--torque-share", plan.torque_share,
+                   "Share of the torque limits to be used; default: design.motion_effort_share of "
+                   "the project, which is 0.9 where it is not given")
+      ->check(InBounds("plan --torque-share"));
   number("--velocity-share", plan.limits.velocity_share, "Share of the velocity limits to be used");
   number("--floor-friction", options->tries.floor_friction,
          "Friction of the floor that --robots stand on");

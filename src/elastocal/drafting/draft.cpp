@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/arm_rest.hpp"
 #include "elastocal/drafting/standing_draft.hpp"
@@ -232,6 +234,13 @@ void WarnOfGuesses(ProjectDraft& draft) {
         "sole " + Quote(sole.link) + ": its " +
         (sole.guessed_height ? "height and size are guesses" : "size is a guess") +
         ", because the URDF has no shape of the foot; measure it");
+  }
+  if (draft.stands && draft.motion_effort_share != MotionSetup{}.motion_effort_share) {
+    draft.warnings.push_back(
+        fmt::format("planned motions use up to {:.0f} % of the motors' efforts, because with "
+                    "{:.0f} % the robot "
+                    "could not lift a foot: its own masses must be those of the URDF",
+                    100.0 * draft.motion_effort_share, 100.0 * MotionSetup{}.motion_effort_share));
   }
   if (!draft.held_because.empty()) {
     draft.warnings.push_back(

@@ -37,6 +37,9 @@ struct ProjectDraft {
   double sphere_margin = 0.0;  ///< m
   RestPosture rest;
   std::vector<ChainSetup> designs;
+  /// Share of the motors' efforts that planned motions use: more than usual where the robot could
+  /// not lift a foot otherwise.
+  double motion_effort_share = MotionSetup{}.motion_effort_share;
   std::map<int, Eigen::Vector2d> ranges;  ///< of entries of q that use a part of theirs only
   /// Whether the soles are written: the robot stands on them.
   bool stands = false;

@@ -143,9 +143,12 @@ class DraftWriter {
     text_ += "# What the calibration postures keep to, chain by chain.\ndesign:\n";
     WriteRest();
     WriteRanges();
-    text_ +=
-        fmt::format("  effort_share: {}  # of the URDF's effort; plan moves within 0.9 of it\n",
-                    kDraftedEffort);
+    text_ += fmt::format("  effort_share: {}  # of the URDF's effort; plan moves within {} of it\n",
+                         kDraftedEffort, draft_.motion_effort_share);
+    if (draft_.motion_effort_share != MotionSetup{}.motion_effort_share) {
+      text_ += fmt::format("  motion_effort_share: {}  # with less, it could not lift a foot\n",
+                           draft_.motion_effort_share);
+    }
     text_ += "  chains:\n";
     for (const ChainSetup& setup : draft_.designs) WriteSetup(setup);
     text_ += "\n";

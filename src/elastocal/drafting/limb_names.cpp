@@ -14,24 +14,6 @@ namespace {
 bool IsUpper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 bool IsSmall(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
 
-/// The words of a name in small letters: "l", "knee" and "pitch" of "l_knee_pitch" and
-/// "LKneePitch".
-std::vector<std::string> WordsOf(const std::string& name) {
-  std::vector<std::string> words(1);
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const char c = name[i];
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) {
-      words.emplace_back();
-      continue;
-    }
-    const bool begins =
-        i == 0 || IsSmall(name[i - 1]) || (i + 1 < name.size() && IsSmall(name[i + 1]));
-    if (IsUpper(c) && begins) words.emplace_back();
-    words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return words;
-}
-
 int SideByName(const std::string& name) {
   constexpr std::array kLeft = {"left", "l", "lf", "fl", "lh", "hl", "rl"};
   constexpr std::array kRight = {"right", "r", "rf", "fr", "rh", "hr", "rr"};
@@ -58,6 +40,22 @@ bool Says(const RobotTree& tree, const Limb& limb, std::initializer_list<const c
 }
 
 }  // namespace
+
+std::vector<std::string> WordsOf(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) {
+      words.emplace_back();
+      continue;
+    }
+    const bool begins =
+        i == 0 || IsSmall(name[i - 1]) || (i + 1 < name.size() && IsSmall(name[i + 1]));
+    if (IsUpper(c) && begins) words.emplace_back();
+    words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return words;
+}
 
 int SideByNames(const RobotTree& tree, const Limb& limb) {
   const auto trunk = static_cast<std::ptrdiff_t>(JointsToBody(tree, limb.from_body).size());

@@ -8,6 +8,10 @@
 
 namespace elastocal {
 
+/// The words of a name in small letters: "l", "knee" and "pitch" of "l_knee_pitch" and
+/// "LKneePitch".
+std::vector<std::string> WordsOf(const std::string& name);
+
 /// The side of the robot that the names of a limb's joints and tip say: 1 left, -1 right, 0 none.
 /// "left_knee", "LKneePitch", "l_knee", "knee_l" and, of four legs, "FL_calf" and "LF_KFE" are
 /// left.

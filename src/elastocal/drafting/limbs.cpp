@@ -67,22 +67,43 @@ bool TurnsWithoutEnd(const Joint& joint) {
   return joint.type == JointType::kRevolute && !std::isfinite(joint.limits.lower);
 }
 
-/// Marks wheels as tools: ends of the robot that one or two joints carry, all of which turn without
-/// an end, and several such ends of one body, wherever it is.
+/// Whether the names of the body's joint or of one of its links say that it is a wheel.
+bool NamedWheel(const RobotTree& tree, int body) {
+  const auto says = [](const std::string& name) {
+    const std::vector<std::string> words = WordsOf(name);
+    return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+      return word.find("wheel") == 0 || word.find("caster") == 0 || word.find("castor") == 0;
+    });
+  };
+  return says(tree.joints[Size(body) - 1].name) ||
+         std::any_of(tree.links.begin(), tree.links.end(),
+                     [&](const Link& link) { return link.body == body && says(link.name); });
+}
+
+/// Marks wheels as tools: bodies that turn without an end, and carry nothing but other wheels. They
+/// are named so, or one or two joints carry them, all of which turn without an end, or several end
+/// beside each other.
 void MarkWheels(const RobotTree& tree, std::vector<bool>& tool) {
   constexpr std::size_t kMostJoints = 2;
-  const auto wheel = [&](int body) {
+  std::vector<bool> wheel(Size(tree.body_count()), false);
+  const auto end = [&](int body) {
     return Branches(tree, body).empty() && TurnsWithoutEnd(tree.joints[Size(body) - 1]);
   };
-  for (int body = 1; body < tree.body_count(); ++body) {
-    if (!wheel(body)) continue;
-    const std::vector<int> beside = Branches(tree, tree.joints[Size(body) - 1].parent_body);
-    tool[Size(body)] = tool[Size(body)] || std::count_if(beside.begin(), beside.end(), wheel) > 1;
+  for (int body = tree.body_count() - 1; body > 0; --body) {
+    const std::vector<int> carried = Branches(tree, body);
+    if (!TurnsWithoutEnd(tree.joints[Size(body) - 1]) ||
+        !std::all_of(carried.begin(), carried.end(), [&](int b) { return wheel[Size(b)]; })) {
+      continue;
+    }
     const std::vector<int> joints = JointsToBody(tree, body);
-    const bool turns = std::all_of(joints.begin(), joints.end(),
-                                   [&](int k) { return TurnsWithoutEnd(tree.joints[Size(k)]); });
-    if (!turns || joints.size() > kMostJoints) continue;
-    for (const int k : joints) tool[Size(k) + 1] = Branches(tree, k + 1).size() < 2;
+    const bool near_root =
+        joints.size() <= kMostJoints && std::all_of(joints.begin(), joints.end(), [&](int k) {
+          return TurnsWithoutEnd(tree.joints[Size(k)]);
+        });
+    const std::vector<int> beside = Branches(tree, tree.joints[Size(body) - 1].parent_body);
+    const bool several = end(body) && std::count_if(beside.begin(), beside.end(), end) > 1;
+    wheel[Size(body)] = near_root || several || NamedWheel(tree, body);
+    tool[Size(body)] = tool[Size(body)] || wheel[Size(body)];
   }
 }
 

@@ -75,6 +75,9 @@ void MeasureSole(const FootPoints& foot, const Transform& T_root_sole, double th
 DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& limb,
                      const std::vector<Transform>& T_root_link) {
   constexpr double kThickness = 0.005, kSamePlane = 0.003;
+  // Of the leg's length: frames nearer to the ankle are of rods and sensors (Unitree R1: 0.015),
+  // soles are further below (Unitree G1: 0.06).
+  constexpr double kLeastFoot = 0.03;
   const Transform& T_root_body = T_root_link[Size(BodyLink(tree, limb.tip_body))];
   const Transform& T_root_hip = T_root_link[Size(tree.joints[Size(limb.joints[0])].child_link)];
   const double ankle = T_root_body.translation().z();
@@ -88,7 +91,7 @@ DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& 
   sole.guessed_size = shape.guessed;
   std::optional<int> link;
   if (shape.guessed) {
-    link = FlatLink(tree, limb.tip_body, T_root_link, ankle - length, ankle - 0.01 * length);
+    link = FlatLink(tree, limb.tip_body, T_root_link, ankle - length, ankle - kLeastFoot * length);
     sole.guessed_height = !link;
     foot.floor = link ? T_root_link[Size(*link)].translation().z() : ankle - kFootHeight * length;
   } else {

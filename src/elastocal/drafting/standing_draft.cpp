@@ -23,7 +23,9 @@ std::unique_ptr<StandingRobot> StandDraft(const ProjectDraft& draft) {
   for (const DraftedSole& sole : draft.soles) {
     soles.push_back({FindLink(draft.tree, sole.link), sole.lower, sole.upper, sole.ball_radius});
   }
-  auto robot = std::make_unique<StandingRobot>(draft.tree, std::move(soles), MotionLimits{});
+  MotionLimits limits;
+  limits.torque_share = draft.motion_effort_share;
+  auto robot = std::make_unique<StandingRobot>(draft.tree, std::move(soles), limits);
   StandOptions options;
   options.stance = draft.stance;
   StandUp(*robot, draft.rest.q, options);
@@ -90,7 +92,8 @@ Refused LiftRefused(const StandingRobot& robot, int foot) {
   return refused;
 }
 
-/// Whether the robot of the draft can stand as `plan` asks, with a share of its motors' efforts.
+/// Whether the robot of the draft can stand as `plan` asks, with the draft's share of its motors'
+/// efforts or less.
 Refused StandRefused(const ProjectDraft& draft, double torque_share) {
   if (draft.soles.empty()) return {};
   if (!draft.rest.stands) {
@@ -115,22 +118,33 @@ void RestOnFeet(ProjectDraft& draft, const Semantics& semantics) {
   // straight cannot follow the weight; an ankle that bends little, or a weak motor, leaves a leg
   // nearly straight. These need as little effort as the postures that will be designed.
   const std::vector<double> less = {0.04, 0.02}, any = {0.10, 0.15, 0.20, 0.25, 0.04, 0.02};
-  const auto choose = [&](double drop) {
+  // Of the motors' efforts, where nothing else helps: the rest is for errors of the masses.
+  constexpr double kNearlyAll = 0.97;
+  const auto refused_at = [&](double drop, double torque_share) {
     draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics, drop);
+    return StandRefused(draft, torque_share);
   };
-  choose(kUsualDrop);
-  Refused refused = StandRefused(draft, MotionLimits{}.torque_share);
-  if (!refused.why.empty()) {
-    for (const double drop : refused.weak ? less : any) {
-      choose(drop);
-      if (!StandRefused(draft, kDraftedEffort).why.empty()) continue;
-      refused = {};
-      break;
-    }
-    if (!refused.why.empty()) choose(kUsualDrop);
+  const auto stands_at = [&](double drop, double torque_share) {
+    if (!refused_at(drop, torque_share).why.empty()) return false;
+    draft.motion_effort_share = std::max(draft.motion_effort_share, torque_share);
+    draft.stands = !draft.soles.empty();
+    return true;
+  };
+  const Refused usual = refused_at(kUsualDrop, draft.motion_effort_share);
+  if (usual.why.empty()) {
+    draft.stands = !draft.soles.empty();
+    return;
   }
-  draft.held_because = refused.why;
-  draft.stands = !draft.soles.empty() && refused.why.empty();
+  for (const double drop : usual.weak ? less : any) {
+    if (stands_at(drop, kDraftedEffort)) return;
+  }
+  if (usual.weak) {
+    for (const double drop : {kUsualDrop, less[0], less[1]}) {
+      if (stands_at(drop, kNearlyAll)) return;
+    }
+  }
+  draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics, kUsualDrop);
+  draft.held_because = usual.why;
 }
 
 void NarrowWaist(ProjectDraft& draft) {

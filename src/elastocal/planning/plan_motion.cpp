@@ -28,8 +28,9 @@ void CheckPlanOptions(const MotionPlanOptions& options) {
   };
   const MotionLimits& limits = options.limits;
   const char* share = "a share above 0 and up to 1";
-  expect(limits.torque_share > 0.0 && limits.torque_share <= 1.0, "share of the torque limits",
-         limits.torque_share, share);
+  const double torque_share = options.torque_share.value_or(1.0);
+  expect(torque_share > 0.0 && torque_share <= 1.0, "share of the torque limits", torque_share,
+         share);
   expect(limits.velocity_share > 0.0 && limits.velocity_share <= 1.0,
          "share of the velocity limits", limits.velocity_share, share);
   expect(!std::isnan(limits.zmp_margin), "margin of the zero-moment point", limits.zmp_margin,
@@ -129,7 +130,10 @@ std::string DescribeLeftOut(const Project& project, const PlannedTour& set, cons
 }
 
 /// The robot where it moves: between tables, if the project has some.
-std::unique_ptr<StandingRobot> StandForMotion(const Project& project, const MotionLimits& limits) {
+std::unique_ptr<StandingRobot> StandForMotion(const Project& project,
+                                              const MotionPlanOptions& options) {
+  MotionLimits limits = options.limits;
+  limits.torque_share = options.torque_share.value_or(project.motion.motion_effort_share);
   if (!project.contact) return StandProjectRobot(project, limits);
   ObservationSetup setup = project.contact->setup;
   return StandAtTables(project, limits, setup);
@@ -182,7 +186,7 @@ std::vector<LimitUse> MotionPlan::broken() const {
 MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& postures,
                       const MotionPlanOptions& options, const Progress& progress) {
   CheckPlanOptions(options);
-  const auto robot = StandForMotion(project, options.limits);
+  const auto robot = StandForMotion(project, options);
   std::vector<PostureTour> tours =
       project.contact
           ? TouchTours(project, *robot, postures, options.approach, options.plan.rate_hz)
@@ -193,7 +197,7 @@ MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& 
 MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std::uint64_t seed,
                                 const MotionPlanOptions& options, const Progress& progress) {
   CheckPlanOptions(options);
-  const auto robot = StandForMotion(project, options.limits);
+  const auto robot = StandForMotion(project, options);
   Random random(seed);
   std::vector<PostureTour> tours = ValidationTours(
       *robot, project.motion, SetupsOfBothSides(project), kind, options.validation, random);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ namespace elastocal {
 struct MotionPlanOptions {
   /// plan.balanced = false gives a motion that may break the limits, to see what comes of it.
   PlanOptions plan = {};
-  MotionLimits limits = {};
+  MotionLimits limits = {};  ///< but for the share of torques, which is the next member
+  std::optional<double> torque_share = {};  ///< default: MotionSetup::motion_effort_share
   int threads = 2;  ///< chains planned at a time; the result does not depend on it
   ValidationOptions validation = {};  ///< of PlanValidationMotion
   ApproachOptions approach = {};      ///< of hands to tables, in projects with `contact`

@@ -91,6 +91,7 @@ void ReadSettings(const YamlValue& root, Project& project) {
   SetMotionDefaults(project);
   if (const auto section = root.Find("collision")) ReadCollision(*section, project);
   if (const auto section = root.Find("design")) ReadDesign(*section, project);
+  CarryRest(project);
 }
 
 }  // namespace

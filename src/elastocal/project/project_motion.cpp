@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
 #include <set>
+#include <sstream>
 #include <tuple>
 
 #include "elastocal/project/project_sections.hpp"
 #include "elastocal/robot/moving_chain.hpp"
+#include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
 namespace {
@@ -185,9 +189,27 @@ void ReadCollision(const YamlValue& section, Project& project) {
   }
 }
 
+void CarryRest(Project& project) {
+  constexpr double kMostAtRest = 0.8;  // of an effort: planned motions use 0.9, to accelerate
+  const Eigen::VectorXd torques = GravityTorques(project.tree, project.motion.rest);
+  for (int c = 0; c < project.tree.coordinate_count(); ++c) {
+    Joint& joint = project.tree.joints[Size(project.tree.coordinate_joint[Size(c)])];
+    const double torque = std::abs(torques[c]), effort = joint.limits.effort;
+    if (!std::isfinite(effort) || torque <= kMostAtRest * effort) continue;
+    joint.limits.effort = torque / kMostAtRest;
+    std::ostringstream text;
+    text << "joint " << Quote(joint.name) << ": gravity takes " << std::setprecision(3) << torque
+         << " of its effort of " << effort << (joint.type == JointType::kPrismatic ? " N" : " N.m")
+         << " in the posture of rest; " << joint.limits.effort
+         << " are taken instead. Is there a counterweight that the URDF does not have, or is the "
+            "effort that of a motor before its gear?";
+    project.tree.warnings.push_back(text.str());
+  }
+}
+
 void ReadDesign(const YamlValue& section, Project& project) {
-  section.ExpectKeys(
-      {"rest_deg", "limit_margin", "range_deg", "effort_share", "chains", "cameras_mm"});
+  section.ExpectKeys({"rest_deg", "limit_margin", "range_deg", "effort_share",
+                      "motion_effort_share", "chains", "cameras_mm"});
   MotionSetup& motion = project.motion;
   double limit_margin = kLimitMargin;
   section.ReadBounded("limit_margin", limit_margin);
@@ -198,6 +220,7 @@ void ReadDesign(const YamlValue& section, Project& project) {
   if (const auto ranges = section.Find("range_deg"))
     ReadRanges(*ranges, project.tree, limit_margin, motion);
   section.ReadBounded("effort_share", motion.effort_share);
+  section.ReadBounded("motion_effort_share", motion.motion_effort_share);
   if (rest) ReadRest(*rest, project.tree, motion);
   if (const auto cameras = section.Find("cameras_mm")) {
     for (const YamlValue& camera : cameras->Items()) motion.cameras.push_back(PointFromMm(camera));

@@ -28,6 +28,9 @@ void ReadStanding(const YamlValue& section, Project& project);
 void SetMotionDefaults(Project& project);
 void ReadCollision(const YamlValue& section, Project& project);
 void ReadDesign(const YamlValue& section, Project& project);
+/// A robot holds its posture of rest: efforts that gravity would nearly use up in it, while the
+/// root link is held, are raised with a warning.
+void CarryRest(Project& project);
 /// `instruments`: whether there are others than plates.
 void ReadContact(const YamlValue& section, bool instruments, Project& project);
 void ReadInstruments(const YamlValue& section, Project& project);

@@ -36,7 +36,8 @@ struct MotionSetup {
   Eigen::VectorXd rest;          ///< posture of rest, by coordinate of q; within the limits
   Eigen::VectorXd lower, upper;  ///< limits with a margin, by coordinate, rad or m
   double effort_share = 1.0;     ///< share of the URDF's largest torques that may be used, eq. 9
-  double sphere_margin = 0.0;    ///< least distance between spheres, m
+  double motion_effort_share = 0.9;  ///< the same of planned motions, whose joints accelerate
+  double sphere_margin = 0.0;        ///< least distance between spheres, m
   std::vector<CollisionSphere> spheres;
   std::vector<ChainSetup> chains;        ///< in the order in which they are calibrated
   std::vector<Eigen::Vector3d> cameras;  ///< in the root link's frame, m; empty: nothing is hidden
