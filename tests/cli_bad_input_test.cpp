@@ -42,6 +42,30 @@ TEST_F(Program, ConvertDoesNotPromiseAFormatThatItDoesNotWrite) {
   EXPECT_EQ(RunProgram("info " + written).exit_code, 0);
 }
 
+TEST_F(Program, ConvertReplacesOnlyWhatItWrote) {
+  const std::string theirs = "t,elbow_joint\n0.00,0.1\n0.01,0.2\n0.02,0.3\n";
+  const std::string log = scratch_.Write("log.csv", theirs);
+  const std::string other = scratch_.Write("other.csv", theirs);
+  ExpectRefused(RunProgram("convert " + log + " -o " + other),
+                {"other.csv: is there and was not written by this command"});
+  EXPECT_EQ(ReadFile(other), theirs);
+  const std::string written = (scratch_.path() / "out.csv").string();
+  for (int run = 0; run < 2; ++run) {
+    EXPECT_EQ(RunProgram("convert " + log + " -o " + written).exit_code, 0);
+  }
+  const std::string camera =
+      "FREQUENCY\t100\nMARKER_NAMES\tA\nFrame\tTime\tA X\tA Y\tA Z\n1\t0\t1\t2\t3\n";
+  const std::string markers = scratch_.Write("camera.tsv", camera);
+  const std::string another = scratch_.Write("another.tsv", camera);
+  ExpectRefused(RunProgram("convert " + markers + " -o " + another), {"another.tsv: is there"});
+  EXPECT_EQ(ReadFile(another), camera);
+  for (int run = 0; run < 2; ++run) {
+    const ProgramResult again =
+        RunProgram("convert " + markers + " -o " + (scratch_.path() / "turned.tsv").string());
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+  }
+}
+
 // JSON holds nothing but UTF-8: a name that is not is refused before the fit and not after it.
 TEST_F(Program, NamesThatAreNotUtf8AreRefused) {
   std::string project = ReadFile(project_);

@@ -75,6 +75,25 @@ TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {
   EXPECT_GT(refused, 0);
 }
 
+TEST_F(CalibratedTalos, AMotionOfTheUsersIsNotReplaced) {
+  const std::string text = MotionText(project_.tree, project_.motion.rest, 0.05);
+  const std::string motion = scratch_.Write("plan.csv", text);
+  const std::string output = scratch_.Write("corrected.csv", text);
+  const ProgramResult refused = Compensate(motion);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("corrected.csv: is there and was not written by this command"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(ReadFile(output), text);
+  std::filesystem::remove(output);
+  EXPECT_EQ(Compensate(motion).exit_code, 0);
+  // Its own is replaced, also one of another motion.
+  scratch_.Write("plan.csv", MotionText(project_.tree, project_.motion.rest, 0.04));
+  const std::string first = ReadFile(output);
+  EXPECT_EQ(Compensate(motion).exit_code, 0);
+  EXPECT_NE(ReadFile(output), first);
+}
+
 TEST_F(CalibratedTalos, ACalibrationOfAnotherRobotIsRefused) {
   const std::string motion =
       scratch_.Write("plan.csv", MotionText(project_.tree, project_.motion.rest, 0.0));

@@ -213,6 +213,34 @@ TEST_F(CalibratedTalos, InsignificantJointsAreNamedInEveryFile) {
   ExpectTheCalibratedRobot(ReadFile(scratch_.path() / "urdf"), {});
 }
 
+TEST_F(CalibratedTalos, ExportsReplaceExportsAndNothingElse) {
+  const std::string user = scratch_.Write("user.xml", UserModel{project_.tree}.Text(false));
+  const std::string notes = ReadFile(project_.urdf);
+  const std::string file = scratch_.Write("talos.txt", notes);
+  for (const char* format : {"urdf", "urdf_encoder", "urdf_rising", "xacro", "pal", "ros2_control",
+                             "runtime", "c99", "flex_joints", "mjcf"}) {
+    const std::string more = format == std::string("mjcf") ? "--mjcf " + user : "";
+    const ProgramResult result = RunExport(format, file, more);
+    EXPECT_EQ(result.exit_code, 3) << format;
+    EXPECT_NE(result.err.find("talos.txt: is there and was not written by this command"),
+              std::string::npos)
+        << result.err;
+    EXPECT_EQ(ReadFile(file), notes) << format;
+    Export(format, more);
+    Export(format, more);  // which says what it is, and is replaced
+  }
+}
+
+TEST_F(Program, ExportsReplaceNoInputOfTheCalibration) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  // Even one that says that it was exported.
+  WriteFile(recording_, "Made by elastocal ");
+  const ProgramResult result = RunProgram("export " + out_ + " --format pal -o " + recording_);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("this is an input"), std::string::npos) << result.err;
+  EXPECT_EQ(ReadFile(recording_), "Made by elastocal ");
+}
+
 TEST_F(Program, OnlyWhatHeldOutPosturesSayHelpsIsExported) {
   // Errors of some joints alone: the others' estimates are noise.
   const Project project = ReadProject(project_);

@@ -17,6 +17,7 @@
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
+#include "elastocal/planning/planned_motion_file.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -66,7 +67,9 @@ int Compensate(const CompensateOptions& options) {
   std::vector<std::filesystem::path> inputs = robot.inputs;
   inputs.emplace_back(options.motion);
   outputs.Protect(inputs);
-  outputs.Declare(options.output);
+  outputs.Protect(RecordedFiles(robot));
+  outputs.Declare(options.output,
+                  [&](const std::string& text) { return IsMotionTable(robot.project.tree, text); });
   DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
 

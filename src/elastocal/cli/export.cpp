@@ -10,7 +10,6 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/export_calibration.hpp"
-#include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/report/version.hpp"
 
 namespace elastocal::cli {
@@ -28,10 +27,8 @@ int Export(const ExportCommand& command) {
   OutputSet outputs;
   outputs.Protect(robot.inputs);
   if (!command.options.mjcf.empty()) outputs.Protect({command.options.mjcf});
-  if (command.least_gain_mm) {
-    outputs.Protect(InputFiles(robot.project, RecordedRecordings(robot)));
-  }
-  outputs.Declare(command.output);
+  outputs.Protect(RecordedFiles(robot));
+  outputs.Declare(command.output, IsExported);
   outputs.Prepare();
   ExportOptions options = command.options;
   options.version = ProgramVersion();

@@ -92,15 +92,16 @@ void CheckWrittenFormat(const std::string& output) {
 
 int Convert(const RecordingCommand& command) {
   CheckWrittenFormat(command.output);
-  OutputSet outputs;
-  outputs.Protect({command.file});
-  outputs.Declare(command.output);
-  outputs.Prepare();
   const RecordingPart part = command.part == "markers"  ? RecordingPart::kMarkers
                              : command.part == "joints" ? RecordingPart::kJoints
                                                         : RecordingPart::kOnlyOne;
   const ConvertedRecording converted =
       ConvertRecording(command.file, command.reading, part, command.up);
+  OutputSet outputs;
+  outputs.Protect({command.file});
+  outputs.Declare(command.output,
+                  [&](const std::string& text) { return IsConverted(text, converted); });
+  outputs.Prepare();
   outputs.Set(command.output, converted.text);
   outputs.Publish();
   PrintWarnings(converted.warnings);

@@ -37,6 +37,22 @@ void CheckBeginning(const fs::path& file, const std::string& beginning) {
                    "it");
 }
 
+/// That nothing else is replaced than a file that this program wrote, or an empty one.
+void CheckOwnFile(const fs::path& file, const OutputSet::IsOwn& is_own) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return;
+  std::string found;
+  try {
+    found = ReadFile(file);
+  } catch (const InputError&) {  // larger than what this program reads, or not readable
+    found.assign(1, '\0');
+  }
+  if (found.empty() || is_own(found)) return;
+  throw InputError(file.string() +
+                   ": is there and was not written by this command, so it is not replaced; choose "
+                   "another name, or remove it");
+}
+
 bool IsStandardOutput(const fs::path& file) { return file == "-" || file == "/dev/stdout"; }
 
 /// Where the symbolic links that `file` may be lead, also when nothing is there yet.
@@ -106,6 +122,23 @@ struct OutputSet::State {
   Output& Declared(const fs::path& file) {
     if (Output* output = Find(file)) return *output;
     throw std::invalid_argument("OutputSet: " + file.string() + " was not declared");
+  }
+
+  /// One more output; an empty path is passed over.
+  void Add(const fs::path& file) {
+    if (file.empty()) return;
+    for (const fs::path& input : inputs) {
+      if (SamePlace(file, input)) {
+        throw InputError(file.string() + ": this is an input; choose another output");
+      }
+    }
+    for (const Output& output : outputs) {
+      if (SamePlace(file, output.given)) {
+        throw InputError(file.string() + ": this run writes something else to this file already (" +
+                         output.given.string() + "); choose another output");
+      }
+    }
+    outputs.push_back({file, {}});
   }
 
   fs::path StagingPathOf(const Output& output) {
@@ -193,20 +226,13 @@ void OutputSet::Protect(const std::vector<fs::path>& inputs) {
 }
 
 void OutputSet::Declare(const fs::path& file, const std::string& beginning) {
-  if (file.empty()) return;
-  for (const fs::path& input : state_->inputs) {
-    if (SamePlace(file, input)) {
-      throw InputError(file.string() + ": this is an input; choose another output");
-    }
-  }
-  for (const State::Output& output : state_->outputs) {
-    if (SamePlace(file, output.given)) {
-      throw InputError(file.string() + ": this run writes something else to this file already (" +
-                       output.given.string() + "); choose another output");
-    }
-  }
+  state_->Add(file);
   CheckBeginning(file, beginning);
-  state_->outputs.push_back({file, {}});
+}
+
+void OutputSet::Declare(const fs::path& file, const IsOwn& is_own) {
+  state_->Add(file);
+  CheckOwnFile(file, is_own);
 }
 
 void OutputSet::Prepare() {

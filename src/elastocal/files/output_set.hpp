@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,6 +50,10 @@ class OutputSet {
   /// all files of this kind begin; a file that is there and begins otherwise is somebody else's,
   /// and InputError.
   void Declare(const std::filesystem::path& file, const std::string& beginning = "");
+
+  /// Likewise for files that do not begin alike: whether this program wrote what is in a file.
+  using IsOwn = std::function<bool(const std::string& contents)>;
+  void Declare(const std::filesystem::path& file, const IsOwn& is_own);
 
   /// Makes the folders and tries whether each declared file can be written. Throws InputError
   /// naming the file as it was given: it is a folder, it or its folder is read-only, its folder

@@ -81,6 +81,17 @@ TEST_F(OutputSetTest, NeverReplacesAnInput) {
                    {"an input; choose another output"});
 }
 
+TEST_F(OutputSetTest, ReplacesOnlyWhatIsKnownAsItsOwn) {
+  WriteFiles(
+      {{folder_ / "own", "by x: old"}, {folder_ / "other", "text"}, {folder_ / "empty", ""}});
+  const auto is_own = [](const std::string& text) { return text.starts_with("by x"); };
+  OutputSet outputs;
+  for (const char* name : {"own", "empty", "new"}) outputs.Declare(folder_ / name, is_own);
+  outputs.Declare("/dev/null", is_own);
+  ExpectInputError([&] { outputs.Declare(folder_ / "other", is_own); },
+                   {"other: is there and was not written by this command"});
+}
+
 TEST_F(OutputSetTest, RefusesTwoOutputsUnderOneName) {
   OutputSet outputs;
   outputs.Declare(folder_ / "a");

@@ -116,4 +116,15 @@ std::vector<fs::path> RecordedRecordings(const CalibratedRobot& robot) {
   return recordings;
 }
 
+std::vector<fs::path> RecordedFiles(const CalibratedRobot& robot) {
+  std::vector<fs::path> files;
+  try {
+    const fs::path record = FolderOf(robot.calibration.source) / "runs.json";
+    for (RecordedInput& input : RecordedInputs(record)) files.push_back(std::move(input.file));
+  } catch (const InputError&) {
+    return {};  // the calibration was read without its record, by --project
+  }
+  return files;
+}
+
 }  // namespace elastocal

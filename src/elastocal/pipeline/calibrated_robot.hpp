@@ -28,4 +28,8 @@ CalibratedRobot OpenCalibratedRobot(const std::filesystem::path& given,
 /// changed since (by its checksum).
 std::vector<std::filesystem::path> RecordedRecordings(const CalibratedRobot& robot);
 
+/// All that the record of the calibration names as its inputs, whether it is there or not; nothing
+/// where there is no record that can be read. No output may replace them.
+std::vector<std::filesystem::path> RecordedFiles(const CalibratedRobot& robot);
+
 }  // namespace elastocal

@@ -27,6 +27,9 @@
 namespace elastocal {
 namespace {
 
+/// Stands with the version in a comment of every exported file: by it IsExported knows them.
+constexpr const char* kMadeBy = "Made by elastocal ";
+
 /// A name as XML and YAML take it, and C.
 std::string CPrefix(const std::string& name) {
   std::string prefix;
@@ -153,9 +156,10 @@ Kept KeepWhatHelps(const CalibratedRobot& robot, const CalibrationEstimate& esti
 /// Comments in front of what an XML file holds.
 std::string WithXmlComment(const std::string& text, const std::string& source,
                            const std::vector<std::string>& comments) {
-  if (comments.empty()) return text;
   const XmlText xml(text, source);
-  return ApplyEdits(text, {InsertElement(text, xml.Root(), XmlComment(comments))});
+  std::string comment = XmlComment(comments);
+  comment.pop_back();  // the line end, which the text has
+  return ApplyEdits(text, {InsertElement(text, xml.Root(), comment)});
 }
 
 std::string CHeaderOf(const CalibratedRobot& robot, const Kept& kept,
@@ -172,18 +176,20 @@ std::string CHeaderOf(const CalibratedRobot& robot, const Kept& kept,
 }
 
 /// With the comments behind the line that tells the format.
-std::string RuntimeFileOf(const CalibratedRobot& robot, const Kept& kept) {
+std::string RuntimeFileOf(const CalibratedRobot& robot, const Kept& kept,
+                          const std::vector<std::string>& heading) {
   std::ostringstream out;
   WriteRuntimeModel(MakeRuntimeModel(robot.project, kept.calibration), out);
   std::string text = out.str();
-  return text.insert(text.find('\n') + 1, YamlComment(kept.comments));
+  return text.insert(text.find('\n') + 1, YamlComment(heading));
 }
 
-std::string LinkagesOf(const CalibratedRobot& robot, const Kept& kept) {
+std::string LinkagesOf(const CalibratedRobot& robot, const Kept& kept,
+                       const std::vector<std::string>& heading) {
   if (robot.project.tree.linkages.empty()) {
     throw InputError("format linkages: the robot has no linkages");
   }
-  return YamlComment(kept.comments) +
+  return YamlComment(heading) +
          MakeLinkagesYaml(ResultOf(RestoreRobot(robot.project, kept.calibration)));
 }
 
@@ -217,33 +223,33 @@ std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportO
   const std::string& format = options.format;
   const CalibrationEstimate estimate =
       Exported(ReadCalibrationFiles(FindCalibrationFiles(robot.calibration.source)), kept.nominal);
-  std::vector<std::string> heading{fmt::format("{}, calibrated from {}. Made by elastocal {} of {}",
+  std::vector<std::string> heading{fmt::format("{}, calibrated from {}. {}{} of {}",
                                                robot.project.tree.name, robot.calibration.recording,
-                                               options.version, robot.calibration.source)};
+                                               kMadeBy, options.version, robot.calibration.source)};
   heading.insert(heading.end(), kept.comments.begin(), kept.comments.end());
   if (format == "c99") {
     return CHeaderOf(robot, kept, estimate, fmt::format("{}", fmt::join(heading, "\n   ")),
                      options.prefix);
   }
-  if (format == "runtime") return RuntimeFileOf(robot, kept);
-  if (format == "linkages") return LinkagesOf(robot, kept);
+  if (format == "runtime") return RuntimeFileOf(robot, kept, heading);
+  if (format == "linkages") return LinkagesOf(robot, kept, heading);
   const std::string source = robot.project.urdf.string();
   if (format == "urdf") {
     return WithXmlComment(UrdfOf(robot, kept.calibration, ZeroOffsets::kOrigin).text, source,
-                          kept.comments);
+                          heading);
   }
   const CalibratedUrdf apart = UrdfOf(robot, kept.calibration, ZeroOffsets::kEncoder);
-  if (format == "urdf_encoder") return WithXmlComment(apart.text, source, kept.comments);
+  if (format == "urdf_encoder") return WithXmlComment(apart.text, source, heading);
   if (format == "urdf_rising") {
     return WithXmlComment(ShiftReferencePositions(apart.text, source, apart.encoder_offsets),
-                          source, kept.comments);
+                          source, heading);
   }
   if (format == "mjcf") {
     return WithXmlComment(MjcfOf(robot, kept.calibration, apart, options), options.mjcf.string(),
-                          kept.comments);
+                          heading);
   }
   if (format == "xacro") {
-    return WithXmlComment(MakeXacroOffsets(apart), source, kept.comments);
+    return WithXmlComment(MakeXacroOffsets(apart), source, heading);
   }
   if (format == "pal") return MakePalYaml(apart, heading);
   if (format == "ros2_control") return MakeRos2Transmissions(apart, heading);
@@ -273,5 +279,7 @@ ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const Export
   const Kept kept = KeepWhatHelps(robot, ReadEstimate(robot.calibration.source), options);
   return {TextOf(robot, kept, options), kept.comments};
 }
+
+bool IsExported(const std::string& text) { return text.find(kMadeBy) != std::string::npos; }
 
 }  // namespace elastocal

@@ -63,4 +63,7 @@ struct ExportedCalibration {
 /// what FindHeldOutGains throws.
 ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options);
 
+/// Whether a text is of ExportCalibration: a comment in each of its formats says so.
+bool IsExported(const std::string& text);
+
 }  // namespace elastocal

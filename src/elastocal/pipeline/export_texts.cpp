@@ -127,7 +127,10 @@ std::string Interval(const SummedCompliance& sum) {
 
 std::string YamlComment(const std::vector<std::string>& lines) {
   std::string text;
-  for (const std::string& line : lines) text += "# " + line + "\n";
+  for (std::string line : lines) {
+    std::ranges::replace(line, '\n', ' ');  // of a file's name: the comment would end there
+    text += "# " + line + "\n";
+  }
   return text;
 }
 

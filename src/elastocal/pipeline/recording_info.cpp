@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <sstream>
+#include <string_view>
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -13,11 +16,26 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/gaps.hpp"
+#include "elastocal/tables/table_reader.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// The line by which a TSV is known as one of `convert`; QTM itself writes such lines.
+constexpr const char* kDescription = "DESCRIPTION\tWritten by elastocal convert\r\n";
+
+/// Whether every number of a line has the shortest digits, as TableWriter writes them.
+bool HasShortestDigits(std::string line) {
+  std::vector<std::string_view> cells;
+  if (!SplitCells(line, ',', Quotes::kEnclose, cells)) return false;
+  return std::all_of(cells.begin(), cells.end(), [](std::string_view cell) {
+    const std::optional<double> number = ParseNumber(cell);
+    return number ? cell == FormatNumber(*number) : cell.empty();
+  });
+}
 
 MarkerSight LookAt(const MarkerTrajectories& markers, int marker, int parts) {
   MarkerSight sight;
@@ -94,7 +112,8 @@ std::string ConvertMarkers(RecordingFile& file, const std::string& up) {
   }
   TurnUp(axis, markers.positions);
   constexpr int kDecimals = 6;
-  return FormatQtmTsv(markers, kDecimals);
+  std::string text = FormatQtmTsv(markers, kDecimals);
+  return text.insert(text.find("DATA_INCLUDED"), kDescription);
 }
 
 ConvertedRecording ConvertJoints(JointLog& log) {
@@ -174,6 +193,18 @@ ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions
   if (file.joints) return ConvertJoints(*file.joints);
   throw InputError(path + " (" + file.format +
                    "): there are no joint positions in it: " + file.why_no_joints);
+}
+
+bool IsConverted(const std::string& text, const ConvertedRecording& converted) {
+  if (text.find(kDescription) != std::string::npos) return true;
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  if (line != converted.text.substr(0, converted.text.find('\n'))) return false;
+  while (std::getline(lines, line)) {
+    if (!HasShortestDigits(line)) return false;
+  }
+  return true;
 }
 
 }  // namespace elastocal

@@ -47,4 +47,8 @@ struct ConvertedRecording {
 ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions& options,
                                     RecordingPart part, const std::string& up);
 
+/// Whether a text is of ConvertRecording: TSV by its line DESCRIPTION; a joint log if it has the
+/// columns of `converted` and all of its numbers the shortest digits that say them.
+bool IsConverted(const std::string& text, const ConvertedRecording& converted);
+
 }  // namespace elastocal

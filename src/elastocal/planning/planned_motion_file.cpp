@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
+#include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/table_writer.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -19,6 +24,27 @@ std::vector<std::string> JointNames(const RobotTree& tree) {
     names.push_back(tree.joints[static_cast<std::size_t>(k)].name);
   }
   return names;
+}
+
+/// What all tables of motions of the robot begin with.
+std::string MotionColumns(const RobotTree& tree) {
+  std::string columns = "time";
+  for (const std::string& joint : JointNames(tree)) columns += "," + MakeCell(joint);
+  return columns;
+}
+
+/// Whether the cells of a line are a time and so many positions, as FormatMotionTable writes them.
+bool HasOwnDigits(std::string line, std::size_t positions) {
+  std::vector<std::string_view> cells;
+  if (!SplitCells(line, ',', Quotes::kEnclose, cells) || cells.size() <= positions) return false;
+  for (std::size_t i = 0; i <= positions; ++i) {
+    const std::optional<double> number = ParseNumber(cells[i]);
+    if (!number) return false;
+    if (cells[i] != (i == 0 ? fmt::format("{:.4f}", *number) : fmt::format("{:.12g}", *number))) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// "left_sole_link+right_sole_link", as SupportNames reads it.
@@ -46,8 +72,7 @@ std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planne
   const std::vector<std::string> joints = JointNames(tree);
   Buffer out;
   const auto put = std::back_inserter(out);
-  fmt::format_to(put, "time");
-  for (const std::string& joint : joints) fmt::format_to(put, ",{}", MakeCell(joint));
+  fmt::format_to(put, "{}", MotionColumns(tree));
   const JointMotion& motion = planned.motion;
   if (!motion.support.empty()) fmt::format_to(put, ",support");
   const bool has_forces = planned.zmp.rows() > 0;
@@ -71,6 +96,21 @@ std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planne
     fmt::format_to(put, "\n");
   }
   return fmt::to_string(out);
+}
+
+bool IsMotionTable(const RobotTree& tree, const std::string& text) {
+  std::istringstream lines(text);
+  std::string line;
+  const std::string columns = MotionColumns(tree);
+  std::getline(lines, line);
+  if (!line.starts_with(columns)) return false;
+  const std::string_view more = std::string_view(line).substr(columns.size());
+  if (!more.empty() && !more.starts_with(",support") && !more.starts_with(",zmp_x")) return false;
+  const std::size_t positions = tree.coordinate_joint.size();
+  while (std::getline(lines, line)) {
+    if (!HasOwnDigits(line, positions)) return false;
+  }
+  return true;
 }
 
 std::string FormatJointTrajectory(const RobotTree& tree, const JointMotion& motion, int every) {

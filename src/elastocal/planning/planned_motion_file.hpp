@@ -21,6 +21,11 @@ struct PlannedMotion {
 /// zmp_y, torque_JOINT. Without support or forces, these columns are left out.
 std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planned);
 
+/// Whether a text is such a table of this robot, by its columns and the digits of its numbers:
+/// times with four decimals, positions with the shortest twelve. Tables of others differ in one of
+/// them.
+bool IsMotionTable(const RobotTree& tree, const std::string& text);
+
 /// As a ROS trajectory_msgs/JointTrajectory in YAML: positions of all joints that are no mimics and
 /// velocities (central differences), every `every`-th sample and the last one.
 std::string FormatJointTrajectory(const RobotTree& tree, const JointMotion& motion, int every);
