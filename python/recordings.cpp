@@ -27,6 +27,11 @@ py::dict Read(const Path& path, const std::string& unit, const std::string& topi
               const std::string& tf_frame, const Names& tf_bodies) {
   const ReaderOptions options{unit, topic, tf_frame, tf_bodies};
   RecordingFile file = Unlocked([&] { return ReadAnyRecording(path, options); });
+  if (file.postures) {
+    throw InputError(path.string() +
+                     ": this is a posture table (info tells of it); a recording of cameras or a "
+                     "robot over time was expected");
+  }
   py::dict result;
   result["format"] = file.format;
   result["markers"] = py::none();

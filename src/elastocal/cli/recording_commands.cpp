@@ -62,6 +62,24 @@ std::string DescribeJoints(const RecordingInfo& info, bool verbose) {
   return text + "\n  " + FirstOf(log.names, verbose ? log.names.size() : 8) + "\n";
 }
 
+std::string DescribePostures(const NamedPostures& postures, bool verbose) {
+  std::string text =
+      fmt::format("Postures: {}; joints: {}\n  {}\n", postures.count, postures.joints.size(),
+                  FirstOf(postures.joints, verbose ? postures.joints.size() : 8));
+  TextTable table({"marker", "seen in postures"});
+  for (const NamedPostures::Sight& sight : postures.markers) {
+    table.Add({sight.marker, fmt::format("{} of {}", sight.seen, postures.count)});
+  }
+  return text + table.Render();
+}
+
+std::string DescribeFrames(const RecordingInfo& info, bool verbose) {
+  return (info.file.markers ? DescribeMarkers(info)
+                            : fmt::format("No markers: {}\n", info.file.why_no_markers)) +
+         (info.file.joints ? DescribeJoints(info, verbose)
+                           : fmt::format("No joint positions: {}\n", info.file.why_no_joints));
+}
+
 int Info(const RecordingCommand& command) {
   OutputSet outputs;
   outputs.Protect({command.file});
@@ -71,10 +89,8 @@ int Info(const RecordingCommand& command) {
   outputs.Set(command.common.json_file, MakeInfoJson(info));
   outputs.Publish();
   std::string text = fmt::format("{}: {}\n", command.file, info.file.format);
-  text += info.file.markers ? DescribeMarkers(info)
-                            : fmt::format("No markers: {}\n", info.file.why_no_markers);
-  text += info.file.joints ? DescribeJoints(info, command.common.verbose)
-                           : fmt::format("No joint positions: {}\n", info.file.why_no_joints);
+  text += info.file.postures ? DescribePostures(*info.file.postures, command.common.verbose)
+                             : DescribeFrames(info, command.common.verbose);
   for (const std::string& note : info.file.notes) text += "Note: " + note + "\n";
   Print(command.common.Silent(), text);
   return kFine;
@@ -112,9 +128,10 @@ int Convert(const RecordingCommand& command) {
 /// The file, and what it may not say by itself.
 void AddRecording(CLI::App& command, RecordingCommand& options) {
   command
-      .add_option("recording", options.file,
-                  "Recording of cameras or robot: C3D, Vicon CSV, Motive CSV, TRC, Qualisys TSV, "
-                  ".npz, ROS bag (MCAP, db3, bag), joint log; its contents tell which")
+      .add_option(
+          "recording", options.file,
+          "Recording of cameras or robot: C3D, Vicon CSV, Motive CSV, TRC, Qualisys TSV, "
+          ".npz, ROS bag (MCAP, db3, bag), joint log, posture table; its contents tell which")
       ->required()
       ->type_name("FILE");
   command

@@ -8,6 +8,7 @@
 
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/motor_columns.hpp"
+#include "elastocal/io/named_postures.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_columns.hpp"
@@ -198,6 +199,10 @@ RecordingFile ReadAnyRecording(const fs::path& file, const ReaderOptions& option
     read.markers = ReadQtmTsv(file);
     read.up = "z";
     read.why_no_joints = "a Qualisys TSV has no joint positions";
+  } else if ((read.postures = ReadNamedPostures(source))) {
+    read.format = "posture table (CSV)";
+    read.why_no_markers = "a posture table has no frames";
+    read.why_no_joints = "a posture table has no log";
   } else {
     read.format = "joint log (CSV)";
     read.joints = ReadPlainLog(source);

@@ -33,7 +33,8 @@ JointLog ReadJointFile(const std::filesystem::path& file, const ReaderOptions& o
 
 /// Reads a file of any of these formats, or the program's own (Qualisys TSV, joint log as CSV), by
 /// itself: without a project, under the names of the file. Of a CSV, every column but `t` or `time`
-/// is a joint's. RecordingFile::up is "z" for a Qualisys TSV, by custom.
+/// is a joint's, unless it is a posture table (ReadNamedPostures), of which `postures` tells.
+/// RecordingFile::up is "z" for a Qualisys TSV, by custom.
 RecordingFile ReadAnyRecording(const std::filesystem::path& file, const ReaderOptions& options);
 
 /// A log under the names of a file as one under those of the project: columns renamed, mimic joints

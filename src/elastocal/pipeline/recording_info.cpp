@@ -170,6 +170,15 @@ std::string MakeInfoJson(const RecordingInfo& info) {
                       {"longest_hole_s", info.longest_hole_s},
                       {"with_torque", info.torques}};
   }
+  json["postures"] = nullptr;
+  if (const auto& postures = info.file.postures) {
+    Json list = Json::array();
+    for (const NamedPostures::Sight& sight : postures->markers) {
+      list.push_back({{"name", sight.marker}, {"seen", sight.seen}});
+    }
+    json["postures"] = {
+        {"count", postures->count}, {"markers", list}, {"joints", postures->joints}};
+  }
   json["notes"] = info.file.notes;
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
@@ -177,6 +186,11 @@ std::string MakeInfoJson(const RecordingInfo& info) {
 ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions& options,
                                     RecordingPart part, const std::string& up) {
   RecordingFile file = ReadAnyRecording(path, options);
+  if (file.postures) {
+    throw InputError(path +
+                     ": this is a posture table, which calibrate takes as it is; a recording of "
+                     "cameras or a robot over time was expected");
+  }
   if (part == RecordingPart::kOnlyOne) {
     if (file.markers && file.joints) {
       throw InputError(path +

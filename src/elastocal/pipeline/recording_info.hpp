@@ -42,8 +42,8 @@ struct ConvertedRecording {
 
 /// The file in the program's own format: markers as Qualisys TSV in mm with six decimals, turned
 /// so that z points up, or joints as CSV. `up`: the axis that points up, where the file does not
-/// say. Throws InputError: what ReadAnyRecording refuses; a file without this part; both parts with
-/// kOnlyOne; an axis that nobody says or that contradicts the file.
+/// say. Throws InputError: what ReadAnyRecording refuses; a file without this part; a posture
+/// table; both parts with kOnlyOne; an axis that nobody says or that contradicts the file.
 ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions& options,
                                     RecordingPart part, const std::string& up);
 

@@ -41,6 +41,28 @@ TEST(RecordingInfoTest, SaysWhenWhichMarkerWasSeen) {
   EXPECT_TRUE(json["joints"].is_null());
 }
 
+TEST(RecordingInfoTest, KnowsAPostureTableByItsColumns) {
+  const ScratchFolder folder;
+  const std::string header = "t,A_x,A_y,A_z,hip,knee,B_x,B_y,B_z,C_x\n";
+  const std::string file = folder.Write("x", header +
+                                                 "0,1,2,3,0.1,0.2,,,,0\n"
+                                                 "5,1,2,3,0.2,0.2,1,2,3,0\n"
+                                                 "9,nan,NaN,nan,0.2,0.2,1,2,3,0\n");
+  const auto json = nlohmann::json::parse(MakeInfoJson(DescribeRecording(file, {}, 8)));
+  EXPECT_EQ(json["format"], "posture table (CSV)");
+  EXPECT_TRUE(json["markers"].is_null());
+  EXPECT_TRUE(json["joints"].is_null());
+  EXPECT_EQ(json["postures"]["count"], 3);
+  EXPECT_EQ(json["postures"]["markers"].dump(), R"([{"name":"A","seen":2},{"name":"B","seen":2}])");
+  EXPECT_EQ(json["postures"]["joints"].dump(), R"(["hip","knee","C_x"])");
+  ExpectInputError([&] { ConvertRecording(file, {}, RecordingPart::kOnlyOne, ""); },
+                   {"posture table", "calibrate"});
+  // Joints may have such names in a log; its rows follow each other quickly.
+  const std::string log =
+      folder.Write("log", "t,hip_x,hip_y,hip_z\n0,0,0,0\n0.01,0,0,0\n0.02,0,0,0\n");
+  EXPECT_EQ(DescribeRecording(log, {}, 8).file.joints->names.size(), 3u);
+}
+
 // Whatever points up, the converted file has it along z, and is turned and not mirrored.
 TEST(RecordingInfoTest, ConvertsWithZUp) {
   const ScratchFolder folder;

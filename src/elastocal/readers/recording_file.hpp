@@ -19,6 +19,17 @@ struct ReaderOptions {
   std::vector<std::string> tf_bodies = {};  ///< frames that are bodies; empty: all that move in it
 };
 
+/// What the names of columns say of a table of static postures.
+struct NamedPostures {
+  struct Sight {
+    std::string marker;
+    int seen = 0;  ///< postures that show it
+  };
+  int count = 0;
+  std::vector<Sight> markers;
+  std::vector<std::string> joints;  ///< every column that is neither a marker's nor the time
+};
+
 /// What a recording in any format holds, as far as a calibration can use it.
 struct RecordingFile {
   std::string format;  ///< "C3D", "ROS 2 bag (MCAP)", ...
@@ -30,6 +41,7 @@ struct RecordingFile {
   std::string up;
   /// Time of the first frame on the clock of `joints`, s, where the file has both on one clock.
   std::optional<double> markers_start_s;
+  std::optional<NamedPostures> postures;      ///< of a posture table, which has no frames
   std::string why_no_markers, why_no_joints;  ///< for messages, where there are none
   std::vector<std::string> notes;             ///< what was skipped or taken how, a sentence each
 };

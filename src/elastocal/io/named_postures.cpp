@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/io/named_postures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "elastocal/tables/table_reader.hpp"
+#include "elastocal/tables/text.hpp"
+
+namespace elastocal {
+namespace {
+
+struct PostureTableColumns {
+  std::vector<std::array<int, 3>> markers;  ///< x, y, z of each
+  int time = -1;
+};
+
+/// Names what the columns hold; nothing without a marker.
+std::optional<PostureTableColumns> NameColumns(const std::vector<std::string>& header,
+                                               NamedPostures& postures) {
+  PostureTableColumns columns;
+  const auto find = [&](const std::string& name) {
+    const auto at = std::find(header.begin(), header.end(), name);
+    return at == header.end() ? -1 : static_cast<int>(at - header.begin());
+  };
+  std::set<int> taken;
+  for (const std::string& name : header) {
+    if (name.size() < 3 || !name.ends_with("_x")) continue;
+    const std::string marker = name.substr(0, name.size() - 2);
+    const std::array<int, 3> xyz = {find(name), find(marker + "_y"), find(marker + "_z")};
+    if (xyz[1] < 0 || xyz[2] < 0) continue;
+    columns.markers.push_back(xyz);
+    postures.markers.push_back({marker, 0});
+    taken.insert(xyz.begin(), xyz.end());
+  }
+  if (columns.markers.empty()) return std::nullopt;
+  columns.time = std::max(find("t"), find("time"));
+  for (int i = 0; i < static_cast<int>(header.size()); ++i) {
+    if (i == columns.time || taken.contains(i)) continue;
+    postures.joints.push_back(header[static_cast<std::size_t>(i)]);
+  }
+  return columns;
+}
+
+/// Whether times are those of a log and not of postures that are held.
+bool AreSamples(const std::vector<double>& time) {
+  constexpr double kLongest = 0.1;  // s between samples
+  if (time.size() < 2) return false;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle < kLongest;
+}
+
+}  // namespace
+
+std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source) {
+  SourceStream stream(source);
+  Table table(stream, source.name());
+  NamedPostures postures;
+  const std::optional<PostureTableColumns> columns = NameColumns(table.header(), postures);
+  if (!columns) return std::nullopt;
+  std::vector<double> time;
+  while (table.Next()) {
+    ++postures.count;
+    for (std::size_t m = 0; m < columns->markers.size(); ++m) {
+      const auto& xyz = columns->markers[m];
+      postures.markers[m].seen += std::none_of(
+          xyz.begin(), xyz.end(), [&](int column) { return IsGap(table.Cell(column)); });
+    }
+    if (columns->time >= 0) time.push_back(table.Number(columns->time));
+  }
+  if (AreSamples(time)) return std::nullopt;
+  return postures;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "elastocal/readers/byte_source.hpp"
+#include "elastocal/readers/recording_file.hpp"
+
+namespace elastocal {
+
+/// A table with a header row whose columns are a posture table's by their names, without a project:
+/// NAME_x, NAME_y and NAME_z of one marker or more; every other column but `t` and `time` is a
+/// joint's. Nothing for another header, and for rows that follow each other by less than 0.1 s
+/// (median): they are samples of joints with such names. Throws InputError where Table does.
+std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source);
+
+}  // namespace elastocal
