@@ -7,6 +7,7 @@
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/posture_checks.hpp"
+#include "elastocal/io/recorded_files.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
@@ -172,6 +173,7 @@ void NameMarkers(const PostureColumns& columns, const Project& project, PostureT
 }  // namespace
 
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project) {
+  RefuseRecording(file);
   std::istringstream stream = OpenTable(file);
   return ReadPostureTable(stream, file.string(), project);
 }

@@ -23,7 +23,7 @@ struct PostureTable {
 /// means not seen. Throws InputError naming file, line and column: missing or unknown column (with
 /// the nearest known one), text or NaN where a number belongs, no rows, a line above 1 MiB, two
 /// markers with identical columns, millimetres given as metres (judged by the robot's size),
-/// postures that are all the same.
+/// postures that are all the same; a recording over time (RefuseRecording).
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project);
 
 /// The same from a stream; `source` names it in messages.

@@ -9,8 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 #include "tests/expect_input_error.hpp"
+#include "tests/recording_writers.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
@@ -149,6 +151,20 @@ TEST(PostureTable, NamesWrongCells) {
   ExpectTableError(row("1", "inf"), {"t.csv:3: ", "'elbow_joint'", "'inf'"});
   ExpectTableError(row("1", ""), {"t.csv:3: ", "'elbow_joint'", "found nothing"});
   ExpectTableError(row("\"1,5\"", "0"), {"t.csv:3: ", "'1,5'", "decimal point"});
+}
+
+TEST(PostureTable, SaysWhatARecordingOverTimeNeeds) {
+  const Project project = TableProject("{}");
+  const auto refused = [&](const std::filesystem::path& file, const std::string& format) {
+    ExpectInputError([&] { ReadPostureTable(file, project); },
+                     {file.string(), "recording over time (" + format, "experiment.yaml"});
+  };
+  const ScratchFolder scratch;
+  MarkerTrajectories markers{"made", {"A"}, 10.0, Eigen::MatrixXd::Constant(20, 3, 0.5)};
+  refused(scratch.Write("a.trc", TrcText(markers)), "TRC");
+  refused(scratch.Write("a.tsv", FormatQtmTsv(markers, 3)), "Qualisys TSV");
+  refused(SourceFile("tests/recordings/bag.db3"), "ROS 2 bag (db3)");
+  refused(SourceFile("tests/recordings/joints_matrix.npz"), "NumPy .npz");
 }
 
 TEST(PostureTable, SuspectsMillimetresAndDegrees) {

@@ -157,6 +157,18 @@ bool BeginsLikeQtm(const ByteSource& source) {
          first.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == std::string_view::npos;
 }
 
+/// The same, where tables are expected, whose first column may be called Time or t.
+bool IsSurelyQtm(const ByteSource& source) {
+  std::array<char, 4096> head{};
+  std::string_view text(head.data(), source.Read(0, head));
+  text = text.substr(0, text.find_first_of("\r\n"));
+  const std::string_view first = text.substr(0, text.find('\t'));
+  constexpr std::array<std::string_view, 8> kKeys = {
+      "NO_OF_FRAMES",  "NO_OF_CAMERAS", "NO_OF_MARKERS", "FREQUENCY",
+      "DATA_INCLUDED", "MARKER_NAMES",  "TIME_STAMP",    "Frame"};
+  return first.size() < text.size() && std::ranges::find(kKeys, first) != kKeys.end();
+}
+
 /// A CSV with a column of the time, all of whose other columns are numbers of joints.
 JointLog ReadPlainLog(const ByteSource& source) {
   SourceStream stream(source);
@@ -209,6 +221,18 @@ RecordingFile ReadAnyRecording(const fs::path& file, const ReaderOptions& option
     read.why_no_markers = "a joint log has joint positions only";
   }
   return read;
+}
+
+void RefuseRecording(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return;
+  const ByteSource source = ByteSource::Open(file);
+  std::optional<std::string> format = RecogniseRecording(source);
+  if (!format && IsSurelyQtm(source)) format = "Qualisys TSV";
+  if (!format) return;
+  throw InputError(file.string() + ": this is a recording over time (" + *format +
+                   "); it needs a folder with experiment.yaml, which names it and the joint log "
+                   "(docs/formats.md, Recording folder); a posture table was expected");
 }
 
 namespace {

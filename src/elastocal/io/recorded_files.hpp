@@ -37,6 +37,11 @@ JointLog ReadJointFile(const std::filesystem::path& file, const ReaderOptions& o
 /// RecordingFile::up is "z" for a Qualisys TSV, by custom.
 RecordingFile ReadAnyRecording(const std::filesystem::path& file, const ReaderOptions& options);
 
+/// Throws InputError for a file that is a recording over time by its contents (a format of
+/// ReadRecordingFile, or a Qualisys TSV), where a table was expected: it says what such a file
+/// needs. Does nothing where there is no such file.
+void RefuseRecording(const std::filesystem::path& file);
+
 /// A log under the names of a file as one under those of the project: columns renamed, mimic joints
 /// and what the project ignores left out, columns of force-torque sensors taken as such. Throws
 /// InputError: unknown names (with the nearest known one), positions that look like degrees, a
