@@ -118,9 +118,10 @@ void ReadPostures(const Project& project, const PostureColumns& columns, Table& 
       q.push_back(column < 0 ? elsewhere[c] : table.Number(column));
     }
     for (const std::array<int, 3>& xyz : columns.marker_columns) {
-      // All three cells empty: not seen. Only some: something went wrong, and Number says where.
+      // All three cells empty or NaN: not seen. Only some: something went wrong, and Number says
+      // where.
       const bool seen = std::any_of(xyz.begin(), xyz.end(),
-                                    [&](int column) { return !table.Cell(column).empty(); });
+                                    [&](int column) { return !IsGap(table.Cell(column)); });
       for (int column : xyz) {
         markers.push_back(seen ? table.Number(column) : kNaN);
       }

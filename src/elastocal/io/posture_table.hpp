@@ -19,11 +19,12 @@ struct PostureTable {
 };
 
 /// Reads a table of static postures: CSV with a header row; one row a posture; columns named by the
-/// project (default: URDF joint names and NAME_x, NAME_y, NAME_z); m and rad. An empty marker cell
-/// means not seen. Throws InputError naming file, line and column: missing or unknown column (with
-/// the nearest known one), text or NaN where a number belongs, no rows, a line above 1 MiB, two
-/// markers with identical columns, millimetres given as metres (judged by the robot's size),
-/// postures that are all the same; a recording over time (RefuseRecording).
+/// project (default: URDF joint names and NAME_x, NAME_y, NAME_z); m and rad. A marker
+/// with cells that are empty or NaN was not seen. Throws InputError naming file, line and column:
+/// missing or unknown column (with the nearest known one), text or NaN where a number belongs (NaN
+/// in some cells of a marker), no rows, a line above 1 MiB, two markers with identical columns,
+/// millimetres given as metres (judged by the robot's size), postures that are all the same; a
+/// recording over time (RefuseRecording).
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project);
 
 /// The same from a stream; `source` names it in messages.

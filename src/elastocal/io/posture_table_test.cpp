@@ -117,6 +117,14 @@ TEST(PostureTable, EmptyMarkerCellsMeanNotSeen) {
   EXPECT_EQ(table.markers_not_recorded, (std::vector<std::string>{"B", "T"}));
   ASSERT_FALSE(table.warnings.empty());
   EXPECT_EQ(table.warnings[0], "marker B was never seen and is left out");
+  // As pandas writes it with na_rep.
+  const PostureTable nan =
+      ReadTable(header + "NaN,nan,NaN,,,,0,0,0,0,1\n1,2,3,NaN,NaN,NaN,0,0,0,0.1,1\n");
+  EXPECT_FALSE(Seen(nan.recording, 0, 0));
+  EXPECT_TRUE(Seen(nan.recording, 1, 0));
+  EXPECT_EQ(nan.markers_not_recorded, (std::vector<std::string>{"B", "T"}));
+  ExpectTableError(header + "1,2,3,NaN,NaN,NaN,0,NaN,0,0,0\n",
+                   {"t.csv:2: ", "'turret_joint'", "'NaN'"});
   ExpectTableError(header + ",,,,,,0,0,0,0,0\n", {"t.csv", "no marker was seen"});
   ExpectTableError(header + "1,,3,,,,0,0,0,0,0\n", {"t.csv:2: ", "'A_y'", "found nothing"});
 }
@@ -132,6 +140,7 @@ TEST(PostureTable, NamesWrongColumns) {
                    {"t.csv:1: ", "'elbow_joint'", "moves marker 'A'", "not_recorded_deg"});
   ExpectTableError("A_x,A_y,A_z\n", {"'rail_joint'", "not_recorded_mm"});
   ExpectTableError("0.1,0.2\n", {"t.csv:1: ", "number '0.1'", "header row"});
+  ExpectTableError("# my arm\nA_x,A_y,A_z\n", {"t.csv:1: ", "'# my arm'", "comment are not taken"});
   ExpectInputError([] { ReadTable("x\n", TableProject("{columns: {time: A_x}}")); },
                    {"p.yaml", "'A_x' stands for two things"});
 }

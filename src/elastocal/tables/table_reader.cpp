@@ -190,6 +190,10 @@ std::vector<int> FindColumns(const Table& table, const ColumnRoles& roles, std::
     if (role == roles.end() && name.empty()) {
       table.Fail("empty column name, cell " + std::to_string(i + 1));
     }
+    if (role == roles.end() && i == 0 && name.starts_with('#')) {
+      table.Fail("found " + Quote(name) +
+                 " in the first row, which names the columns; lines of comment are not taken");
+    }
     if (role == roles.end() && ParseNumber(name)) {
       table.Fail("found the number " + Quote(name) +
                  " in the first row; a header row with the names of the columns was expected");

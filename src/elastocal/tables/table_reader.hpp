@@ -107,7 +107,7 @@ constexpr int kPassedOver = -1;
 
 /// For each quantity its column, -1 where there is none. Call it before the first row is read.
 /// Throws InputError: two columns of one quantity; an unknown column, with the nearest known name
-/// and `advice`; numbers where the header should be.
+/// and `advice`; numbers or a comment where the header should be.
 std::vector<int> FindColumns(const Table& table, const ColumnRoles& roles, std::size_t quantities,
                              const std::string& advice);
 
