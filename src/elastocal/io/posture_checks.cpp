@@ -2,6 +2,7 @@
 #include "elastocal/io/posture_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -62,21 +63,47 @@ double Range(const Eigen::VectorXd& column) {
   return most - least;
 }
 
-[[noreturn]] void FailMillimetres(const std::string& found, double size) {
-  throw InputError(found + ", but the robot is no larger than " + Round(size) +
-                   " m: these look like millimetres; metres were expected");
+/// Units that lengths may be in where so many of them were the robot's size in metres: a robot that
+/// is calibrated moves its markers by 0.08 to 1.1 times its size (RobotSize). Empty where none of
+/// them fits.
+std::string LikelyUnits(double ratio) {
+  struct LengthUnit {
+    const char* name;
+    double in_a_metre;
+  };
+  constexpr std::array kUnits = {LengthUnit{"inches", 39.37}, LengthUnit{"centimetres", 100.0},
+                                 LengthUnit{"millimetres", 1000.0}};
+  std::string likely;
+  for (const LengthUnit& unit : kUnits) {
+    const bool largest = unit.in_a_metre == kUnits.back().in_a_metre;  // cameras may be far away
+    const double sizes = ratio / unit.in_a_metre;
+    if (sizes < 0.08 || (sizes > 1.1 && !largest)) continue;
+    likely += (likely.empty() ? "" : " or ") + std::string(unit.name);
+  }
+  return likely;
+}
+
+[[noreturn]] void FailUnit(const std::string& found, double length, double size) {
+  const std::string units = LikelyUnits(length / size);
+  throw InputError(found + ", but the robot is no larger than " + Round(size) + " m: " +
+                   (units.empty() ? "is a marker wrong, or are these in another unit?"
+                                  : "these look like " + units + ";") +
+                   " metres were expected");
 }
 
 void CheckRanges(const Recording& recording, double size) {
+  double largest = 0.0;  // of the marker that tells most of the unit
+  std::string found;
   for (int m = 0; m < recording.marker_count(); ++m) {
     for (int axis = 0; axis < 3; ++axis) {
       const double range = Range(recording.markers.col(3 * m + axis));
-      if (range <= kLargestRange * size) continue;
-      FailMillimetres(recording.source + ": marker " + Quote(recording.marker_names[m]) +
-                          " ranges over " + Round(range) + " m along " + "xyz"[axis],
-                      size);
+      if (range <= std::max(largest, kLargestRange * size)) continue;
+      largest = range;
+      found = recording.source + ": marker " + Quote(recording.marker_names[m]) + " ranges over " +
+              Round(range) + " m along " + "xyz"[axis];
     }
   }
+  if (!found.empty()) FailUnit(found, largest, size);
 }
 
 std::vector<int> SeenMarkers(const Recording& recording, int posture) {
@@ -112,10 +139,9 @@ void CheckDistance(const Recording& recording, int posture, int a, int b, double
   const Eigen::Vector3d reference =
       seen.size() > 2 ? MedianPosition(recording, posture, seen) : Eigen::Vector3d::Zero().eval();
   if ((p - reference).norm() < (q - reference).norm()) std::swap(a, b);
-  FailMillimetres(PlaceOf(recording, posture) + "marker " + Quote(recording.marker_names[a]) +
-                      " is " + Round(distance) + " m from marker " +
-                      Quote(recording.marker_names[b]),
-                  size);
+  FailUnit(PlaceOf(recording, posture) + "marker " + Quote(recording.marker_names[a]) + " is " +
+               Round(distance) + " m from marker " + Quote(recording.marker_names[b]),
+           distance, size);
 }
 
 void CheckDistances(const Recording& recording, double size) {

@@ -11,9 +11,9 @@
 namespace elastocal {
 
 /// Checks that a recording can be what it says it is: throws InputError for two markers with
-/// identical numbers, for positions that look like millimetres (a marker ranges over more than
-/// three times the robot's size though the root is held, or is that far from another one in a
-/// posture), joints that look
+/// identical numbers, for positions that are not in metres (a marker ranges over more than three
+/// times the robot's size though the root is held, or is that far from another one in a posture;
+/// the message names the units that fit), joints that look
 /// like degrees (beyond two turns) and two or more postures that are all the same.
 void CheckPlausible(const Recording& recording, const RobotTree& tree);
 

@@ -50,14 +50,27 @@ TEST(PostureChecks, RangesUpToThreeTimesTheRobotPass) {
   EXPECT_NO_THROW(CheckPlausible(recording, Arm()));
   recording.markers(1, 2) = -3.1;
   ExpectInputError([&] { CheckPlausible(recording, Arm()); },
-                   {"t.csv: marker 'A' ranges over 3.1 m along z", "millimetres"});
+                   {"t.csv: marker 'A' ranges over 3.1 m along z", "in another unit?"});
+}
+
+TEST(PostureChecks, NamesTheUnitsThatFitTheRobot) {
+  Recording recording = TwoPostures();
+  const auto expect = [&](double range, const std::string& said) {
+    recording.markers(1, 2) = range;
+    ExpectInputError([&] { CheckPlausible(recording, Arm()); }, {said});
+  };
+  // Ranges in other units; no two points of the arm are further apart than 1 m.
+  expect(0.4 * 1000, "these look like millimetres; metres were expected");
+  expect(0.7 * 100, "these look like centimetres; metres were expected");
+  expect(0.4 * 39.37, "these look like inches or centimetres; metres were expected");
+  expect(0.15 * 39.37, "these look like inches; metres were expected");
 }
 
 TEST(PostureChecks, NamesAMarkerInMillimetresThatStandsStill) {
   EXPECT_NO_THROW(CheckPlausible(ThreeMarkers({2.9, 0, 0}), Arm()));
   Recording recording = ThreeMarkers({0, 0, 3.1});
   ExpectInputError([&] { CheckPlausible(recording, Arm()); },
-                   {"t.csv:2: marker 'B' is 3.1", "m from marker 'A'", "millimetres"});
+                   {"t.csv:2: marker 'B' is 3.1", "m from marker 'A'", "in another unit?"});
   // Of two the one with the larger numbers.
   recording.markers.rightCols(3).setConstant(std::nan(""));
   ExpectInputError([&] { CheckPlausible(recording, Arm()); }, {"marker 'B' is 3.1", "'A'"});
