@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <limits>
-
 #include "bindings.hpp"
 #include "elastocal/elastocal.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/planning/next_postures.hpp"
@@ -22,7 +21,8 @@ struct PyCalibration {
   bool deployable;
   std::string status;
   Names objections, warnings;
-  double urdf_rmse;  ///< m; NaN without markers
+  double urdf_rmse;      ///< m, on the fit; NaN without markers
+  double held_out_rmse;  ///< m, of the same URDF; NaN where nothing was held out
   CalibrationResult result;
   std::map<std::string, std::string> files;
 };
@@ -55,6 +55,7 @@ PyCalibration CalibrateMarkers(const Project& project, const Paths& files,
        .days = given.days,
        .progress = given.progress});
   auto texts = MakeCalibrationFiles(project, run);
+  const bool judged_on_fit = run.deployment.judged_on == "the fit";
   const int in_urdf = static_cast<int>(run.deployment.urdf_kind);
   return {project,
           run.deployable(),
@@ -62,6 +63,7 @@ PyCalibration CalibrateMarkers(const Project& project, const Paths& files,
           run.verdict.objections,
           run.warnings,
           run.comparison.metrics[in_urdf].rmse_3d,
+          judged_on_fit ? kNaN : run.deployment.urdf,
           run.comparison.largest(),
           std::move(texts)};
 }
@@ -80,10 +82,8 @@ PyCalibration CalibrateInstruments(const Project& project, const Paths& files,
   }
   ContactRun run = CalibrateContacts(project, files, options);
   auto texts = MakeContactFiles(project, run);
-  return {project,        run.deployable(),
-          RunStatus(run), run.verdict.objections,
-          run.warnings,   std::numeric_limits<double>::quiet_NaN(),
-          run.result,     std::move(texts)};
+  return {project, run.deployable(), RunStatus(run),  run.verdict.objections, run.warnings, kNaN,
+          kNaN,    run.result,       std::move(texts)};
 }
 
 PyCalibration CalibrateFiles(const Project& project, const py::object& recordings,
@@ -92,6 +92,7 @@ PyCalibration CalibrateFiles(const Project& project, const py::object& recording
                              const std::string& zero_offsets, const Path& prior, double days,
                              const Names& accept, const StepProgress& progress) {
   ExpectWithin("threads", threads, 1, 64);
+  if (folds) ExpectWithin("folds", *folds, 0, 100000);
   ExpectBounded("calibrate --days", days);
   const Paths files = PathsOf(recordings);
   const CalibrateArguments given{
@@ -206,8 +207,14 @@ void AddCalibrationClass(py::module_& module) {
                     "What a user should know, a sentence each.")
       .def_property_readonly(
           "urdf_rmse_mm", [](const PyCalibration& c) { return 1e3 * c.urdf_rmse; },
-          "Root mean square of the markers' distances to what the calibrated URDF alone predicts; "
-          "NaN of a project with contact or instruments (its errors: summary['contact']).")
+          "Root mean square of the markers' distances to what the calibrated URDF alone predicts, "
+          "on the recording that it was fitted to; NaN of a project with contact or instruments "
+          "(its errors: summary['contact']).")
+      .def_property_readonly(
+          "held_out_rmse_mm", [](const PyCalibration& c) { return 1e3 * c.held_out_rmse; },
+          "The same on trials or postures that were not used for the fit, the first figure that "
+          "the program prints; NaN where nothing was held out (folds=0), and where urdf_rmse_mm "
+          "is.")
       .def_property_readonly("parameters", ParameterNames, "Names, in the order of `values`.")
       .def_property_readonly(
           "values", [](const PyCalibration& c) { return c.result.delta; },

@@ -25,23 +25,40 @@ Paths PathsOf(const py::object& paths) {
   return paths.cast<Paths>();
 }
 
+namespace {
+
+/// Raises TypeError, saying what was expected, for an object of another type.
+template <typename Value>
+Value Cast(const py::handle& object, const std::string& expected) {
+  try {
+    return object.cast<Value>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(expected + " was expected, found " +
+                         py::cast<std::string>(py::str(py::type::of(object).attr("__name__"))));
+  }
+}
+
+}  // namespace
+
 Eigen::VectorXd PositionsOf(const py::object& q, const Names& coordinates,
                             const std::string& what) {
   const auto count = static_cast<Eigen::Index>(coordinates.size());
   if (!py::isinstance<py::dict>(q)) {
-    const auto positions = q.cast<Eigen::VectorXd>();
+    const auto positions = Cast<Eigen::VectorXd>(
+        q, what + ": an array of " + std::to_string(count) + " positions, or a dict of joints");
     if (positions.size() == count) return positions;
     throw InputError(what + ": " + std::to_string(positions.size()) + " positions; " +
                      std::to_string(count) + " were expected");
   }
   Eigen::VectorXd positions = Eigen::VectorXd::Zero(count);
   for (const auto& [key, value] : q.cast<py::dict>()) {
-    const auto name = key.cast<std::string>();
+    const auto name = Cast<std::string>(key, what + ": the name of a joint");
     const auto at = std::find(coordinates.begin(), coordinates.end(), name);
     if (at == coordinates.end()) {
       throw InputError(what + ": no joint " + Quote(name) + DidYouMean(name, coordinates));
     }
-    positions[at - coordinates.begin()] = value.cast<double>();
+    positions[at - coordinates.begin()] =
+        Cast<double>(value, what + ": joint " + Quote(name) + ": a number");
   }
   return positions;
 }

@@ -93,8 +93,12 @@ class Calibration:
         """What a user should know, a sentence each."""
     @property
     def urdf_rmse_mm(self) -> float:
-        """Root mean square of the markers' distances to what the calibrated URDF alone predicts; NaN of a project with
-        contact or instruments (its errors: summary['contact'])."""
+        """Root mean square of the markers' distances to what the calibrated URDF alone predicts, on the recording
+        that it was fitted to; NaN of a project with contact or instruments (its errors: summary['contact'])."""
+    @property
+    def held_out_rmse_mm(self) -> float:
+        """The same on trials or postures that were not used for the fit, the first figure that the program prints;
+        NaN where nothing was held out (folds=0), and where urdf_rmse_mm is."""
     @property
     def parameters(self) -> list[str]:
         """Names, in the order of `values`."""
@@ -247,7 +251,7 @@ def read(
 def info(
     file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...
 ) -> dict[str, Any]:
-    """What is in a recording: the dict of `elastocal info --json`."""
+    """What is in a recording or a posture table: the dict of `elastocal info --json`."""
 def write_table(
     project: Project,
     file: _Path,

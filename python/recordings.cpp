@@ -98,7 +98,7 @@ void AddRecordings(py::module_& module) {
              "that move in it.");
   module.def("info", Info, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
              "tf_frame"_a = "", "tf_bodies"_a = Names(),
-             "What is in a recording: the dict of `elastocal info --json`.");
+             "What is in a recording or a posture table: the dict of `elastocal info --json`.");
   module.def("write_table", WriteTable, "project"_a, "file"_a, "positions"_a, "markers"_a,
              py::kw_only(), "marker_names"_a = std::nullopt,
              "Writes a table of static postures (CSV) that calibrate() and the program read. "

@@ -44,6 +44,16 @@ class LeftArm(unittest.TestCase):
         self.assertTrue(found.deployable)
         self.assertEqual(f"{found.urdf_rmse_mm:.2f} mm", "0.57 mm")
 
+    def test_errors_of_the_fit_and_of_what_was_held_out(self):
+        self.assertTrue(np.isnan(self.found.held_out_rmse_mm))
+        folded = elastocal.calibrate(self.project, TABLE, folds=3)
+        self.assertEqual(folded.urdf_rmse_mm, self.found.urdf_rmse_mm)
+        self.assertEqual(folded.summary["deployed"]["judged_on"], "held-out postures")
+        self.assertAlmostEqual(folded.held_out_rmse_mm, folded.summary["deployed"]["urdf"]["rmse_3d_mm"], places=9)
+        self.assertGreater(folded.held_out_rmse_mm, folded.urdf_rmse_mm)
+        with self.assertRaisesRegex(elastocal.InputError, "folds: -1; a whole number from 0 "):
+            elastocal.calibrate(self.project, TABLE, folds=-1)
+
     def test_bits_of_the_command_line(self):
         written = self.folder / "cli"
         for name, text in self.found.files.items():
@@ -96,6 +106,11 @@ class LeftArm(unittest.TestCase):
         np.testing.assert_allclose(nominal_at, self.project.robot.poses(bent)[tip], atol=1e-9)
         with self.assertRaises(elastocal.InputError):
             real.forward(np.zeros(3))
+        for wrong in ("x", [[1, 2], [3]], object()):
+            with self.assertRaisesRegex(TypeError, "q: an array of .* positions, or a dict of joints was expected"):
+                real.forward(wrong)
+        with self.assertRaisesRegex(TypeError, "q: joint 'arm_left_1_joint': a number was expected, found str"):
+            real.forward({"arm_left_1_joint": "x"})
 
 
 class Arrays(unittest.TestCase):
@@ -128,6 +143,9 @@ class Arrays(unittest.TestCase):
             self.assertIn(("cross-validation", 2, 2), steps)
             with self.assertRaisesRegex(elastocal.InputError, r"markers: an array of \(60, 1, 3\)"):
                 elastocal.write_table(project, table, postures, np.zeros((60, 3)))
+            self.assertEqual(elastocal.info(table)["postures"]["markers"], [{"name": "HAND", "seen": 60}])
+            with self.assertRaisesRegex(elastocal.InputError, "this is a posture table"):
+                elastocal.read(table)
 
 
 class Files(unittest.TestCase):
