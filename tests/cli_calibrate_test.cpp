@@ -143,5 +143,15 @@ TEST_F(Program, AJointBeyondItsLimitsIsAWarning) {
   EXPECT_NE(result.err.find("beyond its limit"), std::string::npos) << result.err;
 }
 
+TEST_F(Program, ARobotWithoutLegsHasNoTableOfLegs) {
+  std::string project = ReadFile(project_);
+  project.replace(project.find("arm6.urdf"), 9, SourceFile("tests/robots/arm6.urdf").string());
+  const std::string elastic =
+      scratch_.Write("p.yaml", project + "elasticity: {torsion: [shoulder_joint]}\n");
+  const std::string text = Calibrate(elastic, recording_, " --kfold 0 --verbose").out;
+  EXPECT_NE(text.find("shoulder_joint.compliance_z"), std::string::npos) << text;
+  EXPECT_EQ(text.find("leg at the waist"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace elastocal

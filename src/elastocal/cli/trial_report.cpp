@@ -38,6 +38,24 @@ std::string LittleTold(const CalibrationResult& result, int i) {
                      figure(result.prior_sd[i]));
 }
 
+/// Stiffness of the legs at the waist; nothing for a robot without legs.
+std::string DescribeLegs(const std::vector<LegStiffness>& legs) {
+  if (legs.empty()) return "";
+  TextTable table({"leg at the waist (95 %)", "Kx N/mm", "Ky", "Kz", "Krx N.m/rad", "Kry", "Krz"});
+  for (const LegStiffness& leg : legs) {
+    std::vector<std::string> row = {leg.leg};
+    for (int axis = 0; axis < 6; ++axis) {
+      const double unit = axis < 3 ? 1e-3 : 1.0;
+      row.push_back(leg.known(axis)
+                        ? fmt::format("{:.3g} ({:.3g}-{:.3g})", unit * leg.stiffness[axis],
+                                      unit * leg.low[axis], unit * leg.high[axis])
+                        : fmt::format("unknown (> {:.3g})", unit * leg.low[axis]));
+    }
+    table.Add(row);
+  }
+  return table.Render();
+}
+
 }  // namespace
 
 std::string DescribeTrials(const CalibrationRun& run) {
@@ -67,19 +85,7 @@ std::string DescribeElasticity(const CalibrationRun& run) {
                fmt::format("{} to {}", StiffnessOf(parameter, result.delta[i] + half),
                            StiffnessOf(parameter, result.delta[i] - half))});
   }
-  TextTable legs({"leg at the waist (95 %)", "Kx N/mm", "Ky", "Kz", "Krx N.m/rad", "Kry", "Krz"});
-  for (const LegStiffness& leg : AssessLegs(result, run.recording)) {
-    std::vector<std::string> row = {leg.leg};
-    for (int axis = 0; axis < 6; ++axis) {
-      const double unit = axis < 3 ? 1e-3 : 1.0;
-      row.push_back(leg.known(axis)
-                        ? fmt::format("{:.3g} ({:.3g}-{:.3g})", unit * leg.stiffness[axis],
-                                      unit * leg.low[axis], unit * leg.high[axis])
-                        : fmt::format("unknown (> {:.3g})", unit * leg.low[axis]));
-    }
-    legs.Add(row);
-  }
-  return "\nElasticity\n" + table.Render() + legs.Render() +
+  return "\nElasticity\n" + table.Render() + DescribeLegs(AssessLegs(result, run.recording)) +
          (unsupported.empty() ? ""
                               : "Compliances of which this recording tells hardly more than was "
                                 "assumed (one sd):\n" +
