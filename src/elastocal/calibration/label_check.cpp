@@ -177,7 +177,13 @@ class LabelSuspicionSearch {
     before = std::sqrt(before / count);
     after = std::sqrt(after / count);
     if (before < least || after > kFarNearer * before) return;
-    found_.push_back({trial, a.name, b.name, a.markers, b.markers, before, after});
+    found_.push_back({.trial = trial,
+                      .a = a.name,
+                      .b = b.name,
+                      .of_a = a.markers,
+                      .of_b = b.markers,
+                      .before = before,
+                      .after = after});
   }
 
   const ErrorModel& model_;
@@ -185,6 +191,13 @@ class LabelSuspicionSearch {
   const std::vector<LabelCluster>& clusters_;
   std::vector<LabelSuspicion> found_;
 };
+
+/// Whether the labels are exchanged in a posture.
+bool IsExchanged(const Recording& recording, const LabelSuspicion& suspicion, int posture) {
+  if (!recording.trials.empty()) return recording.trial[posture] == suspicion.trial;
+  return suspicion.postures.empty() ||
+         std::binary_search(suspicion.postures.begin(), suspicion.postures.end(), posture);
+}
 
 }  // namespace
 
@@ -196,7 +209,7 @@ std::vector<LabelSuspicion> FindLabelSuspicions(const ErrorModel& model, const R
 Recording WithoutExchange(const Recording& recording, const LabelSuspicion& suspicion) {
   Recording corrected = recording;
   for (int i = 0; i < recording.posture_count(); ++i) {
-    if (recording.trial[i] != suspicion.trial) continue;
+    if (!IsExchanged(recording, suspicion, i)) continue;
     for (std::size_t k = 0; k < suspicion.of_a.size(); ++k) {
       corrected.markers.block<1, 3>(i, 3 * suspicion.of_a[k]) =
           recording.markers.block<1, 3>(i, 3 * suspicion.of_b[k]);
@@ -208,8 +221,12 @@ Recording WithoutExchange(const Recording& recording, const LabelSuspicion& susp
 }
 
 std::string DescribeSuspicion(const LabelSuspicion& suspicion, const Recording& recording) {
-  return "the labels of " + suspicion.a + " and " + suspicion.b + " are exchanged in trial " +
-         recording.trials[suspicion.trial].name;
+  const std::string text =
+      "the labels of " + suspicion.a + " and " + suspicion.b + " are exchanged";
+  if (!recording.trials.empty())
+    return text + " in trial " + recording.trials[suspicion.trial].name;
+  if (suspicion.postures.empty()) return text;
+  return text + " in " + std::to_string(suspicion.postures.size()) + " postures";
 }
 
 }  // namespace elastocal

@@ -10,11 +10,13 @@
 
 namespace elastocal {
 
-/// Labels that seem exchanged throughout a trial: those of two clusters, or of two markers.
+/// Labels that seem exchanged throughout a trial or in postures of a table: those of two clusters,
+/// or of two markers.
 struct LabelSuspicion {
   int trial = 0;
-  std::string a, b;             ///< names of the clusters or markers
-  std::vector<int> of_a, of_b;  ///< markers of the recording, one by one
+  std::vector<int> postures = {};  ///< of a table, ascending; empty: all
+  std::string a, b;                ///< names of the clusters or markers
+  std::vector<int> of_a, of_b;     ///< markers of the recording, one by one
   double before = 0.0;  ///< of these from where the nominal robot has them, or from their nominal
   double after = 0.0;   ///< distances; once they are exchanged. rms, m
 };
@@ -29,10 +31,11 @@ struct LabelSuspicion {
 std::vector<LabelSuspicion> FindLabelSuspicions(const ErrorModel& model, const Recording& recording,
                                                 const std::vector<LabelCluster>& clusters);
 
-/// The recording with these labels exchanged back.
+/// The recording with these labels exchanged back, in the trial or the table's postures.
 Recording WithoutExchange(const Recording& recording, const LabelSuspicion& suspicion);
 
-/// "the labels of LFOOT and RFOOT are exchanged in trial a"
+/// "the labels of LFOOT and RFOOT are exchanged in trial a"; of a table "... in 10 postures", or
+/// nothing more.
 std::string DescribeSuspicion(const LabelSuspicion& suspicion, const Recording& recording);
 
 }  // namespace elastocal

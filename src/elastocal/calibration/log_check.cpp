@@ -226,6 +226,7 @@ std::string DescribeSuspicion(const LogSuspicion& suspicion, const RobotTree& tr
               std::to_string(suspicion.postures.size()) + " postures";
       break;
   }
+  if (recording.trials.empty()) return text;
   std::vector<int> trials;
   for (int i : suspicion.postures) {
     if (trials.empty() || trials.back() != recording.trial[i]) trials.push_back(recording.trial[i]);

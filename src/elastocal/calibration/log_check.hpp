@@ -16,21 +16,23 @@ enum class LogContradiction {
   kFrozen,    ///< they stayed the same while the joint moved
 };
 
-/// A mistake in the joint log, as the markers show it.
+/// A mistake in the joint log or a table, as the markers show it.
 struct LogSuspicion {
   LogContradiction kind = LogContradiction::kSign;
-  int coordinate = 0;         ///< of the robot tree
-  int other = -1;             ///< the one that it is exchanged with
-  std::vector<int> postures;  ///< ascending, in which the log is wrong
-  double before = 0.0;  ///< PositionsByMarkers less the log there, median of the absolute, rad or m
-  double after = 0.0;   ///< the same once the mistake is undone; of kFrozen, elsewhere
+  int coordinate = 0;              ///< of the robot tree
+  int other = -1;                  ///< the one that it is exchanged with
+  std::vector<int> postures = {};  ///< ascending, in which the log is wrong
+  /// PositionsByMarkers less the log there, median of the absolute, rad or m; of a table, how far
+  /// markers are from the nominal robot, m.
+  double before = 0.0;
+  double after = 0.0;  ///< the same once the mistake is undone; of kFrozen, elsewhere
 };
 
 /// Mistakes in the joint log of a recording of trials that are far larger than errors of a robot:
 /// the sign of a joint, two joints exchanged, a joint frozen in part of a trial. Each is told trial
 /// by trial, by the nominal robot, before anything is estimated. A suspicion is no proof: whether
 /// the recording fits once it is undone, a fit has to say. The one that explains most first; empty
-/// for a table of postures.
+/// for a table of postures (FindTableSuspicions).
 std::vector<LogSuspicion> FindLogSuspicions(const ErrorModel& model, const Recording& recording);
 
 /// The recording without that mistake: positions corrected, or the postures left out in which a

@@ -71,6 +71,17 @@ std::string JointTable(const JointCheck& check) {
 }
 
 std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
+  if (!run.mistakes.empty()) {
+    return fmt::format("The recording is wrong: {}\n", fmt::join(run.mistakes, "; "));
+  }
+  if (!run.check.changed() && !run.plausible()) {
+    return fmt::format(
+        "Not explained: the calibrated robot errs by {} mm here, where one that was never "
+        "calibrated "
+        "should err by some {:.2g} mm, and no joint that has moved explains it. Do recording, "
+        "project and calibration belong together?\n",
+        Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3), 1e3 * run.expected_error);
+  }
   if (!run.check.changed()) {
     return fmt::format(
         "Unchanged: the calibration explains these postures (chance of a false alarm {:.3g} %).\n",
@@ -166,7 +177,7 @@ int Check(const CheckCommand& command) {
   Print(quiet, DescribeCheck(run, command) + NextText(project, next, command.output));
   PrintWarnings(run.warnings, command.common.verbose);
   if (!run.converged()) spdlog::error("the fit has not converged: {}", run.estimate.message);
-  return run.converged() && !run.check.changed() ? kFine : kNotConverged;
+  return run.unchanged() ? kFine : kNotConverged;
 }
 
 }  // namespace
@@ -194,7 +205,8 @@ void AddCheck(CLI::App& app, Action& action) {
   AddAcceptOption(*command, options->check.accept);
   AddCommonOptions(*command, options->common);
   command->footer(
-      "Ends with 0 where nothing has changed, and with 4 where a joint has moved.\n"
+      "Ends with 0 where nothing has changed, and with 4 where a joint has moved or the recording "
+      "is not explained.\n"
       "Example: elastocal check project.yaml --calibration out --recording today.csv");
   command->callback([&action, options] { action = [options] { return Check(*options); }; });
 }

@@ -33,12 +33,14 @@ struct ValidateOptions {
   std::vector<std::string> accept;
 };
 
-std::string Table(const TransferValidation& validation, bool frozen) {
-  TextTable table({frozen ? "joints (nothing fitted)" : "joints (waist and markers refitted)",
+std::string Table(const ValidationRun& run) {
+  TextTable table({run.frozen ? "joints (nothing fitted)" : "joints (waist and markers refitted)",
                    "RMSE 3-D mm", "RMSE coordinate mm", "max mm", "with outliers mm"});
   const auto millimetres = [](double value) { return fmt::format("{:.3f}", 1e3 * value); };
-  for (const auto& [name, refit] : {std::pair{"uncalibrated", &validation.uncalibrated},
-                                    std::pair{"calibrated", &validation.calibrated}}) {
+  std::vector<std::pair<const char*, const Refit*>> refits = {
+      {"uncalibrated", &run.transfer.uncalibrated}, {"calibrated", &run.transfer.calibrated}};
+  if (run.urdf) refits.emplace_back("as the calibrated URDF has it", &*run.urdf);
+  for (const auto& [name, refit] : refits) {
     table.Add({name, millimetres(refit->metrics.rmse_3d),
                millimetres(refit->metrics.rmse_coordinate), millimetres(refit->metrics.maximum),
                millimetres(refit->metrics_all.rmse_3d)});
@@ -51,7 +53,7 @@ void PrintRun(const ValidationRun& run, const CommonOptions& options) {
   Print(quiet, fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
                            run.recording.source, run.calibration.recording,
                            run.recording.posture_count(), run.recording.marker_count()) +
-                   Table(run.transfer, run.frozen));
+                   Table(run));
   const std::vector<Outlier>& outliers = run.transfer.calibrated.result.outliers;
   for (std::size_t i = 0; i < std::min<std::size_t>(10, outliers.size()); ++i) {
     Print(quiet,
@@ -62,6 +64,13 @@ void PrintRun(const ValidationRun& run, const CommonOptions& options) {
   PrintWarnings(run.warnings, options.verbose);
   for (const std::string& mistake : run.mistakes) spdlog::error("{}", mistake);
   if (!run.converged()) spdlog::error("the fit of waist and markers has not converged");
+  if (!run.plausible()) {
+    spdlog::error(
+        "the calibrated robot errs by {:.3g} mm on {}, where one that was never calibrated should "
+        "err by some {:.2g} mm: recording, project and calibration do not belong together",
+        1e3 * run.transfer.calibrated.metrics_all.rmse_3d, run.recording.source,
+        1e3 * run.expected_error);
+  }
   if (!run.better()) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
 }
 
@@ -105,7 +114,8 @@ int Validate(const ValidateOptions& options) {
 
   PrintRun(run, options.common);
   if (!folder.empty()) PrintReportPlace(folder, no_report, quiet);
-  return run.converged() && run.better() && run.mistakes.empty() ? kFine : kNotConverged;
+  const bool fine = run.converged() && run.better() && run.plausible() && run.mistakes.empty();
+  return fine ? kFine : kNotConverged;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/validation/deployment.hpp"
 
 namespace elastocal {
 namespace {
@@ -51,6 +52,7 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   EarlierFit fit =
       FitAfterEarlier(calibration, options.days, measured, options.seed, options.joints, project);
   const Recording& postures = fit.measured.calibration;
+  run.expected_error = ExpectedError(fit.robot.model, postures, project.calibration.prior);
   const auto seen = SeenMask(postures);
   run.rmse_estimate =
       ComputeMetrics(
@@ -59,8 +61,19 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
           .rmse_3d;
 
   // The joints as calibrated.
-  run.transfer = ValidateTransfer(fit.robot.model, postures, fit.robot.base, project.calibration,
-                                  fit.stored.joint_errors);
+  const auto as_calibrated = [&](const RecordedModel& robot, const Recording& of) {
+    return ValidateTransfer(robot.model, of, robot.base, project.calibration,
+                            fit.stored.joint_errors);
+  };
+  run.transfer = as_calibrated(fit.robot, postures);
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project, options.seed, measured, run.transfer.calibrated.metrics_all.rmse_3d,
+                     [&](const RecordedModel& robot, const Recording& corrected) {
+                       return as_calibrated(robot, corrected).calibrated.metrics_all.rmse_3d;
+                     });
+  for (const RecordingMistake& mistake : mistakes) {
+    run.mistakes.push_back(DescribeMistake(mistake));
+  }
 
   run.warnings.insert(run.warnings.end(), fit.measured.warnings.begin(),
                       fit.measured.warnings.end());
@@ -70,10 +83,20 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   return run;
 }
 
+bool CheckRun::plausible() const {
+  return !(transfer.calibrated.metrics_all.rmse_3d > kImplausible * expected_error);
+}
+
+bool CheckRun::unchanged() const {
+  return converged() && mistakes.empty() && !check.changed() && plausible();
+}
+
 std::string CheckStatus(const CheckRun& run) {
   if (!run.converged()) return "not converged";
+  if (!run.mistakes.empty()) return "recording wrong";
   if (!run.check.moved.empty()) return "moved";
-  return run.check.changed() ? "changed" : "unchanged";
+  if (run.check.changed()) return "changed";
+  return run.plausible() ? "unchanged" : "implausible";
 }
 
 std::string MakeCheckJson(const CheckRun& run) {
@@ -91,6 +114,8 @@ std::string MakeCheckJson(const CheckRun& run) {
   json["not_told"] = run.check.not_told;
   json["joints"] = Json::array();
   for (const JointSuspect& joint : run.check.joints) json["joints"].push_back(SuspectJson(joint));
+  json["expected_error_mm"] = 1e3 * run.expected_error;
+  json["mistakes"] = run.mistakes;
   json["warnings"] = run.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -22,9 +22,16 @@ struct CheckRun {
   CalibrationResult estimate;   ///< the calibration as the prior, every joint free to have moved
   double rmse_estimate = 0.0;   ///< of `estimate` on the recording, outliers included, m
   JointCheck check;
+  std::vector<std::string> mistakes;  ///< of the recording, which say nothing of the robot
+  double expected_error = 0.0;        ///< of a robot that was never calibrated (ExpectedError), m
   std::vector<std::string> warnings;
 
   bool converged() const { return estimate.termination == Termination::kConverged; }
+  /// Whether the calibrated robot errs by less than twice what one that was never calibrated is
+  /// expected to. Otherwise "nothing has moved" would only mean that no single joint explains it.
+  bool plausible() const;
+  /// Whether the calibration still explains the robot.
+  bool unchanged() const;
 };
 
 struct CheckOptions {
@@ -44,7 +51,8 @@ struct CheckOptions {
 CheckRun CheckCalibration(const Project& given, const std::filesystem::path& calibration,
                           const std::filesystem::path& recording, const CheckOptions& options = {});
 
-/// "unchanged", "moved", "changed" (no single joint can be named) or "not converged".
+/// "unchanged", "moved", "changed" (no single joint can be named), "recording wrong" (`mistakes`),
+/// "implausible" or "not converged".
 std::string CheckStatus(const CheckRun& run);
 
 /// The figures for programs (docs/formats.md).

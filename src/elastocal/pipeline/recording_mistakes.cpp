@@ -13,8 +13,8 @@
 #include "elastocal/calibration/label_check.hpp"
 #include "elastocal/calibration/log_check.hpp"
 #include "elastocal/calibration/prediction.hpp"
+#include "elastocal/calibration/table_check.hpp"
 #include "elastocal/math/input_error.hpp"
-#include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/stated_corrections.hpp"
 
 namespace elastocal {
@@ -61,15 +61,20 @@ std::string NameOf(const LogSuspicion& suspicion, const RobotTree& tree) {
 /// most so many of labels and of the log.
 std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel& nominal,
                                         const Recording& recording, std::size_t most) {
+  const std::vector<LabelCluster> clusters = SeenClusters(project, recording);
+  TableSuspicions suspicions = FindTableSuspicions(nominal, recording, clusters);
+  if (!recording.trials.empty()) {
+    suspicions = {FindLogSuspicions(nominal, recording),
+                  FindLabelSuspicions(nominal, recording, clusters)};
+  }
   std::vector<TriedCorrection> tried;
-  for (const LabelSuspicion& one :
-       FindLabelSuspicions(nominal, recording, SeenClusters(project, recording))) {
+  for (const LabelSuspicion& one : suspicions.labels) {
     if (tried.size() >= most) break;
     tried.push_back(
         {NameOf(one), DescribeSuspicion(one, recording), WithoutExchange(recording, one)});
   }
   const std::size_t labels = tried.size();
-  for (const LogSuspicion& one : FindLogSuspicions(nominal, recording)) {
+  for (const LogSuspicion& one : suspicions.log) {
     if (tried.size() >= labels + most) break;
     tried.push_back({NameOf(one, project.tree), DescribeSuspicion(one, project.tree, recording),
                      WithoutMistake(recording, one),
@@ -86,7 +91,7 @@ ErrorModel NominalModel(const Project& project, const Recording& recording) {
 void Accept(const Project& project, const std::vector<std::string>& names, Recording& recording,
             std::vector<std::optional<Transform>>& truth, std::set<std::string>& shown,
             std::vector<std::string>& undone) {
-  if (recording.trials.empty()) return;
+  if (recording.posture_count() == 0) return;
   const ErrorModel nominal = NominalModel(project, recording);
   for (std::size_t round = 0; round < kMostUndone; ++round) {
     const TriedCorrection* next = nullptr;
@@ -169,7 +174,7 @@ std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, const Recording& recording, double error,
     const std::function<double(const Recording&)>& error_of) {
   std::vector<RecordingMistake> mistakes;
-  if (recording.trials.empty()) return mistakes;
+  if (recording.posture_count() == 0) return mistakes;
   const ErrorModel nominal = NominalModel(project, recording);
   Recording current = recording;
   while (mistakes.size() < kMostMistakes) {
@@ -191,12 +196,28 @@ std::vector<RecordingMistake> FindMistakesBy(
   return mistakes;
 }
 
+std::vector<RecordingMistake> FindMistakesBy(
+    const Project& project, std::optional<std::uint64_t> seed, const Measurements& as_recorded,
+    double error, const std::function<double(const RecordedModel&, const Recording&)>& error_of) {
+  std::optional<RecordedModel> robot;  // made when there is a suspicion
+  return FindMistakesBy(project, as_recorded.calibration, error, [&](const Recording& corrected) {
+    if (!robot) {
+      Measurements measured = as_recorded;
+      robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
+    }
+    try {
+      return error_of(*robot, corrected);
+    } catch (const InputError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  });
+}
+
 std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     std::optional<std::uint64_t> seed,
                                                     const Measurements& measured,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result) {
-  if (measured.calibration.trials.empty()) return {};
   Refitting refitting(project, seed, measured);
   return FindMistakesBy(project, measured.calibration,
                         FitError(result, fitted, project.calibration),

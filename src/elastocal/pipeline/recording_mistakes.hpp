@@ -9,6 +9,7 @@
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/project/project.hpp"
 
 namespace elastocal {
@@ -21,11 +22,12 @@ struct RecordingMistake {
   double after = 0.0;   ///< the same once it is undone
 };
 
-/// Mistakes of a recording of trials that a fit proves. Suspicions come from the nominal robot
-/// (FindLogSuspicions, FindLabelSuspicions); each is undone, the robot is calibrated again, and it
-/// is a mistake if the error falls to less than half (that of `result` on the recording `fitted`).
-/// Then the next is sought in the corrected recording, at most three in all. Without suspicions,
-/// which no clean recording has, nothing is fitted. `measured` as recorded.
+/// Mistakes of a recording that a fit proves. Suspicions come from the nominal robot
+/// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions); each is undone, the
+/// robot is calibrated again, and it is a mistake if the error falls to less than half (that of
+/// `result` on the recording `fitted`). Then the next is sought in the corrected recording, at most
+/// three in all. Without suspicions, which no clean recording has, nothing is fitted. `measured` as
+/// recorded.
 std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     std::optional<std::uint64_t> seed,
                                                     const Measurements& measured,
@@ -37,6 +39,12 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
 std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, const Recording& recording, double error,
     const std::function<double(const Recording&)>& error_of);
+
+/// The same by how well a stored calibration explains a recording, m. `error_of` gets the model of
+/// the recording as well; where it throws InputError, nothing is explained.
+std::vector<RecordingMistake> FindMistakesBy(
+    const Project& project, std::optional<std::uint64_t> seed, const Measurements& as_recorded,
+    double error, const std::function<double(const RecordedModel&, const Recording&)>& error_of);
 
 /// Undoes the mistakes of these names wherever the trials for calibration and for validation seem
 /// to have them, and says what was undone, in words: `sign:JOINT`, `exchange:JOINT,JOINT`,

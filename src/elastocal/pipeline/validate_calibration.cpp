@@ -2,7 +2,6 @@
 #include "elastocal/pipeline/validate_calibration.hpp"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/validation/deployment.hpp"
 
 namespace elastocal {
 namespace {
@@ -48,26 +48,6 @@ TransferValidation TransferTo(const Recording& recording, const RecordedModel& r
                          .uncalibrated_externals = stored.uncalibrated_externals});
 }
 
-/// What explains that the calibrated robot does not explain the recording.
-std::vector<RecordingMistake> FindMistakesIn(const Measurements& as_recorded,
-                                             const Project& project,
-                                             std::optional<std::uint64_t> seed,
-                                             const ValidationRun& run) {
-  std::optional<RecordedModel> robot;  // made when there is a suspicion
-  const auto error_of = [&](const Recording& corrected) {
-    if (!robot) {
-      Measurements measured = as_recorded;
-      robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
-    }
-    try {
-      return ErrorOf(TransferTo(corrected, *robot, project, run));
-    } catch (const InputError&) {
-      return std::numeric_limits<double>::infinity();
-    }
-  };
-  return FindMistakesBy(project, as_recorded.calibration, ErrorOf(run.transfer), error_of);
-}
-
 /// More than one outlier in twenty observations is worth a warning.
 void WarnOfOutliers(ValidationRun& run) {
   const auto outliers = run.transfer.calibrated.result.outliers.size();
@@ -88,6 +68,10 @@ bool ValidationRun::better() const {
   return transfer.calibrated.metrics_all.rmse_3d < transfer.uncalibrated.metrics_all.rmse_3d;
 }
 
+bool ValidationRun::plausible() const {
+  return !(ErrorOf(transfer) > kImplausible * expected_error);
+}
+
 ValidationRun ValidateCalibration(const Project& given, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
                                   const TransferOptions& options) {
@@ -96,6 +80,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
                     .calibration_file = file.string(),
                     .recording = {},
                     .transfer = {},
+                    .urdf = {},
                     .frozen = options.frozen,
                     .mistakes = {},
                     .warnings = {}};
@@ -110,9 +95,20 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   CheckApplies(run.calibration, project, robot.model);
   CheckWaist(run, measured.calibration);
   run.transfer = TransferTo(measured.calibration, robot, project, run);
-  for (const RecordingMistake& mistake : FindMistakesIn(as_recorded, project, options.seed, run)) {
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project, options.seed, as_recorded, ErrorOf(run.transfer),
+                     [&](const RecordedModel& plain, const Recording& corrected) {
+                       return ErrorOf(TransferTo(corrected, plain, project, run));
+                     });
+  for (const RecordingMistake& mistake : mistakes) {
     run.mistakes.push_back(DescribeMistake(mistake));
   }
+  if (!run.frozen) {
+    run.urdf = ValidateTransfer(robot.model, measured.calibration, robot.base, project.calibration,
+                                AsInUrdf(run.calibration).joint_errors)
+                   .calibrated;
+  }
+  run.expected_error = ExpectedError(robot.model, measured.calibration, project.calibration.prior);
   run.recording = std::move(measured.calibration);
   run.warnings.insert(run.warnings.end(), measured.warnings.begin(), measured.warnings.end());
   WarnOfOutliers(run);
@@ -121,6 +117,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
 
 std::string ValidationStatus(const ValidationRun& run) {
   if (!run.converged()) return "not converged";
+  if (!run.plausible()) return "implausible";
   return run.better() ? "better" : "not better";
 }
 
@@ -133,8 +130,10 @@ std::string MakeValidationJson(const ValidationRun& run) {
   json["recording"] = run.recording.source;
   json["postures"] = run.recording.posture_count();
   json["markers"] = run.recording.marker_count();
-  for (const auto& [name, refit] : {std::pair{"uncalibrated", &run.transfer.uncalibrated},
-                                    std::pair{"calibrated", &run.transfer.calibrated}}) {
+  std::vector<std::pair<const char*, const Refit*>> refits = {
+      {"uncalibrated", &run.transfer.uncalibrated}, {"calibrated", &run.transfer.calibrated}};
+  if (run.urdf) refits.emplace_back("urdf", &*run.urdf);
+  for (const auto& [name, refit] : refits) {
     json["rmse_3d_mm"][name] = 1e3 * refit->metrics.rmse_3d;
     json["rmse_coordinate_mm"][name] = 1e3 * refit->metrics.rmse_coordinate;
     json["max_mm"][name] = 1e3 * refit->metrics.maximum;
@@ -145,6 +144,7 @@ std::string MakeValidationJson(const ValidationRun& run) {
           std::isfinite(rmse) ? Json(1e3 * rmse) : Json(nullptr);
     }
   }
+  json["expected_error_mm"] = 1e3 * run.expected_error;
   json["not_predicted"] = run.transfer.not_predicted;
   json["outliers"] = Json::array();
   for (const Outlier& outlier : run.transfer.calibrated.result.outliers) {

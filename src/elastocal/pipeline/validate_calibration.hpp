@@ -20,7 +20,9 @@ struct ValidationRun {
   std::string calibration_file;  ///< its calibration.yaml
   Recording recording;
   TransferValidation transfer;
-  bool frozen = false;                ///< whether nothing was fitted
+  std::optional<Refit> urdf;    ///< the robot as the calibrated URDF has it; nothing if frozen
+  double expected_error = 0.0;  ///< of a robot that was never calibrated (ExpectedError), m
+  bool frozen = false;          ///< whether nothing was fitted
   std::vector<std::string> mistakes;  ///< of the recording, which say nothing of the robot
   std::vector<std::string> warnings;  ///< what a user should know of, a sentence each
 
@@ -28,6 +30,9 @@ struct ValidationRun {
   /// Whether the calibrated robot explains the recording better than the uncalibrated one, outliers
   /// included.
   bool better() const;
+  /// Whether the calibrated robot errs by less than twice what one that was never calibrated is
+  /// expected to: otherwise recording, project and calibration do not belong together.
+  bool plausible() const;
 };
 
 struct TransferOptions {
@@ -40,7 +45,7 @@ struct TransferOptions {
 
 /// Applies a stored calibration to another recording of the same robot: only waist and markers are
 /// fitted anew, for the calibrated and for the nominal robot (paper, section 6.1.4), or nothing.
-/// Mistakes in a recording of trials that explain its misfit are named (FindMistakesBy).
+/// Mistakes in a recording that explain its misfit are named (FindMistakesBy).
 ///
 /// `calibration`: the folder that calibrate wrote to, or its calibration.yaml. `recording`: a
 /// posture table or a recording folder; trials for validation will do. Throws InputError: files
@@ -49,7 +54,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
                                   const std::filesystem::path& recording,
                                   const TransferOptions& options = {});
 
-/// "better", "not better" or "not converged".
+/// "better", "not better", "implausible" or "not converged".
 std::string ValidationStatus(const ValidationRun& run);
 
 /// validation.json: the figures for programs (docs/formats.md).

@@ -52,6 +52,22 @@ std::vector<CarriedLoad> CarriedLoads(const RobotTree& tree,
   return beyond;
 }
 
+Eigen::VectorXd LargestGravityTorques(const RobotTree& tree) {
+  const std::vector<Transform> T_root_link =
+      LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  const std::vector<CarriedLoad> loads = CarriedLoads(tree, T_root_link, 0);
+  Eigen::VectorXd torques(static_cast<Eigen::Index>(loads.size()));
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    const Vector3d& joint =
+        T_root_link[static_cast<std::size_t>(tree.joints[k].child_link)].translation();
+    const double lever = tree.joints[k].type == JointType::kPrismatic
+                             ? loads[k].mass
+                             : (loads[k].moment - loads[k].mass * joint).norm();
+    torques[static_cast<Eigen::Index>(k)] = lever * kGravity.norm();
+  }
+  return torques;
+}
+
 Eigen::VectorXd StaticTorques(const RobotTree& tree, const Eigen::VectorXd& q,
                               const Vector3d& gravity_waist, int fixed_link) {
   const std::vector<Transform> T_root_link = LinkTransforms(tree, q);

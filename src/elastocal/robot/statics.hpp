@@ -28,6 +28,10 @@ struct CarriedLoad {
 std::vector<CarriedLoad> CarriedLoads(const RobotTree& tree,
                                       const std::vector<Transform>& T_ref_link, int fixed_link);
 
+/// Torque (force for a prismatic joint) of gravity on each joint, N.m or N, if all that it carries
+/// beyond itself were held out sideways as it is in the zero posture.
+Eigen::VectorXd LargestGravityTorques(const RobotTree& tree);
+
 /// Torques (forces for prismatic joints) by coordinate of q that the motors must supply to hold the
 /// robot still, N.m or N, while `fixed_link` (index of a link) is fixed to the floor and nothing
 /// else touches the robot. `gravity_waist` is the acceleration of gravity in the root link's frame.

@@ -8,6 +8,7 @@
 
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/physical_inertia.hpp"
+#include "elastocal/robot/statics.hpp"
 #include "elastocal/simulation/standing_feet.hpp"
 
 namespace elastocal {
@@ -41,7 +42,12 @@ class MjcfWriter {
  public:
   MjcfWriter(const TrueRobot& robot, const std::vector<int>& support, const PhysicsOptions& options,
              const std::vector<PhysicalPlate>& plates)
-      : robot_(robot), tree_(robot.tree), support_(support), options_(options), plates_(plates) {}
+      : robot_(robot),
+        tree_(robot.tree),
+        support_(support),
+        options_(options),
+        plates_(plates),
+        torques_(LargestGravityTorques(robot.tree)) {}
 
   std::string text;
 
@@ -241,7 +247,10 @@ class MjcfWriter {
 
   void Motor(int k, const Eigen::Vector3d& axis, const Eigen::Vector3d& anchor) {
     const bool slides = JointAt(k).type == JointType::kPrismatic;
-    const double stiffness = slides ? options_.sliding_servo_stiffness : options_.servo_stiffness;
+    constexpr double kLargestSag = 0.01;  // rad or m, by gravity: robots may carry tonnes
+    const double stiffness =
+        std::max(slides ? options_.sliding_servo_stiffness : options_.servo_stiffness,
+                 torques_[k] / kLargestSag);
     const double omega = options_.servo_frequency;
     AddJoint("m" + std::to_string(k), slides, axis, anchor,
              {stiffness, 2.0 * stiffness / omega, stiffness / (omega * omega)});
@@ -292,6 +301,7 @@ class MjcfWriter {
   const std::vector<int>& support_;
   const PhysicsOptions& options_;
   const std::vector<PhysicalPlate>& plates_;
+  const Eigen::VectorXd torques_;
 };
 
 /// The leg that has this foot.

@@ -13,6 +13,13 @@
 namespace elastocal {
 namespace {
 
+/// Stiffnesses are those of robots of a person's weight. Others carry tonnes: gravity turns no
+/// joint by more than this.
+void KeepStiffEnough(double torque, double& compliance) {
+  constexpr double kLargestDeflection = 0.01;  // rad or m
+  if (torque * compliance > kLargestDeflection) compliance = kLargestDeflection / torque;
+}
+
 class Drawing {
  public:
   Drawing(const TruthOptions& options, TrueRobot& robot) : options_(options), robot_(robot) {}
@@ -89,9 +96,7 @@ class Drawing {
 
   void JointSprings() {
     SeriesRandom random(options_.seed, options_.series, "joint springs");
-    const std::vector<Transform> T_root_link =
-        LinkTransforms(robot_.tree, Eigen::VectorXd::Zero(robot_.tree.coordinate_count()));
-    const std::vector<CarriedLoad> loads = CarriedLoads(robot_.tree, T_root_link, 0);
+    const Eigen::VectorXd torques = LargestGravityTorques(robot_.tree);
     for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
       const double share = random.Uniform(0.0, 1.0);
       const double least = IsLeg(k) ? options_.leg_stiffness_least : options_.upper_stiffness_least;
@@ -99,9 +104,7 @@ class Drawing {
       const double scale =
           IsLeg(k) ? options_.leg_elasticity_scale : options_.upper_elasticity_scale;
       robot_.compliance[Index(k)] = scale / (least * std::pow(most / least, share));
-      const Eigen::Vector3d centre =
-          T_root_link[static_cast<std::size_t>(robot_.tree.joints[k].child_link)].translation();
-      if (!IsLeg(k)) KeepStiffEnough(k, loads[k], centre);
+      if (!IsLeg(k)) KeepStiffEnough(torques[Index(k)], robot_.compliance[Index(k)]);
     }
   }
 
@@ -186,16 +189,6 @@ class Drawing {
   bool IsLeg(std::size_t k) const { return InLeg(robot_.legs, static_cast<int>(k)); }
   double GeometryScale(std::size_t k) const {
     return IsLeg(k) ? options_.leg_geometry_scale : options_.upper_geometry_scale;
-  }
-
-  /// Springs are of robots of a person's weight. Those of a press shop carry tonnes: no joint gives
-  /// way by more than this when what it carries is held out sideways.
-  void KeepStiffEnough(std::size_t k, const CarriedLoad& carried, const Eigen::Vector3d& centre) {
-    constexpr double kLargestDeflection = 0.01;  // rad or m
-    const bool slides = robot_.tree.joints[k].type == JointType::kPrismatic;
-    const double lever = slides ? carried.mass : (carried.moment - carried.mass * centre).norm();
-    double& compliance = robot_.compliance[Index(k)];
-    compliance = std::min(compliance, kLargestDeflection / std::max(lever * kGravity.norm(), 1e-9));
   }
 
   const TruthOptions& options_;

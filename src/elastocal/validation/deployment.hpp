@@ -24,6 +24,10 @@ struct Deployment {
 Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValidation& validation,
                             const ErrorTable* table);
 
+/// A robot that errs by more than this many times ExpectedError is not the one that was described,
+/// or the recording is wrong.
+inline constexpr double kImplausible = 2.0;
+
 /// By how much a robot that was never calibrated is expected to err, m: root mean square over the
 /// observations of a recording and over robots drawn from the prior (angles and lengths).
 double ExpectedError(const ErrorModel& model, const Recording& recording, const Prior& prior);

@@ -11,7 +11,6 @@ constexpr double kMostOutliers = 0.25;     // from this part of all observations
 constexpr double kManyOutliers = 0.05;     // from this part on, a remark
 constexpr double kSuspectedMarker = 0.25;  // part of the observations of a marker or posture
 constexpr double kMostWeak = 0.5;          // of the parameters may lean on the prior alone
-constexpr double kImplausible = 2.0;       // times the error of an uncalibrated robot
 constexpr double kAsGood = 1.01;           // times as large: no difference
 constexpr double kWorse = 1.05;            // times as large: more than chance makes an error
 constexpr const char* kAdvice =
