@@ -39,10 +39,13 @@ std::string VerdictText(const CalibrationRun& run) {
                   run.held_out ? "deploy. On held-out motions " : "",
                   Millimetres(deployment.uncalibrated, 3), Millimetres(deployment.urdf, 3));
   if (std::isfinite(deployment.compensated)) {
-    text +=
-        fmt::format(", {} mm with elastic compensation", Millimetres(deployment.compensated, 3));
+    const std::vector<Parameter>& parameters = run.comparison.largest().model.parameters;
+    const bool springs = std::any_of(parameters.begin(), parameters.end(),
+                                     [](const Parameter& p) { return IsCompliance(p.kind); });
+    text += fmt::format(", {} mm with {}", Millimetres(deployment.compensated, 3),
+                        springs ? "elastic compensation" : "");
     if (!run.extra.empty()) {
-      text += fmt::format(" and {}, which only this program's own model knows",
+      text += fmt::format("{}{}, which only this program's own model knows", springs ? " and " : "",
                           fmt::join(run.extra, ", "));
     }
   }

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <fmt/format.h>
 
 #include "elastocal/calibration/gauge.hpp"
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
@@ -82,12 +85,35 @@ Progress OfStep(const StepProgress& progress, const std::string& step) {
   return [progress, step](int done, int total) { progress(step, done, total); };
 }
 
-/// Ten for a table of postures, unless it is small or very large; of a short motion fewer.
+/// Ten for a table of postures, unless it is very large; of few postures one each.
 int UsualFolds(const Recording& recording) {
-  const int postures = recording.posture_count();
-  if (!recording.trials.empty() || postures < 10 || postures > 2000) return 0;
+  if (!recording.trials.empty() || recording.posture_count() > 2000) return 0;
   const int folds = FoldsFor(recording, 10);
   return folds < 2 ? 0 : folds;
+}
+
+/// Joints that move markers and stood still in all postures, in a sentence; empty if there are
+/// none.
+std::string StillJoints(const ErrorModel& model, const Recording& recording) {
+  constexpr double kStill = 1e-3;  // rad or m
+  std::set<int> moving;
+  for (const int k : model.active_joints) {
+    for (const Drive& drive : DrivesOf(model.tree.joints[Size(k)])) moving.insert(drive.coordinate);
+  }
+  const auto& unknown = recording.joints_not_recorded;
+  std::vector<std::string> still;
+  for (const int c : moving) {
+    const std::string& name = model.tree.joints[Size(model.tree.coordinate_joint[Size(c)])].name;
+    const double range = recording.q.col(c).maxCoeff() - recording.q.col(c).minCoeff();
+    if (range < kStill && std::count(unknown.begin(), unknown.end(), name) == 0) {
+      still.push_back(name);
+    }
+  }
+  if (still.empty() || recording.posture_count() < 2) return "";
+  return fmt::format(
+      "{} stood still in all postures: what its motion would show is not known, and no error given "
+      "here holds where it moves",
+      fmt::join(still, ", "));
 }
 
 void Append(const std::vector<std::string>& more, std::vector<std::string>& warnings) {
@@ -113,6 +139,12 @@ CalibrationRun CalibrateExperiment(const Project& given,
     // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
     run.elasticity = ChooseElasticity(measured.calibration, options.seed, kElasticityFolds,
                                       options.threads, project);
+    if (measured.calibration.trials.empty() && !HasMasses(project.tree)) {
+      run.warnings.push_back(
+          "the robot description has no masses: whether joints give way under their loads cannot "
+          "be "
+          "told");
+    }
 
     // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
     run.causes = ChooseCauses(measured, options.seed, project);
@@ -130,6 +162,8 @@ CalibrationRun CalibrateExperiment(const Project& given,
   RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
   const Recording& recording = measured.calibration;
   CheckGauge(settings.gauge, robot.model, robot.base);
+  const std::string still = StillJoints(robot.model, recording);
+  if (!still.empty()) run.warnings.push_back(still);
 
   // Section 5, eq. 14. One least-squares problem over all samples: find the delta that minimises
   // |y^ - y(delta)|^2 while the pose F(q_i, delta) of the supporting foot stays what it was. Each

@@ -11,7 +11,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kLeastPostures = 10;
+constexpr int kLeastPostures = 5;
 constexpr int kMostPostures = 300;
 constexpr double kLeastGain = 0.02;  // of the mean error
 
@@ -41,12 +41,12 @@ Eigen::VectorXd ErrorsByPosture(const Eigen::MatrixXd& distances) {
   return squares.cwiseSqrt();
 }
 
+}  // namespace
+
 bool HasMasses(const RobotTree& tree) {
   return std::any_of(tree.links.begin(), tree.links.end(),
                      [](const Link& link) { return link.body > 0 && link.mass > 0.0; });
 }
-
-}  // namespace
 
 std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
                                               std::optional<std::uint64_t> seed, int most_folds,

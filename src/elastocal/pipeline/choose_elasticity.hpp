@@ -11,6 +11,9 @@
 
 namespace elastocal {
 
+/// Whether the robot description says what its joints carry.
+bool HasMasses(const RobotTree& tree);
+
 /// A choice of elastic parameters that was tried, and what it brings on postures that were left
 /// out.
 struct ElasticityTrial {

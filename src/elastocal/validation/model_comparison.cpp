@@ -137,8 +137,6 @@ ObservationMask Judged(const ErrorModel& model, const Recording& recording) {
 }  // namespace
 
 int FoldsFor(const Recording& recording, int wanted) {
-  const std::vector<int> motion = MotionOfPostures(recording);
-  if (std::all_of(motion.begin(), motion.end(), [](int of) { return of < 0; })) return wanted;
   const auto units = DistinctUnits(UnitOfPosture(recording, FoldUnit::kPosture)).size();
   return std::min(wanted, static_cast<int>(units));
 }

@@ -54,8 +54,8 @@ struct FoldOptions {
   int threads = 1;
 };
 
-/// `wanted` folds, or as many as a short motion allows: its moments (MotionOfPostures) are left out
-/// in stretches of five seconds.
+/// `wanted` folds, or as many as there are different postures. Those of a motion
+/// (MotionOfPostures) are left out in stretches of five seconds.
 int FoldsFor(const Recording& recording, int wanted);
 
 /// The fold of each posture: a random permutation of the units is cut into equal parts. Throws
