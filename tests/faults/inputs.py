@@ -118,7 +118,7 @@ def full_project(urdf):
                     "single": [{"name": "WRIST", "link": "wrist", "position_mm": [35, 40, 45]}]},
         "torque_sensors": ["elbow_joint"],
         "force_torque_sensors": [{"name": "hand", "link": "tool"}],
-        "recording": {"columns": {"time": "t", "markers": {"WRIST": ["a", "b", "c"]},
+        "recording": {"up": [0, 0, 1], "columns": {"time": "t", "markers": {"WRIST": ["a", "b", "c"]},
                                   "joints": {"elbow_joint": "elbow_joint"}},
                       "ignore": ["comment"], "not_recorded_deg": {"flange_joint": 0},
                       "not_recorded_mm": {"finger_left_joint": 10}},

@@ -49,6 +49,7 @@ std::vector<Bound> MakeBounds() {
       {"markers.single[].position_mm[]", "mm", -1e4, 1e4, kBody},
       {"recording.not_recorded_deg.*", "deg", -720, 720, kTurns},
       {"recording.not_recorded_mm.*", "mm", -1e4, 1e4, kBody},
+      {"recording.up[]", "", -1e6, 1e6, "a direction, of any length"},
       {"recording.reference_lengths[].length_mm", "mm", 10, 1e5, "a wand; a hall"},
       {"recording.reference_lengths[].sd_mm", "mm", 1e-4, 100, "a gauge; a tape"},
       {"contact.feet[].position_mm[]", "mm", -1e4, 1e4, kBody},

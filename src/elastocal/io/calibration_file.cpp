@@ -74,12 +74,14 @@ void EmitNumbers(const Eigen::Vector3d& numbers, YAML::Emitter& yaml) {
   yaml << YAML::EndSeq;
 }
 
-void EmitWaist(const Transform& T_ref_waist, YAML::Emitter& yaml) {
+void EmitWaist(const Transform& T_ref_waist, const Eigen::Vector3d& gravity, YAML::Emitter& yaml) {
   yaml << YAML::Key << "waist" << YAML::Value << YAML::Flow << YAML::BeginMap;
   yaml << YAML::Key << "xyz_m" << YAML::Value;
   EmitNumbers(T_ref_waist.translation(), yaml);
   yaml << YAML::Key << "rpy_rad" << YAML::Value;
   EmitNumbers(ToRpy(T_ref_waist.linear(), Eigen::Vector3d::Zero()), yaml);
+  yaml << YAML::Key << "up" << YAML::Value;
+  EmitNumbers(-gravity.normalized(), yaml);
   yaml << YAML::EndMap
        << YAML::Comment("in the frame of the recording; waist.T0 deviates from there");
 }
@@ -165,7 +167,7 @@ Eigen::Vector3d ReadNumbers(const YamlValue& value) {
 
 std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
                                 ZeroOffsets zero_offsets, const CalibrationResult* uncalibrated,
-                                const CalibrationResult* in_urdf) {
+                                const CalibrationResult* in_urdf, const Eigen::Vector3d& gravity) {
   YAML::Emitter yaml;
   yaml << YAML::Comment("Written by elastocal: deviations from the nominal URDF, in SI units.");
   yaml << YAML::BeginMap;
@@ -192,7 +194,7 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   }
   yaml << YAML::EndMap;
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(result.interval_factor);
-  if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, yaml);
+  if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, gravity, yaml);
   if (uncalibrated != nullptr) EmitUncalibrated(*uncalibrated, yaml);
   if (in_urdf != nullptr) EmitInUrdf(*in_urdf, yaml);
   yaml << YAML::Key << "parameter_count" << YAML::Value << result.model.parameter_count()
@@ -285,6 +287,11 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   if (const auto waist = root.Find("waist")) {
     stored.T_ref_waist =
         FromXyzRpy(ReadNumbers(waist->Get("xyz_m")), ReadNumbers(waist->Get("rpy_rad")));
+    if (const auto up = waist->Find("up")) {
+      const Eigen::Vector3d direction = ReadNumbers(*up);
+      up->Expect(direction.norm() > 0.0, "a direction");
+      stored.gravity = -kGravity.norm() * direction.normalized();
+    }
   }
   if (const auto uncalibrated = root.Find("uncalibrated")) {
     for (const auto& [name, value] : uncalibrated->Entries()) {

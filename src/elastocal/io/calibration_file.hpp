@@ -9,6 +9,7 @@
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/robot/statics.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 
 namespace elastocal {
@@ -18,11 +19,13 @@ namespace elastocal {
 /// `uncalibrated`, where given: the result that has only waist and markers fitted to the same
 /// recording, for a comparison on other recordings. `in_urdf`, where given: the result whose
 /// geometry the calibrated URDF has, where that is another than `result` (a rigid model that
-/// predicts better by itself than without the other's elasticity).
+/// predicts better by itself than without the other's elasticity). `gravity`: in the frame of the
+/// recording, a table of postures.
 std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
                                 ZeroOffsets zero_offsets,
                                 const CalibrationResult* uncalibrated = nullptr,
-                                const CalibrationResult* in_urdf = nullptr);
+                                const CalibrationResult* in_urdf = nullptr,
+                                const Eigen::Vector3d& gravity = kGravity);
 
 /// The same of what is known of a robot without a recording of its own, such as a fleet's prior.
 std::string MakeCalibrationYaml(const CalibrationEstimate& estimate);
@@ -47,6 +50,7 @@ struct StoredCalibration {
   std::map<std::string, double> urdf_errors;
   /// Of a table of postures: nominal pose of the waist in the frame of the recording.
   std::optional<Transform> T_ref_waist;
+  Eigen::Vector3d gravity = kGravity;  ///< in that frame, m/s^2
   /// Waist (deviations from there) and markers, by parameter name, SI: of the calibrated model, and
   /// of the uncalibrated one fitted to the same recording (empty if the file does not have it).
   std::map<std::string, double> externals, uncalibrated_externals;

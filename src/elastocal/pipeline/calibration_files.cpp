@@ -48,10 +48,10 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
     const ModelKind in_urdf = run.deployment.urdf_kind;
     const bool same = in_urdf == result.kind || in_urdf == ModelKind::kRigid;
     files[UrdfName(project)] = run.urdf->text;
-    files["calibration.yaml"] =
-        MakeCalibrationYaml(result, run.recording.source, run.zero_offsets,
-                            &results[static_cast<int>(ModelKind::kUncalibrated)],
-                            same ? nullptr : &results[static_cast<int>(in_urdf)]);
+    files["calibration.yaml"] = MakeCalibrationYaml(
+        result, run.recording.source, run.zero_offsets,
+        &results[static_cast<int>(ModelKind::kUncalibrated)],
+        same ? nullptr : &results[static_cast<int>(in_urdf)], run.recording.gravity);
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
     if (!project.tree.linkages.empty()) files["linkages.yaml"] = MakeLinkagesYaml(result);

@@ -13,6 +13,7 @@
 #include "elastocal/calibration/up_check.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/pipeline/stated_corrections.hpp"
+#include "elastocal/pipeline/up_by_loads.hpp"
 #include "elastocal/validation/held_out.hpp"
 
 namespace elastocal {
@@ -150,6 +151,11 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
   if (wrong_scales.empty() && !ScaleIsKnown(as_recorded.trials)) {
     const auto scale = FindWrongScale(comparison.largest(), project.calibration);
     if (scale) faults.push_back(Describe(*scale));
+  }
+  if (faults.empty()) {
+    if (const auto up = FindUpByLoads(project, seed, as_recorded)) {
+      faults.push_back(Describe(*up, recording));
+    }
   }
   // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;

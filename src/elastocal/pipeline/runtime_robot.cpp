@@ -7,7 +7,9 @@
 #include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/transform.hpp"
+#include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/legs.hpp"
+#include "elastocal/validation/transfer.hpp"
 
 namespace elastocal {
 namespace {
@@ -117,6 +119,18 @@ std::vector<NamedChain> ChainNames(const Project& project) {
     chains.push_back({chain.name, chain.from_link, chain.tip_link});
   }
   return chains;
+}
+
+/// Where a root link that was held while a table of postures was measured had gravity.
+void SetGravity(const ErrorModel& nominal, const StoredCalibration& calibration,
+                RuntimeModel& model) {
+  if (!calibration.T_ref_waist) return;
+  ErrorModel placed = nominal;
+  placed.T_ref_waist = *calibration.T_ref_waist;
+  const Geometry geometry =
+      ApplyErrors(placed, ErrorsByName(placed, calibration.joint_errors, calibration.externals));
+  const Eigen::Vector3d gravity = WaistPose(geometry).linear().transpose() * calibration.gravity;
+  model.gravity.assign(gravity.begin(), gravity.end());
 }
 
 ec_foot MakeFoot(const Project& project, const StoredRobot& robot, const Leg& leg, bool elastic) {
@@ -229,6 +243,7 @@ RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& c
   model.fingerprint = calibration.nominal;
   AddJoints(robot, content, model);
   AddLinks(project.tree, model);
+  SetGravity(robot.model, calibration, model);
   AddLimbs(project, robot, content == RuntimeContent::kEverything, model);
   FindBranches(model);
   return model;

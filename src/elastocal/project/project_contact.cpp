@@ -31,12 +31,7 @@ void ReadFoot(const YamlValue& value, Project& project) {
 
 /// Axes whose z is the normal.
 Eigen::Matrix3d FaceAxes(const YamlValue& value) {
-  const std::vector<YamlValue> numbers = value.Items();
-  value.Expect(numbers.size() == 3, "three numbers [x, y, z]");
-  Eigen::Vector3d normal;
-  for (int i = 0; i < 3; ++i) normal[i] = numbers[i].Bounded();
-  value.Expect(normal.norm() > 0.0, "a direction");
-  return RotationBetween(Eigen::Vector3d::UnitZ(), normal);
+  return RotationBetween(Eigen::Vector3d::UnitZ(), DirectionFrom(value));
 }
 
 TableTop ReadTable(const YamlValue& value) {

@@ -13,6 +13,15 @@ Eigen::VectorXd NumbersOf(const YamlValue& list, std::size_t size) {
   return numbers;
 }
 
+Eigen::Vector3d DirectionFrom(const YamlValue& value) {
+  const std::vector<YamlValue> numbers = value.Items();
+  value.Expect(numbers.size() == 3, "three numbers [x, y, z]");
+  Eigen::Vector3d direction;
+  for (int i = 0; i < 3; ++i) direction[i] = numbers[i].Bounded();
+  value.Expect(direction.norm() > 0.0, "a direction");
+  return direction.normalized();
+}
+
 Eigen::Vector3d PointFromMm(const YamlValue& value) {
   const std::vector<YamlValue> coordinates = value.Items();
   if (coordinates.size() != 3) {

@@ -179,14 +179,25 @@ void ReadForceTorqueSensors(const YamlValue& section, Project& project) {
   }
 }
 
+/// x, y, z, -x, -y, -z, or a direction [x, y, z].
+Eigen::Vector3d ReadUp(const YamlValue& value) {
+  if (!value.IsScalar()) return DirectionFrom(value);
+  const std::string text = value.Text();
+  const bool down = text.starts_with("-");
+  const std::string axis = down ? text.substr(1) : text;
+  value.Expect(axis == "x" || axis == "y" || axis == "z", "x, y, z, -x, -y, -z or three numbers");
+  return (down ? -1.0 : 1.0) * Eigen::Vector3d::Unit(axis[0] - 'x');
+}
+
 void ReadRecordingColumns(const YamlValue& section, Project& project) {
-  section.ExpectKeys({"columns", "labels", "ignore", "root", "not_recorded_deg", "not_recorded_mm",
-                      "reference_lengths"});
+  section.ExpectKeys({"columns", "labels", "ignore", "root", "up", "not_recorded_deg",
+                      "not_recorded_mm", "reference_lengths"});
   if (const auto root = section.Find("root")) {
     root->Expect(root->Text() == "held" || root->Text() == "free", "held or free");
     project.recording.free_root = root->Text() == "free";
     project.motion.free_root = project.recording.free_root;
   }
+  if (const auto up = section.Find("up")) project.recording.up = ReadUp(*up);
   if (const auto labels = section.Find("labels")) ReadLabels(*labels, project);
   if (const auto columns = section.Find("columns")) ReadColumns(*columns, project);
   if (const auto lengths = section.Find("reference_lengths")) {

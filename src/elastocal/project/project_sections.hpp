@@ -56,6 +56,8 @@ Eigen::VectorXd NumbersOf(const YamlValue& list, std::size_t size);
 /// Three coordinates in mm as a point in m.
 Eigen::Vector3d PointFromMm(const YamlValue& value);
 /// The same of a key, or the origin without it.
+/// A direction of length 1 from three numbers.
+Eigen::Vector3d DirectionFrom(const YamlValue& value);
 Eigen::Vector3d OptionalPoint(const YamlValue& value, const char* key);
 /// A pose [m] from the keys `xyz_mm` and `rpy_deg`, each of which may be absent.
 Transform PoseFromMm(const YamlValue& value);

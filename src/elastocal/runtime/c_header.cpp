@@ -196,7 +196,8 @@ class CHeaderWriter {
           "branch_of_q", "column_of_q", "branch_size", "lower", "upper"}) {
       out_ << name_ << "_" << table << ", ";
     }
-    out_ << "\n    " << CNumber(robot_.total_mass) << ", " << CNumber(robot_.gravity) << ", "
+    out_ << "\n    " << CNumber(robot_.total_mass) << ", {" << CNumber(robot_.gravity[0]) << ", "
+         << CNumber(robot_.gravity[1]) << ", " << CNumber(robot_.gravity[2]) << "}, "
          << CNumber(robot_.torque_gain) << ", " << CNumber(robot_.largest_turn) << ", "
          << CNumber(robot_.largest_shift) << ", " << CNumber(robot_.largest_correction) << "};\n\n";
   }

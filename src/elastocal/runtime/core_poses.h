@@ -72,7 +72,8 @@ typedef struct {
   const int* column_of_coordinate; /* its place among the coordinates of its branch */
   const int* branch_size;
   const double *lower, *upper; /* limits, by coordinate */
-  double total_mass, gravity;  /* kg, m/s^2 */
+  double total_mass;           /* kg */
+  double gravity[3];           /* in the frame of a root link that is held, m/s^2 */
   double torque_gain;          /* low-pass on torques: share of a new value, in (0, 1]; 1: none */
   double largest_turn;         /* limit of each deflection, rad ... */
   double largest_shift;        /* ... and m */

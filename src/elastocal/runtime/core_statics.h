@@ -89,18 +89,17 @@ static inline void ec_walk(const ec_robot* robot, const ec_joint* joints, int lo
 }
 
 /* Direction and size of gravity in the root link's frame. The first foot that stands is flat on a
-   level floor; a held root link is upright. */
+   level floor; a held root link is as it was when the robot was calibrated. */
 static inline void ec_gravity(const ec_robot* robot, const ec_memory* memory, unsigned support,
                               double* gravity) {
   int f, i;
-  gravity[0] = gravity[1] = 0.0;
-  gravity[2] = -robot->gravity;
+  for (i = 0; i < 3; ++i) gravity[i] = robot->gravity[i];
   for (f = 0; f < robot->feet; ++f) {
     ec_pose sole;
     if (!(support >> f & 1U)) continue;
     ec_compose(&memory->body[robot->foot[f].sole.body], &robot->foot[f].sole.pose, &sole);
     ec_rotate(sole.R, robot->foot[f].up, gravity);
-    for (i = 0; i < 3; ++i) gravity[i] *= -robot->gravity;
+    for (i = 0; i < 3; ++i) gravity[i] *= -sqrt(ec_dot(robot->gravity, robot->gravity));
     return;
   }
 }

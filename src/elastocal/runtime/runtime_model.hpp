@@ -29,7 +29,9 @@ struct RuntimeModel {
   std::vector<ec_foot> feet;  ///< at most 32
   std::vector<ec_tip> tips;
   std::vector<double> lower, upper;  ///< by coordinate
-  double gravity = 9.81;
+  /// In the root link's frame where that is held, m/s^2: how it hung or stood when the robot was
+  /// calibrated. A robot on its feet takes the floor as level.
+  std::vector<double> gravity = {0.0, 0.0, -9.81};
 
   int joint_count() const { return static_cast<int>(calibrated.size()); }
   int coordinate_count() const { return static_cast<int>(lower.size()); }

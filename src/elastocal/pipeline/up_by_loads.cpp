@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/up_by_loads.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/prediction.hpp"
+#include "elastocal/io/recorded_files.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/validation/metrics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeftOfStated = 0.6;  // at most, with another axis up
+constexpr int kLeastRows = 10;
+constexpr int kMostRows = 60;
+
+/// Whether gravity alone tells the loads of the joints of a robot whose root link is held.
+bool IsHeldByStatics(const Project& project, const Recording& recording) {
+  const bool held = std::all_of(recording.trials.begin(), recording.trials.end(),
+                                [](const Trial& trial) { return trial.support.empty(); });
+  return held && !HasFreeRoot(recording) && recording.torques.rows() == 0 &&
+         HasMasses(project.tree) && recording.posture_count() >= kLeastRows;
+}
+
+Recording Thinned(const Recording& recording) {
+  const int step = (recording.posture_count() + kMostRows - 1) / kMostRows;
+  std::vector<int> kept;
+  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
+  return SelectPostures(recording, kept);
+}
+
+}  // namespace
+
+std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
+                                       const Measurements& as_recorded) {
+  if (!IsHeldByStatics(given, as_recorded.calibration)) return std::nullopt;
+  Project project = given;
+  project.elasticity.torsion = std::vector<std::string>{"*"};
+  project.elasticity.extra.clear();  // causes that a wrong direction has called for
+  Measurements measured = as_recorded;
+  measured.calibration = Thinned(as_recorded.calibration);
+  const RecordedModel robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
+  Recording& recording = measured.calibration;
+  const auto error_of = [&] {
+    const CalibrationResult result = Calibrate(robot.model, recording, robot.base,
+                                               ModelKinds(robot.model).back(), project.calibration);
+    const Eigen::MatrixXd distances =
+        Predict(result.model, result.delta, recording, project.calibration).distances;
+    return ComputeMetrics(distances, SeenMask(recording)).rmse_3d;
+  };
+  const Eigen::Vector3d stated = recording.gravity;
+  UpByLoads found{
+      .axis = {}, .stated = error_of(), .found = std::numeric_limits<double>::infinity()};
+  for (const char* axis : {"x", "-x", "y", "-y", "z", "-z"}) {
+    recording.gravity = GravityBelow(axis);
+    if (recording.gravity.normalized().dot(stated.normalized()) > 0.9) continue;
+    const double error = error_of();
+    if (error < found.found) {
+      found.axis = axis;
+      found.found = error;
+    }
+  }
+  if (!(found.found < kLeftOfStated * found.stated)) return std::nullopt;
+  return found;
+}
+
+std::string Describe(const UpByLoads& found, const Recording& recording) {
+  return fmt::format(
+      "gravity: with {} up, joints that give way explain the recording to {:.3g} mm, as stated "
+      "only "
+      "to {:.3g} mm; is {} the axis of the markers' frame that points up? ({})",
+      found.axis, 1e3 * found.found, 1e3 * found.stated, found.axis,
+      recording.trials.empty()
+          ? "recording.up in the project; a direction [x, y, z], where no axis does"
+          : "up in experiment.yaml");
+}
+
+}  // namespace elastocal
