@@ -83,6 +83,18 @@ TEST_F(CalibrationFile, ReadsBackWaistAndMarkers) {
   }
 }
 
+TEST_F(CalibrationFile, ReadsBackWhatPointsUp) {
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
+  EXPECT_EQ(ReadCalibration(file_).gravity, kGravity);
+  const Eigen::Vector3d gravity(0.0, -9.81, 0.0);  // y upwards
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin, nullptr, nullptr, gravity));
+  EXPECT_LT((ReadCalibration(file_).gravity - gravity).norm(), 1e-14);
+  std::string text = ReadFile(file_);
+  text.replace(text.find("up: [0, 1, 0]"), 13, "up: [0, 0, 0]");
+  Write(text);
+  ExpectInputError([&] { ReadCalibration(file_); }, {"waist.up", "a direction"});
+}
+
 TEST_F(CalibrationFile, ReadsBackWhatTheUrdfHasOfAnotherModel) {
   Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
   EXPECT_EQ(AsInUrdf(ReadCalibration(file_)).joint_errors, ReadCalibration(file_).joint_errors);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "tests/program_fixture.hpp"
 
 namespace elastocal {
@@ -46,6 +47,38 @@ TEST_F(Program, CheckNamesTheJointThatMovedAndEndsWithFour) {
   const nlohmann::json& change = json["moved"][0]["changes"][0];
   EXPECT_NEAR(change["change"].get<double>(), kChange, 4.0 * change["sd"].get<double>());
   EXPECT_LT(json["rmse_3d_mm"]["updated"], json["rmse_3d_mm"]["calibrated"]);
+}
+
+// No joint that has moved explains these: "unchanged" would be the worst of answers.
+TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const int elbow = project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate;
+  Recording reversed = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
+  Recording shuffled = reversed;
+  reversed.q.col(elbow) *= -1.0;
+  shuffled.markers.topRows(11) = reversed.markers.bottomRows(11);  // of the next posture
+  const std::string json = (scratch_.path() / "found.json").string();
+  const auto run = [&](const std::string& command, const Recording& recording) {
+    WritePostureTable(scratch_.path() / "wrong.csv", recording, project.tree);
+    const ProgramResult result =
+        RunProgram(command + " " + project_ + " --calibration " + out_ + " --recording " +
+                   (scratch_.path() / "wrong.csv").string() + " --json " + json);
+    EXPECT_EQ(result.exit_code, 4) << command << result.out << result.err;
+    return result.out + result.err;
+  };
+  const auto status = [&] { return nlohmann::json::parse(ReadFile(json))["status"]; };
+  EXPECT_NE(run("check", reversed).find("The recording is wrong: elbow_joint: the sign"),
+            std::string::npos);
+  EXPECT_EQ(status(), "recording wrong");
+  EXPECT_NE(run("check", shuffled).find("Not explained: the calibrated robot errs by"),
+            std::string::npos);
+  EXPECT_EQ(status(), "implausible");
+  EXPECT_NE(run("validate", reversed).find("elbow_joint: the sign of its positions is reversed"),
+            std::string::npos);
+  EXPECT_NE(run("validate", shuffled).find("do not belong together"), std::string::npos);
+  EXPECT_EQ(status(), "implausible");
 }
 
 TEST_F(Program, APriorMakesAFewPosturesEnough) {

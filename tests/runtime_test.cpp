@@ -129,6 +129,34 @@ TEST_F(Runtime, DeflectsAsTheEstimatorsModelDoes) {
   }
 }
 
+// A robot may hang on a wall while it is calibrated, and cameras may call another axis up.
+TEST_F(Runtime, AHeldRootHasTheGravityOfItsCalibration) {
+  stored_.T_ref_waist = Transform(RotX(-M_PI / 2.0));  // upright in a frame with y upwards
+  stored_.gravity = {0.0, -9.81, 0.0};
+  EXPECT_NEAR(MakeRuntimeModel(project_, stored_).gravity[2], -9.81, 1e-2);
+  stored_.gravity = kGravity;  // the same robot on its back
+  const RuntimeModel model = MakeRuntimeModel(project_, stored_);
+  const Eigen::Vector3d gravity(model.gravity[0], model.gravity[1], model.gravity[2]);
+  EXPECT_NEAR(gravity.y(), 9.81, 1e-2);
+
+  const Eigen::VectorXd q = Posture(3);
+  const JointLoads first = GravityLoads(robot_.model, geometry_, q, gravity, 0);
+  const JointLoads loads = GravityLoads(robot_.model, geometry_, q, gravity, 0, first);
+  const std::vector<Transform> expected =
+      CalibratedLinkTransforms(robot_.model, geometry_, q, loads);
+  Compensator robot(model), upright = Make();
+  EXPECT_EQ(robot.Forward(q, kNoTorque, 0), 0u);
+  upright.Forward(q, kNoTorque, 0);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const int link = static_cast<int>(i);
+    EXPECT_LT(Distance(robot.link_pose(link), expected[i]), kRounding);
+    largest = std::max(largest,
+                       (robot.link_pose(link).matrix() - upright.link_pose(link).matrix()).norm());
+  }
+  EXPECT_GT(largest, 3e-4);
+}
+
 TEST_F(Runtime, LegsGiveWayAsEquation6Says) {
   Compensator robot = Make();
   const Eigen::VectorXd q = Posture(4);
@@ -353,7 +381,7 @@ TEST_F(Runtime, ADamagedFileIsRefused) {
   wrong.replace(wrong.find("\ncalibrated 30\n") + 1, 13, "calibrated -1");
   EXPECT_TRUE(refused(wrong));
   wrong = good;
-  wrong.replace(wrong.find("gravity 9"), 9, "gravity x");
+  wrong.replace(wrong.find("gravity 3"), 9, "gravity x");
   EXPECT_TRUE(refused(wrong));
 }
 

@@ -249,6 +249,44 @@ TEST(Draft, WheelsBesideEachOtherAreNoLimbsWhereverTheyAre) {
   EXPECT_EQ(LimbsOfPole(more), (std::vector<std::string>{"left_arm", "right_arm", "leg"}));
 }
 
+// As of the HSR: a turning base carries casters of three joints each.
+TEST(Draft, CastersAndWhatCarriesNothingElseAreNoLimbs) {
+  const std::string caster = RodXml("base", "pole", "0 0 -0.2", "continuous") +
+                             RodXml("caster_x", "base", "0 0.2 0", "continuous") +
+                             RodXml("caster_y", "caster_x", "0 0.01 0", "continuous") +
+                             RodXml("caster_z", "caster_y", "0 0.01 0", "continuous");
+  EXPECT_EQ(LimbsOfPole(caster), (std::vector<std::string>{"left_arm", "right_arm"}));
+}
+
+// As of the Unitree R1, whose ankles carry frames of rods.
+TEST(Draft, AFrameNearTheAnkleIsNoSole) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  for (const std::string side : {"left", "right"}) {
+    const std::size_t joint =
+        urdf.find("<joint name=\"leg_" + side + R"(_sole_fix_joint" type="fixed">)");
+    ASSERT_NE(joint, std::string::npos);
+    const std::size_t xyz = urdf.find("xyz=\"", joint) + 5;
+    urdf.replace(xyz, urdf.find('"', xyz + 1) - xyz, "\"0 0 -0.012");
+    for (const std::string body : {"6"}) {  // without shapes, the sole is a guess
+      const std::size_t link = urdf.find("<link name=\"leg_" + side + "_" + body + "_link\"");
+      ASSERT_NE(link, std::string::npos);
+      for (const char* shape : {"collision", "visual"}) {
+        for (;;) {
+          const std::size_t end = urdf.find("</link>", link);
+          const std::size_t at = urdf.find("<" + std::string(shape), link);
+          if (at > end) break;
+          const std::string close = "</" + std::string(shape) + ">";
+          urdf.erase(at, urdf.find(close, at) + close.size() - at);
+        }
+      }
+    }
+  }
+  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
+  ASSERT_EQ(draft.soles.size(), 2u);
+  EXPECT_TRUE(draft.soles[0].added);
+  EXPECT_TRUE(draft.soles[0].guessed_height);
+}
+
 TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   for (const std::string side : {"left", "right"}) {

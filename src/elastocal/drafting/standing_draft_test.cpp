@@ -88,6 +88,31 @@ TEST(StandingDraft, LegsBendAsFarAsStandingNeeds) {
   EXPECT_NEAR(knee("front_left"), -knee("hind_right"), 1e-3);
 }
 
+// As of REEM-C, Fourier N1 and Draco 3, whose motors need 91 to 95 % of their efforts on one foot.
+TEST(StandingDraft, MotionsUseNearlyAllOfMotorsThatNeedIt) {
+  const std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
+  const auto draft_with = [&](double effort) {
+    return DraftProject(std::regex_replace(urdf, std::regex("effort=\"60\""),
+                                           "effort=\"" + std::to_string(effort) + "\""),
+                        "quadruped.urdf", {});
+  };
+  double least = 1.0, most = 60.0;  // held, and standing as usual
+  ASSERT_FALSE(draft_with(least).stands);
+  ASSERT_TRUE(draft_with(most).stands);
+  EXPECT_EQ(draft_with(most).motion_effort_share, 0.9);
+  for (int i = 0; i < 7; ++i) {
+    const double middle = 0.5 * (least + most);
+    (draft_with(middle).stands ? most : least) = middle;
+  }
+  const ProjectDraft weakest = draft_with(most);
+  EXPECT_EQ(weakest.motion_effort_share, 0.97);
+  EXPECT_TRUE(std::any_of(weakest.warnings.begin(), weakest.warnings.end(), [](const auto& text) {
+    return text.find("use up to 97 % of the motors' efforts") != std::string::npos;
+  }));
+  const ScratchFolder folder;
+  EXPECT_EQ(ReadBack(weakest, folder).motion.motion_effort_share, 0.97);
+}
+
 TEST(StandingDraft, RestsWithEachFootLifted) {
   const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
   const std::vector<Eigen::VectorXd> postures = RestingPostures(draft);

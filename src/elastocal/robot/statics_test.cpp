@@ -47,6 +47,15 @@ void GiveMasses(RobotTree& tree, Random& random) {
   }
 }
 
+TEST(Statics, LargestTorquesAreThoseOfLoadsHeldOutSideways) {
+  RobotTree tree = PlanarArm();  // 0.5 and 0.3 m
+  tree.links[2].mass = 2.0;
+  tree.links[3].mass = 1.0;
+  const Eigen::VectorXd torques = LargestGravityTorques(tree);
+  EXPECT_NEAR(torques[0], 9.81 * (2 * 0.5 + 1 * 0.8), 1e-12);
+  EXPECT_NEAR(torques[1], 9.81 * 1 * 0.3, 1e-12);
+}
+
 TEST(Statics, PlanarArmByHand) {
   // Lying arm that lifts about -y: 2 kg at the elbow, 1 kg at the tip.
   RobotTree tree = PlanarArm();

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/up_by_loads.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/robot/statics.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr const char* kArm = R"(
+robot: {urdf: models/talos/talos.urdf}
+chains: [{name: arm, tip: gripper_left_base_link}]
+markers:
+  single:
+    - {name: A, link: arm_left_7_link, position_mm: [60, 10, -70]}
+    - {name: B, link: arm_left_7_link, position_mm: [-50, 40, -60]}
+    - {name: C, link: arm_left_7_link, position_mm: [10, -60, -90]}
+)";
+
+/// Thirty postures of the arm with errors of its zeros, which is upright in a frame whose axis `up`
+/// points up, and whose joints give way by `compliance` [rad/(N.m)].
+Measurements Record(const Project& given, const Eigen::Vector3d& up, double compliance) {
+  Project project = given;
+  project.elasticity.torsion = std::vector<std::string>{"*"};
+  ErrorModel model = MakeProjectModel(project, {});
+  model.T_ref_waist = Transform(RotationBetween(Eigen::Vector3d::UnitZ(), up));
+  Random random(3);
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const ParameterKind kind = model.parameters[static_cast<std::size_t>(i)].kind;
+    if (kind == ParameterKind::kTheta) truth[i] = random.Normal(0.01);
+    if (IsCompliance(kind)) truth[i] = compliance;
+  }
+  const Geometry geometry = ApplyErrors(model, truth);
+  Measurements measured;
+  Recording& table = measured.calibration;
+  table.source = "table";
+  for (const Marker& marker : model.markers) table.marker_names.push_back(marker.name);
+  table.q.resize(30, model.tree.coordinate_count());
+  table.markers.resize(30, 3 * model.marker_count());
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::VectorXd q = RandomPosture(model.tree, random);
+    const JointLoads loads = GravityLoads(model, geometry, q, -9.81 * up, 0);
+    table.q.row(i) = q.transpose();
+    table.markers.row(i) = MarkerPositions(model, geometry, q, loads).reshaped().transpose() +
+                           random.NormalVector(3 * model.marker_count(), 2e-4).transpose();
+  }
+  return measured;
+}
+
+class UpByLoadsTest : public testing::Test {
+ protected:
+  /// The axis that is found where z is stated to be up; empty if none is.
+  std::string Found(const Eigen::Vector3d& up, double compliance) const {
+    const auto found = FindUpByLoads(project_, {}, Record(project_, up, compliance));
+    return found ? found->axis : "";
+  }
+
+  const Project project_ = ParseProject(kArm, SourceFile("project.yaml"));
+};
+
+TEST_F(UpByLoadsTest, AWrongAxisIsTold) {
+  EXPECT_EQ(Found(Eigen::Vector3d::UnitY(), 1e-4), "y");
+  EXPECT_EQ(Found(-Eigen::Vector3d::UnitX(), 1e-4), "-x");
+}
+
+TEST_F(UpByLoadsTest, TheRightAxisAndARigidRobotAreNotAccused) {
+  EXPECT_EQ(Found(Eigen::Vector3d::UnitZ(), 1e-4), "");
+  EXPECT_EQ(Found(Eigen::Vector3d::UnitY(), 0.0), "");
+}
+
+TEST_F(UpByLoadsTest, OnlyStaticsOfAHeldRobotAreJudged) {
+  Measurements free = Record(project_, Eigen::Vector3d::UnitY(), 1e-4);
+  free.calibration.free_root = true;
+  EXPECT_FALSE(FindUpByLoads(project_, {}, free));
+  Measurements sensed = Record(project_, Eigen::Vector3d::UnitY(), 1e-4);
+  sensed.calibration.torques.setZero(30, project_.tree.joints.size());
+  EXPECT_FALSE(FindUpByLoads(project_, {}, sensed));
+}
+
+}  // namespace
+}  // namespace elastocal
