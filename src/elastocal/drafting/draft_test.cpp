@@ -266,18 +266,14 @@ TEST(Draft, AFrameNearTheAnkleIsNoSole) {
         urdf.find("<joint name=\"leg_" + side + R"(_sole_fix_joint" type="fixed">)");
     ASSERT_NE(joint, std::string::npos);
     const std::size_t xyz = urdf.find("xyz=\"", joint) + 5;
-    urdf.replace(xyz, urdf.find('"', xyz + 1) - xyz, "\"0 0 -0.012");
-    for (const std::string body : {"6"}) {  // without shapes, the sole is a guess
-      const std::size_t link = urdf.find("<link name=\"leg_" + side + "_" + body + "_link\"");
-      ASSERT_NE(link, std::string::npos);
-      for (const char* shape : {"collision", "visual"}) {
-        for (;;) {
-          const std::size_t end = urdf.find("</link>", link);
-          const std::size_t at = urdf.find("<" + std::string(shape), link);
-          if (at > end) break;
-          const std::string close = "</" + std::string(shape) + ">";
-          urdf.erase(at, urdf.find(close, at) + close.size() - at);
-        }
+    urdf.replace(xyz, urdf.find('"', xyz + 1) - xyz, "0 0 -0.012");
+    // Without shapes, the sole is a guess.
+    const std::size_t link = urdf.find("<link name=\"leg_" + side + "_6_link\"");
+    ASSERT_NE(link, std::string::npos);
+    for (const std::string shape : {"collision", "visual"}) {
+      for (std::size_t at; (at = urdf.find("<" + shape, link)) < urdf.find("</link>", link);) {
+        const std::string close = "</" + shape + ">";
+        urdf.erase(at, urdf.find(close, at) + close.size() - at);
       }
     }
   }
