@@ -125,6 +125,20 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
                        FormatNumber(limits.upper) + "; they are exchanged");
     std::swap(limits.lower, limits.upper);
   }
+  // Of wheels and turntables that are not called continuous. Nobody counts so many turns.
+  constexpr double kEndless = 1e3;
+  const bool endless = limits.lower <= -kEndless && limits.upper >= kEndless;
+  if (endless && joint.type == "revolute") {
+    warnings.push_back("joint " + Quote(joint.name) + ": its limits are " +
+                       FormatNumber(limits.lower) + " and " + FormatNumber(limits.upper) +
+                       "; it is taken to turn without an end");
+    limits.lower = -kInfinity;
+    limits.upper = kInfinity;
+  } else if (limits.lower < -kEndless || limits.upper > kEndless) {
+    limit.Fail("limits of joint " + Quote(joint.name) + " are " + FormatNumber(limits.lower) +
+               " and " + FormatNumber(limits.upper) +
+               "; from -1000 to 1000 was expected (a joint without limits is continuous)");
+  }
   DropZeroLimits(joint, limits, warnings);
   return limits;
 }

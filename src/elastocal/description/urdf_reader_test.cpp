@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <regex>
 
 #include <gtest/gtest.h>
 
@@ -352,6 +353,20 @@ TEST(UrdfReader, ReadsTheLongestChain) {
   ExpectLinksError(chain(301), {"r.urdf:1: ", "found 301 movable joints; at most 300"});
 }
 
+TEST(UrdfReader, ARevoluteJointOfManyTurnsHasNoEnd) {
+  const std::string joint =
+      LinkXml("a") + LinkXml("b") +
+      "<joint name='wheel' type='TYPE'><parent link='a'/><child link='b'/>"
+      "<limit lower='-1000000' upper='1000000' velocity='1' effort='1'/></joint>";
+  const RobotTree tree = ParseLinks(std::regex_replace(joint, std::regex("TYPE"), "revolute"));
+  EXPECT_EQ(tree.joints[0].limits.lower, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(tree.joints[0].limits.upper, std::numeric_limits<double>::infinity());
+  ASSERT_EQ(tree.warnings.size(), 1u);
+  EXPECT_NE(tree.warnings[0].find("it is taken to turn without an end"), std::string::npos);
+  ExpectLinksError(std::regex_replace(joint, std::regex("TYPE"), "prismatic"),
+                   {"from -1000 to 1000"});
+}
+
 // Numbers, sizes and names that no robot has, which would overflow or take hours.
 TEST(UrdfReader, RefusesWhatNoRobotHas) {
   const std::string links = LinkXml("a") + "\n" + LinkXml("b") + "\n";
@@ -360,7 +375,7 @@ TEST(UrdfReader, RefusesWhatNoRobotHas) {
            limit + "/></joint>";
   };
   ExpectLinksError(joint("lower='-1e8' upper='1' velocity='1' effort='1'"),
-                   {"'lower'", "'-1e8'", "from -1000 to 1000", "continuous"});
+                   {"limits of joint 'j' are -1e+08 and 1", "from -1000 to 1000", "continuous"});
   ExpectLinksError(joint("lower='-1' upper='1' velocity='-1' effort='1'"), {"'velocity'", "'-1'"});
   ExpectLinksError(joint("lower='-1' upper='1' velocity='1' effort='-1'"), {"'effort'", "'-1'"});
   std::string attributes;

@@ -283,6 +283,39 @@ TEST(Draft, AFrameNearTheAnkleIsNoSole) {
   EXPECT_TRUE(draft.soles[0].guessed_height);
 }
 
+// As of Fourier's GR3: the shapes of one foot are on another link than those of the other.
+TEST(Draft, AFootWithoutShapesHasTheSoleOfItsMirrorImage) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  const std::size_t link = urdf.find("<link name=\"leg_right_6_link\"");
+  ASSERT_NE(link, std::string::npos);
+  for (const std::string shape : {"collision", "visual"}) {
+    for (std::size_t at; (at = urdf.find("<" + shape, link)) < urdf.find("</link>", link);) {
+      const std::string close = "</" + shape + ">";
+      urdf.erase(at, urdf.find(close, at) + close.size() - at);
+    }
+  }
+  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
+  ASSERT_EQ(draft.soles.size(), 2u);
+  EXPECT_FALSE(draft.soles[1].guessed_size);
+  EXPECT_FALSE(draft.soles[1].guessed_height);
+  EXPECT_TRUE(draft.stands) << draft.held_because;
+  EXPECT_EQ(draft.soles[1].lower.x(), draft.soles[0].lower.x());
+  EXPECT_EQ(draft.soles[1].lower.y(), -draft.soles[0].upper.y());
+  EXPECT_EQ(draft.soles[1].upper.y(), -draft.soles[0].lower.y());
+}
+
+// As of ergoCub, whose feet have frames of sensors in the floor, ahead and behind.
+TEST(Draft, OfLinksInTheFloorTheOneCalledSoleIsTheSole) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  const std::string foot =
+      "<link name='a_front'/><joint name='a_fixed' type='fixed'><parent "
+      "link='left_sole_link'/><child link='a_front'/><origin xyz='0.05 0 -0.001'/></joint>";
+  urdf.insert(urdf.rfind("</robot>"), foot);
+  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
+  ASSERT_EQ(draft.soles.size(), 2u);
+  EXPECT_EQ(draft.soles[0].link, "left_sole_link");
+}
+
 TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   for (const std::string side : {"left", "right"}) {

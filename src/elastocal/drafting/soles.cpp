@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/drafting/limb_names.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/motion/leg_chain.hpp"
 #include "elastocal/robot/legs.hpp"
@@ -25,7 +26,14 @@ struct FootPoints {
   double floor = std::numeric_limits<double>::infinity();
 };
 
-/// A link of the foot's body that lies flat at this height, or nothing.
+/// Whether a name says that the link is a sole.
+bool NamedSole(const std::string& name) {
+  const std::vector<std::string> words = WordsOf(name);
+  return std::find(words.begin(), words.end(), "sole") != words.end();
+}
+
+/// A link of the foot's body that lies flat at this height, or nothing: of those, one that is
+/// called so, else the lowest.
 std::optional<int> FlatLink(const RobotTree& tree, int body, const std::vector<Transform>& T_root,
                             double lowest, double highest) {
   constexpr double kFlat = 0.01;
@@ -35,7 +43,15 @@ std::optional<int> FlatLink(const RobotTree& tree, int body, const std::vector<T
     const double height = T_root[i].translation().z();
     const bool flat = (T_root[i].linear().col(2) - Eigen::Vector3d::UnitZ()).norm() < kFlat;
     if (!flat || height < lowest || height > highest) continue;
-    if (!best || height < T_root[Size(*best)].translation().z()) best = static_cast<int>(i);
+    if (best) {
+      const bool named = NamedSole(tree.links[i].name);
+      if (NamedSole(tree.links[Size(*best)].name) != named) {
+        if (!named) continue;
+      } else if (height >= T_root[Size(*best)].translation().z()) {
+        continue;
+      }
+    }
+    best = static_cast<int>(i);
   }
   return best;
 }
@@ -72,8 +88,16 @@ void MeasureSole(const FootPoints& foot, const Transform& T_root_sole, double th
   }
 }
 
+/// A sole that is known: its height in the root link's frame, and what of it touches the floor.
+struct KnownSole {
+  double height = 0.0;
+  Eigen::Vector2d lower, upper;
+};
+
+/// `other`: the sole of the leg's mirror image, where only that one's foot has a shape.
 DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& limb,
-                     const std::vector<Transform>& T_root_link) {
+                     const std::vector<Transform>& T_root_link,
+                     const std::optional<KnownSole>& other = {}) {
   constexpr double kThickness = 0.005, kSamePlane = 0.003;
   // Of the leg's length: frames nearer to the ankle are of rods and sensors (Unitree R1: 0.015),
   // soles are further below (Unitree G1: 0.06).
@@ -88,9 +112,13 @@ DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& 
     foot.floor = std::min(foot.floor, foot.root.back().z());
   }
   DraftedSole sole;
-  sole.guessed_size = shape.guessed;
+  sole.guessed_size = shape.guessed && !other;
   std::optional<int> link;
-  if (shape.guessed) {
+  if (other) {
+    foot.floor = other->height;
+    link = FlatLink(tree, limb.tip_body, T_root_link, foot.floor - kSamePlane,
+                    foot.floor + kSamePlane);
+  } else if (shape.guessed) {
     link = FlatLink(tree, limb.tip_body, T_root_link, ankle - length, ankle - kLeastFoot * length);
     sole.guessed_height = !link;
     foot.floor = link ? T_root_link[Size(*link)].translation().z() : ankle - kFootHeight * length;
@@ -111,7 +139,12 @@ DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& 
   }
   sole.lower = {-kHeel * length, -kHalfWidth * length};
   sole.upper = {kToe * length, kHalfWidth * length};
-  if (!shape.guessed) MeasureSole(foot, T_root_sole, kThickness, sole);
+  if (other) {
+    sole.lower = {other->lower.x(), -other->upper.y()};
+    sole.upper = {other->upper.x(), -other->lower.y()};
+  } else if (!shape.guessed) {
+    MeasureSole(foot, T_root_sole, kThickness, sole);
+  }
   return sole;
 }
 
@@ -141,14 +174,32 @@ DraftedSole FindBall(const RobotTree& tree, const BodyShape& shape, const Limb& 
 std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& shapes,
                                    const Limbs& limbs) {
   const auto T_root_link = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  const auto shape_of = [&](const Limb& limb) -> const BodyShape& {
+    return shapes.bodies[Size(limb.tip_body)];
+  };
   std::vector<DraftedSole> soles;
   for (std::size_t i = 0; i < limbs.limbs.size(); ++i) {
     const Limb& limb = limbs.limbs[i];
     if (!limb.leg) continue;
     const bool ball = ChainCoordinates(tree, 0, limb.tip_link).size() < LeastLegJoints(false);
-    soles.push_back(
-        (ball ? FindBall : FindSole)(tree, shapes.bodies[Size(limb.tip_body)], limb, T_root_link));
+    soles.push_back(ball ? FindBall(tree, shape_of(limb), limb, T_root_link)
+                         : FindSole(tree, shape_of(limb), limb, T_root_link));
     soles.back().limb = static_cast<int>(i);
+  }
+  // The foot of one leg may have a shape where that of its mirror image has none.
+  for (DraftedSole& sole : soles) {
+    const Limb& limb = limbs.limbs[Size(sole.limb)];
+    if (!sole.guessed_size || sole.ball_radius || limb.mirror < 0) continue;
+    for (const DraftedSole& other : soles) {
+      if (other.limb != limb.mirror || other.guessed_size || other.ball_radius) continue;
+      const Transform T_root_other =
+          other.added ? T_root_link[Size(other.parent_link)] * other.T_parent_sole
+                      : T_root_link[Size(FindLink(tree, other.link))];
+      const int own = sole.limb;
+      sole = FindSole(tree, shape_of(limb), limb, T_root_link,
+                      KnownSole{T_root_other.translation().z(), other.lower, other.upper});
+      sole.limb = own;
+    }
   }
   return soles;
 }

@@ -83,11 +83,13 @@ Refused LiftRefused(const StandingRobot& robot, int foot) {
   }
   if (refused.weak) {
     constexpr double kAbsurd = 3.0;
-    refused.why += fmt::format(" ({:.0f} % of its effort, {:.0f} may be used{})",
-                               100.0 * left_out.value, 100.0 * robot.limits.torque_share,
-                               left_out.value > kAbsurd
-                                   ? "; is the effort in the URDF that of a motor before its gear?"
-                                   : "");
+    refused.why +=
+        fmt::format(" ({:.0f} % of its effort, {:.0f} may be used{})", 100.0 * left_out.value,
+                    100.0 * robot.limits.torque_share,
+                    left_out.value > kAbsurd
+                        ? "; is the effort in the URDF that of a motor before its gear, or "
+                          "are inertias not in kg.m^2?"
+                        : "");
   }
   return refused;
 }

@@ -155,9 +155,10 @@ StandingRobot::StandingRobot(RobotTree robot, std::vector<Sole> feet, const Moti
     balls = balls || sole.ball_radius;
   }
   if (balls && soles.size() < 4) {
-    throw InputError("robot '" + tree.name + "' has " + std::to_string(soles.size()) +
-                     " feet, balls among them; expected four or more, of which three can stand "
-                     "while one is in the air");
+    throw InputError(
+        "robot '" + tree.name + "' has " + std::to_string(soles.size()) +
+        " feet, balls among them (a leg of fewer than five joints ends in one); expected "
+        "four or more, of which three can stand while one is in the air");
   }
   if (Held()) return;
   leg_length = legs[0].length();

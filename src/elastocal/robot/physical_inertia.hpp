@@ -16,8 +16,8 @@ namespace elastocal {
 Eigen::Matrix3d PhysicalInertia(const Eigen::Matrix3d& inertia);
 
 /// What is wrong with the masses and inertias of a URDF, a sentence for each link: an inertia that
-/// no body has, a mass without inertia, no mass at all on a body that a joint moves. Only the
-/// simulator needs inertias; statics need masses.
+/// no body has or only one that is wider than the robot, a mass without inertia, no mass at all on
+/// a body that a joint moves. Only the simulator needs inertias; statics need masses.
 std::vector<std::string> InertiaWarnings(const RobotTree& tree);
 
 }  // namespace elastocal

@@ -48,6 +48,9 @@ TEST(PhysicalInertia, WarningsNameTheLink) {
   ASSERT_EQ(InertiaWarnings(tree).size(), 1U);
   EXPECT_NE(InertiaWarnings(tree)[0].find(tree.links[static_cast<std::size_t>(link)].name),
             std::string::npos);
+  tree.links[static_cast<std::size_t>(link)].inertia = 5.0 * Eigen::Matrix3d::Identity();
+  ASSERT_EQ(InertiaWarnings(tree).size(), 1U);  // 1 kg in a robot of 2 m
+  EXPECT_NE(InertiaWarnings(tree)[0].find("wider than the robot"), std::string::npos);
 }
 
 }  // namespace
