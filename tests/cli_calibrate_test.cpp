@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/robot/kinematics.hpp"
 #include "tests/program_fixture.hpp"
 
 namespace elastocal {
@@ -123,6 +125,59 @@ TEST_F(Program, NonsenseIsNotDeployed) {
   for (const char* file : {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro"}) {
     EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(out_) / file)) << file;
   }
+}
+
+/// Writes a table of the arm of the fixture.
+std::string WriteTable(const ScratchFolder& scratch, const Project& project,
+                       const Recording& table) {
+  WritePostureTable(scratch.path() / "table.csv", table, project.tree);
+  return (scratch.path() / "table.csv").string();
+}
+
+// No gear is made so badly: the column has another unit or another gear.
+TEST_F(Program, AWrongGainInATableIsNamedAndCorrectedOnRequest) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  Recording table = MakeSyntheticRecording(model, truth_, {.postures = 40, .seed = 5});
+  table.q.col(project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate) *= 1.02;
+  const std::string file = WriteTable(scratch_, project, table);
+  const ProgramResult found = Calibrate(project_, file);
+  EXPECT_EQ(found.exit_code, 4) << found.out;
+  const std::string name = "--accept gain:elbow_joint=1.0";
+  EXPECT_NE(found.out.find("elbow_joint: its positions are 1.0"), std::string::npos) << found.out;
+  const std::size_t at = found.out.find(name);
+  ASSERT_NE(at, std::string::npos) << found.out;
+  const std::string accepted = found.out.substr(at, found.out.find(' ', at + 9) - at);
+  EXPECT_EQ(Calibrate(project_, file, accepted + kFewFolds).exit_code, 0) << accepted;
+}
+
+// In the fit, five postures err by a third of what they do where they are left out.
+TEST_F(Program, FewPosturesAreJudgedWhereTheyAreLeftOut) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const std::string file = WriteTable(
+      scratch_, project, MakeSyntheticRecording(model, truth_, {.postures = 6, .seed = 5}));
+  const ProgramResult result = Calibrate(project_, file, "");
+  const auto summary = nlohmann::json::parse(ReadFile(out_ + "/summary.json"));
+  EXPECT_EQ(summary["deployed"]["judged_on"], "held-out postures") << result.out << result.err;
+  EXPECT_NE(result.out.find("6-fold RMSE"), std::string::npos) << result.out;
+}
+
+TEST_F(Program, JointsThatStoodStillAreNamed) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const int turret = project.tree.joints[Size(FindJoint(project.tree, "turret_joint"))].coordinate;
+  Recording table = MakeSyntheticRecording(model, truth_, {.postures = 20, .seed = 5});
+  const Geometry geometry = ApplyErrors(model, truth_);
+  table.q.col(turret).setConstant(0.3);
+  for (int i = 0; i < table.posture_count(); ++i) {
+    table.markers.row(i) =
+        MarkerPositions(model, geometry, table.q.row(i).transpose()).reshaped().transpose();
+  }
+  const ProgramResult result = Calibrate(project_, WriteTable(scratch_, project, table));
+  EXPECT_NE(result.err.find("turret_joint stood still in all postures"), std::string::npos)
+      << result.err;
+  EXPECT_EQ(Calibrate(project_, recording_).err.find("stood still"), std::string::npos);
 }
 
 TEST_F(Program, AJointBeyondItsLimitsIsAWarning) {

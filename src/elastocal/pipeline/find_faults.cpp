@@ -11,6 +11,7 @@
 #include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/up_check.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/pipeline/stated_corrections.hpp"
 #include "elastocal/pipeline/up_by_loads.hpp"
@@ -32,6 +33,29 @@ constexpr double kContradicted = 10.0;
 /// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
 /// be as good in motion, which statics does not describe.
 constexpr double kBestExpected = 0.03;
+
+/// Joints whose gear or lead seems further off than any is made (FindRecordingFaults: 0.5 %): what
+/// was taken for a cause of the robot is a wrong gain in its log.
+std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result) {
+  constexpr double kLargestGear = 0.005, kCertain = 8.0;
+  std::vector<RecordingFault> faults;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[Size(i)];
+    if (parameter.correction < 0) continue;
+    const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
+    const double ratio = result.delta[i];
+    if (correction.shape != CorrectionShape::kGear || std::abs(ratio) < kLargestGear ||
+        std::abs(ratio) < kCertain * result.sd[i]) {
+      continue;
+    }
+    RecordingFault fault;
+    fault.coordinate = result.model.tree.joints[Size(correction.joint)].coordinate;
+    fault.size = 1.0 / (1.0 + ratio) - 1.0;
+    fault.sd = result.sd[i];
+    faults.push_back(fault);
+  }
+  return faults;
+}
 
 /// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
 /// for without the knocks, too.
@@ -156,6 +180,9 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     if (const auto up = FindUpByLoads(project, seed, as_recorded)) {
       faults.push_back(Describe(*up, recording));
     }
+  }
+  for (const RecordingFault& gear : FindImpossibleGears(comparison.largest())) {
+    faults.push_back(FaultAndRemedy(gear, project.tree, recording));
   }
   // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;
