@@ -28,6 +28,23 @@ std::string RefusedText(const CalibrationRun& run) {
   return text;
 }
 
+/// The held-out figures beside those of all sightings; empty where none was left out.
+std::string WithoutOutliersText(const CalibrationRun& run) {
+  const std::size_t left_out = run.comparison.largest().outliers.size();
+  if (run.held_out || run.cross_validation.folds == 0 || left_out == 0) return "";
+  const auto error = [&](ModelKind kind) {
+    const auto& metrics = run.cross_validation.metrics_without_outliers;
+    return Millimetres(metrics[static_cast<std::size_t>(kind)].rmse_3d, 3);
+  };
+  std::string text =
+      fmt::format("; without the {} sightings that the fit left out from {} to {} mm by the URDF",
+                  left_out, error(ModelKind::kUncalibrated), error(run.deployment.urdf_kind));
+  if (std::isfinite(run.deployment.compensated)) {
+    text += fmt::format(", {} mm by the largest model", error(run.comparison.largest_kind()));
+  }
+  return text;
+}
+
 /// One sentence for whoever reads no table.
 std::string VerdictText(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) {
@@ -52,7 +69,8 @@ std::string VerdictText(const CalibrationRun& run) {
   if (run.held_out) return text + ".\n";
   const bool folded = run.cross_validation.folds > 0;
   return text +
-         (folded ? ".\n  On held-out postures. Before deploying, validate on another recording.\n"
+         (folded ? ".\n  On held-out postures" + WithoutOutliersText(run) +
+                       ". Before deploying, validate on another recording.\n"
                  : ".\n  In the fit. Before deploying, cross-validate (--kfold 10) and validate "
                    "on another recording.\n");
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/robot/statics.hpp"
 #include "tests/biped.hpp"
 #include "tests/expect_input_error.hpp"
 
@@ -110,6 +111,24 @@ TEST(DrawTrueRobot, ScalesAndSwitchesOffWhatTheyName) {
   EXPECT_EQ(after.tree.links[0].com, before.tree.links[0].com);
   EXPECT_EQ(after.torque_bias, before.torque_bias);
   EXPECT_EQ(after.markers[3].p_link_marker, before.markers[3].p_link_marker);
+}
+
+// Of a robot of 4.9 tonnes (a KR 210 by its URDF), and of efforts of 50000 N.m (an ergoCub).
+TEST(DrawTrueRobot, SpringsAndFrictionFitTheRobotsWeight) {
+  const TrueRobot usual = Nominal();
+  const TrueRobot drawn = DrawTrueRobot(usual, Unscaled());
+  TrueRobot heavy = usual;
+  for (Link& link : heavy.tree.links) link.mass *= 1e3;
+  const TrueRobot stiff = DrawTrueRobot(heavy, Unscaled());
+  const Eigen::VectorXd torques = LargestGravityTorques(heavy.tree);
+  EXPECT_GT((torques.head(2).array() * drawn.compliance.head(2).array()).maxCoeff(), 0.02);
+  EXPECT_LT((torques.head(2).array() * stiff.compliance.head(2).array()).maxCoeff(), 0.011);
+  EXPECT_EQ(stiff.compliance[5], drawn.compliance[5]);  // of a leg, which carries the robot anyhow
+
+  TrueRobot strong = usual;
+  strong.tree.joints[0].limits.effort = 5e4;
+  EXPECT_LT(DrawTrueRobot(strong, Unscaled()).friction[0], 0.1 * Unscaled().friction_share * 5e4);
+  EXPECT_EQ(DrawTrueRobot(strong, Unscaled()).friction[1], drawn.friction[1]);
 }
 
 TEST(DrawTrueRobot, OneLinkIsHeavierAndOneMarkerCreeps) {
