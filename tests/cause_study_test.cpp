@@ -20,6 +20,7 @@
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/calibration_comparison.hpp"
 #include "tests/expect_input_error.hpp"
+#include "tests/talos_left_arm.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -29,16 +30,6 @@ using Kind = ParameterKind;
 
 constexpr std::uint64_t kFirstSeed = 1000;  // those below 200 served to develop the tests of causes
 constexpr double kMarkerNoise = 0.1e-3;     // m: of a posture, which is the mean of many frames
-
-constexpr const char* kProject = R"(
-robot: {urdf: models/talos/talos.urdf}
-chains: [{name: arm, tip: gripper_left_base_link}]
-markers:
-  single:
-    - {name: A, link: arm_left_7_link, position_mm: [60, 10, -70]}
-    - {name: B, link: arm_left_7_link, position_mm: [-50, 40, -60]}
-    - {name: C, link: arm_left_7_link, position_mm: [10, -60, -90]}
-)";
 
 struct Injected {
   const char* cause;
@@ -66,7 +57,7 @@ constexpr Injected kInjected[] = {
 /// by 10 % moves the hand by a hundredth of the noise beside what springs explain.
 constexpr double kSoftness = 10.0, kUsualMassSd = 0.05, kKnownMassSd = 0.01;
 
-Project ArmProject() { return ParseProject(kProject, SourceFile("project.yaml")); }
+Project ArmProject() { return ParseProject(kTalosLeftArm, SourceFile("project.yaml")); }
 
 /// Sixty postures in two hours of a robot with errors of geometry, springs, masses and `injected`
 /// (null: nothing else), and where they are to be found. `soft`: see kSoftness. Another `session`
@@ -292,7 +283,7 @@ TEST(Causes, ComparedWithASessionThatDoesNotKnowThem) {
 
 TEST(Causes, ProjectsSayWhichAreEstimated) {
   const auto extra = [](const std::string& value) {
-    return ParseProject(std::string(kProject) + "calibration: {extra: " + value + "}\n",
+    return ParseProject(std::string(kTalosLeftArm) + "calibration: {extra: " + value + "}\n",
                         SourceFile("project.yaml"))
         .calibration.extra;
   };

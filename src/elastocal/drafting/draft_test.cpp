@@ -28,6 +28,18 @@ double Length(const Project& project, int marker, int other) {
       .norm();
 }
 
+/// Takes what a link looks like out of a URDF.
+void RemoveShapes(const std::string& link, std::string& urdf) {
+  const std::size_t begin = urdf.find("<link name=\"" + link + "\"");
+  ASSERT_NE(begin, std::string::npos);
+  for (const std::string shape : {"collision", "visual"}) {
+    for (std::size_t at; (at = urdf.find("<" + shape, begin)) < urdf.find("</link>", begin);) {
+      const std::string close = "</" + shape + ">";
+      urdf.erase(at, urdf.find(close, at) + close.size() - at);
+    }
+  }
+}
+
 TEST(Draft, TalosHasTheLimbsOfItsHandWrittenProject) {
   const ScratchFolder folder;
   const Project drafted = ReadBack(DraftFile("models/talos/talos.urdf"), folder);
@@ -268,14 +280,7 @@ TEST(Draft, AFrameNearTheAnkleIsNoSole) {
     const std::size_t xyz = urdf.find("xyz=\"", joint) + 5;
     urdf.replace(xyz, urdf.find('"', xyz + 1) - xyz, "0 0 -0.012");
     // Without shapes, the sole is a guess.
-    const std::size_t link = urdf.find("<link name=\"leg_" + side + "_6_link\"");
-    ASSERT_NE(link, std::string::npos);
-    for (const std::string shape : {"collision", "visual"}) {
-      for (std::size_t at; (at = urdf.find("<" + shape, link)) < urdf.find("</link>", link);) {
-        const std::string close = "</" + shape + ">";
-        urdf.erase(at, urdf.find(close, at) + close.size() - at);
-      }
-    }
+    RemoveShapes("leg_" + side + "_6_link", urdf);
   }
   const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
   ASSERT_EQ(draft.soles.size(), 2u);
@@ -286,14 +291,7 @@ TEST(Draft, AFrameNearTheAnkleIsNoSole) {
 // As of Fourier's GR3: the shapes of one foot are on another link than those of the other.
 TEST(Draft, AFootWithoutShapesHasTheSoleOfItsMirrorImage) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
-  const std::size_t link = urdf.find("<link name=\"leg_right_6_link\"");
-  ASSERT_NE(link, std::string::npos);
-  for (const std::string shape : {"collision", "visual"}) {
-    for (std::size_t at; (at = urdf.find("<" + shape, link)) < urdf.find("</link>", link);) {
-      const std::string close = "</" + shape + ">";
-      urdf.erase(at, urdf.find(close, at) + close.size() - at);
-    }
-  }
+  RemoveShapes("leg_right_6_link", urdf);
   const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
   ASSERT_EQ(draft.soles.size(), 2u);
   EXPECT_FALSE(draft.soles[1].guessed_size);

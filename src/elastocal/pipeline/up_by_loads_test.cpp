@@ -6,20 +6,11 @@
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/statics.hpp"
+#include "tests/talos_left_arm.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
-
-constexpr const char* kArm = R"(
-robot: {urdf: models/talos/talos.urdf}
-chains: [{name: arm, tip: gripper_left_base_link}]
-markers:
-  single:
-    - {name: A, link: arm_left_7_link, position_mm: [60, 10, -70]}
-    - {name: B, link: arm_left_7_link, position_mm: [-50, 40, -60]}
-    - {name: C, link: arm_left_7_link, position_mm: [10, -60, -90]}
-)";
 
 /// Thirty postures of the arm with errors of its zeros, which is upright in a frame whose axis `up`
 /// points up, and whose joints give way by `compliance` [rad/(N.m)].
@@ -60,7 +51,7 @@ class UpByLoadsTest : public testing::Test {
     return found ? found->axis : "";
   }
 
-  const Project project_ = ParseProject(kArm, SourceFile("project.yaml"));
+  const Project project_ = ParseProject(kTalosLeftArm, SourceFile("project.yaml"));
 };
 
 TEST_F(UpByLoadsTest, AWrongAxisIsTold) {
