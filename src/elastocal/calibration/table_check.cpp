@@ -23,6 +23,7 @@ constexpr std::size_t kLeastFrozenRows = 3;
 constexpr double kSamePosition = 2e-5;       // rad or m
 constexpr double kOtherDistance = 0.01;      // m: of two markers that are exchanged
 constexpr double kRightDistance = 0.3;       // of the difference is left at most
+constexpr double kLeastExchanged = 0.1;      // of the postures: fewer are outliers
 constexpr Eigen::Index kLeastSightings = 3;  // for the place of the root link
 
 /// Tries mistakes on a table.
@@ -256,7 +257,7 @@ class TableSearch {
     return usual;
   }
 
-  /// Exchanges within a cluster in less than half of the postures.
+  /// Exchanges within a cluster in a tenth to half of the postures.
   void TryWithin(const LabelCluster& cluster, std::vector<LabelSuspicion>& found) {
     const Eigen::MatrixXd usual = UsualDistances(cluster.markers);
     for (Eigen::Index a = 0; a < usual.rows(); ++a) {
@@ -274,7 +275,9 @@ class TableSearch {
           before += wrong * wrong;
           after += undone * undone;
         }
-        if (suspicion.postures.empty() || 2 * suspicion.postures.size() > all_.size()) continue;
+        const auto share =
+            static_cast<double>(suspicion.postures.size()) / static_cast<double>(all_.size());
+        if (share < kLeastExchanged || share > 0.5) continue;
         suspicion.before = std::sqrt(before / static_cast<double>(all_.size()));
         suspicion.after = std::sqrt(after / static_cast<double>(all_.size()));
         found.push_back(std::move(suspicion));

@@ -23,7 +23,7 @@ struct TableSuspicions {
 /// - a joint that stays where it was for three postures or more, while others move, which are far
 ///   off with the root link where the other postures have it, is frozen;
 /// - two markers of a cluster whose distances to the others of the cluster are each other's usual
-///   ones in some postures are exchanged there.
+///   ones in a tenth to half of the postures are exchanged there (fewer are outliers).
 /// A suspicion is no proof: whether the recording fits once it is undone, a fit has to say.
 /// `clusters` refer to the markers of the recording. Empty for a recording of trials.
 TableSuspicions FindTableSuspicions(const ErrorModel& model, const Recording& recording,

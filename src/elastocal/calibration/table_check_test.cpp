@@ -134,6 +134,7 @@ TEST_F(TableCheckTest, LabelsExchangedInSomePosturesAreTold) {
                                         table_.marker_names[Size(b)] +
                                         " are exchanged in 7 postures");
   EXPECT_TRUE(WithoutExchange(changed, Find(changed).labels.front()).markers == table_.markers);
+  EXPECT_EQ(FirstOfLabels(Exchanged(a, b, 2)), "");  // two of thirty are outliers
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ void EmitWaist(const Transform& T_ref_waist, const Eigen::Vector3d& gravity, YAM
   yaml << YAML::Key << "rpy_rad" << YAML::Value;
   EmitNumbers(ToRpy(T_ref_waist.linear(), Eigen::Vector3d::Zero()), yaml);
   yaml << YAML::Key << "up" << YAML::Value;
-  EmitNumbers(-gravity.normalized(), yaml);
+  EmitNumbers(Eigen::Vector3d::Zero() - gravity.normalized(), yaml);  // no -0
   yaml << YAML::EndMap
        << YAML::Comment("in the frame of the recording; waist.T0 deviates from there");
 }

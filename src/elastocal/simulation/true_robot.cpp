@@ -115,8 +115,9 @@ class Drawing {
       const double most = IsLeg(k) ? options_.leg_stiffness_most : options_.upper_stiffness_most;
       const double scale =
           IsLeg(k) ? options_.leg_elasticity_scale : options_.upper_elasticity_scale;
-      robot_.compliance[Index(k)] = scale / (least * std::pow(most / least, share));
-      if (!IsLeg(k)) KeepStiffEnough(torques[Index(k)], robot_.compliance[Index(k)]);
+      double compliance = 1.0 / (least * std::pow(most / least, share));
+      if (!IsLeg(k)) KeepStiffEnough(torques[Index(k)], compliance);
+      robot_.compliance[Index(k)] = scale * compliance;
     }
   }
 
