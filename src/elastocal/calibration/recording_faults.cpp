@@ -14,7 +14,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
-constexpr double kLeastExplained = 0.03;
+constexpr double kLeastExplained = 0.08;
 constexpr double kLeastSds = 8.0;
 constexpr int kSplits = 12;  // of the recording, after which an offset of a joint may begin
 

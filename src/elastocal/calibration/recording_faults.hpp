@@ -34,7 +34,7 @@ struct RecordingFault {
 /// of the cameras in one of several trials (a scale of all of them looks like a robot all of whose
 /// lengths are off). Only faults that no good robot has are returned, the one that explains most
 /// first: of a size that matters (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain
-/// (eight standard deviations) and a part of what is left (3 %).
+/// (eight standard deviations) and a part of what is left (8 %; of a clean ergoCub, 4 %).
 std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
                                                 const Recording& recording,
                                                 const CalibrationOptions& options);
