@@ -302,6 +302,22 @@ TEST(Draft, AFootWithoutShapesHasTheSoleOfItsMirrorImage) {
   EXPECT_EQ(draft.soles[1].upper.y(), -draft.soles[0].lower.y());
 }
 
+// As of EngineAI's PM01: a small ball marks the middle of each foot, whose mesh is absent.
+TEST(Draft, AMarkOnTheFootIsNotItsSole) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  for (const std::string link : {"leg_left_6_link", "leg_right_6_link"}) {
+    RemoveShapes(link, urdf);
+    urdf.insert(urdf.find("</link>", urdf.find("<link name=\"" + link + "\"")),
+                "<collision><origin xyz='0.02 0 -0.08'/><geometry><sphere "
+                "radius='0.02'/></geometry></collision>");
+  }
+  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
+  ASSERT_EQ(draft.soles.size(), 2u);
+  EXPECT_TRUE(draft.soles[0].guessed_size);
+  EXPECT_EQ(draft.soles[0].link, "left_sole_link");
+  EXPECT_GT(draft.soles[0].upper.x() - draft.soles[0].lower.x(), 0.15);
+}
+
 // As of ergoCub, whose feet have frames of sensors in the floor, ahead and behind.
 TEST(Draft, OfLinksInTheFloorTheOneCalledSoleIsTheSole) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));

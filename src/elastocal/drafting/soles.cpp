@@ -75,6 +75,21 @@ std::string NewLinkName(const RobotTree& tree, const std::string& wanted) {
   return name;
 }
 
+/// Whether what touches the floor is large enough for a foot of a leg of this length: at least a
+/// quarter of the usual size. A mark at the foot's middle is none (EngineAI PM01: a ball of 20 mm).
+bool IsFoot(const FootPoints& foot, double thickness, double length) {
+  constexpr double kLeastShare = 0.25;
+  Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d most = -least;
+  for (const Eigen::Vector3d& p : foot.root) {
+    if (p.z() > foot.floor + thickness) continue;
+    least = least.cwiseMin(p.head<2>());
+    most = most.cwiseMax(p.head<2>());
+  }
+  const Eigen::Vector2d usual(kHeel + kToe, 2.0 * kHalfWidth);
+  return ((most - least).array() > kLeastShare * length * usual.array()).all();
+}
+
 /// The rectangle that touches the floor, seen from the sole's frame.
 void MeasureSole(const FootPoints& foot, const Transform& T_root_sole, double thickness,
                  DraftedSole& sole) {
@@ -111,14 +126,15 @@ DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& 
     foot.root.push_back(T_root_body * p);
     foot.floor = std::min(foot.floor, foot.root.back().z());
   }
+  const bool guessed = shape.guessed || !IsFoot(foot, kThickness, length);
   DraftedSole sole;
-  sole.guessed_size = shape.guessed && !other;
+  sole.guessed_size = guessed && !other;
   std::optional<int> link;
   if (other) {
     foot.floor = other->height;
     link = FlatLink(tree, limb.tip_body, T_root_link, foot.floor - kSamePlane,
                     foot.floor + kSamePlane);
-  } else if (shape.guessed) {
+  } else if (guessed) {
     link = FlatLink(tree, limb.tip_body, T_root_link, ankle - length, ankle - kLeastFoot * length);
     sole.guessed_height = !link;
     foot.floor = link ? T_root_link[Size(*link)].translation().z() : ankle - kFootHeight * length;
@@ -142,7 +158,7 @@ DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& 
   if (other) {
     sole.lower = {other->lower.x(), -other->upper.y()};
     sole.upper = {other->upper.x(), -other->lower.y()};
-  } else if (!shape.guessed) {
+  } else if (!guessed) {
     MeasureSole(foot, T_root_sole, kThickness, sole);
   }
   return sole;
