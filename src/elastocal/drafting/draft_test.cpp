@@ -28,6 +28,13 @@ double Length(const Project& project, int marker, int other) {
       .norm();
 }
 
+/// The soles of the legs, without the rest of a draft.
+std::vector<DraftedSole> SolesOf(const std::string& urdf) {
+  const RobotTree tree = ParseUrdf(urdf, "robot.urdf");
+  const RobotShapes shapes = ReadBodyShapes(tree, urdf, "robot.urdf", {});
+  return FindSoles(tree, shapes, FindLimbs(tree, shapes, {}));
+}
+
 /// Takes what a link looks like out of a URDF.
 void RemoveShapes(const std::string& link, std::string& urdf) {
   const std::size_t begin = urdf.find("<link name=\"" + link + "\"");
@@ -282,24 +289,23 @@ TEST(Draft, AFrameNearTheAnkleIsNoSole) {
     // Without shapes, the sole is a guess.
     RemoveShapes("leg_" + side + "_6_link", urdf);
   }
-  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
-  ASSERT_EQ(draft.soles.size(), 2u);
-  EXPECT_TRUE(draft.soles[0].added);
-  EXPECT_TRUE(draft.soles[0].guessed_height);
+  const std::vector<DraftedSole> soles = SolesOf(urdf);
+  ASSERT_EQ(soles.size(), 2u);
+  EXPECT_TRUE(soles[0].added);
+  EXPECT_TRUE(soles[0].guessed_height);
 }
 
 // As of Fourier's GR3: the shapes of one foot are on another link than those of the other.
 TEST(Draft, AFootWithoutShapesHasTheSoleOfItsMirrorImage) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   RemoveShapes("leg_right_6_link", urdf);
-  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
-  ASSERT_EQ(draft.soles.size(), 2u);
-  EXPECT_FALSE(draft.soles[1].guessed_size);
-  EXPECT_FALSE(draft.soles[1].guessed_height);
-  EXPECT_TRUE(draft.stands) << draft.held_because;
-  EXPECT_EQ(draft.soles[1].lower.x(), draft.soles[0].lower.x());
-  EXPECT_EQ(draft.soles[1].lower.y(), -draft.soles[0].upper.y());
-  EXPECT_EQ(draft.soles[1].upper.y(), -draft.soles[0].lower.y());
+  const std::vector<DraftedSole> soles = SolesOf(urdf);
+  ASSERT_EQ(soles.size(), 2u);
+  EXPECT_FALSE(soles[1].guessed_size);
+  EXPECT_FALSE(soles[1].guessed_height);
+  EXPECT_EQ(soles[1].lower.x(), soles[0].lower.x());
+  EXPECT_EQ(soles[1].lower.y(), -soles[0].upper.y());
+  EXPECT_EQ(soles[1].upper.y(), -soles[0].lower.y());
 }
 
 // As of EngineAI's PM01: a small ball marks the middle of each foot, whose mesh is absent.
@@ -311,11 +317,11 @@ TEST(Draft, AMarkOnTheFootIsNotItsSole) {
                 "<collision><origin xyz='0.02 0 -0.08'/><geometry><sphere "
                 "radius='0.02'/></geometry></collision>");
   }
-  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
-  ASSERT_EQ(draft.soles.size(), 2u);
-  EXPECT_TRUE(draft.soles[0].guessed_size);
-  EXPECT_EQ(draft.soles[0].link, "left_sole_link");
-  EXPECT_GT(draft.soles[0].upper.x() - draft.soles[0].lower.x(), 0.15);
+  const std::vector<DraftedSole> soles = SolesOf(urdf);
+  ASSERT_EQ(soles.size(), 2u);
+  EXPECT_TRUE(soles[0].guessed_size);
+  EXPECT_EQ(soles[0].link, "left_sole_link");
+  EXPECT_GT(soles[0].upper.x() - soles[0].lower.x(), 0.15);
 }
 
 // As of ergoCub, whose feet have frames of sensors in the floor, ahead and behind.
@@ -325,9 +331,9 @@ TEST(Draft, OfLinksInTheFloorTheOneCalledSoleIsTheSole) {
       "<link name='a_front'/><joint name='a_fixed' type='fixed'><parent "
       "link='left_sole_link'/><child link='a_front'/><origin xyz='0.05 0 -0.001'/></joint>";
   urdf.insert(urdf.rfind("</robot>"), foot);
-  const ProjectDraft draft = DraftProject(urdf, "talos.urdf", {});
-  ASSERT_EQ(draft.soles.size(), 2u);
-  EXPECT_EQ(draft.soles[0].link, "left_sole_link");
+  const std::vector<DraftedSole> soles = SolesOf(urdf);
+  ASSERT_EQ(soles.size(), 2u);
+  EXPECT_EQ(soles[0].link, "left_sole_link");
 }
 
 TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
