@@ -288,7 +288,7 @@ inline std::string JointStateCdr(const JointLog& log, int sample) {
 
 /// The body whose first point is marker 4 `body`.
 inline std::string BodyOf(const MarkerTrajectories& markers, int body) {
-  const std::string& name = markers.names[static_cast<std::size_t>(4 * body)];
+  const std::string& name = markers.names[4 * static_cast<std::size_t>(body)];
   return name.substr(0, name.size() - 2);  // without "_1"
 }
 
@@ -348,7 +348,7 @@ inline std::string McapBytes(const JointLog& log, const MarkerTrajectories* bodi
     const int topics = as_transforms ? 1 : bodies->marker_count() / 4;
     for (int i = 0; i < topics; ++i) {
       Bytes channel;
-      channel.U(static_cast<std::uint64_t>(1 + i), 2).U(2, 2);
+      channel.U(1 + static_cast<std::uint64_t>(i), 2).U(2, 2);
       channel.Text(as_transforms ? "/tf" : "/mocap/" + BodyOf(*bodies, i) + "/pose");
       add(4, channel.Text("cdr").U(0, 4));
     }

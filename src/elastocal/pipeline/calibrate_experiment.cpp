@@ -140,10 +140,9 @@ CalibrationRun CalibrateExperiment(const Project& given,
     run.elasticity = ChooseElasticity(measured.calibration, options.seed, kElasticityFolds,
                                       options.threads, project);
     if (measured.calibration.trials.empty() && !HasMasses(project.tree)) {
-      run.warnings.push_back(
-          "the robot description has no masses: whether joints give way under their loads cannot "
-          "be "
-          "told");
+      run.warnings.emplace_back(
+          "the robot description has no masses: it is not known whether joints give way under "
+          "loads");
     }
 
     // Not in the paper: what neither geometry nor springs explain, where the data ask for it.

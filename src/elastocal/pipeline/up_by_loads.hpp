@@ -22,7 +22,7 @@ struct UpByLoads {
 /// say. Found is an axis with which the error of a fit falls to less than 0.6 of that with the
 /// stated one. A rigid robot shows nothing: nothing depends on gravity then. `as_recorded`: before
 /// markers were split at knocks.
-std::optional<UpByLoads> FindUpByLoads(const Project& project, std::optional<std::uint64_t> seed,
+std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
                                        const Measurements& as_recorded);
 
 /// "up: with y up, elastic joints explain the recording to 0.35 mm, with z up only to 1.3 mm ..."

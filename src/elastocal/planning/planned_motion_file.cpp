@@ -2,6 +2,7 @@
 #include "elastocal/planning/planned_motion_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <sstream>
@@ -129,8 +130,7 @@ std::string FormatJointTrajectory(const RobotTree& tree, const JointMotion& moti
     AppendList(out, motion.q.row(i), "{:.9g}");
     fmt::format_to(put, "\n    velocities: ");
     AppendList(out, speed, "{:.6g}");
-    const auto nanoseconds =
-        static_cast<long long>((motion.time_s[i] - motion.time_s[0]) * 1e9 + 0.5);
+    const long long nanoseconds = std::llround((motion.time_s[i] - motion.time_s[0]) * 1e9);
     fmt::format_to(put, "\n    time_from_start: {{secs: {}, nsecs: {}}}\n",
                    nanoseconds / 1000000000, nanoseconds % 1000000000);
   }

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/project/project_sections.hpp"
 #include "elastocal/robot/moving_chain.hpp"
 #include "elastocal/robot/statics.hpp"
