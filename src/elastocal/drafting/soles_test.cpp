@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/drafting/soles.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/description/urdf_reader.hpp"
+#include "elastocal/drafting/body_shapes.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+/// The soles of the legs, without the rest of a draft.
+std::vector<DraftedSole> SolesOf(const std::string& urdf) {
+  const RobotTree tree = ParseUrdf(urdf, "robot.urdf");
+  const RobotShapes shapes = ReadBodyShapes(tree, urdf, "robot.urdf", {});
+  return FindSoles(tree, shapes, FindLimbs(tree, shapes, {}));
+}
+
+/// Takes what a link looks like out of a URDF.
+void RemoveShapes(const std::string& link, std::string& urdf) {
+  const std::size_t begin = urdf.find("<link name=\"" + link + "\"");
+  ASSERT_NE(begin, std::string::npos);
+  for (const std::string shape : {"collision", "visual"}) {
+    for (std::size_t at; (at = urdf.find("<" + shape, begin)) < urdf.find("</link>", begin);) {
+      const std::string close = "</" + shape + ">";
+      urdf.erase(at, urdf.find(close, at) + close.size() - at);
+    }
+  }
+}
+
+// As of the Unitree R1, whose ankles carry frames of rods.
+TEST(Soles, AFrameNearTheAnkleIsNoSole) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  for (const std::string side : {"left", "right"}) {
+    const std::size_t joint =
+        urdf.find("<joint name=\"leg_" + side + R"(_sole_fix_joint" type="fixed">)");
+    ASSERT_NE(joint, std::string::npos);
+    const std::size_t xyz = urdf.find("xyz=\"", joint) + 5;
+    urdf.replace(xyz, urdf.find('"', xyz + 1) - xyz, "0 0 -0.012");
+    // Without shapes, the sole is a guess.
+    RemoveShapes("leg_" + side + "_6_link", urdf);
+  }
+  const std::vector<DraftedSole> soles = SolesOf(urdf);
+  ASSERT_EQ(soles.size(), 2u);
+  EXPECT_TRUE(soles[0].added);
+  EXPECT_TRUE(soles[0].guessed_height);
+}
+
+// As of Fourier's GR3: the shapes of one foot are on another link than those of the other.
+TEST(Soles, AFootWithoutShapesHasTheSoleOfItsMirrorImage) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  RemoveShapes("leg_right_6_link", urdf);
+  const std::vector<DraftedSole> soles = SolesOf(urdf);
+  ASSERT_EQ(soles.size(), 2u);
+  EXPECT_FALSE(soles[1].guessed_size);
+  EXPECT_FALSE(soles[1].guessed_height);
+  EXPECT_EQ(soles[1].lower.x(), soles[0].lower.x());
+  EXPECT_EQ(soles[1].lower.y(), -soles[0].upper.y());
+  EXPECT_EQ(soles[1].upper.y(), -soles[0].lower.y());
+}
+
+// As of EngineAI's PM01: a small ball marks the middle of each foot, whose mesh is absent.
+TEST(Soles, AMarkOnTheFootIsNotItsSole) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  for (const std::string link : {"leg_left_6_link", "leg_right_6_link"}) {
+    RemoveShapes(link, urdf);
+    urdf.insert(urdf.find("</link>", urdf.find("<link name=\"" + link + "\"")),
+                "<collision><origin xyz='0.02 0 -0.08'/><geometry><sphere "
+                "radius='0.02'/></geometry></collision>");
+  }
+  const std::vector<DraftedSole> soles = SolesOf(urdf);
+  ASSERT_EQ(soles.size(), 2u);
+  EXPECT_TRUE(soles[0].guessed_size);
+  EXPECT_EQ(soles[0].link, "left_sole_link");
+  EXPECT_GT(soles[0].upper.x() - soles[0].lower.x(), 0.15);
+}
+
+// As of ergoCub, whose feet have frames of sensors in the floor, ahead and behind.
+TEST(Soles, OfLinksInTheFloorTheOneCalledSoleIsTheSole) {
+  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
+  const std::string foot =
+      "<link name='a_front'/><joint name='a_fixed' type='fixed'><parent "
+      "link='left_sole_link'/><child link='a_front'/><origin xyz='0.05 0 -0.001'/></joint>";
+  urdf.insert(urdf.rfind("</robot>"), foot);
+  const std::vector<DraftedSole> soles = SolesOf(urdf);
+  ASSERT_EQ(soles.size(), 2u);
+  EXPECT_EQ(soles[0].link, "left_sole_link");
+}
+
+}  // namespace
+}  // namespace elastocal
