@@ -163,6 +163,21 @@ TEST_F(Program, FewPosturesAreJudgedWhereTheyAreLeftOut) {
   EXPECT_NE(result.out.find("6-fold RMSE"), std::string::npos) << result.out;
 }
 
+// Just as many equations as the arm needs: without some of the postures they are too few.
+TEST_F(Program, FoldsThatNobodyAskedForAreLeftOutWhereTheyAreTooSmall) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const int unknowns =
+      static_cast<int>(FindBaseParameters(model, project.identifiability).kept.size());
+  const int postures = unknowns / (3 * model.marker_count()) + 1;
+  const std::string file = WriteTable(
+      scratch_, project, MakeSyntheticRecording(model, truth_, {.postures = postures, .seed = 5}));
+  const ProgramResult usual = Calibrate(project_, file, "");
+  EXPECT_NE(usual.exit_code, 3) << usual.err;
+  EXPECT_NE(usual.err.find("not cross-validated: "), std::string::npos) << usual.err;
+  EXPECT_EQ(Calibrate(project_, file, "--kfold 2").exit_code, 3);
+}
+
 TEST_F(Program, JointsThatStoodStillAreNamed) {
   const Project project = ReadProject(project_);
   const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);

@@ -223,8 +223,9 @@ Recording WithoutExchange(const Recording& recording, const LabelSuspicion& susp
 std::string DescribeSuspicion(const LabelSuspicion& suspicion, const Recording& recording) {
   const std::string text =
       "the labels of " + suspicion.a + " and " + suspicion.b + " are exchanged";
-  if (!recording.trials.empty())
+  if (!recording.trials.empty()) {
     return text + " in trial " + recording.trials[suspicion.trial].name;
+  }
   if (suspicion.postures.empty()) return text;
   return text + " in " + std::to_string(suspicion.postures.size()) + " postures";
 }

@@ -247,9 +247,8 @@ class TableSearch {
       for (Eigen::Index b = 0; b < a; ++b) {
         std::vector<double> seen;
         for (const int i : all_) {
-          if (!Seen(recording_, i, markers[Size(a)]) || !Seen(recording_, i, markers[Size(b)]))
-            continue;
-          seen.push_back(Distance(i, markers[Size(a)], markers[Size(b)]));
+          const int m = markers[Size(a)], n = markers[Size(b)];
+          if (Seen(recording_, i, m) && Seen(recording_, i, n)) seen.push_back(Distance(i, m, n));
         }
         if (!seen.empty()) usual(a, b) = usual(b, a) = MedianOf(seen);
       }

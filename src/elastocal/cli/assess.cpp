@@ -56,8 +56,9 @@ std::string AssessedText(const ChainAssessment& chain, const RobotTree& tree, in
       text += fmt::format("  posture {} {}\n", i + 1, a.violations[i].Describe());
     }
   }
-  if (broken > 3)
+  if (broken > 3) {
     text += fmt::format("  and {} more postures break limits or cannot be reached\n", broken - 3);
+  }
   if (a.indices.o1 == 0.0) {
     text += "  these postures do not determine all parameters (O1 = 0)\n";
   } else {

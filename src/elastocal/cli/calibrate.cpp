@@ -92,8 +92,8 @@ void AddCalibrate(CLI::App& app, Action& action) {
   command
       ->add_option(
           "--kfold", options->folds,
-          "Cross-validate with this many folds; 0: not (default: 10 for a table of postures, "
-          "0 for trials)")
+          "Cross-validate with this many folds; 0: not (default: 10 for a table of postures, one "
+          "each for fewer, 0 for trials)")
       ->check(CLI::Range(0, 100000));
   command
       ->add_option("--fold-by", options->fold_by,

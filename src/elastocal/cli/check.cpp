@@ -77,9 +77,8 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
   if (!run.check.changed() && !run.plausible()) {
     return fmt::format(
         "Not explained: the calibrated robot errs by {} mm here, where one that was never "
-        "calibrated "
-        "should err by some {:.2g} mm, and no joint that has moved explains it. Do recording, "
-        "project and calibration belong together?\n",
+        "calibrated should err by some {:.2g} mm, and no joint that has moved explains it. Do "
+        "recording, project and calibration belong together?\n",
         Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3), 1e3 * run.expected_error);
   }
   if (!run.check.changed()) {

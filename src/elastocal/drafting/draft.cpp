@@ -238,8 +238,8 @@ void WarnOfGuesses(ProjectDraft& draft) {
   if (draft.stands && draft.motion_effort_share != MotionSetup{}.motion_effort_share) {
     draft.warnings.push_back(
         fmt::format("planned motions use up to {:.0f} % of the motors' efforts, because with "
-                    "{:.0f} % the robot "
-                    "could not lift a foot: its own masses must be those of the URDF",
+                    "{:.0f} % the robot could not lift a foot: its own masses must be those of the "
+                    "URDF",
                     100.0 * draft.motion_effort_share, 100.0 * MotionSetup{}.motion_effort_share));
   }
   if (!draft.held_because.empty()) {

@@ -11,6 +11,7 @@
 
 #include "elastocal/calibration/gauge.hpp"
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
@@ -187,13 +188,18 @@ CalibrationRun CalibrateExperiment(const Project& given,
   if (folds > 0) {
     ExperimentData data{project, as_recorded.calibration, options.seed, {}};
     if (!run.elasticity.empty()) data.open_elasticity = given.elasticity;
-    run.cross_validation = CrossValidateExperiment(data, robot, run.comparison,
-                                                   {.folds = folds,
-                                                    .unit = options.fold_unit,
-                                                    .seed = options.seed.value_or(1),
-                                                    .threads = options.threads},
-                                                   OfStep(options.progress, "cross-validation"));
-    run.decided_once = DecidedOnce(data, run.causes.has_value() && !run.extra.empty());
+    try {
+      run.cross_validation = CrossValidateExperiment(data, robot, run.comparison,
+                                                     {.folds = folds,
+                                                      .unit = options.fold_unit,
+                                                      .seed = options.seed.value_or(1),
+                                                      .threads = options.threads},
+                                                     OfStep(options.progress, "cross-validation"));
+      run.decided_once = DecidedOnce(data, run.causes.has_value() && !run.extra.empty());
+    } catch (const InputError& error) {  // a fold has fewer equations than unknowns
+      if (options.folds) throw;
+      run.warnings.push_back(std::string("not cross-validated: ") + error.what());
+    }
   }
   if (measured.validation.posture_count() > 0) {
     run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);

@@ -176,15 +176,12 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     const auto scale = FindWrongScale(comparison.largest(), project.calibration);
     if (scale) faults.push_back(Describe(*scale));
   }
-  if (faults.empty()) {
-    if (const auto up = FindUpByLoads(project, seed, as_recorded)) {
-      faults.push_back(Describe(*up, recording));
-    }
-  }
+  // What a mistake leaves would look like other faults.
+  if (!faults.empty()) return faults;
+  if (const auto up = FindUpByLoads(project, seed, as_recorded)) return {Describe(*up, recording)};
   for (const RecordingFault& gear : FindImpossibleGears(comparison.largest())) {
     faults.push_back(FaultAndRemedy(gear, project.tree, recording));
   }
-  // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;
   return FindGeneralFault(project, seed, as_recorded, robot, recording, comparison.largest());
 }

@@ -38,6 +38,16 @@ Recording Thinned(const Recording& recording) {
   return SelectPostures(recording, kept);
 }
 
+/// rms distance of the markers from the robot that is calibrated from a recording, m.
+double ErrorOfFit(const RecordedModel& robot, const Recording& recording,
+                  const CalibrationOptions& options) {
+  const CalibrationResult result =
+      Calibrate(robot.model, recording, robot.base, ModelKinds(robot.model).back(), options);
+  const Eigen::MatrixXd distances =
+      Predict(result.model, result.delta, recording, options).distances;
+  return ComputeMetrics(distances, SeenMask(recording)).rmse_3d;
+}
+
 }  // namespace
 
 std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
@@ -50,24 +60,21 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
   measured.calibration = Thinned(as_recorded.calibration);
   const RecordedModel robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
   Recording& recording = measured.calibration;
-  const auto error_of = [&] {
-    const CalibrationResult result = Calibrate(robot.model, recording, robot.base,
-                                               ModelKinds(robot.model).back(), project.calibration);
-    const Eigen::MatrixXd distances =
-        Predict(result.model, result.delta, recording, project.calibration).distances;
-    return ComputeMetrics(distances, SeenMask(recording)).rmse_3d;
-  };
   const Eigen::Vector3d stated = recording.gravity;
-  UpByLoads found{
-      .axis = {}, .stated = error_of(), .found = std::numeric_limits<double>::infinity()};
-  for (const char* axis : {"x", "-x", "y", "-y", "z", "-z"}) {
-    recording.gravity = GravityBelow(axis);
-    if (recording.gravity.normalized().dot(stated.normalized()) > 0.9) continue;
-    const double error = error_of();
-    if (error < found.found) {
-      found.axis = axis;
-      found.found = error;
+  UpByLoads found{.axis = {}, .stated = 0.0, .found = std::numeric_limits<double>::infinity()};
+  try {
+    found.stated = ErrorOfFit(robot, recording, project.calibration);
+    for (const char* axis : {"x", "-x", "y", "-y", "z", "-z"}) {
+      recording.gravity = GravityBelow(axis);
+      if (recording.gravity.normalized().dot(stated.normalized()) > 0.9) continue;
+      const double error = ErrorOfFit(robot, recording, project.calibration);
+      if (error < found.found) {
+        found.axis = axis;
+        found.found = error;
+      }
     }
+  } catch (const InputError&) {  // fewer equations than a robot with springs has unknowns
+    return std::nullopt;
   }
   if (!(found.found < kLeftOfStated * found.stated)) return std::nullopt;
   return found;
@@ -76,8 +83,7 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
 std::string Describe(const UpByLoads& found, const Recording& recording) {
   return fmt::format(
       "gravity: with {} up, joints that give way explain the recording to {:.3g} mm, as stated "
-      "only "
-      "to {:.3g} mm; is {} the axis of the markers' frame that points up? ({})",
+      "only to {:.3g} mm; is {} the axis of the markers' frame that points up? ({})",
       found.axis, 1e3 * found.found, 1e3 * found.stated, found.axis,
       recording.trials.empty()
           ? "recording.up in the project; a direction [x, y, z], where no axis does"

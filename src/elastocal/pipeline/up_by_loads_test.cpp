@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/up_by_loads.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "elastocal/math/random.hpp"
@@ -62,6 +64,14 @@ TEST_F(UpByLoadsTest, AWrongAxisIsTold) {
 TEST_F(UpByLoadsTest, TheRightAxisAndARigidRobotAreNotAccused) {
   EXPECT_EQ(Found(Eigen::Vector3d::UnitZ(), 1e-4), "");
   EXPECT_EQ(Found(Eigen::Vector3d::UnitY(), 0.0), "");
+}
+
+// Springs would be more unknowns than ten postures of one marker have equations.
+TEST_F(UpByLoadsTest, TooFewEquationsSayNothing) {
+  Measurements few = Record(project_, Eigen::Vector3d::UnitY(), 1e-4);
+  few.calibration = SelectPostures(few.calibration, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  few.calibration.markers.rightCols(6).setConstant(std::nan(""));
+  EXPECT_FALSE(FindUpByLoads(project_, {}, few));
 }
 
 TEST_F(UpByLoadsTest, OnlyStaticsOfAHeldRobotAreJudged) {

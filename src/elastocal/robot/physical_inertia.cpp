@@ -19,14 +19,6 @@ double MissingMoment(const Eigen::Vector3d& moments) {
   return std::max(least, missing > kRounding * moments[2] ? missing : 0.0);
 }
 
-/// Twice the largest distance of a joint from the root link's origin in the zero posture, m.
-double WidthOf(const RobotTree& tree) {
-  double furthest = 0.0;
-  const auto poses = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  for (const Transform& T : poses) furthest = std::max(furthest, T.translation().norm());
-  return 2.0 * furthest;
-}
-
 }  // namespace
 
 Eigen::Matrix3d PhysicalInertia(const Eigen::Matrix3d& inertia) {
@@ -42,7 +34,7 @@ Eigen::Matrix3d PhysicalInertia(const Eigen::Matrix3d& inertia) {
 
 std::vector<std::string> InertiaWarnings(const RobotTree& tree) {
   constexpr double kNotable = 0.01;  // kg: of frames without a body, anything is written
-  const double width = WidthOf(tree);
+  const double width = RobotSize(tree);
   std::vector<std::string> warnings;
   std::vector<double> mass(Size(tree.body_count()), 0.0);
   for (const Link& link : tree.links) {
@@ -57,9 +49,8 @@ std::vector<std::string> InertiaWarnings(const RobotTree& tree) {
     } else if (link.mass > 0.0 && link.inertia.isZero()) {
       say("it has a mass but no inertia");
     } else if (link.mass > kNotable && solver.eigenvalues()[2] > link.mass * width * width) {
-      say("its inertia is that of a body wider than the robot: is it in kg.m^2? Motions that "
-          "joints "
-          "could do will seem too much for them");
+      say("its inertia is that of a body wider than the robot: is it in kg.m^2? Motions that its "
+          "joints could do will seem too much for them");
     }
   }
   for (int body = 1; body < tree.body_count(); ++body) {

@@ -23,13 +23,9 @@ void KeepStiffEnough(double torque, double& compliance) {
 /// No motor is stronger than what lifts the robot three times at its full reach, N.m: a larger
 /// effort in a URDF (50000 of an ergoCub) is a number that somebody had to write.
 double LargestLikelyEffort(const RobotTree& tree) {
-  double mass = 0.0, reach = 0.0;
+  double mass = 0.0;
   for (const Link& link : tree.links) mass += link.mass;
-  for (const Transform& T_root_link :
-       LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()))) {
-    reach = std::max(reach, T_root_link.translation().norm());
-  }
-  return 3.0 * mass * kGravity.norm() * reach;
+  return 1.5 * mass * kGravity.norm() * RobotSize(tree);  // twice the reach
 }
 
 class Drawing {
@@ -157,9 +153,9 @@ class Drawing {
   void Friction() {
     const double largest = LargestLikelyEffort(robot_.tree);
     for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
-      const double effort = std::min(robot_.tree.joints[k].limits.effort, largest);
-      if (!std::isfinite(robot_.tree.joints[k].limits.effort)) continue;
-      robot_.friction[Index(k)] = options_.friction_share * effort;
+      const double effort = robot_.tree.joints[k].limits.effort;
+      if (!std::isfinite(effort)) continue;
+      robot_.friction[Index(k)] = options_.friction_share * std::min(effort, largest);
     }
   }
 
