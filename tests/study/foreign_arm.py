@@ -1,0 +1,336 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""An arm that shares no code with the program: its kinematics, statics and noise are these lines. Posture tables of it,
+sound and with the mistakes of a laboratory, go through `calibrate`, `check`, `validate` and `compensate`; what the program
+says is set against the truth. Prints the tables of docs/robustness.md and docs/accuracy.md (Markdown). Needs NumPy.
+
+  /usr/bin/python3 tests/study/foreign_arm.py --program build/release/bin/elastocal --work DIR [--only faults few wall]
+"""
+
+import argparse
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import xml.etree.ElementTree as xml
+
+import numpy as np
+
+H = np.pi / 2
+# Joint, link, place (m), turn (rpy), axis, largest position, effort; mass (kg) and its centre in the link.
+JOINTS = [
+    ("shoulder_pan", "link1", (0, 0, 0.20), (0, 0, 0), (0, 0, 1), 2.8, 180, 6.5, (0.01, 0, 0.09)),
+    ("shoulder_lift", "link2", (0.03, 0, 0.16), (-H, 0, 0), (0, 0, 1), 1.9, 180, 7.2, (0, -0.11, 0.02)),
+    ("upper_roll", "link3", (0, -0.22, 0), (H, 0, 0), (0, 0, 1), 2.8, 120, 5.1, (0.02, 0, 0.12)),
+    ("elbow", "link4", (0.06, 0, 0.21), (H, 0, 0), (0, 0, 1), 2.2, 120, 4.2, (-0.02, 0.1, 0.01)),
+    ("fore_roll", "link5", (-0.06, 0.19, 0), (-H, 0, 0), (0, 0, 1), 2.8, 60, 3.1, (0, 0.01, 0.12)),
+    ("wrist_pitch", "link6", (0, 0, 0.21), (0, 0, 0), (0, 1, 0), 1.9, 60, 2.0, (0.03, 0, 0.05)),
+    ("wrist_roll", "link7", (0.08, 0, 0.09), (0, 0, 0), (0, 0, 1), 2.8, 40, 1.5, (0, 0, 0.06)),
+]
+NAMES = [joint[0] for joint in JOINTS]
+CLUSTERS = {
+    "HAND": (6, [(0.06, 0.01, 0.05), (-0.05, 0.055, 0.07), (0, -0.065, 0.035)]),
+    "FORE": (4, [(0.07, 0.01, 0.12), (-0.06, 0.05, 0.13), (0.01, -0.07, 0.05)]),
+    "UPPER": (2, [(0.08, 0.02, 0.10), (-0.06, 0.06, 0.16), (-0.02, -0.07, 0.06)]),
+}
+MARKERS = [f"{cluster}_{k + 1}" for cluster in CLUSTERS for k in range(3)]
+BODY = [body for body, places in CLUSTERS.values() for _ in places]
+PLACES = np.array([place for _, places in CLUSTERS.values() for place in places], float)
+
+
+def about(axis, angle):
+    """Rotation matrix (Rodrigues)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]], float)
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def turned(vector):
+    angle = np.linalg.norm(vector)
+    return np.eye(3) if angle < 1e-15 else about(vector / angle, angle)
+
+
+def from_rpy(rpy):
+    return about((0, 0, 1), rpy[2]) @ about((0, 1, 0), rpy[1]) @ about((1, 0, 0), rpy[0])
+
+
+class Arm:
+    """The nominal arm; errors are attributes."""
+
+    def __init__(self):
+        self.places = [(from_rpy(joint[3]), np.array(joint[2], float)) for joint in JOINTS]
+        self.axes = [np.array(joint[4], float) for joint in JOINTS]
+        self.offset, self.compliance = np.zeros(7), np.zeros(7)
+        self.gravity = np.array([0, 0, -9.81])  # in the base
+        self.markers = PLACES
+
+    @classmethod
+    def real(cls, seed):
+        """Offsets of 0.2 to 1.5 degrees, links off by 1 to 3 mm and 0.15 degrees, springs of 10 to 100 urad/(N.m)."""
+        rng, arm = np.random.default_rng(seed), cls()
+        arm.offset = np.radians(rng.uniform(0.2, 1.5, 7) * rng.choice([-1, 1], 7))
+        places = []
+        for turn, place in arm.places:
+            shift = rng.normal(size=3)
+            shift *= rng.uniform(1e-3, 3e-3) / np.linalg.norm(shift)
+            places.append((turned(rng.normal(size=3) * np.radians(0.15)) @ turn, place + shift))
+        arm.places = places
+        arm.compliance = rng.uniform(10e-6, 100e-6, 7)
+        arm.markers = PLACES + rng.uniform(-6e-3, 6e-3, PLACES.shape)
+        return arm
+
+    @classmethod
+    def of_urdf(cls, file):
+        root, arm = xml.parse(file).getroot(), cls()
+        origins = {joint.get("name"): joint for joint in root.findall("joint")}
+        read = lambda text: [float(x) for x in (text or "0 0 0").split()]
+        arm.places, arm.axes = [], []
+        for name in NAMES:
+            origin = origins[name].find("origin")
+            arm.places.append((from_rpy(read(origin.get("rpy"))), np.array(read(origin.get("xyz")))))
+            arm.axes.append(np.array(read(origins[name].find("axis").get("xyz"))))
+        return arm
+
+    def frames(self, positions):
+        turn, place, frames = np.eye(3), np.zeros(3), []
+        for (own_turn, own_place), axis, angle in zip(self.places, self.axes, positions):
+            place = place + turn @ own_place
+            turn = turn @ own_turn @ about(axis, angle)
+            frames.append((turn, place))
+        return frames
+
+    def loads(self, frames):
+        """Moments of the weights about the axes, N.m."""
+        loads = np.zeros(7)
+        for k, (turn, place) in enumerate(frames):
+            axis = turn @ self.axes[k]
+            for m in range(k, 7):
+                centre = frames[m][1] + frames[m][0] @ np.array(JOINTS[m][8])
+                loads[k] += axis @ np.cross(centre - place, JOINTS[m][7] * self.gravity)
+        return loads
+
+    def stands(self, encoders):
+        """Frames of the links with what the joints give way."""
+        bent = np.zeros(7)
+        for _ in range(4):
+            bent = self.compliance * self.loads(self.frames(encoders + self.offset + bent))
+        return self.frames(encoders + self.offset + bent)
+
+    def seen(self, encoders):
+        """Markers in the base, 9 x 3."""
+        frames = self.stands(encoders)
+        return np.array([frames[b][1] + frames[b][0] @ p for b, p in zip(BODY, self.markers)])
+
+
+def urdf():
+    text = '<robot name="foreign_arm"><link name="base"/>'
+    parent = "base"
+    for name, link, place, rpy, axis, most, effort, mass, centre in JOINTS:
+        words = lambda numbers: " ".join(f"{x:.9g}" for x in numbers)
+        moment = 0.004 * mass
+        text += (f'<link name="{link}"><inertial><origin xyz="{words(centre)}"/><mass value="{mass}"/><inertia '
+                 f'ixx="{moment}" iyy="{moment}" izz="{0.6 * moment}" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+                 f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{link}"/><origin '
+                 f'xyz="{words(place)}" rpy="{words(rpy)}"/><axis xyz="{words(axis)}"/><limit lower="{-most}" '
+                 f'upper="{most}" effort="{effort}" velocity="2"/></joint>')
+        parent = link
+    return text + "</robot>\n"
+
+
+def project(up):
+    text = f"robot: {{urdf: arm.urdf}}\nchains: [{{name: arm, tip: link7}}]\nrecording: {{up: {up}}}\nmarkers:\n  clusters:\n"
+    for cluster, (body, places) in CLUSTERS.items():
+        at = [[round(1e3 * x, 3) for x in place] for place in places]
+        text += f"    - {{name: {cluster}, link: link{body + 1}, positions_mm: {at}}}\n"
+    return text
+
+
+def postures(count, seed):
+    rng, arm, found = np.random.default_rng(seed), Arm(), []
+    most = np.array([joint[5] for joint in JOINTS])
+    while len(found) < count:
+        q = most * rng.uniform(-0.9, 0.9, 7)
+        if all(frame[1][2] > 0.08 for frame in arm.frames(q)[3:]):
+            found.append(q)
+    return np.array(found)
+
+
+UPRIGHT = (turned(np.array([0, 0, 0.7])), np.array([1.2, -0.4, 0.75]))  # the base in the cameras' frame, z up
+
+
+def measured(arm, q, base=UPRIGHT, seed=1, noise=0.2e-3):
+    points = np.array([arm.seen(row) for row in q]) @ base[0].T + base[1]
+    return points + np.random.default_rng(seed).normal(size=points.shape) * noise
+
+
+def write(file, q, points):
+    with open(file, "w", newline="") as out:
+        rows = csv.writer(out)
+        rows.writerow([f"{m}_{axis}" for m in MARKERS for axis in "xyz"] + NAMES)
+        for row, at in zip(q, points):
+            rows.writerow([f"{x:.6f}" for x in at.ravel()] + [f"{x:.7f}" for x in row])
+    return file
+
+
+def error_of(frames_of, arm, fitted, judged):
+    """rms distance (mm) of the real markers from a model whose base and markers are placed by `fitted` postures."""
+    turn, place, own = UPRIGHT[0], UPRIGHT[1], PLACES.copy()
+    frames = [frames_of(q) for q in fitted]
+    wanted = measured(arm, fitted, noise=0)
+    for _ in range(12):
+        rows, left = [], []
+        for at, links in zip(wanted, frames):
+            for m, body in enumerate(BODY):
+                in_base = links[body][1] + links[body][0] @ own[m]
+                lever = turn @ in_base
+                row = np.zeros((3, 6 + 3 * len(BODY)))
+                row[:, :3] = -np.array([[0, -lever[2], lever[1]], [lever[2], 0, -lever[0]], [-lever[1], lever[0], 0]])
+                row[:, 3:6] = np.eye(3)
+                row[:, 6 + 3 * m:9 + 3 * m] = turn @ links[body][0]
+                rows.append(row)
+                left.append(at[m] - lever - place)
+        step = np.linalg.lstsq(np.vstack(rows), np.concatenate(left), rcond=None)[0]
+        turn, place, own = turned(step[:3]) @ turn, place + step[3:6], own + step[6:].reshape(-1, 3)
+    squares = []
+    for at, q in zip(measured(arm, judged, noise=0), judged):
+        links = frames_of(q)
+        for m, body in enumerate(BODY):
+            squares.append(np.sum((at[m] - turn @ (links[body][1] + links[body][0] @ own[m]) - place) ** 2))
+    return 1e3 * np.sqrt(np.mean(squares))
+
+
+class Study:
+    def __init__(self, program, work):
+        self.program, self.work = program, work
+        work.mkdir(parents=True, exist_ok=True)
+        (work / "arm.urdf").write_text(urdf())
+        for up in ("z", "y"):
+            (work / f"{up}.yaml").write_text(project(up))
+
+    def run(self, command, *words):
+        return subprocess.run([self.program, command, *map(str, words)], capture_output=True, text=True, check=False)
+
+    def calibrate(self, name, q, points, up="z", *words):
+        table = write(self.work / f"{name}.csv", q, points)
+        return self.run("calibrate", self.work / f"{up}.yaml", "--recording", table, "-o", self.work / name, *words)
+
+    def figures(self, name):
+        return json.loads((self.work / name / "summary.json").read_text())
+
+    def urdf_of(self, name):
+        """The links of the exported URDF; None where none was exported."""
+        file = self.work / name / "arm_calibrated.urdf"
+        return Arm.of_urdf(file).frames if file.exists() else None
+
+
+def first_words(done):
+    return next((line for line in done.stdout.splitlines() if line.strip()), done.stderr.strip())[:150]
+
+
+def faults(study):
+    arm, q = Arm.real(5), postures(50, 1)
+    sound = measured(arm, q)
+    elbow, pitch = NAMES.index("elbow"), NAMES.index("wrist_pitch")
+    cases = {"sound": (q, sound)}
+
+    def joints(name, change):
+        wrong = q.copy()
+        change(wrong)
+        cases[name] = (wrong, sound)
+
+    def labels(name, pairs, rows=slice(None)):
+        points = sound.copy()
+        for a, b in pairs:
+            points[rows, a], points[rows, b] = sound[rows, b], sound[rows, a]
+        cases[name] = (q, points)
+
+    for k in (0, 3, 6):
+        joints(f"sign of {NAMES[k]}", lambda w, k=k: w.__setitem__((slice(None), k), -q[:, k]))
+    joints("elbow and wrist_pitch exchanged", lambda w: w.__setitem__((slice(None), [elbow, pitch]), q[:, [pitch, elbow]]))
+    joints("elbow frozen in 10 postures", lambda w: w.__setitem__((slice(20, 30), elbow), q[20, elbow]))
+    joints("elbow times 1.03", lambda w: w.__setitem__((slice(None), elbow), 1.03 * q[:, elbow]))
+    labels("HAND_1 and FORE_1 exchanged", [(0, 3)])
+    labels("HAND and FORE exchanged", [(0, 3), (1, 4), (2, 5)])
+    labels("HAND_1 and HAND_2 exchanged in 10 postures", [(0, 1)], slice(20, 30))
+    turn = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], float)  # z of the room is y of the cameras
+    cases["y up, z stated"] = (q, sound @ turn.T)
+    cases["upside down, z stated"] = (q, sound @ np.diag([1.0, -1.0, -1.0]))
+    still = q.copy()
+    still[:, 0] = 0.4
+    cases["shoulder_pan stood still"] = (still, measured(arm, still))
+    print("| table | exit | true error of the URDF, mm | said |\n|---|---|---|---|")
+    for name, (positions, points) in cases.items():
+        folder = name.replace(" ", "_").replace(",", "")
+        done = study.calibrate(folder, positions, points)
+        model = study.urdf_of(folder)
+        error = f"{error_of(model, arm, q, postures(100, 77)):.2f}" if model else ""
+        said = first_words(done)
+        if "stood still" in done.stderr:
+            said = "shoulder_pan stood still in all postures ..."
+        print(f"| {name} | {done.returncode} | {error} | {said} |", flush=True)
+    few_rows = postures(10, 9)
+    at = measured(arm, few_rows, seed=3)
+    print("\n| `check` of ten postures | exit | said |\n|---|---|---|")
+    slipped = Arm.real(5)
+    slipped.offset[elbow] += np.radians(30)
+    for name, positions, points in (
+            ("sound", few_rows, at), ("sign of elbow", few_rows * np.where(np.arange(7) == elbow, -1, 1), at),
+            ("rows shifted by one", few_rows, np.roll(at, 1, axis=0)), ("elbow slipped by 30 degrees", few_rows, measured(slipped, few_rows))):
+        table = write(study.work / "check.csv", positions, points)
+        done = study.run("check", study.work / "z.yaml", "--calibration", study.work / "sound", "--recording", table)
+        print(f"| {name} | {done.returncode} | {first_words(done)} |", flush=True)
+
+
+def few(study):
+    print("| postures | true error of the URDF, mm | said, mm |\n|---|---|---|")
+    for count in (5, 6, 8, 10, 12):
+        true, said = [], []
+        for seed in range(201, 205):
+            arm, q = Arm.real(seed), postures(count, seed + 700)
+            name = f"few_{count}_{seed}"
+            study.calibrate(name, q, measured(arm, q, seed=seed))
+            model = study.urdf_of(name)
+            if model is None:
+                continue
+            true.append(error_of(model, arm, postures(50, seed + 1), postures(100, seed + 900)))
+            said.append(study.figures(name)["deployed"]["urdf"]["rmse_3d_mm"])
+        text = lambda numbers: ", ".join(f"{x:.1f}" for x in numbers)
+        print(f"| {count} | {text(true)} | {text(said)} |", flush=True)
+
+
+def wall(study):
+    """The base hangs on a wall: its x points down in the room."""
+    arm, q = Arm.real(5), postures(50, 1)
+    arm.gravity = np.array([9.81, 0, 0])
+    base = (np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]], float), np.array([0.5, 1.0, 1.2]))
+    study.calibrate("wall", q, measured(arm, q, base))
+    model = study.urdf_of("wall")
+    sys.path.insert(0, str(pathlib.Path(study.program).resolve().parent.parent / "python"))
+    import elastocal
+    robot = elastocal.Runtime(study.work / "wall")
+
+    def frames(row):
+        links = robot.forward(row)["links"]
+        return [(np.array(links[joint[1]])[:3, :3], np.array(links[joint[1]])[:3, 3]) for joint in JOINTS]
+
+    judged = postures(100, 77)
+    print("| an arm on a wall | error, mm |\n|---|---|")
+    print(f"| calibrated URDF | {error_of(model, arm, q, judged):.3f} |")
+    print(f"| model at run time | {error_of(frames, arm, q, judged):.3f} |", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--only", nargs="+", choices=["faults", "few", "wall"], default=["faults", "few", "wall"])
+    options = parser.parse_args()
+    study = Study(options.program, options.work)
+    for name in options.only:
+        {"faults": faults, "few": few, "wall": wall}[name](study)
+        print()
+
+
+if __name__ == "__main__":
+    main()
