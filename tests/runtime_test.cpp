@@ -2,8 +2,6 @@
 // The robot at run time against the estimator's own model, statics and hand values.
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -348,42 +346,6 @@ TEST_F(Runtime, LowPassFollowsATorqueWithItsTimeConstant) {
   const double after = robot.rigid_positions()[coordinate];
   const double all = -10.0 * geometry_.joints[static_cast<std::size_t>(k)].compliance.z();
   EXPECT_NEAR((after - begin) / all, 1.0 - std::exp(-1.0), 0.01);
-}
-
-TEST_F(Runtime, TheFileGivesTheSameBits) {
-  const RuntimeModel model = MakeRuntimeModel(project_, stored_);
-  std::stringstream file;
-  WriteRuntimeModel(model, file);
-  Compensator first(model), second(ReadRuntimeModel(file, "model"));
-  const Eigen::VectorXd q = Posture(14);
-  first.Command(q, kNoTorque, 1);
-  second.Command(q, kNoTorque, 1);
-  EXPECT_EQ(first.command(), second.command());
-}
-
-TEST_F(Runtime, ADamagedFileIsRefused) {
-  std::ostringstream out;
-  WriteRuntimeModel(MakeRuntimeModel(project_, stored_), out);
-  const std::string good = out.str();
-  const auto refused = [](const std::string& text) {
-    std::istringstream in(text);
-    try {
-      ReadRuntimeModel(in, "model.txt");
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what()).starts_with("model.txt: ");
-    }
-    return false;
-  };
-  EXPECT_TRUE(refused(""));
-  for (std::size_t part = 1; part < 40; ++part) {
-    EXPECT_TRUE(refused(good.substr(0, part * good.size() / 40))) << part;
-  }
-  std::string wrong = good;
-  wrong.replace(wrong.find("\ncalibrated 30\n") + 1, 13, "calibrated -1");
-  EXPECT_TRUE(refused(wrong));
-  wrong = good;
-  wrong.replace(wrong.find("gravity 3"), 9, "gravity x");
-  EXPECT_TRUE(refused(wrong));
 }
 
 TEST(RuntimeByHand, OneSpringTurnsByMomentTimesCompliance) {

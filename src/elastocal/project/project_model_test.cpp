@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/project/project.hpp"
+#include "elastocal/project/project_sections.hpp"
+#include "elastocal/robot/statics.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -14,12 +17,47 @@ namespace elastocal {
 namespace {
 
 /// A project on the arm of the tests with one marker.
-Project ParseArm(const std::string& more) {
+Project ParseArm(const std::string& more = "") {
   return ParseProject(
       "robot: {urdf: arm6.urdf}\nmarkers: {single: [{name: M, link: tool, position_mm: [1, 2, "
       "3]}]}\n" +
           more,
       SourceFile("tests/robots/p.yaml"));
+}
+
+TEST(ProjectModel, NarrowsTheRangeOfAJoint) {
+  const Project project = ParseArm("design: {range_deg: {elbow_joint: [-5000, 20]}}");
+  const Project whole = ParseArm();
+  const int elbow =
+      project.tree.joints[static_cast<std::size_t>(FindJoint(project.tree, "elbow_joint"))]
+          .coordinate;
+  EXPECT_NEAR(project.motion.upper[elbow], 20.0 * M_PI / 180.0, 1e-12);
+  EXPECT_EQ(project.motion.lower[elbow], whole.motion.lower[elbow]);
+  EXPECT_LE(project.motion.rest[elbow], project.motion.upper[elbow]);
+}
+
+// The lift of an HSR: gravity takes 87 of its 100 N, and designed postures use 85 %.
+TEST(ProjectModel, ARobotHoldsItsPostureOfRest) {
+  const Project usual = ParseArm();
+  const int lift = FindJoint(usual.tree, "elbow_joint");
+  const int c = usual.tree.joints[Size(lift)].coordinate;
+  const Eigen::VectorXd torques = GravityTorques(usual.tree, usual.motion.rest);
+  ASSERT_GT(std::abs(torques[c]), 1.0);
+  ASSERT_LT(std::abs(torques[c]), 0.8 * usual.tree.joints[Size(lift)].limits.effort);
+  const auto with_effort = [&](double effort) {
+    Project project = usual;
+    project.tree.warnings.clear();
+    project.tree.joints[Size(lift)].limits.effort = effort;
+    CarryRest(project);
+    return project;
+  };
+  const double enough = std::abs(torques[c]) / 0.79;
+  EXPECT_EQ(with_effort(enough).tree.joints[Size(lift)].limits.effort, enough);
+  EXPECT_TRUE(with_effort(enough).tree.warnings.empty());
+  const Project weak = with_effort(std::abs(torques[c]) / 0.87);
+  EXPECT_NEAR(weak.tree.joints[Size(lift)].limits.effort, std::abs(torques[c]) / 0.8, 1e-9);
+  ASSERT_EQ(weak.tree.warnings.size(), 1u);
+  EXPECT_NE(weak.tree.warnings[0].find("joint 'elbow_joint': gravity takes"), std::string::npos);
 }
 
 TEST(ProjectModel, AJointThatCountsTurnsIsMovedAboutItsPositionOfRest) {
