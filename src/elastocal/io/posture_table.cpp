@@ -11,7 +11,6 @@
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/robot/statics.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -189,7 +188,7 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
   Recording& recording = result.recording;
   recording.source = source;
   recording.free_root = project.recording.free_root;
-  recording.gravity = kGravity.norm() * -project.recording.up;
+  recording.gravity = project.recording.gravity;
   ReadPostures(with_motors, columns, table, recording);
   CloseLinkages(with_motors, project.tree, recording);
   NameMarkers(columns, project, result);

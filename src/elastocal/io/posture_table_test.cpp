@@ -41,6 +41,13 @@ PostureTable ReadTable(const std::string& text, const Project& project = TablePr
   return ReadPostureTable(stream, "t.csv", project);
 }
 
+TEST(PostureTable, GravityIsWhereTheProjectSays) {
+  const std::string row = "0,0.1,0.2,0.3,0,0,0,0\n1,0.2,0.2,0.3,0.1,0,0,0\n";
+  EXPECT_EQ(ReadTable(kTableHeader + row).recording.gravity, Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_EQ(ReadTable(kTableHeader + row, TableProject("{up: x}")).recording.gravity,
+            Eigen::Vector3d(-9.81, 0, 0));
+}
+
 void ExpectTableError(const std::string& text, std::initializer_list<std::string> parts) {
   ExpectInputError([&] { ReadTable(text); }, parts);
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/motor_columns.hpp"
@@ -281,18 +280,6 @@ JointLog TakeJoints(const JointLog& log, const Project& project) {
   JointLog joints = TakeColumns(log, WithMotors(project, log.names, log.source));
   MotorsToJoints(project.tree, joints);
   return joints;
-}
-
-bool IsAxis(const std::string& text) {
-  const std::string letter = text.starts_with('-') ? text.substr(1) : text;
-  return letter == "x" || letter == "y" || letter == "z";
-}
-
-Eigen::Vector3d GravityBelow(const std::string& up) {
-  if (!IsAxis(up)) throw std::invalid_argument("no axis: '" + up + "'");
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
-  gravity[up.back() - 'x'] = up.starts_with("-") ? 9.81 : -9.81;
-  return gravity;
 }
 
 }  // namespace elastocal

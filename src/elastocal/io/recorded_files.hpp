@@ -48,11 +48,4 @@ void RefuseRecording(const std::filesystem::path& file);
 /// sensor's torques that are absent in some samples.
 JointLog TakeJoints(const JointLog& log, const Project& project);
 
-/// The direction of gravity, 9.81 m/s^2, where this axis points up. Throws std::invalid_argument
-/// for a text that IsAxis refuses.
-Eigen::Vector3d GravityBelow(const std::string& up);
-
-/// Whether the text is one of x, y, z, -x, -y and -z.
-bool IsAxis(const std::string& text);
-
 }  // namespace elastocal

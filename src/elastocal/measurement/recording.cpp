@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace elastocal {
 namespace {
@@ -11,6 +12,18 @@ namespace {
 constexpr double kLeastJointStep = 2e-3;  // rad or m: less is no motion
 
 }  // namespace
+
+Eigen::Vector3d GravityBelow(const std::string& up) {
+  if (!IsAxis(up)) throw std::invalid_argument("no axis: '" + up + "'");
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
+  gravity[up.back() - 'x'] = up.starts_with("-") ? 9.81 : -9.81;
+  return gravity;
+}
+
+bool IsAxis(const std::string& text) {
+  const std::string letter = text.starts_with('-') ? text.substr(1) : text;
+  return letter == "x" || letter == "y" || letter == "z";
+}
 
 bool Seen(const Recording& recording, int posture, int marker) {
   return MarkerPosition(recording, posture, marker).allFinite();

@@ -63,6 +63,13 @@ struct Recording {
   int marker_count() const { return static_cast<int>(marker_names.size()); }
 };
 
+/// The direction of gravity, 9.81 m/s^2, where this axis points up. Throws std::invalid_argument
+/// for a text that IsAxis refuses.
+Eigen::Vector3d GravityBelow(const std::string& up);
+
+/// Whether the text is one of x, y, z, -x, -y and -z.
+bool IsAxis(const std::string& text);
+
 /// Whether marker `m` was seen in posture `i`.
 bool Seen(const Recording& recording, int posture, int marker);
 

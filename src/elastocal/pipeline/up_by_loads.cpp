@@ -9,7 +9,6 @@
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/prediction.hpp"
-#include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"

@@ -43,8 +43,7 @@ struct RecordingColumns {
   /// Of a posture table: the root link may stand elsewhere in each posture. Not: markers are seen
   /// from it.
   bool free_root = false;
-  /// Of a posture table: the direction up in the frame of the markers, of length 1.
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d gravity = GravityBelow("z");  ///< of a posture table, as Recording::gravity
   /// Joint -> position [rad or m] where the file has none.
   std::map<std::string, double> not_recorded;
   /// Marker -> its label in files of cameras; default: the marker's name.

@@ -179,14 +179,11 @@ void ReadForceTorqueSensors(const YamlValue& section, Project& project) {
   }
 }
 
-/// x, y, z, -x, -y, -z, or a direction [x, y, z].
-Eigen::Vector3d ReadUp(const YamlValue& value) {
-  if (!value.IsScalar()) return DirectionFrom(value);
-  const std::string text = value.Text();
-  const bool down = text.starts_with("-");
-  const std::string axis = down ? text.substr(1) : text;
-  value.Expect(axis == "x" || axis == "y" || axis == "z", "x, y, z, -x, -y, -z or three numbers");
-  return (down ? -1.0 : 1.0) * Eigen::Vector3d::Unit(axis[0] - 'x');
+/// By what points up: x, y, z, -x, -y, -z, or a direction [x, y, z].
+Eigen::Vector3d ReadGravity(const YamlValue& up) {
+  if (!up.IsScalar()) return -GravityBelow("z").norm() * DirectionFrom(up);
+  up.Expect(IsAxis(up.Text()), "x, y, z, -x, -y, -z or three numbers");
+  return GravityBelow(up.Text());
 }
 
 void ReadRecordingColumns(const YamlValue& section, Project& project) {
@@ -197,7 +194,7 @@ void ReadRecordingColumns(const YamlValue& section, Project& project) {
     project.recording.free_root = root->Text() == "free";
     project.motion.free_root = project.recording.free_root;
   }
-  if (const auto up = section.Find("up")) project.recording.up = ReadUp(*up);
+  if (const auto up = section.Find("up")) project.recording.gravity = ReadGravity(*up);
   if (const auto labels = section.Find("labels")) ReadLabels(*labels, project);
   if (const auto columns = section.Find("columns")) ReadColumns(*columns, project);
   if (const auto lengths = section.Find("reference_lengths")) {

@@ -193,10 +193,10 @@ TEST(Project, LeavesDefaultsWhereTheFileSaysNothing) {
 }
 
 TEST(Project, ReadsWhatPointsUpInATable) {
-  EXPECT_EQ(Parse().recording.up, Eigen::Vector3d::UnitZ());
-  EXPECT_EQ(Parse("recording: {up: -y}").recording.up, -Eigen::Vector3d::UnitY());
-  const Eigen::Vector3d tilted = Parse("recording: {up: [3, 0, 4]}").recording.up;
-  EXPECT_LT((tilted - Eigen::Vector3d(0.6, 0.0, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(Parse().recording.gravity, Eigen::Vector3d(0.0, 0.0, -9.81));
+  EXPECT_EQ(Parse("recording: {up: -y}").recording.gravity, Eigen::Vector3d(0.0, 9.81, 0.0));
+  const Eigen::Vector3d tilted = Parse("recording: {up: [3, 0, 4]}").recording.gravity;
+  EXPECT_LT((tilted + 9.81 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm(), 1e-14);
   ExpectError("recording: {up: w}", {"recording.up", "'w'", "x, y, z, -x, -y, -z"});
   ExpectError("recording: {up: [0, 0, 0]}", {"recording.up", "a direction"});
 }
