@@ -153,7 +153,8 @@ export function sampleReport() {
   return {
     format: 'elastocal-report-1', version: '0.0.0', folder: EVIL, summary, data: sampleData(),
     correlation: {names, lower: Buffer.from(Int8Array.from(lower).buffer).toString('base64')},
-    validation: {status: 'better', recording: 'another day', rmse_3d_mm: {uncalibrated: 7, calibrated: 1.1}, rmse_coordinate_mm: {uncalibrated: 4, calibrated: 0.7}, max_mm: {uncalibrated: 20, calibrated: 3}, rmse_3d_mm_with_outliers: {uncalibrated: 8, calibrated: 1.3}},
+    validation: {status: 'implausible', frozen: false, recording: 'another day', expected_error_mm: 0.6, mistakes: ['elbow: the sign of its positions is reversed'],
+      rmse_3d_mm: {uncalibrated: 7, calibrated: 1.1, urdf: 1.9}, rmse_coordinate_mm: {uncalibrated: 4, calibrated: 0.7, urdf: 1.2}, max_mm: {uncalibrated: 20, calibrated: 3, urdf: 5}, rmse_3d_mm_all: {uncalibrated: 8, calibrated: 1.31, urdf: 2.17}},
     deployment: sampleDeployment(), design: sampleDesign(), motions: [sampleMotion()],
     calibrations: [{label: 'spring', parameters: earlier}, {label: 'now', parameters: summary.parameters}],
     comparison: {status: 'moved', moved: ['arm_1_joint'], a: {recording: 'spring'}, joints: [{joint: 'arm_1_joint', F: 120, p_adjusted: 1e-9, moved: true}, {joint: EVIL, F: 1.1, p_adjusted: 0.4, moved: false}]},

@@ -91,6 +91,7 @@ const MODEL_NAMES = {
   rigid: 'rigid',
   full: 'full',
   calibrated: 'calibrated',
+  urdf: 'calibrated URDF',
 };
 export const modelName = (model) => MODEL_NAMES[model] ?? model;
 

@@ -56,10 +56,15 @@ export function modelsSection(report) {
 function validationTable(validation) {
   const models = Object.keys(validation.rmse_3d_mm ?? {});
   const figures = [['RMSE of the distances', 'rmse_3d_mm'], ['RMSE of single coordinates', 'rmse_coordinate_mm'],
-                   ['Largest distance', 'max_mm'], ['RMSE of the distances, with outliers', 'rmse_3d_mm_with_outliers']];
+                   ['Largest distance', 'max_mm'], ['RMSE of the distances, with outliers', 'rmse_3d_mm_all']];
   return figure({
     title: 'On another recording',
-    note: `Recording: ${validation.recording}. The poses of the waist and the positions of the markers were fitted to it; the joints stayed as calibrated.`,
+    note: [`Recording: ${validation.recording}.`, validation.frozen
+      ? 'Nothing was fitted to it: the waist and the markers are as in the calibration.'
+      : 'The poses of the waist and the positions of the markers were fitted to it; the joints stayed as calibrated.',
+      ...(validation.mistakes ?? []).map((mistake) => `The recording is wrong: ${mistake}.`),
+      ...(validation.status === 'implausible' ? [`A robot that was never calibrated should err by some ${fixed(validation.expected_error_mm)} mm: recording, project and calibration do not belong together.`] : []),
+    ].join(' '),
     body: table({caption: 'Validation on another recording',
       columns: [{text: 'Error'}, ...models.map((m) => ({text: modelName(m), unit: 'mm', number: true}))],
       rows: figures.map(([text, key]) => [text, ...models.map((m) => fixed(validation[key]?.[m]))])}),

@@ -136,7 +136,7 @@ for (const [name, file] of Object.entries(files)) {
   });
 
   test(`${name}: the tables hold the numbers of summary.json`, async () => {
-    const {summary} = embeddedReport(file);
+    const {summary, validation} = embeddedReport(file);
     const {page} = await keptPage(file);
     const shown = new Map(await page.$$eval('#parameters [data-parameter]', (all) => all.map((e) => [e.dataset.parameter, {value: e.dataset.value, text: e.querySelector('.value')?.textContent}])));
     const unit = {'rad': 180 / Math.PI, 'm': 1e3, 'rad/(N.m)': 1e6};
@@ -154,6 +154,8 @@ for (const [name, file] of Object.entries(files)) {
     const text = await page.textContent('#models');
     const errors = summary.kfold ?? summary;
     for (const value of Object.values(errors.rmse_3d_mm)) assert.ok(text.includes(value.toFixed(2)), `${value}`);
+    for (const value of Object.values(validation?.rmse_3d_mm_all ?? {})) assert.ok(text.includes(value.toFixed(2)), `${value}`);
+    for (const mistake of validation?.mistakes ?? []) assert.ok(text.includes(mistake), mistake);
   });
 
   test(`${name}: every figure gives its data as CSV`, async () => {
