@@ -335,7 +335,7 @@ TEST_F(Runtime, LowPassFollowsATorqueWithItsTimeConstant) {
   const CompensatorOptions options{.torque_time_constant_s = 0.1, .period_s = 0.001};
   Compensator robot(MakeRuntimeModel(project_, stored_), options);
   const Eigen::VectorXd q = Posture(13);
-  const Eigen::Index count = static_cast<Eigen::Index>(project_.tree.joints.size());
+  const auto count = static_cast<Eigen::Index>(project_.tree.joints.size());
   const int k = FindJoint(project_.tree, "arm_left_4_joint");
   const int coordinate = project_.tree.joints[static_cast<std::size_t>(k)].coordinate;
   robot.Correct(q, Eigen::VectorXd::Zero(count), 0);
