@@ -62,7 +62,7 @@ struct Played {
   }
 
   ScratchFolder folder;
-  PlayedTrial trial;
+  ScriptedTrial trial;
 };
 
 const Played& Recorded(benchmark::State& state) {
@@ -125,7 +125,7 @@ void PredictTheSpeeds(benchmark::State& state) {
   std::vector<int> markers(robot.markers.size());
   std::iota(markers.begin(), markers.end(), 0);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(PredictSpeeds(robot, markers, 0, log, coordinates, 100.0));
+    benchmark::DoNotOptimize(PredictSpeeds(robot, markers, {0}, log, coordinates, 100.0));
   }
 }
 

@@ -33,7 +33,7 @@ void PlanPostures(benchmark::State& state) {
       ValidationTours(*robot, project.motion, project.motion.chains, ValidationKind::kRandom,
                       {.random_postures = static_cast<int>(state.range(0))}, random);
   double seconds = 0.0;
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     const auto planned = PlanTours(*robot, sets, {}, 2);
     seconds = static_cast<double>(JoinMotions(*robot, planned, 0.0, 100.0).q.rows()) / 100.0;
   }

@@ -41,6 +41,7 @@ void NocpUpTo(benchmark::State& state) {
   NocpOptions options;
   options.plateau = {.tolerance = -1.0, .max_postures = static_cast<int>(state.range(0))};
   double o1 = 0.0;
+  // NOLINTNEXTLINE(clang-analyzer-deadcode.DeadStores)
   for (auto _ : state) o1 = Nocp(problem, 1, options).set.Index(Criterion::kO1);
   state.counters["O1"] = o1;
 }
@@ -50,7 +51,7 @@ void NocpToPlateau(benchmark::State& state) {
   const Leg leg;
   PostureProblem problem = leg.Problem();
   double o1 = 0.0, postures = 0.0;
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     const DesignResult result = Nocp(problem, 1);
     o1 = result.set.Index(Criterion::kO1);
     postures = result.set.size();
@@ -64,6 +65,7 @@ void ExchangeFromPoolOf1000(benchmark::State& state) {
   const Leg leg;
   PostureProblem problem = leg.Problem();
   double o1 = 0.0;
+  // NOLINTNEXTLINE(clang-analyzer-deadcode.DeadStores)
   for (auto _ : state) o1 = ExchangeDesign(problem, kPostures, 1).indices[0];
   state.counters["O1"] = o1;
 }
@@ -74,7 +76,7 @@ void RegressorWithGradient(benchmark::State& state) {
   PostureProblem problem = leg.Problem();
   const Eigen::VectorXd x = leg.project.motion.rest(leg.setup.coordinates);
   Eigen::MatrixXd weight = Eigen::MatrixXd::Ones(problem.regressor.rows(), problem.column_count());
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     benchmark::DoNotOptimize(problem.regressor.Evaluate(problem.feasible.chain, x));
     benchmark::DoNotOptimize(problem.regressor.Gradient(problem.feasible.chain, weight));
   }

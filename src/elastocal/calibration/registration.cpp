@@ -21,7 +21,7 @@ Transform RegisterWaist(const ErrorModel& model, const Recording& recording) {
         MarkerPositions(at_origin, geometry, recording.q.row(i).transpose());
     for (int m = 0; m < recording.marker_count(); ++m) {
       if (!Seen(recording, i, m)) continue;
-      nominal.push_back(p_waist_marker.col(m));
+      nominal.emplace_back(p_waist_marker.col(m));
       measured.push_back(MarkerPosition(recording, i, m));
     }
   }

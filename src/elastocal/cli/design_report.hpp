@@ -8,6 +8,6 @@
 namespace elastocal::cli {
 
 /// One row a chain.
-std::string DesignTable(const PostureDesign& design);
+std::string DesignTable(const PostureDesign& result);
 
 }  // namespace elastocal::cli
