@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/row_shift.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -78,6 +79,49 @@ class TableCheckTest : public testing::Test {
 TEST_F(TableCheckTest, NothingIsSaidOfACleanTable) {
   EXPECT_EQ(FirstOfLog(table_), "");
   EXPECT_EQ(FirstOfLabels(table_), "");
+}
+
+TEST_F(TableCheckTest, RowsThatAreShiftedAreToldAndUndone) {
+  EXPECT_FALSE(FindRowShift(robot_.model, table_));
+  for (const bool free_root : {false, true}) {
+    for (const int from : {0, 4, 20}) {
+      for (const int rows : {1, -2}) {
+        Recording changed = table_;
+        changed.free_root = free_root;
+        for (int i = from; i < table_.posture_count(); ++i) {
+          // What is cut off at an end comes in at the other: any other posture.
+          const int partner = (i - rows + table_.posture_count()) % table_.posture_count();
+          changed.q.row(i) = table_.q.row(partner);
+        }
+        const std::optional<RowShift> shift = FindRowShift(robot_.model, changed);
+        ASSERT_TRUE(shift) << from << " " << rows;
+        EXPECT_EQ(shift->rows, rows);
+        // The row that is there twice fits before and after the place.
+        EXPECT_NEAR(shift->from, from, rows > 0 ? 1 : 0);
+        const Recording undone = WithoutShift(changed, *shift);
+        const auto left = static_cast<Eigen::Index>(WithoutPartner(*shift, changed).size());
+        EXPECT_EQ(undone.posture_count(), table_.posture_count() - left);
+        EXPECT_LE(left, 2);
+        EXPECT_FALSE(FindRowShift(robot_.model, undone));
+        for (int i = 0; i < undone.posture_count(); ++i) {
+          Eigen::Index row = 0;
+          (table_.q.rowwise() - undone.q.row(i)).rowwise().norm().minCoeff(&row);
+          EXPECT_TRUE(undone.markers.row(i) == table_.markers.row(row)) << i;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(TableCheckTest, AShiftOfRowsIsSaidWithItsLine) {
+  EXPECT_EQ(DescribeShift({.rows = 1}, table_),
+            "markers belong to the joint positions of the next row");
+  EXPECT_EQ(DescribeShift({.rows = -2, .from = 4}, table_),
+            "markers belong to the joint positions of 2 rows before, from posture 5 on");
+  Recording read = table_;
+  for (int i = 0; i < read.posture_count(); ++i) read.line.push_back(2 + i);
+  EXPECT_EQ(DescribeShift({.rows = -1, .from = 4}, read),
+            "markers belong to the joint positions of the row before, from line 6 on");
 }
 
 TEST_F(TableCheckTest, AReversedSignIsToldAndUndone) {

@@ -83,7 +83,8 @@ void AddAcceptOption(CLI::App& command, std::vector<std::string>& names) {
       .add_option("--accept", names,
                   "Mistakes of the recording that are corrected before the fit, by the names that "
                   "calibrate or validate gave them: sign:JOINT, exchange:JOINT,JOINT, "
-                  "frozen:JOINT, labels:NAME,NAME, gain:JOINT=FACTOR, offset:JOINT@TRIAL=DEGREES, "
+                  "frozen:JOINT, labels:NAME,NAME, rows:COUNT, gain:JOINT=FACTOR, "
+                  "offset:JOINT@TRIAL=DEGREES, "
                   "offset:JOINT@TRIAL:POSTURE=DEGREES (from that one on), scale:TRIAL=FACTOR, "
                   "scale=FACTOR (in all trials)")
       ->type_name("NAME");

@@ -13,6 +13,7 @@
 #include "elastocal/calibration/label_check.hpp"
 #include "elastocal/calibration/log_check.hpp"
 #include "elastocal/calibration/prediction.hpp"
+#include "elastocal/calibration/row_shift.hpp"
 #include "elastocal/calibration/table_check.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/stated_corrections.hpp"
@@ -79,6 +80,10 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
     tried.push_back({NameOf(one, project.tree), DescribeSuspicion(one, project.tree, recording),
                      WithoutMistake(recording, one),
                      one.kind == LogContradiction::kFrozen ? one.postures : std::vector<int>()});
+  }
+  if (const std::optional<RowShift> shift = FindRowShift(nominal, recording)) {
+    tried.push_back({fmt::format("rows:{:+d}", shift->rows), DescribeShift(*shift, recording),
+                     WithoutShift(recording, *shift), WithoutPartner(*shift, recording)});
   }
   return tried;
 }

@@ -23,11 +23,11 @@ struct RecordingMistake {
 };
 
 /// Mistakes of a recording that a fit proves. Suspicions come from the nominal robot
-/// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions); each is undone, the
-/// robot is calibrated again, and it is a mistake if the error falls to less than half (that of
-/// `result` on the recording `fitted`). Then the next is sought in the corrected recording, at most
-/// three in all. Without suspicions, which no clean recording has, nothing is fitted. `measured` as
-/// recorded.
+/// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions, FindRowShift); each is
+/// undone, the robot is calibrated again, and it is a mistake if the error falls to less than half
+/// (that of `result` on the recording `fitted`). Then the next is sought in the corrected
+/// recording, at most three in all. Without suspicions, which no clean recording has, nothing is
+/// fitted. `measured` as recorded.
 std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     std::optional<std::uint64_t> seed,
                                                     const Measurements& measured,
@@ -48,7 +48,8 @@ std::vector<RecordingMistake> FindMistakesBy(
 
 /// Undoes the mistakes of these names wherever the trials for calibration and for validation seem
 /// to have them, and says what was undone, in words: `sign:JOINT`, `exchange:JOINT,JOINT`,
-/// `frozen:JOINT` (its postures are left out), `labels:NAME,NAME` of two clusters or markers.
+/// `frozen:JOINT` (its postures are left out), `labels:NAME,NAME` of two clusters or markers,
+/// `rows:+1` of a table whose markers belong to the joints of the next row.
 /// Names with a size (ParseStatedCorrection: `gain:JOINT=1.05` ...) are done as they say.
 /// Throws InputError for a name of which the recording shows nothing, with those that it does show.
 std::vector<std::string> AcceptMistakes(const Project& project,
