@@ -168,7 +168,7 @@ TEST(JointLog, WritesWhatItReads) {
 TEST(JointLog, NamesWithSeparatorsAndQuotesSurvive) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "named_joints.csv";
   const Project project =
-      LogProject("{columns: {joints: {elbow_joint: \"el,bow;;;\", rail_joint: 'ra\"il'}}}",
+      LogProject(R"({columns: {joints: {elbow_joint: "el,bow;;;", rail_joint: 'ra"il'}}})",
                  "force_torque_sensors: [{name: \"tip, right\", link: tool}]");
   JointLog written;
   written.names = {"el,bow;;;", "ra\"il"};

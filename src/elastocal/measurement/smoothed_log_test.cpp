@@ -42,7 +42,7 @@ TEST(SmoothLog, KeepsSlowMotionsOfAllSignals) {
   const SmoothedLog log = SmoothLog(MakeLog(Times(2000, 200.0)), {});
   ASSERT_EQ(log.pieces.size(), 1u);
   EXPECT_NEAR(log.pieces[0].rate_hz, 200.0, 1e-9);
-  for (double time = 9.5; time < 14.5; time += 0.0137) {
+  for (const double time : Eigen::VectorXd::LinSpaced(365, 9.5, 14.5)) {
     const Eigen::VectorXd signals = *log.At(time);
     ASSERT_EQ(signals.size(), 10);
     // Fifth order, twice: at a tenth of the cutoff 1e-10 is lost; a cubic over 5 ms loses less.
@@ -70,7 +70,7 @@ TEST(SmoothLog, TakesTimesThatJitter) {
   Eigen::VectorXd time_s = Times(2000, 200.0);
   for (double& time : time_s) time += random.Uniform(-2e-3, 2e-3);
   const SmoothedLog log = SmoothLog(MakeLog(time_s), {});
-  for (double time = 8.0; time < 16.0; time += 0.0137) {
+  for (const double time : Eigen::VectorXd::LinSpaced(585, 8.0, 16.0)) {
     // Linear interpolation over 9 ms at most: (0.009 pi)^2 / 8.
     EXPECT_NEAR((*log.At(time))[0], Wave(time), 1e-4);
   }

@@ -102,7 +102,8 @@ MarkerTrajectories Postures(int count, double rest_s, double noise = 0.2e-3) {
   for (int i = 0; i < frames; ++i) {
     // Minimum-jerk motion, as the paper's splines of 5th order.
     const double u = std::min(1.0, (i % 500) / (100.0 * (5.0 - rest_s)));
-    const double way = i / 500 + u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+    const int passed = i / 500;  // motions
+    const double way = passed + u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
     for (int k = 0; k < 36; ++k) {
       const double reach = k < 18 ? 0.0 : 0.4;  // half of the markers are on the base
       trajectories.positions(i, k) = reach * std::sin(way + k) + random.Normal(noise);

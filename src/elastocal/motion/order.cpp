@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "elastocal/math/interruption.hpp"
 
@@ -47,7 +48,8 @@ struct Change {
 
 class LocalSearch {
  public:
-  LocalSearch(const Eigen::MatrixXd& distance, Tour tour) : distance_(distance), tour_(tour) {}
+  LocalSearch(const Eigen::MatrixXd& distance, Tour tour)
+      : distance_(distance), tour_(std::move(tour)) {}
 
   Tour Run() {
     constexpr double kLeastGain = 1e-12;

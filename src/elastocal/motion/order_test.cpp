@@ -43,7 +43,8 @@ double ShortestTour(const Eigen::VectorXd& start, const std::vector<Eigen::Vecto
 
 TEST(OrderPostures, WalksALineInOrder) {
   std::vector<Eigen::VectorXd> postures;
-  for (const double x : {3.0, 1.0, 4.0, 2.0}) postures.push_back(Eigen::VectorXd::Constant(1, x));
+  for (const double x : {3.0, 1.0, 4.0, 2.0})
+    postures.emplace_back(Eigen::VectorXd::Constant(1, x));
   const auto order = OrderPostures(Eigen::VectorXd::Zero(1), postures);
   EXPECT_NEAR(TourLength(Eigen::VectorXd::Zero(1), postures, order), 8.0, 1e-14);  // out and back
 }

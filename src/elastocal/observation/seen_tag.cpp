@@ -47,7 +47,7 @@ ObservationResidual SeenTag::Evaluate(const Sight& sight, const Eigen::VectorXd&
     by_tag.middleRows<2>(row) << by_point, -by_point * Skew(arm) * tag_turns;
     by_numbers.middleRows<2>(row) = pixel.by_camera;
   }
-  if (camera_carried) seen.by_link.push_back(-by_tag_link);
+  if (camera_carried) seen.by_link.emplace_back(-by_tag_link);
   if (tag_carried) seen.by_link.push_back(by_tag_link);
   seen.by_quantity = {by_camera, by_tag, by_numbers};
   return seen;

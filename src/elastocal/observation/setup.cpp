@@ -2,6 +2,7 @@
 #include "elastocal/observation/setup.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -48,13 +49,14 @@ int AddMountedFrame(ObservationSetup& setup, const std::string& name, const Tran
 }
 
 template <typename Kind>
-std::shared_ptr<Kind> MakeInstrument(const std::string& name, std::vector<int> links,
-                                     std::vector<int> quantities, std::vector<int> noise) {
+std::shared_ptr<Kind> MakeInstrument(const std::string& name, const std::vector<int>& links,
+                                     const std::vector<int>& quantities,
+                                     const std::vector<int>& noise) {
   auto instrument = std::make_shared<Kind>();
   instrument->name = name;
-  instrument->links = std::move(links);
-  instrument->quantities = std::move(quantities);
-  instrument->noise = std::move(noise);
+  instrument->links = links;
+  instrument->quantities = quantities;
+  instrument->noise = noise;
   return instrument;
 }
 

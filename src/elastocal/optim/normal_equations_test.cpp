@@ -108,7 +108,7 @@ TEST_F(NormalEquationsTest, AdditionIsThatOfTheWholeProblem) {
   std::vector<int> cluster;
   for (int block = 0; block < blocks(); ++block) {
     const Eigen::Index rows = problem_.Residual(block).size();
-    derivative.push_back(Eigen::VectorXd::LinSpaced(rows, 0.2 * block, 1.0));
+    derivative.emplace_back(Eigen::VectorXd::LinSpaced(rows, 0.2 * block, 1.0));
     cluster.push_back(block < 15 ? block / 5 : -1);
   }
   const Eigen::MatrixXd factors = (Eigen::MatrixXd(3, 2) << 1, 0, 1, 2, 1, -1).finished();

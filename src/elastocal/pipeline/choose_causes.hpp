@@ -22,9 +22,9 @@ struct CauseReport {
   std::vector<CausePicture> pictures;  ///< of the causes that were taken, and of the best others
 };
 
-/// Calibrates without extra causes (those of `project` are ignored), then tests each and searches
+/// Calibrates without extra causes (those of `given` are ignored), then tests each and searches
 /// the best set. Throws what Calibrate throws.
-CauseReport StudyCauses(const Project& project, const Measurements& measured,
+CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed);
 
 /// Sets the extra causes of the project's models as `calibration.extra` says: those named, none,

@@ -34,7 +34,7 @@ TEST(RobotViews, AMeshThatCannotBeReadIsPassedOver) {
   constexpr auto kEveryone = static_cast<fs::perms>(0755);
   fs::permissions(scratch.path(), kEveryone);
   std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
-  urdf.insert(urdf.rfind("</robot>"), "<!-- filename=\"fine.stl\" filename=\"secret.stl\" -->");
+  urdf.insert(urdf.rfind("</robot>"), R"(<!-- filename="fine.stl" filename="secret.stl" -->)");
   scratch.Write("arm6.urdf", urdf);
   scratch.Write("fine.stl", "abc");
   fs::permissions(scratch.Write("secret.stl", "abc"), fs::perms::none);
