@@ -2,12 +2,12 @@
 // The progress line on a terminal: a pseudo-terminal stands for standard error.
 
 #include <chrono>
+#include <cstdlib>
 #include <string>
 #include <thread>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -38,7 +38,7 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   /// What was written since the last call.
-  std::string Read() {
+  std::string Read() const {
     std::string text(4096, '\0');
     fcntl(screen_, F_SETFL, O_NONBLOCK);
     const ssize_t count = read(screen_, text.data(), text.size());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "elastocal/math/numbers.hpp"
@@ -7,6 +9,7 @@
 #include "elastocal/planning/plan_motion.hpp"
 #include "elastocal/planning/simulate_observations.hpp"
 #include "elastocal/simulation/level_feet.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -173,6 +176,23 @@ TEST(PlanTouches, ATableInTheWayAndAHandThatDoesNotReachAreNamed) {
   ASSERT_EQ(inside.left_out.size(), 1u);
   EXPECT_NE(inside.left_out[0].find("the table of left (limit: touch) -16.0 mm"), std::string::npos)
       << inside.left_out[0];
+}
+
+// Its tilt is a quantity that the project does not name.
+TEST(DesignObservations, ARootLinkThatIsHeldNeedsNoFeet) {
+  ScratchFolder folder;
+  std::ofstream(folder.path() / "project.yaml")
+      << "robot: {urdf: " << SourceFile("tests/robots/arm6.urdf").string() << "}\n"
+      << "instruments:\n"
+         "  trackers: [{name: laser}]\n"
+         "  poses: [{name: tool, link: tool, tracker: laser}]\n"
+         "recording: {not_recorded_mm: {finger_left_joint: 10}}\n";
+  const Project project = ReadProject(folder.path() / "project.yaml");
+  const ObservationDesign design = DesignObservations(project, {.count = 6, .candidates = 2});
+  ASSERT_TRUE(design.infeasible.empty()) << design.infeasible;
+  std::size_t count = 0;
+  for (const ChainPostures& of : design.postures) count += of.q.size();
+  EXPECT_EQ(count, 6u);
 }
 
 TEST(DesignObservations, ChosenPosturesTellMoreThanRandomOnes) {

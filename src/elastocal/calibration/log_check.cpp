@@ -106,13 +106,23 @@ class SuspicionSearch {
     suspicion.after += count * after * after;
   }
 
+  /// The offset of a joint and misplaced markers add a constant to what is shown: where the joint
+  /// moves, its sign is told without it.
   void TrySign(int c, const std::vector<int>& postures) {
-    const Eigen::VectorXd logged = Logged(c, postures);
-    const Eigen::VectorXd shown = Shown(c, postures);
-    const double before = Typical(shown - logged);
-    const double after = Typical(shown + logged);
-    if (before < LeastDiscrepancy(c) || after > kFarBetter * before) return;
+    const auto varying = [](const Eigen::VectorXd& values) -> Eigen::VectorXd {
+      return values.array() - Median(values);
+    };
+    const Eigen::VectorXd left = Shown(c, postures) - Logged(c, postures);
+    const Eigen::VectorXd undone = Shown(c, postures) + Logged(c, postures);
+    if (!AddSign(c, postures, Typical(left), Typical(undone))) {
+      AddSign(c, postures, Typical(varying(left)), Typical(varying(undone)));
+    }
+  }
+
+  bool AddSign(int c, const std::vector<int>& postures, double before, double after) {
+    if (before < LeastDiscrepancy(c) || after > kFarBetter * before) return false;
     Add(LogContradiction::kSign, c, -1, postures, before, after);
+    return true;
   }
 
   /// A sign that one trial shows to be reversed is so in others as well where the joint did not
@@ -128,7 +138,8 @@ class SuspicionSearch {
         if (recording_.trial[i] == trial) postures.push_back(i);
       }
       for (int c : reversed) {
-        if (!postures.empty() && Range(Logged(c, postures)) < LeastRange(c)) TrySign(c, postures);
+        if (postures.empty() || Range(Logged(c, postures)) >= LeastRange(c)) continue;
+        TrySign(c, postures);
       }
     }
     for (auto& [key, suspicion] : found_) {
@@ -149,6 +160,7 @@ class SuspicionSearch {
   }
 
   void TryFrozen(int c, const std::vector<int>& postures) {
+    if (Range(Logged(c, postures)) < kStill) return TryDead(c, postures);
     if (Range(Logged(c, postures)) < LeastRange(c)) return;  // it was not to move
     std::vector<int> longest;
     std::vector<int> run;
@@ -171,6 +183,13 @@ class SuspicionSearch {
     const double after = Typical(Shown(c, others) - Logged(c, others));
     if (before < LeastDiscrepancy(c) || after > kFarBetter * before) return;
     Add(LogContradiction::kFrozen, c, -1, longest, before, after);
+  }
+
+  /// A joint that is logged in one place in all of a trial, while the markers show it moving.
+  void TryDead(int c, const std::vector<int>& postures) {
+    const Eigen::VectorXd shown = Shown(c, postures);
+    const double moved = Typical(shown.array() - Median(shown));
+    if (moved >= LeastDiscrepancy(c)) Add(LogContradiction::kFrozen, c, -1, postures, moved, 0.0);
   }
 
   const RobotTree& tree_;

@@ -106,6 +106,17 @@ TEST_F(LogCheckTest, AReversedSignIsTold) {
   }
 }
 
+TEST_F(LogCheckTest, AReversedSignIsToldOfAJointThatIsMountedFarOff) {
+  const int ankle = Coordinate("right_5");
+  Recording changed = recording_;
+  changed.q.col(ankle) *= -0.3;  // a small range beside the offset
+  See(changed);
+  recording_.q.col(ankle) *= 0.3;
+  recording_.q.col(ankle).array() += 0.08;
+  recording_.markers = changed.markers;
+  EXPECT_EQ(First(recording_), "right_5: the sign of its positions is reversed in trial a, b");
+}
+
 // A joint that stood still in a trial could be off there as well. Its sign is known from the other.
 TEST_F(LogCheckTest, AReversedSignIsFollowedToTrialsInWhichTheJointStoodStill) {
   const int hip = Coordinate("left_2");
@@ -138,6 +149,15 @@ TEST_F(LogCheckTest, AFrozenJointIsTold) {
             "right_4: its positions are frozen, while it moved, in 6 postures in trial b");
   const auto found = FindLogSuspicions(robot_.model, changed);
   EXPECT_EQ(WithoutMistake(changed, found.front()).posture_count(), 2 * kPlayed - 6);
+}
+
+TEST_F(LogCheckTest, AJointThatIsLoggedInOnePlaceThroughoutIsTold) {
+  Recording changed = recording_;
+  changed.q.col(Coordinate("right_4")).setConstant(0.2);
+  EXPECT_EQ(First(changed), "right_4: its positions are frozen, while it moved, in " +
+                                std::to_string(2 * kPlayed) + " postures in trial a, b");
+  See(changed);  // it stood still
+  EXPECT_EQ(First(changed), "");
 }
 
 // It rests while others move, and the markers show it elsewhere, but in one place.

@@ -15,11 +15,12 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMarkerSd = 0.02;      // m: nominal robot and markers
+constexpr double kMarkerSd = 0.02;      // m: nominal robot and markers, of a large robot
+constexpr double kMarkerShare = 0.01;   // of the robot's size, of a small one
 constexpr double kLoggedSd = 0.5;       // rad
 constexpr double kLoggedSlideSd = 0.1;  // m
 constexpr double kWaistSd = 1.0;        // m, rad: about the first guess
-constexpr double kFarOff = 0.04;        // m: markers, by joints that differ from the log
+constexpr double kFarOff = 2.0;         // of these: markers, by joints that differ from the log
 constexpr int kMostSteps = 20;
 constexpr double kSmallStep = 1e-4;
 
@@ -31,7 +32,10 @@ bool SlidesAlong(const RobotTree& tree, int coordinate) {
 class MarkerPositionFinder {
  public:
   MarkerPositionFinder(const ErrorModel& model, const Recording& recording)
-      : model_(model), recording_(recording), jacobian_(model) {
+      : model_(model),
+        recording_(recording),
+        jacobian_(model),
+        marker_sd_(std::min(kMarkerSd, kMarkerShare * RobotSize(model.tree))) {
     geometry_ = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
     unknown_of_.assign(model.tree.coordinate_count(), -1);
     for (int joint : model.active_joints) {
@@ -123,7 +127,7 @@ class MarkerPositionFinder {
   /// of two joints that brings them nearest: from there the search finds its way.
   Start BestStart(int i, const Eigen::VectorXd& logged) {
     Start best = Register(i, logged);
-    if (!(best.misfit > kFarOff)) return best;
+    if (!(best.misfit > kFarOff * marker_sd_)) return best;
     const auto take = [&](const Eigen::VectorXd& q) {
       Start start = Register(i, q);
       if (start.misfit < best.misfit) best = std::move(start);
@@ -169,14 +173,14 @@ class MarkerPositionFinder {
     for (int m = 0; m < model_.marker_count(); ++m) {
       if (!Seen(recording_, i, m)) continue;
       const Eigen::Vector3d residual =
-          (jacobian_.Position(m) - MarkerPosition(recording_, i, m)) / kMarkerSd;
+          (jacobian_.Position(m) - MarkerPosition(recording_, i, m)) / marker_sd_;
       const std::vector<int>& parameters = jacobian_.Columns(m);
       const auto block = jacobian_.Block(m);
       Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, size);
       for (std::size_t k = 0; k < parameters.size(); ++k) {
         for (const Column& column : columns_[parameters[k]]) {
           J.col(column.unknown) +=
-              column.factor / kMarkerSd * block.col(static_cast<Eigen::Index>(k));
+              column.factor / marker_sd_ * block.col(static_cast<Eigen::Index>(k));
         }
       }
       // A marker far off is wrong itself, or waits for the joints to come nearer.
@@ -191,6 +195,7 @@ class MarkerPositionFinder {
   const ErrorModel& model_;
   const Recording& recording_;
   GeneralizedJacobian jacobian_;
+  const double marker_sd_;  // m, of a coordinate
   Geometry geometry_;
   std::vector<int> unknown_of_;  // by coordinate: its number beyond those of the waist; -1
   std::vector<std::vector<Column>> columns_;  // by parameter: the unknowns that act like it

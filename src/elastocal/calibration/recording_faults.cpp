@@ -25,6 +25,14 @@ double LeastSize(FaultKind kind, bool slides) {
   return slides ? 1e-3 : 0.25 * M_PI / 180.0;
 }
 
+/// Sizes beyond which a fault is none: where a joint moves no marker, rounding would explain
+/// anything with a size large enough.
+double LargestSize(FaultKind kind, bool slides) {
+  if (kind == FaultKind::kJointGain) return 1.0;
+  if (kind == FaultKind::kCameraScale) return 0.5;
+  return slides ? 1.0 : M_PI;
+}
+
 using Blocks = std::vector<Eigen::VectorXd>;
 
 class FaultSearch {
@@ -131,8 +139,9 @@ class FaultSearch {
       fault.sd = std::sqrt(additions[k].variance * std::max(1.0, result_.posterior.cluster_factor));
       fault.share = additions[k].gain / squares_;
       const bool certain = std::abs(fault.size) > kLeastSds * fault.sd;
-      const bool matters =
-          std::abs(fault.size) > LeastSize(fault.kind, slides) && fault.share > kLeastExplained;
+      const bool matters = std::abs(fault.size) > LeastSize(fault.kind, slides) &&
+                           std::abs(fault.size) < LargestSize(fault.kind, slides) &&
+                           fault.share > kLeastExplained;
       if (certain && matters) found_.push_back(fault);
     }
   }

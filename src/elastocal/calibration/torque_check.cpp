@@ -23,6 +23,8 @@ constexpr double kMostSlope = 2.0;
 constexpr double kLeastCorrelation = 0.5;
 constexpr std::size_t kLeastPairs = 5;
 constexpr double kLeftOfExchange = 0.25;  // of the squares
+constexpr double kLeftOfReversal = 0.25;  // of the squares of all sensors
+constexpr std::size_t kManyReversed = 3;  // sensors
 
 /// Static and measured torques of one joint.
 struct Pairs {
@@ -66,6 +68,7 @@ std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs) {
 /// postures of both, the means apart: squares, and of the first joint's own static torques.
 struct SensorFit {
   double squares = 0.0, own = 0.0;
+  double reversed = 0.0;  ///< beside its own ones with the opposite sign
   Eigen::Index count = 0;
 };
 
@@ -89,10 +92,11 @@ SensorFit Beside(const Pairs& measured, const Pairs& expected) {
     return all - all.mean();
   };
   return {(centred(m) - centred(e)).square().sum(), (centred(m) - centred(own)).square().sum(),
-          count};
+          (centred(m) + centred(own)).square().sum(), count};
 }
 
-/// Whether the sensors of two joints are exchanged.
+/// Whether the sensors of two joints are exchanged. Joints of one limb carry much the same load:
+/// two reversed sensors may follow each other's better than their own, but their own reversed best.
 bool AreExchanged(const Pairs& a, const Pairs& b) {
   const SensorFit with_b = Beside(a, b);
   const SensorFit with_a = Beside(b, a);
@@ -100,7 +104,22 @@ bool AreExchanged(const Pairs& a, const Pairs& b) {
   const double left = with_b.squares + with_a.squares;
   const double own = with_b.own + with_a.own;
   const double least = 2.0 * kLeastSpread * kLeastSpread * static_cast<double>(with_b.count);
-  return own > least && left < kLeftOfExchange * own;
+  const double reversed = with_b.reversed + with_a.reversed;
+  return own > least && left < kLeftOfExchange * own && left < reversed;
+}
+
+/// Whether the sensors all together have the opposite sign of statics.
+bool AllReversed(const std::vector<Pairs>& pairs) {
+  double as_is = 0.0, reversed = 0.0;
+  std::size_t sensors = 0;
+  for (const Pairs& of : pairs) {
+    if (of.posture.size() >= kLeastPairs) ++sensors;
+    for (std::size_t i = 0; i < of.measured.size(); ++i) {
+      as_is += std::pow(of.measured[i] - of.expected[i], 2);
+      reversed += std::pow(of.measured[i] + of.expected[i], 2);
+    }
+  }
+  return sensors >= kManyReversed && reversed < kLeftOfReversal * as_is;
 }
 
 /// Whether the joint is between the root and one of the links.
@@ -153,6 +172,13 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
       PairTorques(model, recording, RegisterPlacement(model, recording, slip_m));
   const std::size_t joints = pairs.size();
   std::vector<ContradictoryTorque> found;
+  if (AllReversed(pairs)) {
+    for (std::size_t k = 0; k < joints; ++k) {
+      if (pairs[k].measured.empty()) continue;
+      found.push_back({.joint = static_cast<int>(k), .kind = TorqueContradiction::kReversed});
+    }
+    return found;
+  }
   std::vector<char> exchanged(joints, 0);
   for (std::size_t a = 0; a < joints; ++a) {
     for (std::size_t b = a + 1; b < joints; ++b) {

@@ -29,6 +29,8 @@ struct ContradictoryTorque {
 /// than masses of links, friction and deflection could make them: a slope below 0.5 or above 2, a
 /// bias of more than 10 N.m (N) and a quarter of the largest torque, a correlation below a half; or
 /// two sensors that fit each other's statics far better than their own (a quarter of the squares).
+/// Where all sensors together fit far better with the opposite sign, all are reversed: of those
+/// whose load varies little, none by itself would be found.
 /// Statics of the joints of a leg on one foot, of the others in any posture, at nominal geometry;
 /// the waist as its markers have it. Only sensors whose static torque varies by 5 N.m (N) or more
 /// (sd; for a bias: any) in five postures or more are judged; none where the robot description has

@@ -207,7 +207,9 @@ int RunContactValidation(const ContactValidateOptions& options, const Project& p
                    (run.calibrated.all.touches > 0 ? table.Render() : "") +
                    InstrumentText(run.model, run.uncalibrated, run.calibrated));
   PrintWarnings(run.warnings, options.common.verbose);
-  if (!run.better()) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
+  for (const std::string& objection : run.objections) {
+    spdlog::error("{}: do not deploy", objection);
+  }
   if (!folder.empty()) PrintReportPlace(folder, no_report, quiet);
   return run.better() ? kFine : kNotConverged;
 }

@@ -10,6 +10,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/interruption.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
+#include "elastocal/measurement/session_shapes.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -55,10 +56,11 @@ Trial TrialOf(const TrialFiles& files, const Project& project) {
 }
 
 TrialSamples Sample(const TrialFiles& files, const MarkedRobot& robot, const Project& project,
-                    MarkerFile file, const JointLog& log) {
+                    MarkerFile file, const JointLog& log, const PairDistances& usual = {}) {
   const std::vector<int> markers = TrialMarkers(project, files);
   CheckJoints(log, markers, files, project);
   MeasurementOptions options = project.measurement;
+  options.labels.usual = usual;
   // Of a bag with both, the clocks are one already, up to what the computers differed.
   if (file.start_s && files.markers == files.joints) options.expected_lag_s = -*file.start_s;
   if (files.expected_lag_s) options.expected_lag_s = files.expected_lag_s;
@@ -128,6 +130,20 @@ std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const
   return samples;
 }
 
+/// Samples again, as the markers lie in the others, what took clusters of another shape.
+void SampleOddOnesAgain(const std::vector<TrialFiles>& trials, const MarkedRobot& robot,
+                        const Project& project, std::vector<TrialSamples>& samples) {
+  std::vector<TrialSummary> summaries;
+  for (const TrialSamples& of : samples) summaries.push_back(of.summary);
+  const PairDistances usual = UsualDistances(summaries);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!DiffersFromUsual(summaries[i], usual)) continue;
+    samples[i] = Sample(trials[i], robot, project,
+                        ReadMarkerFile(trials[i].markers, trials[i].reading, project),
+                        ReadJointFile(trials[i].joints, trials[i].reading, project), usual);
+  }
+}
+
 std::string NameOf(const fs::path& folder) {
   const fs::path normal = (folder / "").lexically_normal();
   return normal.parent_path().filename().string();
@@ -172,7 +188,9 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   std::vector<TrialSamples> calibration, validation;
   RecordingFolder result;
   UpAxis up(experiment);
-  for (TrialSamples& samples : SampleAll(experiment.trials, robot, project, up)) {
+  std::vector<TrialSamples> sampled = SampleAll(experiment.trials, robot, project, up);
+  SampleOddOnesAgain(experiment.trials, robot, project, sampled);
+  for (TrialSamples& samples : sampled) {
     result.trials.push_back(samples.summary);
     for (std::string& finding : Findings(samples.summary)) {
       result.findings.push_back(std::move(finding));

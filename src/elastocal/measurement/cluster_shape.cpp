@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr Eigen::Index kMostFrames = 4000;  // give a median to 2 % of the noise
 constexpr int kAllPermutationsUpTo = 5;     // 120 of them
+constexpr double kLeastUsual = 0.05;        // of the frames, for the usual distance to be true
 
 std::vector<Permutation> ListPermutations(int size) {
   Permutation order(static_cast<std::size_t>(size));
@@ -38,24 +40,6 @@ double MedianOf(const std::vector<double>& values) {
   return Median(Eigen::VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size())));
 }
 
-// Median of the values in the interval of the given width that contains the most of them. If a
-// distance changed in the middle of a trial, the median of all values could lie between the two
-// distances; this one does not.
-double DensestMedian(std::vector<double> values, double width) {
-  std::sort(values.begin(), values.end());
-  std::size_t best_begin = 0;
-  std::size_t best_end = 0;
-  for (std::size_t begin = 0, end = 0; begin < values.size(); ++begin) {
-    while (end < values.size() && values[end] <= values[begin] + width) ++end;
-    if (end - begin > best_end - best_begin) {
-      best_begin = begin;
-      best_end = end;
-    }
-  }
-  return MedianOf({values.begin() + static_cast<std::ptrdiff_t>(best_begin),
-                   values.begin() + static_cast<std::ptrdiff_t>(best_end)});
-}
-
 // Minimum, over all orders except the identity, of the largest change of a distance, in tolerances.
 double Separation(const ClusterShape& shape) {
   double least = std::numeric_limits<double>::infinity();
@@ -76,7 +60,49 @@ double Separation(const ClusterShape& shape) {
   return least;
 }
 
+bool Agree(double distance, double usual, double tolerance) {
+  return !(std::abs(distance - usual) > tolerance);  // where one is not known, they do not differ
+}
+
+// Whether the distances under an order of the labels are the usual ones.
+bool HasUsual(const ClusterShape& shape, const Permutation& order, const Eigen::VectorXd& usual) {
+  for (int i = 0; i < shape.size; ++i) {
+    for (int j = i + 1; j < shape.size; ++j) {
+      const int pair = PairColumn(i, j, shape.size);
+      const int other = PairColumn(order[i], order[j], shape.size);
+      if (!Agree(shape.distances[other], usual[pair], shape.tolerances[other])) return false;
+    }
+  }
+  return true;
+}
+
+// The values near the usual one, where they are a twentieth of all; else nothing.
+std::vector<double> NearUsual(const std::vector<double>& values, double usual, double tolerance) {
+  std::vector<double> near;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(near),
+               [&](double value) { return std::abs(value - usual) <= tolerance; });
+  if (kLeastUsual * static_cast<double>(values.size()) > static_cast<double>(near.size())) {
+    near.clear();
+  }
+  return near;
+}
+
 }  // namespace
+
+double DensestMedian(std::vector<double> values, double width) {
+  std::sort(values.begin(), values.end());
+  std::size_t best_begin = 0;
+  std::size_t best_end = 0;
+  for (std::size_t begin = 0, end = 0; begin < values.size(); ++begin) {
+    while (end < values.size() && values[end] <= values[begin] + width) ++end;
+    if (end - begin > best_end - best_begin) {
+      best_begin = begin;
+      best_end = end;
+    }
+  }
+  return MedianOf({values.begin() + static_cast<std::ptrdiff_t>(best_begin),
+                   values.begin() + static_cast<std::ptrdiff_t>(best_end)});
+}
 
 int PairColumn(int i, int j, int size) {
   const int low = std::min(i, j);
@@ -116,7 +142,7 @@ bool ClusterShape::Fits(const Eigen::Ref<const Eigen::RowVectorXd>& frame,
 }
 
 ClusterShape MeasureShape(const DistanceTable& table, int size, double tolerance_sd,
-                          double least_tolerance_m) {
+                          double least_tolerance_m, const Eigen::VectorXd& usual) {
   ClusterShape shape;
   shape.size = size;
   shape.permutations = ListPermutations(size);
@@ -137,7 +163,18 @@ ClusterShape MeasureShape(const DistanceTable& table, int size, double tolerance
     }
     const double sd = steps.empty() ? 0.0 : kNormalMad * MedianOf(steps) / std::sqrt(2.0);
     shape.tolerances[pair] = std::max(least_tolerance_m, tolerance_sd * sd);
+    if (usual.size() > 0) {
+      const std::vector<double> near = NearUsual(values, usual[pair], shape.tolerances[pair]);
+      if (!near.empty()) values = near;
+    }
     shape.distances[pair] = DensestMedian(std::move(values), 2.0 * shape.tolerances[pair]);
+  }
+  if (usual.size() > 0 && !HasUsual(shape, shape.permutations.front(), usual)) {
+    const bool exchanged =
+        std::any_of(shape.permutations.begin() + 1, shape.permutations.end(),
+                    [&](const Permutation& order) { return HasUsual(shape, order, usual); });
+    // What is not known of the usual shape stays unknown: labels there cannot be told.
+    if (exchanged) shape.distances = usual;
   }
   shape.separation = Separation(shape);
   return shape;

@@ -47,7 +47,18 @@ struct ClusterShape {
 /// Tolerances are `tolerance_sd` standard deviations, but at least `least_tolerance_m`. The
 /// standard deviation is estimated from the differences of successive frames (median absolute
 /// difference), which neither a swap nor a displaced marker affects.
+///
+/// `usual`, if not empty, are the distances of the pairs in other trials, m (NaN: unknown). Where a
+/// twentieth of the frames agrees with them, so does the shape, whatever most frames show: a marker
+/// that was displaced within the trial, or labels exchanged in most of it. If all frames differ,
+/// but another order of the labels has the usual distances, the labels are exchanged in all of the
+/// trial, and the shape is the usual one.
 ClusterShape MeasureShape(const DistanceTable& table, int size, double tolerance_sd,
-                          double least_tolerance_m);
+                          double least_tolerance_m, const Eigen::VectorXd& usual = {});
+
+/// Median of the values in the interval of the given width that contains the most of them; NaN for
+/// no values. If a distance changed in the middle of a trial, the median of all values could lie
+/// between the two distances; this one does not.
+double DensestMedian(std::vector<double> values, double width);
 
 }  // namespace elastocal

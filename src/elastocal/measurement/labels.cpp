@@ -23,6 +23,21 @@ struct Plan {
       : order(frames, kOpen), removed(size, std::vector<bool>(frames)), undecided(frames) {}
 };
 
+// The usual distances of a cluster's pairs, NaN where unknown; empty if nothing is known at all.
+Eigen::VectorXd UsualOf(const std::vector<int>& markers, const std::vector<std::string>& names,
+                        const PairDistances& usual) {
+  if (usual.empty()) return {};
+  const int size = static_cast<int>(markers.size());
+  Eigen::VectorXd distances = Eigen::VectorXd::Constant(size * (size - 1) / 2, kNaN);
+  for (int i = 0; i < size; ++i) {
+    for (int j = i + 1; j < size; ++j) {
+      const auto found = usual.find({names[markers[i]], names[markers[j]]});
+      if (found != usual.end()) distances[PairColumn(i, j, size)] = found->second;
+    }
+  }
+  return distances.array().isNaN().all() ? Eigen::VectorXd() : distances;
+}
+
 // Decides on each frame of one cluster by its distances.
 class LabelFinder {
  public:
@@ -32,7 +47,8 @@ class LabelFinder {
         trajectories_(trajectories),
         table_(MeasureDistances(trajectories, markers)),
         shape_(MeasureShape(table_, static_cast<int>(markers.size()), options.tolerance_sd,
-                            options.least_tolerance_m)),
+                            options.least_tolerance_m,
+                            UsualOf(markers, trajectories.names, options.usual))),
         ambiguous_(!(shape_.separation >= options.least_separation)) {}
 
   const ClusterShape& shape() const { return shape_; }

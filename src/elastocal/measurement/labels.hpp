@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "elastocal/measurement/cluster_shape.hpp"
@@ -16,6 +18,10 @@ struct LabelCluster {
   std::vector<int> markers;  ///< of the trajectories' names
 };
 
+/// Distances between markers of a cluster by their names, the first of which comes first in the
+/// cluster, m.
+using PairDistances = std::map<std::pair<std::string, std::string>, double>;
+
 struct LabelOptions {
   double tolerance_sd = 6.0;  ///< a distance is wrong if it is off by more standard deviations
   double least_tolerance_m =
@@ -23,6 +29,7 @@ struct LabelOptions {
   /// Labels are corrected only if every other order changes some distance by this many tolerances.
   /// Above 2, no frame can fit two orders.
   double least_separation = 2.5;
+  PairDistances usual = {};  ///< as other trials show them (MeasureShape)
 };
 
 /// Frames in which labels were exchanged, now corrected.

@@ -69,6 +69,52 @@ void ExpectSame(const MarkerTrajectories& found, const MarkerTrajectories& expec
 
 const std::vector<LabelCluster> kThree{{"wrist", {0, 1, 2}}};
 
+/// Distances as other trials show them.
+LabelOptions Usual() {
+  return {.usual = {{{"a", "b"}, 0.0600}, {{"a", "c"}, 0.0897}, {{"b", "c"}, 0.0711}}};
+}
+
+MarkerTrajectories MoveNamed(int frames) {
+  MarkerTrajectories trajectories = Move(Triangle(), frames);
+  trajectories.names = {"a", "b", "c"};
+  return trajectories;
+}
+
+TEST(CorrectLabels, OtherTrialsTellWhichPartOfATrialIsExchanged) {
+  const MarkerTrajectories truth = MoveNamed(3000);
+  for (const FrameInterval wrong : {FrameInterval{0, 2000}, FrameInterval{0, 3000}}) {
+    MarkerTrajectories trajectories = truth;
+    Exchange(trajectories, 0, 1, wrong);
+    const auto labels = CorrectLabels(kThree, Usual(), trajectories);
+    ASSERT_EQ(labels[0].swaps.size(), 1u);
+    EXPECT_EQ(labels[0].swaps[0].frames, wrong);
+    ExpectSame(trajectories, truth);
+  }
+}
+
+TEST(CorrectLabels, OtherTrialsTellWhichPartOfATrialHasADisplacedMarker) {
+  const MarkerTrajectories truth = MoveNamed(3000);
+  for (const int begin : {1000, 0}) {
+    MarkerTrajectories trajectories = truth;
+    for (int frame = begin; frame < 3000; ++frame) {
+      const Eigen::RowVector3d along =
+          (truth.positions.block<1, 3>(frame, 3) - truth.positions.block<1, 3>(frame, 0))
+              .normalized();
+      trajectories.positions.block<1, 3>(frame, 0) -= 0.008 * along;
+    }
+    const auto labels = CorrectLabels(kThree, Usual(), trajectories);
+    EXPECT_TRUE(labels[0].swaps.empty());
+    if (begin == 0) {  // all of the trial: not what other trials show, but whole
+      EXPECT_TRUE(labels[0].outliers.empty());
+      EXPECT_NEAR(labels[0].distances[0], 0.068, 1e-4);
+      continue;
+    }
+    ASSERT_EQ(labels[0].outliers.size(), 1u);
+    EXPECT_EQ(labels[0].outliers[0].marker, 0);
+    EXPECT_EQ(labels[0].outliers[0].frames, (FrameInterval{begin, 3000}));
+  }
+}
+
 TEST(CorrectLabels, LeavesACleanClusterAlone) {
   MarkerTrajectories trajectories = Move(Triangle(), 3000);
   const MarkerTrajectories truth = trajectories;

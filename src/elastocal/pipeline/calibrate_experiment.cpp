@@ -225,6 +225,12 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
                                 run.faults.end());
   run.coverage = FindCoverage(project, measured);
+  const bool whole = std::all_of(run.coverage.begin(), run.coverage.end(), [](const auto& of) {
+    return of.calibrated || of.refused.empty();
+  });
+  if (whole) {  // else the chain's objection says so
+    Append(UnknownStance(project, measured), run.verdict.objections);
+  }
   JudgeCoverage(run.coverage, run.verdict);
   Append(measured.warnings, run.warnings);
   for (const std::string& what : run.undone) run.warnings.push_back(DescribeUndone(what));

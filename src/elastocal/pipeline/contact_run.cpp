@@ -10,6 +10,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
+#include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -18,11 +19,7 @@ namespace {
 
 constexpr int kUsualFolds = 10;
 constexpr int kFewestObservedPostures = 8;  // tables and plates alone have 5 unknowns each
-constexpr double kPlainGain = 2.0;          // standard deviations: better by no chance
-constexpr double kLittleBetter = 0.95;      // of the error before: hardly anything was gained
-constexpr double kMostLeftOut = 0.25;       // share of observations
-constexpr double kDegreeHere = 180.0 / M_PI;
-constexpr double kTiedVariance = 1e-6;  // relative, see TakePosterior
+constexpr double kTiedVariance = 1e-6;      // relative, see TakePosterior
 
 std::string JoinNames(const std::vector<std::string>& names) {
   std::string text;
@@ -126,60 +123,6 @@ CalibrationResult ResultOf(const ObservedRobot& model, const ObservationFit& fit
   return result;
 }
 
-/// The least error of any kind of row after calibration, over that before.
-double BestRatio(const ContactRun& run) {
-  const std::vector<RowErrors>& before = ContactRun::Judged(run.uncalibrated).rows;
-  const std::vector<RowErrors>& after = ContactRun::Judged(run.calibrated).rows;
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < after.size(); ++i) {
-    best = std::min(best, after[i].rms / std::max(before[i].rms, 1e-300));
-  }
-  return best;
-}
-
-void JudgeContacts(ContactRun& run) {
-  Verdict& verdict = run.verdict;
-  const bool held_out = run.calibrated.held_out.folds > 0;
-  const bool touches = run.touches_only();
-  const std::string what = touches ? "touches" : "observations";
-  const std::string on =
-      held_out ? "on " + what + " that were left out" : "on the " + what + " of the fit";
-  if (run.calibrated.estimate.fit.termination != Termination::kConverged) {
-    verdict.objections.emplace_back(
-        "the estimate has not converged: variances did not come to rest");
-  }
-  const auto left_out = static_cast<double>(run.calibrated.estimate.outliers.size());
-  if (left_out > kMostLeftOut * run.observations.count()) {
-    verdict.objections.push_back(
-        fmt::format("{:.0f} of {} {} are outliers", left_out, run.observations.count(), what));
-  }
-  const double ratio = BestRatio(run);
-  if (!(ratio < 1.0) || run.gain_in_sds < -kPlainGain) {
-    verdict.objections.push_back("the calibrated robot is no better than the uncalibrated one " +
-                                 on);
-  } else if (run.gain_in_sds < kPlainGain || ratio > kLittleBetter) {
-    verdict.remarks.push_back("the calibrated robot is hardly better than the uncalibrated one " +
-                              on);
-  }
-  if (!held_out) {
-    verdict.remarks.push_back("no " + std::string(touches ? "touch" : "posture") +
-                              " was left out (--kfold 0): nothing was validated");
-  }
-  if (run.geometric && touches) {
-    const TouchErrors& urdf = ContactRun::Judged(*run.geometric).all;
-    verdict.remarks.push_back(fmt::format(
-        "these figures hold with compensation of elasticity; the URDF alone leaves {:.2f} mm and "
-        "{:.2f} degrees {}",
-        1e3 * urdf.height, kDegreeHere * urdf.tilt(), on));
-  }
-  if (run.calibrated.held_out.unsettled > 0) {
-    verdict.remarks.push_back(fmt::format("{} of {} folds have not converged",
-                                          run.calibrated.held_out.unsettled,
-                                          run.calibrated.held_out.folds));
-  }
-  if (run.model.setup.feet.size() > 1) verdict.remarks.push_back(DescribeClosure(run.closure));
-}
-
 /// What is left of an observation, for people: "position 1.2, 0.3, -4 mm".
 std::string LeftInWords(const Instrument& instrument, const Eigen::VectorXd& left) {
   std::string text;
@@ -247,10 +190,9 @@ ContactRun CalibrateContacts(const Project& project,
   run.result = ResultOf(run.model, fit, equations);
   JudgeContacts(run);
   if (run.deployable()) {
-    const CalibrationResult in_urdf =
-        rigid ? ResultOf(*rigid, run.geometric->estimate.fit, equations) : run.result;
-    run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(), in_urdf,
-                                  options.zero_offsets);
+    if (rigid) run.in_urdf = ResultOf(*rigid, run.geometric->estimate.fit, equations);
+    run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(),
+                                  run.in_urdf ? *run.in_urdf : run.result, options.zero_offsets);
     run.warnings.insert(run.warnings.end(), run.urdf->warnings.begin(), run.urdf->warnings.end());
   }
   for (std::string& outlier : DescribeOutliers(run)) run.warnings.push_back(std::move(outlier));

@@ -45,6 +45,7 @@ struct ContactRun {
   ClosureEvidence closure;
   double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) postures, see GainInSds
   CalibrationResult result;  ///< the parameters of the robot
+  std::optional<CalibrationResult> in_urdf;  ///< those of `geometric`, which the URDF has
   Verdict verdict;
   std::optional<CalibratedUrdf> urdf;  ///< nothing where the verdict has objections
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;

@@ -15,6 +15,7 @@
 #include "elastocal/observation/standing_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
+#include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -99,12 +100,25 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   run.calibrated = MakeFigures(run.model, run.observations, after);
   run.gain_in_sds =
       GainInSds(run.model, run.observations, before, after, contacts.calibrated.spread);
+  for (const std::string& row : WorseRows(run.model, run.uncalibrated, run.calibrated)) {
+    run.objections.push_back("the calibrated robot is worse here: " + row);
+  }
+  // Without registration, a table or tracker that has been moved says nothing of the robot.
+  if (run.surroundings_refitted) {
+    for (const std::string& row : LargeErrors(run.model, run.calibrated)) {
+      run.objections.push_back("no calibrated robot errs like this: " + row);
+    }
+  }
+  if (!(run.gain_in_sds > 0.0)) {
+    run.objections.emplace_back("calibrated is no better than uncalibrated here");
+  }
   return run;
 }
 
 std::string MakeContactValidationJson(const ContactValidation& run) {
   nlohmann::ordered_json json;
   json["status"] = run.better() ? "better" : "not better";
+  json["objections"] = run.objections;
   json["calibration"] = run.calibration_file;
   json["calibration_fingerprint"] = run.calibration_fingerprint;
   json["recording"] = run.recording;

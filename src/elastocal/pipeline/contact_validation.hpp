@@ -20,11 +20,13 @@ struct ContactValidation {
   bool surroundings_refitted = false;
   ObservationFigures uncalibrated, calibrated;
   double gain_in_sds = 0.0;  ///< see GainInSds
+  /// No gain in the sum of squares over the noise; kinds of observations that are clearly worse
+  /// (WorseRows) or, with the surroundings registered anew, off by more than any calibrated robot
+  /// is (LargeErrors).
+  std::vector<std::string> objections;
   std::vector<std::string> warnings;
 
-  /// Whether the calibrated robot errs less than the uncalibrated one, in the sum of squares over
-  /// the noise.
-  bool better() const { return gain_in_sds > 0.0; }
+  bool better() const { return objections.empty(); }
 };
 
 /// Predicts the observations of `recordings` (tables of observations and of corners) by a stored

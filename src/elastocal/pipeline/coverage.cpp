@@ -2,15 +2,40 @@
 #include "elastocal/pipeline/coverage.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "elastocal/calibration/observations.hpp"
 
 namespace elastocal {
 namespace {
 
-/// Markers of a recording that are seen in postures of trials of the chain; of a table, anywhere.
+bool Exercises(const Trial& trial, const std::string& chain) {
+  return std::find(trial.chains.begin(), trial.chains.end(), chain) != trial.chains.end();
+}
+
+std::vector<int> JointsOf(const Project& project, const Chain& chain) {
+  return JointsToBody(project.tree, project.tree.links[chain.tip_link].body);
+}
+
+/// Whether the trials exercise each joint of the chain, be it as one of other chains.
+bool ExercisesEachJoint(const Project& project, const Recording& recording, const Chain& chain) {
+  std::set<int> exercised;
+  for (const Trial& trial : recording.trials) {
+    for (const Chain& other : project.chains) {
+      if (!Exercises(trial, other.name)) continue;
+      for (const int joint : JointsOf(project, other)) exercised.insert(joint);
+    }
+  }
+  const std::vector<int> joints = JointsOf(project, chain);
+  return std::all_of(joints.begin(), joints.end(),
+                     [&](int joint) { return exercised.contains(joint); });
+}
+
+/// Markers of a recording that are seen in postures of trials of the chain (`anywhere`: of any
+/// trial); of a table, anywhere.
 bool Shows(const Recording& recording, const std::string& chain,
-           const std::vector<std::string>& markers) {
+           const std::vector<std::string>& markers, bool anywhere) {
   const ObservationMask seen = SeenMask(recording);
   for (int m = 0; m < recording.marker_count(); ++m) {
     if (std::find(markers.begin(), markers.end(), recording.marker_names[m]) == markers.end()) {
@@ -18,7 +43,7 @@ bool Shows(const Recording& recording, const std::string& chain,
     }
     for (int i = 0; i < recording.posture_count(); ++i) {
       if (!seen(i, m)) continue;
-      if (recording.trials.empty()) return true;
+      if (anywhere || recording.trials.empty()) return true;
       const std::vector<std::string>& chains = recording.trials[recording.trial[i]].chains;
       if (std::find(chains.begin(), chains.end(), chain) != chains.end()) return true;
     }
@@ -26,14 +51,10 @@ bool Shows(const Recording& recording, const std::string& chain,
   return false;
 }
 
-bool Exercises(const Trial& trial, const std::string& chain) {
-  return std::find(trial.chains.begin(), trial.chains.end(), chain) != trial.chains.end();
-}
-
 /// The trial that moves the joints of a chain most without being said to exercise it.
 std::string MovingTrial(const Project& project, const Chain& chain, const Recording& recording) {
   std::vector<int> coordinates;
-  for (int joint : JointsToBody(project.tree, project.tree.links[chain.tip_link].body)) {
+  for (int joint : JointsOf(project, chain)) {
     coordinates.push_back(project.tree.joints[joint].coordinate);
   }
   std::string moving;
@@ -68,8 +89,9 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
     }
     if (markers.empty()) continue;
     ChainCoverage of{chain.name,
-                     Shows(measured.calibration, chain.name, markers),
-                     Shows(measured.validation, chain.name, markers),
+                     Shows(measured.calibration, chain.name, markers,
+                           ExercisesEachJoint(project, measured.calibration, chain)),
+                     Shows(measured.validation, chain.name, markers, false),
                      {},
                      {},
                      MovingTrial(project, chain, measured.calibration)};
@@ -82,6 +104,29 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
     coverage.push_back(std::move(of));
   }
   return coverage;
+}
+
+std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured) {
+  std::vector<std::string> unknown;
+  if (!project.elasticity.base) return unknown;
+  std::set<int> known;
+  for (const Trial& trial : measured.calibration.trials) {
+    if (trial.support.size() == 1) known.insert(trial.support.front());
+  }
+  std::map<int, std::string> refused;  // by link: trials and why
+  for (const TrialSummary& trial : measured.trials) {
+    if (trial.trial.kind != TrialKind::kCalibration || trial.refused.empty()) continue;
+    if (trial.trial.support.size() != 1 || known.contains(trial.trial.support.front())) continue;
+    std::string& reasons = refused[trial.trial.support.front()];
+    reasons += (reasons.empty() ? "" : "; ") + ("trial " + trial.trial.name) + ": " + trial.refused;
+  }
+  for (const auto& [link, reasons] : refused) {
+    unknown.push_back("how the robot bends on " + project.tree.links[link].name +
+                      " alone is not known (" + reasons +
+                      "): record it again or, to deploy what does not stand there, take its trials "
+                      "out of experiment.yaml");
+  }
+  return unknown;
 }
 
 void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict) {

@@ -13,8 +13,9 @@ namespace elastocal {
 /// What the recordings say about a chain of the project.
 struct ChainCoverage {
   std::string chain;
-  /// Whether markers on the chain were seen in what is estimated from. If not, its joints stay as
-  /// the URDF has them, but for those that it shares with other chains or stands on.
+  /// Whether markers on the chain were seen in what is estimated from, in trials that exercise it
+  /// or all its joints as those of other chains. If not, its joints stay as the URDF has them, but
+  /// for those that it shares with other chains or stands on.
   bool calibrated = false;
   bool judged = false;               ///< whether markers on it were seen in trials for validation
   std::vector<std::string> refused;  ///< trials for calibration of it that cannot be used, and why
@@ -25,6 +26,11 @@ struct ChainCoverage {
 
 /// Of the chains that carry markers, in the project's order.
 std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured);
+
+/// Objections: links on which the robot stands alone in trials for calibration none of which can be
+/// used, while its chains are calibrated from others. The springs of that leg's ankle are those of
+/// the prior then. Nothing where legs are rigid.
+std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured);
 
 /// Adds an objection for each chain that stays uncalibrated because its trials cannot be used: who
 /// records a chain expects it to be calibrated. Another for each chain that trials for validation

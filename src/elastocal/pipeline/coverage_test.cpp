@@ -64,6 +64,45 @@ TEST_F(CoverageOfChains, AChainThatOnlyTrialsForValidationExerciseIsNotDeployed)
   EXPECT_NE(verdict.objections[0].find("trial left_arm moves its joints most"), std::string::npos);
 }
 
+TEST_F(CoverageOfChains, AChainWhoseJointsOthersExerciseIsCalibrated) {
+  Project project = project_;
+  const int left = FindLink(project.tree, "left_hand");
+  project.chains.push_back({.name = "whole_left_arm", .tip_link = left});
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  TrialSummary validation;
+  validation.trial = {.name = "tour", .kind = TrialKind::kRandom, .chains = {"whole_left_arm"}};
+  measured.trials = {validation};
+  Verdict verdict;
+  JudgeCoverage(FindCoverage(project, measured), verdict);
+  EXPECT_TRUE(verdict.objections.empty()) << verdict.objections.front();
+  measured.calibration = Shown("right_arm");
+  JudgeCoverage(FindCoverage(project, measured), verdict);
+  EXPECT_EQ(verdict.objections.size(), 1u);
+}
+
+TEST_F(CoverageOfChains, StandingOnALegWhoseTrialsAreRefusedIsNotKnown) {
+  const int left = FindLink(project_.tree, "left_sole"),
+            right = FindLink(project_.tree, "right_sole");
+  Measurements measured;
+  measured.calibration = Shown("left_leg");
+  measured.trials = {Refused("left_leg"), Refused("right_leg")};
+  measured.trials[0].trial.support = {right};
+  measured.trials[1].trial.support = {left, right};
+  const std::vector<std::string> unknown = UnknownStance(project_, measured);
+  ASSERT_EQ(unknown.size(), 1u);
+  EXPECT_EQ(unknown[0].find("how the robot bends on right_sole alone is not known (trial "
+                            "left_leg_trial: its clock cannot be told)"),
+            0u)
+      << unknown[0];
+  measured.calibration.trials[0].support = {right};  // recorded once more
+  EXPECT_TRUE(UnknownStance(project_, measured).empty());
+  measured.calibration.trials.clear();
+  Project rigid = project_;
+  rigid.elasticity.base = false;
+  EXPECT_TRUE(UnknownStance(rigid, measured).empty());
+}
+
 TEST_F(CoverageOfChains, WhatIsNotJudgedIsSaidWhereOthersAre) {
   Measurements measured;
   measured.calibration = Shown("left_arm");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -26,7 +28,8 @@ constexpr std::size_t kMostMistakes = 3;
 constexpr std::size_t kMostTried = 3;     // of a kind, at a time
 constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
 constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
-constexpr double kLikeTheMost = 0.95;     // of the widest prior
+constexpr double kRightAngle = 0.5 * std::numbers::pi;
+constexpr double kLikeTheMost = 0.95;  // of the widest prior
 
 /// A suspicion of any kind.
 struct TriedCorrection {
@@ -58,6 +61,31 @@ std::string NameOf(const LogSuspicion& suspicion, const RobotTree& tree) {
   }
 }
 
+TriedCorrection Undone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording) {
+  return {NameOf(one, tree), DescribeSuspicion(one, tree, recording),
+          WithoutMistake(recording, one),
+          one.kind == LogContradiction::kFrozen ? one.postures : std::vector<int>()};
+}
+
+/// Joints whose axes the fit turned by more than a right angle: the sign of their positions is
+/// suspect, even where the nominal robot does not show it.
+std::vector<LogSuspicion> TurnedAxes(const CalibrationResult& result, const Recording& recording) {
+  std::vector<LogSuspicion> suspicions;
+  for (int p = 0; p < result.model.parameter_count(); ++p) {
+    const Parameter& parameter = result.model.parameters[static_cast<std::size_t>(p)];
+    const bool turns_axis = parameter.kind == ParameterKind::kAlpha ||
+                            parameter.kind == ParameterKind::kBeta ||
+                            parameter.kind == ParameterKind::kGamma;
+    if (!turns_axis || std::abs(result.delta[p]) < kRightAngle) continue;
+    const Joint& joint = result.model.tree.joints[static_cast<std::size_t>(parameter.joint)];
+    LogSuspicion sign{.kind = LogContradiction::kSign, .coordinate = joint.coordinate};
+    sign.postures.resize(static_cast<std::size_t>(recording.posture_count()));
+    std::iota(sign.postures.begin(), sign.postures.end(), 0);
+    suspicions.push_back(std::move(sign));
+  }
+  return suspicions;
+}
+
 /// What the nominal robot makes one suspect, with the recording that is left once it is undone; at
 /// most so many of labels and of the log.
 std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel& nominal,
@@ -77,9 +105,7 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
   const std::size_t labels = tried.size();
   for (const LogSuspicion& one : suspicions.log) {
     if (tried.size() >= labels + most) break;
-    tried.push_back({NameOf(one, project.tree), DescribeSuspicion(one, project.tree, recording),
-                     WithoutMistake(recording, one),
-                     one.kind == LogContradiction::kFrozen ? one.postures : std::vector<int>()});
+    tried.push_back(Undone(one, project.tree, recording));
   }
   if (const std::optional<RowShift> shift = FindRowShift(nominal, recording)) {
     tried.push_back({fmt::format("rows:{:+d}", shift->rows), DescribeShift(*shift, recording),
@@ -177,13 +203,17 @@ class Refitting {
 
 std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, const Recording& recording, double error,
-    const std::function<double(const Recording&)>& error_of) {
+    const std::function<double(const Recording&)>& error_of,
+    const std::vector<LogSuspicion>& more) {
   std::vector<RecordingMistake> mistakes;
   if (recording.posture_count() == 0) return mistakes;
   const ErrorModel nominal = NominalModel(project, recording);
   Recording current = recording;
   while (mistakes.size() < kMostMistakes) {
-    const std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
+    std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
+    if (mistakes.empty()) {
+      for (const LogSuspicion& one : more) tried.push_back(Undone(one, project.tree, current));
+    }
     const TriedCorrection* best = nullptr;
     double least = kLeftOfError * error;
     for (const TriedCorrection& one : tried) {
@@ -224,9 +254,10 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result) {
   Refitting refitting(project, seed, measured);
-  return FindMistakesBy(project, measured.calibration,
-                        FitError(result, fitted, project.calibration),
-                        [&](const Recording& recording) { return refitting.Error(recording); });
+  return FindMistakesBy(
+      project, measured.calibration, FitError(result, fitted, project.calibration),
+      [&](const Recording& recording) { return refitting.Error(recording); },
+      TurnedAxes(result, measured.calibration));
 }
 
 std::vector<std::string> AcceptMistakes(const Project& project,

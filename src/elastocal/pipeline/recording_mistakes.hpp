@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/log_check.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/project/project.hpp"
@@ -23,7 +24,9 @@ struct RecordingMistake {
 };
 
 /// Mistakes of a recording that a fit proves. Suspicions come from the nominal robot
-/// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions, FindRowShift); each is
+/// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions, FindRowShift), and from
+/// axes that `result` has turned by more than a right angle, whose joints may have the opposite
+/// sign; each is
 /// undone, the robot is calibrated again, and it is a mistake if the error falls to less than half
 /// (that of `result` on the recording `fitted`). Then the next is sought in the corrected
 /// recording, at most three in all. Without suspicions, which no clean recording has, nothing is
@@ -35,10 +38,11 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const CalibrationResult& result);
 
 /// The same by any figure of how well a recording is explained, m: `error_of`, infinite where it is
-/// not explained at all. `error`: of the recording itself.
+/// not explained at all. `error`: of the recording itself; `more`: further suspicions.
 std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, const Recording& recording, double error,
-    const std::function<double(const Recording&)>& error_of);
+    const std::function<double(const Recording&)>& error_of,
+    const std::vector<LogSuspicion>& more = {});
 
 /// The same by how well a stored calibration explains a recording, m. `error_of` gets the model of
 /// the recording as well; where it throws InputError, nothing is explained.

@@ -2,10 +2,13 @@
 #include "elastocal/pipeline/runtime_robot.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/legs.hpp"
@@ -199,6 +202,34 @@ void AddLimbs(const Project& project, const StoredRobot& robot, bool elastic, Ru
 
 }  // namespace
 
+namespace {
+
+/// Whether the model has all parameters of joints that the file has.
+bool HasAll(const ErrorModel& model, const StoredCalibration& calibration) {
+  std::set<std::string> names;
+  for (const Parameter& parameter : model.parameters) names.insert(parameter.name);
+  return std::all_of(calibration.joint_errors.begin(), calibration.joint_errors.end(),
+                     [&](const auto& error) { return names.contains(error.first); });
+}
+
+/// A marker on each body at the end of the tree that has none, so that every joint moves one.
+std::vector<Marker> WithMarkersAtEnds(const Project& project) {
+  std::vector<Marker> markers = project.markers;
+  std::set<int> others = {0};
+  for (const Joint& joint : project.tree.joints) others.insert(joint.parent_body);
+  for (const Marker& marker : project.markers)
+    others.insert(project.tree.links[Size(marker.link)].body);
+  for (std::size_t link = 0; link < project.tree.links.size(); ++link) {
+    const int body = project.tree.links[link].body;
+    if (!others.insert(body).second) continue;
+    markers.push_back({"end of " + project.tree.links[link].name, static_cast<int>(link),
+                       Eigen::Vector3d::Constant(0.1)});
+  }
+  return markers;
+}
+
+}  // namespace
+
 StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibration) {
   const auto has = [&](const std::string& name) { return calibration.joint_errors.contains(name); };
   Elasticity elasticity;
@@ -213,6 +244,11 @@ StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibr
   }
   StoredRobot robot;
   robot.model = MakeErrorModel(project.tree, project.markers, project.placement, elasticity);
+  // A robot that was calibrated by touches or other instruments has no markers on what they saw.
+  if (!HasAll(robot.model, calibration)) {
+    robot.model =
+        MakeErrorModel(project.tree, WithMarkersAtEnds(project), project.placement, elasticity);
+  }
   if (calibration.nominal != NominalFingerprint(robot.model)) {
     throw InputError(calibration.source + ": made for robot '" + calibration.robot +
                      "' with other nominal geometry than " + project.urdf.string() +

@@ -35,14 +35,15 @@ std::vector<std::string> SeenMarkers(const Project& project, const Chain& chain)
   std::vector<std::string> names = ChainMarkers(project, chain);
   if (names.empty() || !project.motion.free_root) return names;
   const RobotTree& tree = project.tree;
-  std::vector<int> bodies = {0};
+  std::vector<int> bodies = {0};  // from the root out
   for (int joint : JointsToBody(tree, tree.links[chain.from_link].body)) {
     bodies.push_back(joint + 1);
   }
-  for (auto body = bodies.rbegin(); body != bodies.rend(); ++body) {
+  std::reverse(bodies.begin(), bodies.end());
+  for (const int body : bodies) {
     bool found = false;
     for (const Marker& marker : project.markers) {
-      if (tree.links[marker.link].body != *body) continue;
+      if (tree.links[marker.link].body != body) continue;
       names.push_back(marker.name);
       found = true;
     }

@@ -94,11 +94,13 @@ class Panel {
   std::string Frame() const {
     std::string svg = fmt::format("<text x=\"{}\" y=\"{}\" font-weight=\"bold\">{}</text>\n", kLeft,
                                   top_ + 20.0, Escaped(name_));
-    for (double x = x_.lower; x <= x_.upper * (1.0 + 1e-9); x += RoundStep(x_.upper - x_.lower)) {
+    double x = x_.lower;
+    while (x <= x_.upper * (1.0 + 1e-9)) {
       svg += fmt::format(
           "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\" stroke=\"#ddd\"/>"
           "<text x=\"{0:.1f}\" y=\"{3:.1f}\" text-anchor=\"middle\">{4:g}</text>\n",
           x_.At(x), y_.from, y_.to, y_.from + 16.0, x);
+      x += RoundStep(x_.upper - x_.lower);
     }
     const double step = RoundStep(y_.upper - y_.lower);
     for (int i = 0; y_.lower + i * step <= y_.upper + 1e-9 * step; ++i) {
@@ -123,8 +125,7 @@ class Panel {
       const double x = x_.At(curve.x[i]);
       const double y = y_.At(curve.y[i]);
       points += fmt::format("{:.1f},{:.1f} ", x, y);
-      dots +=
-          fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>", x, y, colour);
+      dots += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>)", x, y, colour);
     }
     const double y = y_.to + 8.0 + 18.0 * index;
     return fmt::format(

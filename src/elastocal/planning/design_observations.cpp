@@ -50,7 +50,7 @@ Observations NominalObservations(const Project& project, const ObservationSetup&
   }
   ObservedValues nominal;
   nominal.robot = Eigen::VectorXd::Zero(model.robot.parameter_count());
-  for (const Quantity& quantity : setup.quantities) {
+  for (const Quantity& quantity : model.setup.quantities) {  // of a held root, its tilt as well
     nominal.quantities.push_back({quantity.origin, Eigen::VectorXd::Zero(quantity.size())});
   }
   const std::vector<Sight> sights = SightsOf(model, all, nominal, {});

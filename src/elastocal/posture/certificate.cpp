@@ -63,13 +63,13 @@ class WeightedSet {
                                            1.0 / static_cast<double>(postures.size()))) {
     for (const Eigen::VectorXd& x : postures) {
       const Eigen::MatrixXd psi = EvaluateRegressor(problem, x);
-      parts_.push_back(psi.transpose() * psi);
+      parts_.emplace_back(psi.transpose() * psi);
     }
   }
 
   int size() const { return static_cast<int>(parts_.size()); }
   void Add(const Eigen::MatrixXd& psi) {
-    parts_.push_back(psi.transpose() * psi);
+    parts_.emplace_back(psi.transpose() * psi);
     const Eigen::Index count = weights_.size() + 1;
     weights_ *= 1.0 - 1.0 / static_cast<double>(count);
     weights_.conservativeResize(count);

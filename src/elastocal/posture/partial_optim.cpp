@@ -27,7 +27,7 @@ class IndexProgram : public NonlinearProgram {
     for (int i = 0; i < count; ++i) {
       jacobian_blocks.push_back({i * constraints, constraints, i * variables, variables});
       const Eigen::MatrixXd& psi = set.psi(which[i]);
-      shown_.push_back((psi.rowwise().squaredNorm().array() > 0.0).cast<double>().matrix());
+      shown_.emplace_back((psi.rowwise().squaredNorm().array() > 0.0).cast<double>().matrix());
     }
     jacobian_.resize(count);
     psi_.resize(count);

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cctype>
+#include <cstdint>
 #include <cstdlib>
 
 #include "elastocal/math/input_error.hpp"
@@ -21,6 +22,8 @@ std::uint16_t Bits16(const char* bytes, C3dProcessor processor) {
   const bool big = processor == C3dProcessor::kMips;
   return static_cast<std::uint16_t>(big ? a << 8 | b : b << 8 | a);
 }
+
+int SignedByte(char byte) { return std::bit_cast<std::int8_t>(byte); }
 
 /// Reads the records of the section one after the other.
 class SectionReader {
@@ -56,8 +59,8 @@ class SectionReader {
   bool ReadRecord() {
     std::array<char, 2> head{};
     source_.ReadAll(at_, head, "the parameter section");
-    const int length = std::abs(static_cast<int>(static_cast<signed char>(head[0])));
-    const int group = static_cast<signed char>(head[1]);
+    const int length = std::abs(SignedByte(head[0]));
+    const int group = SignedByte(head[1]);
     if (length == 0 || group == 0) return false;
     std::vector<char> text(static_cast<std::size_t>(length) + 2);
     source_.ReadAll(at_ + 2, text, "the name of a parameter");
@@ -83,7 +86,7 @@ class SectionReader {
     std::array<char, 2> head{};
     const std::string what = "parameter " + Printable(name);
     source_.ReadAll(at, head, what);
-    const int type = static_cast<signed char>(head[0]);
+    const int type = SignedByte(head[0]);
     const auto dimensions = static_cast<std::size_t>(static_cast<unsigned char>(head[1]));
     if ((type != -1 && type != 1 && type != 2 && type != 4) || dimensions > 7) {
       source_.Fail(at, what + ": found type " + std::to_string(type) + " with " +

@@ -38,7 +38,7 @@ Eigen::Quaterniond RotationOf(const double* pose) { return {pose[6], pose[3], po
 
 }  // namespace
 
-FrameTransforms::FrameTransforms(std::string frame, std::vector<std::string> bodies)
+FrameTransforms::FrameTransforms(const std::string& frame, std::vector<std::string> bodies)
     : frame_(FrameName(frame)), bodies_(std::move(bodies)) {
   for (std::string& body : bodies_) body = FrameName(body);
 }

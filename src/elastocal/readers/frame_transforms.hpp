@@ -27,7 +27,7 @@ class FrameTransforms {
  public:
   /// `frame`: of the cameras; empty: the one in which others move. `bodies`: frames that are
   /// wanted; empty: the moving children of the cameras' frame.
-  FrameTransforms(std::string frame, std::vector<std::string> bodies);
+  FrameTransforms(const std::string& frame, std::vector<std::string> bodies);
 
   bool empty() const { return motions_.empty(); }
   /// Whether the user asked for a frame.

@@ -25,7 +25,7 @@ double ValueAt(const JointSeries& series, const Eigen::MatrixXd& values, Eigen::
   const auto i = after - stamps.begin();
   if (*after == time) return values(i, column);
   if (i == 0) return kNaN;
-  const double step = static_cast<double>(*after - after[-1]);
+  const auto step = static_cast<double>(*after - after[-1]);
   if (step > kLongestHole * kNanoseconds) return kNaN;
   const double share = static_cast<double>(time - after[-1]) / step;
   return (1.0 - share) * values(i - 1, column) + share * values(i, column);

@@ -45,7 +45,7 @@ TEST(Page, ShowsWhatTheFolderHasAndSaysWhatIsMissing) {
               {"report_data.json", R"({"error_table": {"rows": []}, "signals": [1]})"},
               {"validation.json", "{}"},
               {"p_curves.csv", "algorithm,chain,postures,o1\nNOCP,leg,4,0.7\n"},
-              {"p_summary.json", "{\"leg\": {\"o1\": 0.7}}"},
+              {"p_summary.json", R"({"leg": {"o1": 0.7}})"},
               {"motion.csv", "time,support,j\n0,sole,0.1\n0.1,sole,0.2\n"},
               {"motion_margins.json", "{\"zmp_mm\": 20}"}});
   EXPECT_EQ(full["summary"]["robot"], "r");

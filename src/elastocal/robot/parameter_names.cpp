@@ -11,7 +11,7 @@ std::string JoinNames(const std::vector<Parameter>& parameters, const std::vecto
     const std::string& name = parameters[i].name;
     const std::size_t dot = name.rfind('.');
     const std::string owner = name.substr(0, dot);
-    if (groups.empty() || groups.back().first != owner) groups.push_back({owner, ""});
+    if (groups.empty() || groups.back().first != owner) groups.emplace_back(owner, "");
     std::string& constants = groups.back().second;
     constants += (constants.empty() ? "" : ",") + name.substr(dot + 1);
   }

@@ -22,6 +22,8 @@ struct Normal {
 constexpr double kSameLength = 1e-9;  // m; axes closer than this meet
 // m; small errors turn the perpendicular between parallel axes that are closer than this by much.
 constexpr double kCoaxial = 0.02;
+// rad; beta is singular between axes at right angles, and of no use far from parallel ones.
+constexpr double kMostInclined = M_PI / 4.0;
 
 Vector3d ClosestPoint(const Axis& axis, const Vector3d& p) {
   return axis.point + axis.direction * axis.direction.dot(p - axis.point);
@@ -31,10 +33,6 @@ Vector3d AnyPerpendicular(const Vector3d& z, const Transform& T_root_body) {
   const Vector3d x = T_root_body.linear().col(0);
   const Vector3d candidate = std::abs(x.dot(z)) < 0.9 ? x : Vector3d(T_root_body.linear().col(1));
   return (candidate - z * z.dot(candidate)).normalized();
-}
-
-bool Parallel(const Axis& a, const Axis& b, double tolerance_rad) {
-  return a.direction.cross(b.direction).norm() < std::sin(tolerance_rad);
 }
 
 bool Coaxial(const Normal& between) { return (between.end - between.start).norm() < kCoaxial; }
@@ -59,6 +57,15 @@ Normal CommonNormal(const Axis& from, const Axis& to) {
   const double distance = between.dot(across) / across.norm();
   const double sign = std::abs(distance) > kSameLength && distance < 0.0 ? -1.0 : 1.0;
   return {start, end, sign * across.normalized()};
+}
+
+/// Whether the placement needs beta: the axes are parallel or nearly so, or they are inclined and
+/// their common normal is so far away that small errors move it by much.
+bool NeedsBeta(const Axis& a, const Axis& b, const PlacementOptions& options) {
+  const double sine = a.direction.cross(b.direction).norm();
+  if (sine < std::sin(options.parallel_tolerance_rad)) return true;
+  if (sine > std::sin(kMostInclined)) return false;
+  return (CommonNormal(a, b).end - b.point).norm() > options.longest_lever_m * sine;
 }
 
 Transform Frame(const Vector3d& origin, const Vector3d& z, const Vector3d& x) {
@@ -122,8 +129,7 @@ std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOp
     const Axis& axis = zero.axes[k];
     JointPlacement& placement = placements[k];
     const bool continues = zero.main_child[parent] == static_cast<int>(k);
-    const bool parallel =
-        continues && Parallel(zero.axes[parent - 1], axis, options.parallel_tolerance_rad);
+    const bool parallel = continues && NeedsBeta(zero.axes[parent - 1], axis, options);
     placement.general = !continues || (parallel && Coaxial(outgoing[parent]));
     placement.parallel = parallel && !placement.general;
 
@@ -137,7 +143,7 @@ std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOp
     if (next < 0) {
       leaving = incoming;
       leaving.start = incoming.end;
-    } else if (Parallel(axis, zero.axes[next], options.parallel_tolerance_rad)) {
+    } else if (NeedsBeta(axis, zero.axes[next], options)) {
       leaving = PerpendicularFrom(incoming.end, zero.axes[next], incoming.x);
     } else {
       leaving = CommonNormal(axis, zero.axes[next]);

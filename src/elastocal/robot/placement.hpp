@@ -13,6 +13,11 @@ struct PlacementOptions {
   /// errors of a robot: the common normal of nearly parallel axes is far away, and small errors
   /// move it by much.
   double parallel_tolerance_rad = 10.0 * M_PI / 180.0;
+  /// So do axes that are inclined to each other by less than 45 degrees where an error of their
+  /// directions moves their common normal along them by more than this, m/rad: its distance from
+  /// the second joint over the sine of the angle. The shoulders of some humanoids are inclined by
+  /// 10 to 20 degrees; their normals are a metre away.
+  double longest_lever_m = 1.0;
 };
 
 /// Nominal placement of a joint in the modified Denavit-Hartenberg convention with beta and, if
@@ -34,7 +39,7 @@ struct PlacementOptions {
 /// about three orthogonal axes and never singular.
 struct JointPlacement {
   bool general = false;
-  bool parallel = false;  ///< the axis is parallel to the one before it: beta is in use
+  bool parallel = false;  ///< the axis is (nearly) parallel to the one before it: beta is in use
   Transform T_parent_pre = Transform::Identity();
   double gamma = 0.0, b = 0.0, beta = 0.0, alpha = 0.0, d = 0.0, theta = 0.0, r = 0.0;
   Transform T_joint_body = Transform::Identity();

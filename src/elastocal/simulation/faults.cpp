@@ -161,7 +161,7 @@ void SpoilLog(const Faults& faults, const std::vector<PlannedTrial>& trials, std
     log.time_s.conservativeResize(rows);
     log.positions.conservativeResize(rows, Eigen::NoChange);
     log.torques.conservativeResize(rows, Eigen::NoChange);
-    said.push_back("joint log ends early");
+    said.emplace_back("joint log ends early");
   }
 }
 

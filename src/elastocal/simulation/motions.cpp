@@ -212,7 +212,8 @@ class Planner {
                                     const Eigen::VectorXd& q, int coordinate) const {
     constexpr int kChecks = 20;
     auto [centre, amplitude] = SineRange(coordinate);
-    for (double share = 1.0; share > 0.05; share -= 0.05) {
+    double share = 1.0;
+    while (share > 0.05) {
       // As the sine shrinks, its middle moves to the posture, which is feasible.
       const double middle = q[coordinate] + share * (centre - q[coordinate]);
       bool feasible = true;
@@ -222,6 +223,7 @@ class Planner {
         feasible = sampler.SwingFeasible(moved, legs_[i], Support(i));
       }
       if (feasible) return {middle, share * amplitude};
+      share -= 0.05;
     }
     return {q[coordinate], 0.0};
   }

@@ -44,7 +44,9 @@ TEST(PlanTrials, MotionsAreSmoothAndWithinTheLimits) {
     constexpr double kStep = 0.01;
     Eigen::VectorXd before = PostureAt(trial.motion, 0.0);
     Eigen::VectorXd speed_before = Eigen::VectorXd::Zero(before.size());
-    for (double t = kStep; t < trial.motion.duration_s() + 0.1; t += kStep) {
+    const int steps = static_cast<int>((trial.motion.duration_s() + 0.1) / kStep);
+    for (int step = 1; step <= steps; ++step) {
+      const double t = kStep * step;
       const Eigen::VectorXd q = PostureAt(trial.motion, t);
       const Eigen::VectorXd speed = (q - before) / kStep;
       for (Eigen::Index i = 0; i < q.size(); ++i) {

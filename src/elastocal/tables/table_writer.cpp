@@ -10,10 +10,11 @@
 namespace elastocal {
 
 std::string MakeCell(std::string_view text) {
-  if (text.find_first_of("\r\n") != text.npos) {
+  if (text.find_first_of("\r\n") != std::string_view::npos) {
     throw InputError("a table cannot hold the name " + Quote(text) + ", which has a line end");
   }
-  if (text.find_first_of(",;\t\"") == text.npos && Trim(text) == text) return std::string(text);
+  if (text.find_first_of(",;\t\"") == std::string_view::npos && Trim(text) == text)
+    return std::string(text);
   std::string cell = "\"";
   for (const char c : text) cell.append(c == '"' ? 2 : 1, c);
   return cell + "\"";

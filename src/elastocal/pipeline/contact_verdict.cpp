@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/contact_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "elastocal/observation/observed_posture.hpp"
+#include "elastocal/pipeline/contact_json.hpp"
+#include "elastocal/pipeline/observed_mistakes.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kPlainGain = 2.0;      // standard deviations: better by no chance
+constexpr double kLittleBetter = 0.95;  // of the error before: hardly anything was gained
+constexpr double kMuchNoise = 4.0;      // times what the project says
+constexpr double kClearlyWorse = 1.25;  // of the error before
+constexpr double kMostLeftOut = 0.25;   // share of observations
+constexpr double kDegreeHere = 180.0 / M_PI;
+constexpr double kNoRobot = 10.0;  // times what is expected, as of tables of markers
+// What calibrated robots do not leave, root mean square.
+constexpr double kLargestPlace = 0.02;  // m
+constexpr double kLargestShare = 0.01;  // of the robot's size
+constexpr double kLargestTurn = 5.0 * M_PI / 180.0;
+constexpr double kLargestAcceleration = 0.5;  // m/s^2
+constexpr double kLargestPixel = 20.0;
+
+/// The least error of any kind of row after calibration, over that before.
+double BestRatio(const ContactRun& run) {
+  const std::vector<RowErrors>& before = ContactRun::Judged(run.uncalibrated).rows;
+  const std::vector<RowErrors>& after = ContactRun::Judged(run.calibrated).rows;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    best = std::min(best, after[i].rms / std::max(before[i].rms, 1e-300));
+  }
+  return best;
+}
+
+/// "position of lt"
+std::string RowName(const ObservedRobot& model, const RowErrors& row) {
+  return row.row + " of " + model.instrument(row.instrument).name;
+}
+
+std::string FigureOf(const RowErrors& row) {
+  return fmt::format("{:.3g}", ShownUnitOf(row.unit).factor * row.rms);
+}
+
+/// Kinds of errors of the robot that are more than ten times what is expected of one.
+std::vector<std::string> WidePriors(const ContactRun& run) {
+  std::vector<std::string> wide;
+  const std::vector<Source> sources = CommonSources();
+  const ObservationFit& fit = run.calibrated.estimate.fit;
+  const std::pair<CommonSource, const char*> kinds[] = {{kLegOffset, "zero offsets of legs"},
+                                                        {kTrunkOffset, "zero offsets of the trunk"},
+                                                        {kLimbOffset, "zero offsets"},
+                                                        {kLength, "lengths"},
+                                                        {kAngle, "angles of axes"}};
+  for (const auto& [source, what] : kinds) {
+    if (fit.spread[source] > kNoRobot * sources[static_cast<std::size_t>(source)].sd) {
+      const ShownUnit unit = ShownUnitOf(sources[static_cast<std::size_t>(source)].unit);
+      wide.push_back(
+          fmt::format("{} of {:.3g} {}", what, unit.factor * fit.spread[source], unit.name));
+    }
+  }
+  return wide;
+}
+
+/// Errors on what was judged, without what was found to be wrong and left out.
+ObservationFigures FiguresOfGood(const ContactRun& run) {
+  const ContactOutcome& outcome = run.calibrated;
+  std::set<int> bad;
+  for (const ObservationOutlier& outlier : outcome.estimate.outliers) {
+    bad.insert(outlier.observation);
+  }
+  const std::vector<Eigen::VectorXd> left =
+      outcome.held_out.folds > 0 ? outcome.held_out.left
+                                 : LeftOf(run.model, run.observations, outcome.estimate.fit.values);
+  Observations good = run.observations;
+  good.all.clear();
+  std::vector<Eigen::VectorXd> left_of_good;
+  for (int i = 0; i < run.observations.count(); ++i) {
+    if (bad.contains(i)) continue;
+    good.all.push_back(run.observations.all[static_cast<std::size_t>(i)]);
+    left_of_good.push_back(left[static_cast<std::size_t>(i)]);
+  }
+  return MakeFigures(run.model, good, left_of_good);
+}
+
+/// The file that is deployed has no springs: its figures beside those with compensation.
+void AddUrdfAlone(ContactRun& run, const std::string& on) {
+  const ObservationFigures& urdf = ContactRun::Judged(*run.geometric);
+  std::string text;
+  if (run.touches_only()) {
+    text = fmt::format("{:.2f} mm and {:.2f} degrees", 1e3 * urdf.all.height,
+                       kDegreeHere * urdf.all.tilt());
+  }
+  for (const RowErrors& row : urdf.rows) {
+    if (run.touches_only()) break;
+    text += fmt::format("{}{} {} in {}", text.empty() ? "" : ", ", FigureOf(row),
+                        ShownUnitOf(row.unit).name, RowName(run.model, row));
+  }
+  run.verdict.remarks.push_back(fmt::format(
+      "these figures hold with compensation of elasticity; the URDF alone leaves {} {}", text, on));
+}
+
+/// Noise that is far above what the project says of an instrument is no noise of it.
+void RemarkOnNoise(ContactRun& run) {
+  const std::vector<Source>& sources = run.model.setup.sources;
+  const ObservationFit& fit = run.calibrated.estimate.fit;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].role != Source::Role::kNoise) continue;
+    const double ratio = fit.spread.sd[i] / sources[i].sd;
+    if (ratio < kMuchNoise) continue;
+    const ShownUnit unit = ShownUnitOf(sources[i].unit);
+    run.verdict.remarks.push_back(fmt::format(
+        "the noise of {} is {:.2g} {}, {:.2g} times what was expected: a joint that was off in "
+        "part "
+        "of the recording, gears, or something that was moved? summary.json has what is left of "
+        "each row",
+        sources[i].name, unit.factor * fit.spread.sd[i], unit.name, ratio));
+  }
+}
+
+/// Of what no robot explains, one sentence; nothing where all is plausible.
+void ObjectToNonsense(ContactRun& run) {
+  std::vector<std::string> nonsense = WidePriors(run);
+  for (std::string& text : LargeErrors(run.model, FiguresOfGood(run))) {
+    nonsense.push_back(std::move(text));
+  }
+  if (nonsense.empty()) return;
+  run.verdict.objections.push_back(fmt::format(
+      "no robot has errors like these: {}. Check the order, signs and units of the columns, which "
+      "row belongs to which, and how instruments and what they look at are mounted",
+      fmt::join(nonsense, "; ")));
+}
+
+/// What seems to be wrong with the tables, before what follows from it.
+void NameMistakes(ContactRun& run) {
+  const std::vector<std::string> mistakes = FindObservedMistakes(run.model, run.observations);
+  if (mistakes.empty()) return;
+  run.verdict.objections.insert(
+      run.verdict.objections.begin(),
+      fmt::format("{}; without that, even the uncalibrated robot errs by less than a third",
+                  fmt::join(mistakes, "; or ")));
+}
+
+}  // namespace
+
+double LargestError(const ObservedRobot& model, SourceUnit unit) {
+  switch (unit) {
+    case SourceUnit::kMetre:
+      return std::max(kLargestPlace, kLargestShare * RobotSize(model.robot.tree));
+    case SourceUnit::kRadian:
+      return kLargestTurn;
+    case SourceUnit::kAcceleration:
+      return kLargestAcceleration;
+    case SourceUnit::kPixel:
+      return kLargestPixel;
+    default:
+      return std::numeric_limits<double>::infinity();
+  }
+}
+
+std::vector<std::string> WorseRows(const ObservedRobot& model, const ObservationFigures& before,
+                                   const ObservationFigures& after) {
+  std::vector<std::string> worse;
+  for (std::size_t i = 0; i < after.rows.size(); ++i) {
+    if (!(after.rows[i].rms > kClearlyWorse * before.rows[i].rms)) continue;
+    worse.push_back(fmt::format("{} from {} to {} {}", RowName(model, after.rows[i]),
+                                FigureOf(before.rows[i]), FigureOf(after.rows[i]),
+                                ShownUnitOf(after.rows[i].unit).name));
+  }
+  return worse;
+}
+
+std::vector<std::string> LargeErrors(const ObservedRobot& model,
+                                     const ObservationFigures& figures) {
+  std::vector<std::string> large;
+  for (const RowErrors& row : figures.rows) {
+    if (row.rms <= LargestError(model, row.unit)) continue;
+    large.push_back(fmt::format("{} off by {} {}", RowName(model, row), FigureOf(row),
+                                ShownUnitOf(row.unit).name));
+  }
+  return large;
+}
+
+void JudgeContacts(ContactRun& run) {
+  Verdict& verdict = run.verdict;
+  const bool held_out = run.calibrated.held_out.folds > 0;
+  const bool touches = run.touches_only();
+  const std::string what = touches ? "touches" : "observations";
+  const std::string on =
+      held_out ? "on " + what + " that were left out" : "on the " + what + " of the fit";
+  if (run.calibrated.estimate.fit.termination != Termination::kConverged) {
+    verdict.objections.emplace_back(
+        "the estimate has not converged: variances did not come to rest");
+  }
+  const auto left_out = static_cast<double>(run.calibrated.estimate.outliers.size());
+  if (left_out > kMostLeftOut * run.observations.count()) {
+    verdict.objections.push_back(
+        fmt::format("{:.0f} of {} {} are outliers", left_out, run.observations.count(), what));
+  }
+  const double ratio = BestRatio(run);
+  if (!(ratio < 1.0) || run.gain_in_sds < -kPlainGain) {
+    verdict.objections.push_back("the calibrated robot is no better than the uncalibrated one " +
+                                 on);
+  } else if (run.gain_in_sds < kPlainGain || ratio > kLittleBetter) {
+    verdict.remarks.push_back("the calibrated robot is hardly better than the uncalibrated one " +
+                              on);
+  }
+  const std::vector<std::string> worse = WorseRows(run.model, ContactRun::Judged(run.uncalibrated),
+                                                   ContactRun::Judged(run.calibrated));
+  if (!worse.empty()) {
+    verdict.objections.push_back(
+        fmt::format("the calibrated robot is worse {}: {}", on, fmt::join(worse, "; ")));
+  }
+  ObjectToNonsense(run);
+  if (verdict.objections.empty()) RemarkOnNoise(run);
+  if (!verdict.objections.empty()) NameMistakes(run);
+  if (!held_out) {
+    verdict.remarks.push_back("no " + std::string(touches ? "touch" : "posture") +
+                              " was left out (--kfold 0): nothing was validated");
+  }
+  if (run.geometric) AddUrdfAlone(run, on);
+  if (run.calibrated.held_out.unsettled > 0) {
+    verdict.remarks.push_back(fmt::format("{} of {} folds have not converged",
+                                          run.calibrated.held_out.unsettled,
+                                          run.calibrated.held_out.folds));
+  }
+  if (run.model.setup.feet.size() > 1) verdict.remarks.push_back(DescribeClosure(run.closure));
+}
+
+}  // namespace elastocal

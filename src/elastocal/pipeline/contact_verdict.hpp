@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/pipeline/contact_run.hpp"
+
+namespace elastocal {
+
+/// Fills in the verdict: objections where the estimate has not converged, is no better than the
+/// uncalibrated robot, makes any kind of observation clearly worse, needs errors that no robot has
+/// (ten times what is expected of one), or leaves errors that no calibrated robot has
+/// (LargeErrors). The first objection names the mistakes in the tables that explain it
+/// (FindObservedMistakes).
+void JudgeContacts(ContactRun& run);
+
+/// Kinds of observations that the calibrated robot predicts by a quarter worse than the
+/// uncalibrated one: "height of lt from 101 to 251 mm".
+std::vector<std::string> WorseRows(const ObservedRobot& model, const ObservationFigures& before,
+                                   const ObservationFigures& after);
+
+/// More than what any calibrated robot is off by, root mean square, SI: 20 mm (of a robot larger
+/// than 2 m, 1 % of RobotSize), 5 degrees, 0.5 m/s^2, 20 pixels.
+double LargestError(const ObservedRobot& model, SourceUnit unit);
+
+/// Kinds of observations that are off by more: "height of lt off by 101 mm".
+std::vector<std::string> LargeErrors(const ObservedRobot& model, const ObservationFigures& figures);
+
+}  // namespace elastocal

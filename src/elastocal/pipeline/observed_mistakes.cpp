@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/observed_mistakes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/interruption.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/observation/observation_figures.hpp"
+#include "elastocal/observation/observation_fit.hpp"
+#include "elastocal/observation/observed_posture.hpp"
+#include "elastocal/pipeline/contact_verdict.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeftWithout = 0.1;
+constexpr double kNearTheBest = 2.0;  // times the squares that the best one leaves
+constexpr int kMostRowsOff = 2;       // by which rows are shifted
+
+struct TriedMistake {
+  std::string what;
+  double squares = 0.0;
+};
+
+class ObservedMistakeSearch {
+ public:
+  ObservedMistakeSearch(const ObservedRobot& model, const Observations& observations)
+      : model_(model), observations_(observations), before_(Squares(observations.q)) {}
+
+  std::vector<std::string> Run() {
+    const RobotTree& tree = model_.robot.tree;
+    std::vector<int> moving;  // coordinates
+    for (int c = 0; c < tree.coordinate_count(); ++c) {
+      const auto values = observations_.q.col(c);
+      if (values.maxCoeff() > values.minCoeff()) moving.push_back(c);
+    }
+    for (std::size_t a = 0; a < moving.size(); ++a) {
+      Eigen::MatrixXd q = observations_.q;
+      q.col(moving[a]) *= -1.0;
+      Try(NameOfJoint(moving[a]) + ": the sign of its positions is reversed", q);
+      for (std::size_t b = a + 1; b < moving.size(); ++b) {
+        if (Slides(moving[a]) != Slides(moving[b])) continue;
+        q = observations_.q;
+        q.col(moving[a]).swap(q.col(moving[b]));
+        Try(NameOfJoint(moving[a]) + " and " + NameOfJoint(moving[b]) +
+                ": their positions are exchanged",
+            q);
+      }
+    }
+    for (int rows = -kMostRowsOff; rows <= kMostRowsOff; ++rows) {
+      if (rows != 0) TryShift(rows);
+    }
+    return Found();
+  }
+
+ private:
+  const Joint& JointOf(int coordinate) const {
+    const RobotTree& tree = model_.robot.tree;
+    return tree.joints[Size(tree.coordinate_joint[Size(coordinate)])];
+  }
+  std::string NameOfJoint(int coordinate) const { return JointOf(coordinate).name; }
+  bool Slides(int coordinate) const { return JointOf(coordinate).type == JointType::kPrismatic; }
+
+  /// Squares over the largest errors that calibrated robots have, mean over the kinds of rows, once
+  /// the nominal robot is placed; infinite where it cannot be.
+  double Squares(const Eigen::MatrixXd& q) const {
+    InterruptionPoint();
+    Observations changed = observations_;
+    changed.q = q;
+    const ObservationFit fit =
+        FitObservations(model_, changed, StartFit(model_, changed),
+                        {.freedom = {.robot = false}, .estimate_spread = false});
+    const ObservationFigures figures =
+        MakeFigures(model_, changed, LeftOf(model_, changed, fit.values));
+    double squares = 0.0;
+    for (const RowErrors& row : figures.rows) {
+      squares += std::pow(row.rms / LargestError(model_, row.unit), 2);
+    }
+    return std::isfinite(squares) ? squares : std::numeric_limits<double>::infinity();
+  }
+
+  void Try(const std::string& what, const Eigen::MatrixXd& q) {
+    tried_.push_back({what, Squares(q)});
+  }
+
+  /// Rows at the end of which the joints are not there keep their own: a few of many.
+  void TryShift(int rows) {
+    Eigen::MatrixXd q = observations_.q;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const Eigen::Index partner = std::clamp<Eigen::Index>(i + rows, 0, q.rows() - 1);
+      q.row(i) = observations_.q.row(partner);
+    }
+    const std::string one = rows > 0 ? "the next row" : "the row before";
+    const std::string several =
+        std::to_string(std::abs(rows)) + (rows > 0 ? " rows further" : " rows before");
+    Try("what was observed belongs to the joint positions of " +
+            (std::abs(rows) == 1 ? one : several),
+        q);
+  }
+
+  std::vector<std::string> Found() {
+    std::stable_sort(tried_.begin(), tried_.end(),
+                     [](const auto& a, const auto& b) { return a.squares < b.squares; });
+    std::vector<std::string> found;
+    for (const TriedMistake& one : tried_) {
+      if (one.squares > kLeftWithout * before_) break;
+      if (one.squares > kNearTheBest * tried_.front().squares) break;
+      found.push_back(one.what);
+    }
+    return found;
+  }
+
+  const ObservedRobot& model_;
+  const Observations& observations_;
+  double before_;
+  std::vector<TriedMistake> tried_;
+};
+
+}  // namespace
+
+std::vector<std::string> FindObservedMistakes(const ObservedRobot& model,
+                                              const Observations& observations) {
+  return ObservedMistakeSearch(model, observations).Run();
+}
+
+}  // namespace elastocal
