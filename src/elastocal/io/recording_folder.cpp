@@ -135,7 +135,7 @@ void SampleOddOnesAgain(const std::vector<TrialFiles>& trials, const MarkedRobot
                         const Project& project, std::vector<TrialSamples>& samples) {
   std::vector<TrialSummary> summaries;
   for (const TrialSamples& of : samples) summaries.push_back(of.summary);
-  const PairDistances usual = UsualDistances(summaries);
+  const PairDistances usual = UsualDistances(summaries, NominalDistances(robot));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!DiffersFromUsual(summaries[i], usual)) continue;
     samples[i] = Sample(trials[i], robot, project,

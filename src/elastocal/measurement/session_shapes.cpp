@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
+
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
@@ -37,9 +40,33 @@ struct PairSightings {
   double tolerance = 0.0;  ///< the largest
 };
 
+/// The distance of most trials.
+std::optional<double> MostFrequent(const PairSightings& of) {
+  if (of.distances.size() < kLeastTrials) return std::nullopt;
+  const double most = DensestMedian(of.distances, of.tolerance);
+  const auto agree = std::count_if(of.distances.begin(), of.distances.end(), [&](double distance) {
+    return std::abs(distance - most) <= of.tolerance;
+  });
+  if (2 * static_cast<std::size_t>(agree) <= of.distances.size()) return std::nullopt;
+  return most;
+}
+
+/// The distance that is less than half as far from `nominal` as those that differ from it.
+std::optional<double> ClearlyNearest(const PairSightings& of, double nominal) {
+  const double nearest = *std::min_element(
+      of.distances.begin(), of.distances.end(),
+      [&](double a, double b) { return std::abs(a - nominal) < std::abs(b - nominal); });
+  for (const double other : of.distances) {
+    if (std::abs(other - nearest) <= of.tolerance) continue;
+    if (std::abs(other - nominal) < 2.0 * std::abs(nearest - nominal)) return std::nullopt;
+  }
+  return nearest;
+}
+
 }  // namespace
 
-PairDistances UsualDistances(const std::vector<TrialSummary>& trials) {
+PairDistances UsualDistances(const std::vector<TrialSummary>& trials,
+                             const PairDistances& nominal) {
   std::map<std::pair<std::string, std::string>, PairSightings> seen;
   for (const TrialSummary& trial : trials) {
     ForEachPair(trial, [&](const auto& pair, double distance, double tolerance) {
@@ -50,14 +77,28 @@ PairDistances UsualDistances(const std::vector<TrialSummary>& trials) {
   }
   PairDistances usual;
   for (const auto& [pair, of] : seen) {
-    if (of.distances.size() < kLeastTrials) continue;
-    const double most = DensestMedian(of.distances, of.tolerance);
-    const auto agree = std::count_if(
-        of.distances.begin(), of.distances.end(),
-        [&, &of = of](double distance) { return std::abs(distance - most) <= of.tolerance; });
-    if (2 * static_cast<std::size_t>(agree) > of.distances.size()) usual[pair] = most;
+    const auto by_project = nominal.find(pair);
+    if (const auto most = MostFrequent(of)) {
+      usual[pair] = *most;
+    } else if (by_project != nominal.end()) {
+      if (const auto nearest = ClearlyNearest(of, by_project->second)) usual[pair] = *nearest;
+    }
   }
   return usual;
+}
+
+PairDistances NominalDistances(const MarkedRobot& robot) {
+  PairDistances distances;
+  for (const LabelCluster& cluster : robot.clusters) {
+    for (std::size_t i = 0; i < cluster.markers.size(); ++i) {
+      const Marker& a = robot.markers[Size(cluster.markers[i])];
+      for (std::size_t j = i + 1; j < cluster.markers.size(); ++j) {
+        const Marker& b = robot.markers[Size(cluster.markers[j])];
+        distances[{a.name, b.name}] = (a.p_link_marker - b.p_link_marker).norm();
+      }
+    }
+  }
+  return distances;
 }
 
 bool DiffersFromUsual(const TrialSummary& trial, const PairDistances& usual) {

@@ -14,6 +14,24 @@ bool Exercises(const Trial& trial, const std::string& chain) {
   return std::find(trial.chains.begin(), trial.chains.end(), chain) != trial.chains.end();
 }
 
+/// Trials of which postures are used.
+std::vector<Trial> UsedTrials(const Recording& recording) {
+  std::vector<Trial> used;
+  for (const int trial : std::set<int>(recording.trial.begin(), recording.trial.end())) {
+    used.push_back(recording.trials[trial]);
+  }
+  return used;
+}
+
+/// Links that carry the robot alone in a trial.
+std::map<int, std::string> StandsAloneOn(const Recording& recording) {
+  std::map<int, std::string> links;  // with the name of such a trial
+  for (const Trial& trial : UsedTrials(recording)) {
+    if (trial.support.size() == 1) links.emplace(trial.support.front(), trial.name);
+  }
+  return links;
+}
+
 std::vector<int> JointsOf(const Project& project, const Chain& chain) {
   return JointsToBody(project.tree, project.tree.links[chain.tip_link].body);
 }
@@ -21,7 +39,7 @@ std::vector<int> JointsOf(const Project& project, const Chain& chain) {
 /// Whether the trials exercise each joint of the chain, be it as one of other chains.
 bool ExercisesEachJoint(const Project& project, const Recording& recording, const Chain& chain) {
   std::set<int> exercised;
-  for (const Trial& trial : recording.trials) {
+  for (const Trial& trial : UsedTrials(recording)) {
     for (const Chain& other : project.chains) {
       if (!Exercises(trial, other.name)) continue;
       for (const int joint : JointsOf(project, other)) exercised.insert(joint);
@@ -109,22 +127,21 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
 std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured) {
   std::vector<std::string> unknown;
   if (!project.elasticity.base) return unknown;
-  std::set<int> known;
-  for (const Trial& trial : measured.calibration.trials) {
-    if (trial.support.size() == 1) known.insert(trial.support.front());
-  }
-  std::map<int, std::string> refused;  // by link: trials and why
+  const std::map<int, std::string> known = StandsAloneOn(measured.calibration);
+  std::map<int, std::string> shown = StandsAloneOn(measured.validation);
+  std::string refused;
   for (const TrialSummary& trial : measured.trials) {
     if (trial.trial.kind != TrialKind::kCalibration || trial.refused.empty()) continue;
-    if (trial.trial.support.size() != 1 || known.contains(trial.trial.support.front())) continue;
-    std::string& reasons = refused[trial.trial.support.front()];
-    reasons += (reasons.empty() ? "" : "; ") + ("trial " + trial.trial.name) + ": " + trial.refused;
+    refused += (refused.empty() ? "trial " : "; trial ") + trial.trial.name + ": " + trial.refused;
+    const std::vector<int>& support = trial.trial.support;
+    if (support.size() == 1) shown.emplace(support.front(), trial.trial.name);
   }
-  for (const auto& [link, reasons] : refused) {
+  if (refused.empty()) return unknown;
+  for (const auto& [link, trial] : shown) {
+    if (known.contains(link)) continue;
     unknown.push_back("how the robot bends on " + project.tree.links[link].name +
-                      " alone is not known (" + reasons +
-                      "): record it again or, to deploy what does not stand there, take its trials "
-                      "out of experiment.yaml");
+                      " alone is not known, on which it stands in trial " + trial +
+                      ": no trial for calibration that can be used shows it (" + refused + ")");
   }
   return unknown;
 }

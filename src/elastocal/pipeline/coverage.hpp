@@ -27,9 +27,10 @@ struct ChainCoverage {
 /// Of the chains that carry markers, in the project's order.
 std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured);
 
-/// Objections: links on which the robot stands alone in trials for calibration none of which can be
-/// used, while its chains are calibrated from others. The springs of that leg's ankle are those of
-/// the prior then. Nothing where legs are rigid.
+/// Objections where trials for calibration cannot be used: links on which the robot stands alone in
+/// one of these or in a trial for validation, and in no trial that is estimated from. The springs
+/// of that leg's ankle are those of the prior then, even where its chain is calibrated from others.
+/// Nothing where legs are rigid.
 std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured);
 
 /// Adds an objection for each chain that stays uncalibrated because its trials cannot be used: who

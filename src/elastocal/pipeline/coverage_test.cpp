@@ -91,13 +91,19 @@ TEST_F(CoverageOfChains, StandingOnALegWhoseTrialsAreRefusedIsNotKnown) {
   measured.trials[1].trial.support = {left, right};
   const std::vector<std::string> unknown = UnknownStance(project_, measured);
   ASSERT_EQ(unknown.size(), 1u);
-  EXPECT_EQ(unknown[0].find("how the robot bends on right_sole alone is not known (trial "
-                            "left_leg_trial: its clock cannot be told)"),
-            0u)
-      << unknown[0];
-  measured.calibration.trials[0].support = {right};  // recorded once more
+  EXPECT_EQ(unknown[0],
+            "how the robot bends on right_sole alone is not known, on which it stands in trial "
+            "left_leg_trial: no trial for calibration that can be used shows it (trial "
+            "left_leg_trial: its clock cannot be told; trial right_leg_trial: its clock cannot be "
+            "told)");
+  measured.trials.erase(measured.trials.begin());  // declared as standing on both feet
   EXPECT_TRUE(UnknownStance(project_, measured).empty());
-  measured.calibration.trials.clear();
+  measured.validation = Shown("right_leg");
+  measured.validation.trials[0].support = {left};
+  EXPECT_EQ(UnknownStance(project_, measured).size(), 1u);
+  measured.calibration.trials[0].support = {left};  // recorded once more
+  EXPECT_TRUE(UnknownStance(project_, measured).empty());
+  measured.calibration = {};
   Project rigid = project_;
   rigid.elasticity.base = false;
   EXPECT_TRUE(UnknownStance(rigid, measured).empty());
