@@ -4,7 +4,7 @@
 sound and with the mistakes of a laboratory, go through `calibrate`, `check`, `validate` and `compensate`; what the program
 says is set against the truth. Prints the tables of docs/robustness.md and docs/accuracy.md (Markdown). Needs NumPy.
 
-  /usr/bin/python3 tests/study/foreign_arm.py --program build/release/bin/elastocal --work DIR [--only faults few wall]
+  /usr/bin/python3 tests/study/foreign_arm.py --program build/release/bin/elastocal --work DIR [--only faults tracker few wall]
 """
 
 import argparse
@@ -254,6 +254,7 @@ def faults(study):
     labels("HAND and FORE exchanged", [(0, 3), (1, 4), (2, 5)])
     labels("HAND_1 and HAND_2 exchanged in 10 postures", [(0, 1)], slice(20, 30))
     turn = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], float)  # z of the room is y of the cameras
+    cases["rows shifted by one"] = (q, np.roll(sound, 1, axis=0))
     cases["y up, z stated"] = (q, sound @ turn.T)
     cases["upside down, z stated"] = (q, sound @ np.diag([1.0, -1.0, -1.0]))
     still = q.copy()
@@ -280,6 +281,59 @@ def faults(study):
         table = write(study.work / "check.csv", positions, points)
         done = study.run("check", study.work / "z.yaml", "--calibration", study.work / "sound", "--recording", table)
         print(f"| {name} | {done.returncode} | {first_words(done)} |", flush=True)
+
+
+def quaternion(turn):
+    """x, y, z, w of a rotation matrix that is not half a turn."""
+    w = 0.5 * np.sqrt(max(1e-12, 1 + np.trace(turn)))
+    return np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1], 4 * w * w]) / (4 * w)
+
+
+def tracker(study):
+    """A laser tracker sees the pose of a body on the hand; no markers."""
+    arm, q, rng = Arm.real(5), postures(50, 1), np.random.default_rng(3)
+    body = (turned(np.array([0.1, 0.2, 0.3])), np.array([0.1, 0.02, 0.03]))
+    poses = []
+    for row in q:
+        turn, place = arm.stands(row)[6]
+        turn = turned(rng.normal(size=3) * 2e-4) @ UPRIGHT[0] @ turn @ body[0]
+        at = UPRIGHT[0] @ (place + arm.stands(row)[6][0] @ body[1]) + UPRIGHT[1] + rng.normal(size=3) * 5e-5
+        poses.append(np.concatenate([at, quaternion(turn)]))
+    poses = np.array(poses)
+    (study.work / "tracker.yaml").write_text(
+        "robot: {urdf: arm.urdf}\ninstruments:\n  trackers: [{name: laser}]\n"
+        "  poses: [{name: lt, link: link7, tracker: laser, xyz_mm: [100, 20, 30], rpy_deg: [6, 11, 17]}]\n")
+    cases = {"sound": (q, poses)}
+
+    def joints(name, change):
+        wrong = q.copy()
+        change(wrong)
+        cases[name] = (wrong, poses)
+
+    for k in range(1, 7):
+        joints(f"sign of {NAMES[k]}", lambda w, k=k: w.__setitem__((slice(None), k), -q[:, k]))
+    for a, b in ((1, 3), (4, 5), (3, 5)):
+        joints(f"{NAMES[a]} and {NAMES[b]} exchanged", lambda w, a=a, b=b: w.__setitem__((slice(None), [a, b]), q[:, [b, a]]))
+    cases["rows shifted by one"] = (q, np.roll(poses, 1, axis=0))
+    cases["w of the quaternion first"] = (q, poses[:, [0, 1, 2, 6, 3, 4, 5]])
+    cases["y with the wrong sign"] = (q, poses * np.array([1, -1, 1, 1, 1, 1, 1]))
+    joints("elbow frozen in half the rows", lambda w: w.__setitem__((slice(25, 50), 3), q[25, 3]))
+    joints("elbow times 1.03", lambda w: w.__setitem__((slice(None), 3), 1.03 * q[:, 3]))
+    joints("elbow off by 2 degrees from the middle on", lambda w: w.__setitem__((slice(25, 50), 3), q[25:, 3] + 0.035))
+    cases["positions times 1.02"] = (q, poses * np.array([1.02] * 3 + [1] * 4))
+    print("| table of poses | exit | true error of the URDF, mm | said |\n|---|---|---|---|")
+    for name, (positions, seen) in cases.items():
+        folder = "tracker_" + name.replace(" ", "_")
+        with open(study.work / f"{folder}.csv", "w", newline="") as out:
+            rows = csv.writer(out)
+            rows.writerow(NAMES + [f"lt_{c}" for c in ("x", "y", "z", "qx", "qy", "qz", "qw")])
+            rows.writerows([f"{x:.8f}" for x in np.concatenate([a, b])] for a, b in zip(positions, seen))
+        done = study.run("calibrate", study.work / "tracker.yaml", "--recording", study.work / f"{folder}.csv", "-o",
+                         study.work / folder)
+        model = study.urdf_of(folder)
+        error = f"{error_of(model, arm, q, postures(100, 77)):.2f}" if model else ""
+        remark = next((line for line in done.stdout.splitlines() if "the noise of" in line), first_words(done))
+        print(f"| {name} | {done.returncode} | {error} | {remark[:150]} |", flush=True)
 
 
 def few(study):
@@ -320,15 +374,18 @@ def wall(study):
     print(f"| model at run time | {error_of(frames, arm, q, judged):.3f} |", flush=True)
 
 
+PARTS = {"faults": faults, "tracker": tracker, "few": few, "wall": wall}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True)
-    parser.add_argument("--only", nargs="+", choices=["faults", "few", "wall"], default=["faults", "few", "wall"])
+    parser.add_argument("--only", nargs="+", choices=list(PARTS), default=list(PARTS))
     options = parser.parse_args()
     study = Study(options.program, options.work)
     for name in options.only:
-        {"faults": faults, "few": few, "wall": wall}[name](study)
+        PARTS[name](study)
         print()
 
 
