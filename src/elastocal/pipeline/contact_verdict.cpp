@@ -22,6 +22,7 @@ constexpr double kMuchNoise = 4.0;      // times what the project says
 constexpr double kClearlyWorse = 1.25;  // of the error before
 constexpr double kMostLeftOut = 0.25;   // share of observations
 constexpr double kDegreeHere = 180.0 / M_PI;
+constexpr double kMatters = 0.1;   // of LargestError: below, it may be noise
 constexpr double kNoRobot = 10.0;  // times what is expected, as of tables of markers
 // What calibrated robots do not leave, root mean square.
 constexpr double kLargestPlace = 0.02;  // m
@@ -170,7 +171,8 @@ std::vector<std::string> WorseRows(const ObservedRobot& model, const Observation
                                    const ObservationFigures& after) {
   std::vector<std::string> worse;
   for (std::size_t i = 0; i < after.rows.size(); ++i) {
-    if (!(after.rows[i].rms > kClearlyWorse * before.rows[i].rms)) continue;
+    const double matters = kMatters * LargestError(model, after.rows[i].unit);
+    if (!(after.rows[i].rms > std::max(matters, kClearlyWorse * before.rows[i].rms))) continue;
     worse.push_back(fmt::format("{} from {} to {} {}", RowName(model, after.rows[i]),
                                 FigureOf(before.rows[i]), FigureOf(after.rows[i]),
                                 ShownUnitOf(after.rows[i].unit).name));

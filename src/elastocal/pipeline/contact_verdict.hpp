@@ -16,7 +16,8 @@ namespace elastocal {
 void JudgeContacts(ContactRun& run);
 
 /// Kinds of observations that the calibrated robot predicts by a quarter worse than the
-/// uncalibrated one: "height of lt from 101 to 251 mm".
+/// uncalibrated one, and by more than a tenth of LargestError, which may be noise: "height of lt
+/// from 101 to 251 mm".
 std::vector<std::string> WorseRows(const ObservedRobot& model, const ObservationFigures& before,
                                    const ObservationFigures& after);
 
