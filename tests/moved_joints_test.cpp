@@ -191,7 +191,9 @@ TEST_F(KnownArm, InclinedAxesLookLikeNoScale) {
   RobotTree tree = model_.tree;
   Joint& elbow = tree.joints[static_cast<std::size_t>(FindJoint(tree, "elbow_joint"))];
   elbow.T_parent_child.linear() = RotationFromVector(kInclined) * elbow.T_parent_child.linear();
-  const ErrorModel nominal = MakeErrorModel(tree, model_.markers, {});
+  // The default has beta there, and no far normal.
+  const PlacementOptions far_normals{.longest_lever_m = 1e9};
+  const ErrorModel nominal = MakeErrorModel(tree, model_.markers, far_normals);
   double furthest = 0.0;
   for (const JointPlacement& placement : nominal.placements) {
     furthest = std::max(furthest, std::abs(placement.r));
@@ -208,7 +210,7 @@ TEST_F(KnownArm, InclinedAxesLookLikeNoScale) {
       joint.T_parent_child.linear() =
           joint.T_parent_child.linear() * RotationFromVector(random.NormalVector(3, 0.5 * kDegree));
     }
-    const ErrorModel robot = MakeErrorModel(displaced, model_.markers, {});
+    const ErrorModel robot = MakeErrorModel(displaced, model_.markers, far_normals);
     Recording recording = MakeSyntheticRecording(
         robot, Eigen::VectorXd::Zero(robot.parameter_count()), {.postures = 30, .seed = seed});
     const auto fit = [&] { return Calibrate(nominal, recording, base, ModelKind::kGeometric, {}); };
