@@ -79,6 +79,7 @@ void CountMegabytes(benchmark::State& state, const std::filesystem::path& file) 
 void ReadMarkers(benchmark::State& state) {
   const Played& played = Recorded(state);
   const auto file = played.folder.path() / "all.tsv";
+  // NOLINTNEXTLINE(clang-analyzer-deadcode.DeadStores)
   for (auto _ : state) benchmark::DoNotOptimize(ReadQtmTsv(file));
   CountMegabytes(state, file);
 }
@@ -86,6 +87,7 @@ void ReadMarkers(benchmark::State& state) {
 void ReadJoints(benchmark::State& state) {
   const Played& played = Recorded(state);
   const auto file = played.folder.path() / "all.csv";
+  // NOLINTNEXTLINE(clang-analyzer-deadcode.DeadStores)
   for (auto _ : state) benchmark::DoNotOptimize(ReadJointLog(file, Talos()));
   CountMegabytes(state, file);
 }
@@ -94,7 +96,7 @@ void ReadJoints(benchmark::State& state) {
 void CorrectTheLabels(benchmark::State& state) {
   const Played& played = Recorded(state);
   const MarkedRobot robot = MakeMarkedRobot(Talos());
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     state.PauseTiming();
     MarkerTrajectories markers = played.trial.markers;
     state.ResumeTiming();
@@ -104,7 +106,7 @@ void CorrectTheLabels(benchmark::State& state) {
 
 void SmoothTheMarkers(benchmark::State& state) {
   const Played& played = Recorded(state);
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     state.PauseTiming();
     MarkerTrajectories markers = played.trial.markers;
     state.ResumeTiming();
@@ -114,6 +116,7 @@ void SmoothTheMarkers(benchmark::State& state) {
 
 void SmoothTheLog(benchmark::State& state) {
   const Played& played = Recorded(state);
+  // NOLINTNEXTLINE(clang-analyzer-deadcode.DeadStores)
   for (auto _ : state) benchmark::DoNotOptimize(SmoothLog(played.trial.log, {}));
 }
 
@@ -124,7 +127,7 @@ void PredictTheSpeeds(benchmark::State& state) {
   const std::vector<int> coordinates = LoggedCoordinates(robot.tree, played.trial.log);
   std::vector<int> markers(robot.markers.size());
   std::iota(markers.begin(), markers.end(), 0);
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     benchmark::DoNotOptimize(PredictSpeeds(robot, markers, {0}, log, coordinates, 100.0));
   }
 }
@@ -136,7 +139,7 @@ void SampleTheTrial(benchmark::State& state) {
   trial.support = {FindLink(Talos().tree, "right_sole_link")};
   std::vector<int> markers(robot.markers.size());
   std::iota(markers.begin(), markers.end(), 0);
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     state.PauseTiming();
     MarkerTrajectories trajectories = played.trial.markers;
     state.ResumeTiming();
@@ -149,7 +152,7 @@ void SampleTheTrial(benchmark::State& state) {
 /// All of it, from files.
 void ReadFolder(benchmark::State& state) {
   const Played& played = Recorded(state);
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     const RecordingFolder folder = ReadRecordingFolders({played.folder.path()}, Talos());
     state.counters["postures"] = folder.calibration.posture_count();
     state.counters["samples"] = folder.trials[0].samples;
