@@ -56,9 +56,10 @@ TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
   const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   const int elbow = project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate;
   Recording reversed = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
-  Recording shuffled = reversed;
+  Recording shifted = reversed, shuffled = reversed;
+  shifted.markers.topRows(11) = reversed.markers.bottomRows(11);  // of the next posture
+  shuffled.markers = reversed.markers.colwise().reverse().eval();
   reversed.q.col(elbow) *= -1.0;
-  shuffled.markers.topRows(11) = reversed.markers.bottomRows(11);  // of the next posture
   const std::string json = (scratch_.path() / "found.json").string();
   const auto run = [&](const std::string& command, const Recording& recording) {
     WritePostureTable(scratch_.path() / "wrong.csv", recording, project.tree);
@@ -72,6 +73,10 @@ TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
   EXPECT_NE(run("check", reversed).find("The recording is wrong: elbow_joint: the sign"),
             std::string::npos);
   EXPECT_EQ(status(), "recording wrong");
+  EXPECT_NE(run("check", shifted)
+                .find("The recording is wrong: markers belong to the joint positions of the next "
+                      "row"),
+            std::string::npos);
   EXPECT_NE(run("check", shuffled).find("Not explained: the calibrated robot errs by"),
             std::string::npos);
   EXPECT_EQ(status(), "implausible");
