@@ -200,7 +200,7 @@ void AddSeenTag(ObservationSetup& setup, const MountedCamera& camera, const Moun
   std::vector<int> links;
   if (camera.of.link >= 0) links.push_back(camera.of.link);
   if (tag.of.link >= 0) links.push_back(tag.of.link);
-  auto seen = MakeInstrument<SeenTag>(camera.of.name + "/" + tag.of.name, std::move(links),
+  auto seen = MakeInstrument<SeenTag>(camera.of.name + "/" + tag.of.name, links,
                                       {camera.pose, tag.pose, camera.numbers},
                                       std::vector<int>(8, camera.noise));
   seen->camera = camera.of.camera;
