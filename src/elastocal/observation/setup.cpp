@@ -140,7 +140,7 @@ void AddTrackedBody(ObservationSetup& setup, const TrackedBodySetup& of) {
     noise = {p, p, p, r, r, r};
   }
   auto body = MakeInstrument<TrackedBody>(of.name, TrackedLinks(of.link, of.tracker),
-                                          {of.tracker.quantity, quantity}, std::move(noise));
+                                          {of.tracker.quantity, quantity}, noise);
   body->whitening = std::move(whitening);
   setup.instruments.push_back(std::move(body));
 }
