@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -158,6 +159,34 @@ TEST(InstrumentRun, AllKindsCalibrateTheExampleFromATable) {
   EXPECT_EQ(summary["contact"]["kfold"]["instruments"].size(), 5u);
   // The files can be read again.
   EXPECT_EQ(MakeContactFiles(project, run).count("calibration.yaml"), 1u);
+}
+
+// Thirty joints have 435 pairs.
+TEST(InstrumentRun, AMistakeInTheTableOfAHumanoidIsNamed) {
+  const Project project = ReadProject(SourceFile("examples/talos_instruments/project.yaml"));
+  VirtualTalos robot(project, 3);
+  std::istringstream lines(robot.Table(24));
+  ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "postures.csv";
+  std::ofstream table(file);
+  std::string line;
+  std::getline(lines, line);
+  table << line << "\n";
+  const std::string joint = "arm_left_4_joint";
+  const auto before =
+      std::count(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(line.find(joint)), ',');
+  while (std::getline(lines, line)) {
+    std::size_t at = 0;
+    for (int k = 0; k < before; ++k) at = line.find(',', at) + 1;
+    const bool negative = line[at] == '-';
+    table << line.replace(at, negative ? 1 : 0, negative ? "" : "-") << "\n";
+  }
+  table.close();
+  const ContactRun run = CalibrateContacts(project, {file}, {.folds = 0});
+  ASSERT_FALSE(run.deployable());
+  EXPECT_EQ(run.verdict.objections.front().find(joint + ": the sign of its positions is reversed"),
+            0u)
+      << run.verdict.objections.front();
 }
 
 }  // namespace

@@ -23,12 +23,7 @@ class Registration {
     from_.push_back(from);
     to_.push_back(to);
   }
-  std::optional<Transform> Solve() const {
-    if (from_.size() < 3) return std::nullopt;
-    using Points = Eigen::Map<const Eigen::Matrix3Xd>;
-    const auto count = static_cast<Eigen::Index>(from_.size());
-    return FitRigid(Points(from_[0].data(), 3, count), Points(to_[0].data(), 3, count));
-  }
+  std::optional<Transform> Solve() const { return FitRigid(from_, to_); }
 
  private:
   std::vector<Eigen::Vector3d> from_, to_;

@@ -72,10 +72,7 @@ class ShiftSearch {
         measured.push_back(MarkerPosition(recording_, i, m));
       }
     }
-    if (nominal.size() < 3) return std::nullopt;
-    using Points = Eigen::Map<const Eigen::Matrix3Xd>;
-    const auto count = static_cast<Eigen::Index>(nominal.size());
-    return FitRigid(Points(nominal[0].data(), 3, count), Points(measured[0].data(), 3, count));
+    return FitRigid(nominal, measured);
   }
 
   /// How far the markers of a row are from the nominal ones of its partner, median, m; NaN where
@@ -90,7 +87,7 @@ class ShiftSearch {
       const Eigen::Vector3d nominal = nominal_[Size(row + shifted)].col(m);
       distances.push_back((*T * nominal - MarkerPosition(recording_, row, m)).norm());
     }
-    return MedianOf(distances);
+    return Median(distances);
   }
 
   std::vector<double> Errors(int begin, int shifted,
@@ -100,18 +97,12 @@ class ShiftSearch {
     return errors;
   }
 
-  static double MedianOf(const std::vector<double>& values) {
-    if (values.empty()) return std::nan("");
-    return Median(
-        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
-  }
-
   /// Median of what can be told; NaN where nothing can.
   static double Typical(const std::vector<double>& errors) {
     std::vector<double> told;
     std::copy_if(errors.begin(), errors.end(), std::back_inserter(told),
                  [](double error) { return std::isfinite(error); });
-    return MedianOf(told);
+    return Median(told);
   }
 
   /// The shift by so many rows that places the root link by the rows from `begin` on.

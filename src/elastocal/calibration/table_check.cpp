@@ -160,7 +160,7 @@ class TableSearch {
     int count = 0;
     for (const std::vector<double>& of_marker : distances) {
       if (of_marker.empty()) continue;
-      squares += std::pow(MedianOf(of_marker), 2);
+      squares += std::pow(Median(of_marker), 2);
       ++count;
     }
     return count == 0 ? 0.0 : std::sqrt(squares / count);
@@ -183,11 +183,6 @@ class TableSearch {
       }
     }
     return Typical(distances);
-  }
-
-  static double MedianOf(const std::vector<double>& values) {
-    return Median(
-        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   }
 
   void TryLog(LogSuspicion suspicion, std::vector<LogSuspicion>& found) {
@@ -250,7 +245,7 @@ class TableSearch {
           const int m = markers[Size(a)], n = markers[Size(b)];
           if (Seen(recording_, i, m) && Seen(recording_, i, n)) seen.push_back(Distance(i, m, n));
         }
-        if (!seen.empty()) usual(a, b) = usual(b, a) = MedianOf(seen);
+        if (!seen.empty()) usual(a, b) = usual(b, a) = Median(seen);
       }
     }
     return usual;

@@ -62,6 +62,11 @@ double Median(Eigen::VectorXd values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
+double Median(const std::vector<double>& values) {
+  return Median(Eigen::VectorXd(
+      Eigen::VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size()))));
+}
+
 double RootMeanSquare(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 namespace elastocal {
@@ -33,6 +35,7 @@ double BetaQuantile(double probability, double alpha, double beta);
 
 /// Median (mean of the two middle values for an even count); NaN for no values.
 double Median(Eigen::VectorXd values);
+double Median(const std::vector<double>& values);
 
 /// Root of the mean square; NaN for no values.
 double RootMeanSquare(const Eigen::VectorXd& values);

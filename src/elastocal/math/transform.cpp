@@ -50,6 +50,14 @@ Transform FitRigid(const Eigen::Ref<const Eigen::Matrix3Xd>& from,
   return Transform(Eigen::umeyama(from, to, false));
 }
 
+std::optional<Transform> FitRigid(const std::vector<Eigen::Vector3d>& from,
+                                  const std::vector<Eigen::Vector3d>& to) {
+  if (from.size() < 3) return std::nullopt;
+  using Points = Eigen::Map<const Eigen::Matrix3Xd>;
+  const auto count = static_cast<Eigen::Index>(from.size());
+  return FitRigid(Points(from[0].data(), 3, count), Points(to[0].data(), 3, count));
+}
+
 Transform FromXyzRpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
   Transform T = RotZ(rpy.z()) * RotY(rpy.y()) * RotX(rpy.x());
   T.translation() = xyz;

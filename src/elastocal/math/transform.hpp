@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include <Eigen/Geometry>
 
 namespace elastocal {
@@ -26,6 +29,9 @@ Eigen::Matrix3d RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector
 /// nearest to the points `to`: least squares, no scale (Umeyama 1991).
 Transform FitRigid(const Eigen::Ref<const Eigen::Matrix3Xd>& from,
                    const Eigen::Ref<const Eigen::Matrix3Xd>& to);
+/// The same of lists of as many points; nothing for fewer than three.
+std::optional<Transform> FitRigid(const std::vector<Eigen::Vector3d>& from,
+                                  const std::vector<Eigen::Vector3d>& to);
 
 /// Whether three or more points (columns, m) tell a pose: they do not lie on a line, within 10 mm.
 bool TellPose(const Eigen::Matrix3Xd& points);

@@ -36,10 +36,6 @@ std::vector<Permutation> ListPermutations(int size) {
   return list;
 }
 
-double MedianOf(const std::vector<double>& values) {
-  return Median(Eigen::VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size())));
-}
-
 // Minimum, over all orders except the identity, of the largest change of a distance, in tolerances.
 double Separation(const ClusterShape& shape) {
   double least = std::numeric_limits<double>::infinity();
@@ -100,8 +96,8 @@ double DensestMedian(std::vector<double> values, double width) {
       best_end = end;
     }
   }
-  return MedianOf({values.begin() + static_cast<std::ptrdiff_t>(best_begin),
-                   values.begin() + static_cast<std::ptrdiff_t>(best_end)});
+  return Median(std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(best_begin),
+                                    values.begin() + static_cast<std::ptrdiff_t>(best_end)));
 }
 
 int PairColumn(int i, int j, int size) {
@@ -161,7 +157,7 @@ ClusterShape MeasureShape(const DistanceTable& table, int size, double tolerance
       const double step = std::abs(table(frame + 1, pair) - value);
       if (!std::isnan(step)) steps.push_back(step);
     }
-    const double sd = steps.empty() ? 0.0 : kNormalMad * MedianOf(steps) / std::sqrt(2.0);
+    const double sd = steps.empty() ? 0.0 : kNormalMad * Median(steps) / std::sqrt(2.0);
     shape.tolerances[pair] = std::max(least_tolerance_m, tolerance_sd * sd);
     if (usual.size() > 0) {
       const std::vector<double> near = NearUsual(values, usual[pair], shape.tolerances[pair]);

@@ -95,18 +95,19 @@ ObservationFigures FiguresOfGood(const ContactRun& run) {
 /// The file that is deployed has no springs: its figures beside those with compensation.
 void AddUrdfAlone(ContactRun& run, const std::string& on) {
   const ObservationFigures& urdf = ContactRun::Judged(*run.geometric);
-  std::string text;
+  std::vector<std::string> figures;
   if (run.touches_only()) {
-    text = fmt::format("{:.2f} mm and {:.2f} degrees", 1e3 * urdf.all.height,
-                       kDegreeHere * urdf.all.tilt());
+    figures.push_back(fmt::format("{:.2f} mm and {:.2f} degrees", 1e3 * urdf.all.height,
+                                  kDegreeHere * urdf.all.tilt()));
+  } else {
+    for (const RowErrors& row : urdf.rows) {
+      figures.push_back(fmt::format("{} {} in {}", FigureOf(row), ShownUnitOf(row.unit).name,
+                                    RowName(run.model, row)));
+    }
   }
-  for (const RowErrors& row : urdf.rows) {
-    if (run.touches_only()) break;
-    text += fmt::format("{}{} {} in {}", text.empty() ? "" : ", ", FigureOf(row),
-                        ShownUnitOf(row.unit).name, RowName(run.model, row));
-  }
-  run.verdict.remarks.push_back(fmt::format(
-      "these figures hold with compensation of elasticity; the URDF alone leaves {} {}", text, on));
+  run.verdict.remarks.push_back(
+      fmt::format("these figures hold with compensation of elasticity; the URDF alone leaves {} {}",
+                  fmt::join(figures, ", "), on));
 }
 
 /// Noise that is far above what the project says of an instrument is no noise of it.
@@ -119,10 +120,9 @@ void RemarkOnNoise(ContactRun& run) {
     if (ratio < kMuchNoise) continue;
     const ShownUnit unit = ShownUnitOf(sources[i].unit);
     run.verdict.remarks.push_back(fmt::format(
-        "the noise of {} is {:.2g} {}, {:.2g} times what was expected: a joint that was off in "
-        "part "
-        "of the recording, gears, or something that was moved? summary.json has what is left of "
-        "each row",
+        "the noise of {} is {:.2g} {}, {:.2g} times what was expected: a joint that was off for a "
+        "part of the recording, gears, or something that was moved? summary.json has what is left "
+        "of each row",
         sources[i].name, unit.factor * fit.spread.sd[i], unit.name, ratio));
   }
 }

@@ -18,8 +18,9 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeftWithout = 0.1;
-constexpr double kNearTheBest = 2.0;  // times the squares that the best one leaves
-constexpr int kMostRowsOff = 2;       // by which rows are shifted
+constexpr double kNearTheBest = 2.0;     // times the squares that the best one leaves
+constexpr int kMostRowsOff = 2;          // by which rows are shifted
+constexpr int kMostFittedPostures = 24;  // that are fitted
 
 struct TriedMistake {
   std::string what;
@@ -38,21 +39,16 @@ class ObservedMistakeSearch {
       const auto values = observations_.q.col(c);
       if (values.maxCoeff() > values.minCoeff()) moving.push_back(c);
     }
-    for (std::size_t a = 0; a < moving.size(); ++a) {
-      Eigen::MatrixXd q = observations_.q;
-      q.col(moving[a]) *= -1.0;
-      Try(NameOfJoint(moving[a]) + ": the sign of its positions is reversed", q);
-      for (std::size_t b = a + 1; b < moving.size(); ++b) {
-        if (Slides(moving[a]) != Slides(moving[b])) continue;
-        q = observations_.q;
-        q.col(moving[a]).swap(q.col(moving[b]));
-        Try(NameOfJoint(moving[a]) + " and " + NameOfJoint(moving[b]) +
-                ": their positions are exchanged",
-            q);
-      }
-    }
+    for (const int c : moving) TrySign(c);
     for (int rows = -kMostRowsOff; rows <= kMostRowsOff; ++rows) {
       if (rows != 0) TryShift(rows);
+    }
+    std::vector<std::string> found = Found();
+    if (!found.empty()) return found;
+    for (std::size_t a = 0; a < moving.size(); ++a) {  // hundreds of a humanoid
+      for (std::size_t b = a + 1; b < moving.size(); ++b) {
+        if (Slides(moving[a]) == Slides(moving[b])) TryExchange(moving[a], moving[b]);
+      }
     }
     return Found();
   }
@@ -65,17 +61,35 @@ class ObservedMistakeSearch {
   std::string NameOfJoint(int coordinate) const { return JointOf(coordinate).name; }
   bool Slides(int coordinate) const { return JointOf(coordinate).type == JointType::kPrismatic; }
 
-  /// Squares over the largest errors that calibrated robots have, mean over the kinds of rows, once
-  /// the nominal robot is placed; infinite where it cannot be.
+  /// Some postures, evenly spread, with joint positions of their own.
+  Observations SomeWith(const Eigen::MatrixXd& q) const {
+    const int stride = 1 + observations_.posture_count() / kMostFittedPostures;
+    Observations some = observations_;
+    some.postures.clear();
+    some.all.clear();
+    std::vector<int> rows;
+    for (int i = 0; i < observations_.posture_count(); i += stride) {
+      rows.push_back(i);
+      some.postures.push_back(observations_.postures[Size(i)]);
+    }
+    some.q = q(rows, Eigen::all);
+    for (const Observation& observation : observations_.all) {
+      if (observation.posture % stride != 0) continue;
+      some.all.push_back(observation);
+      some.all.back().posture = observation.posture / stride;
+    }
+    return some;
+  }
+
+  /// Squares over the largest errors that calibrated robots have, summed over the kinds of rows,
+  /// once the nominal robot is placed; infinite where it cannot be.
   double Squares(const Eigen::MatrixXd& q) const {
     InterruptionPoint();
-    Observations changed = observations_;
-    changed.q = q;
+    const Observations some = SomeWith(q);
     const ObservationFit fit =
-        FitObservations(model_, changed, StartFit(model_, changed),
+        FitObservations(model_, some, StartFit(model_, some),
                         {.freedom = {.robot = false}, .estimate_spread = false});
-    const ObservationFigures figures =
-        MakeFigures(model_, changed, LeftOf(model_, changed, fit.values));
+    const ObservationFigures figures = MakeFigures(model_, some, LeftOf(model_, some, fit.values));
     double squares = 0.0;
     for (const RowErrors& row : figures.rows) {
       squares += std::pow(row.rms / LargestError(model_, row.unit), 2);
@@ -85,6 +99,18 @@ class ObservedMistakeSearch {
 
   void Try(const std::string& what, const Eigen::MatrixXd& q) {
     tried_.push_back({what, Squares(q)});
+  }
+
+  void TrySign(int c) {
+    Eigen::MatrixXd q = observations_.q;
+    q.col(c) *= -1.0;
+    Try(NameOfJoint(c) + ": the sign of its positions is reversed", q);
+  }
+
+  void TryExchange(int a, int b) {
+    Eigen::MatrixXd q = observations_.q;
+    q.col(a).swap(q.col(b));
+    Try(NameOfJoint(a) + " and " + NameOfJoint(b) + ": their positions are exchanged", q);
   }
 
   /// Rows at the end of which the joints are not there keep their own: a few of many.

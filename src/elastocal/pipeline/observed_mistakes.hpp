@@ -9,12 +9,12 @@
 namespace elastocal {
 
 /// Mistakes in the joint positions of tables of observations that are far larger than errors of a
-/// robot: the sign of a joint, two joints exchanged, rows that belong to the joints of another row
-/// (up to two further or before). Each is undone and the nominal robot placed anew among what it
-/// sees; it is a mistake if a tenth of the squares is left (each kind of row over LargestError),
-/// and less than twice what the best one leaves. In words, the best first: "j4: the sign of its
-/// positions is reversed". For a recording that no robot explains; a clean one has none, but the
-/// search fits hundreds of times.
+/// robot: the sign of a joint, rows that belong to the joints of another row (up to two further or
+/// before), and where none of these is one, two joints exchanged. Each is undone and the nominal
+/// robot placed anew among what it sees, in two dozen postures; it is a mistake if a tenth of the
+/// squares is left (of each kind of row over LargestError), and less than twice what the best one
+/// leaves. In words, the best first: "j4: the sign of its positions is reversed". For a recording
+/// that no robot explains: a clean one has none, but the search fits some hundred times.
 std::vector<std::string> FindObservedMistakes(const ObservedRobot& model,
                                               const Observations& observations);
 

@@ -25,8 +25,7 @@ struct RecordingMistake {
 
 /// Mistakes of a recording that a fit proves. Suspicions come from the nominal robot
 /// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions, FindRowShift), and from
-/// axes that `result` has turned by more than a right angle, whose joints may have the opposite
-/// sign; each is
+/// axes that `result` has turned by more than a right angle: the sign of their joints. Each is
 /// undone, the robot is calibrated again, and it is a mistake if the error falls to less than half
 /// (that of `result` on the recording `fitted`). Then the next is sought in the corrected
 /// recording, at most three in all. Without suspicions, which no clean recording has, nothing is

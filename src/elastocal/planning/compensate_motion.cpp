@@ -150,6 +150,12 @@ StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
 
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
                                    const JointMotion& planned, MotionLoads loads) {
+  if (model.tips.empty()) {
+    throw InputError(
+        project.file.string() +
+        ": no chain ends at a link that moves, so that nothing says what is to be where "
+        "the plan has it; 'chains: [{name: NAME, tip: LINK}]' was expected");
+  }
   for (const Sole& sole : project.soles) {
     if (!sole.ball_radius) continue;
     throw InputError(project.file.string() + ": sole '" +

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/robot/collision.hpp"
@@ -36,6 +37,24 @@ TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
     naive = std::max(naive, std::abs(robot->clearances(commanded).minCoeff() - planned));
   }
   EXPECT_GT(naive, 16e-3);
+}
+
+// Nothing would be corrected, and all of it said to be where the plan has it.
+TEST(CompensateMotion, WithoutChainsNothingSaysWhatIsToBeWhere) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
+  model.tips.clear();
+  JointMotion plan;
+  plan.q = project.motion.rest.transpose();
+  try {
+    CompensateMotion(project, model, plan);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'chains: [{name: NAME, tip: LINK}]' was expected"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace
