@@ -222,6 +222,18 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   EXPECT_EQ(swapped[1].other, swapped[0].joint);
   HideTorques(swapped, recording);
   EXPECT_TRUE(FindContradictoryTorques(robot_.model, recording, 1e-3).empty());
+  // All of them, those of joints whose load varies little as well.
+  recording = clean;
+  recording.torques *= -1.0;
+  const auto all = FindContradictoryTorques(robot_.model, recording, 1e-3);
+  Eigen::Index sensors = 0;
+  for (Eigen::Index c = 0; c < clean.torques.cols(); ++c) {
+    sensors += clean.torques.col(c).array().isNaN().all() ? 0 : 1;
+  }
+  EXPECT_EQ(static_cast<Eigen::Index>(all.size()), sensors);
+  for (const ContradictoryTorque& one : all) {
+    EXPECT_EQ(static_cast<int>(one.kind), static_cast<int>(TorqueContradiction::kReversed));
+  }
 }
 
 // What is not known of a leg's load: sensors that all show a quarter too much are off by a fifth of
