@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/observation/observed_posture.hpp"
 
+#include <stdexcept>
+
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/statics.hpp"
 
@@ -106,6 +108,9 @@ std::vector<JointLoads> ObservedLoads(const ObservedRobot& model, const Observat
 
 std::vector<Sight> SightsOf(const ObservedRobot& model, const Observations& observations,
                             const ObservedValues& values, const std::vector<JointLoads>& loads) {
+  if (values.quantities.size() != model.setup.quantities.size()) {
+    throw std::invalid_argument("as many quantities as the model has");
+  }
   const Geometry geometry = ApplyErrors(model.robot, values.robot);
   ObservedPosture posture(model);
   std::vector<Sight> sights(observations.all.size());

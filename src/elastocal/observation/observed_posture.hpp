@@ -55,7 +55,8 @@ ObservedValues NominalValues(const ObservedRobot& model, const Observations& obs
 std::vector<JointLoads> ObservedLoads(const ObservedRobot& model, const Observations& observations,
                                       const Eigen::VectorXd& errors);
 
-/// What each observation depends on. Effects that are not known (`effects` empty) are none.
+/// What each observation depends on. Effects that are not known (`effects` empty) are none. Throws
+/// std::invalid_argument for values of other quantities than those of the model.
 std::vector<Sight> SightsOf(const ObservedRobot& model, const Observations& observations,
                             const ObservedValues& values, const std::vector<JointLoads>& loads);
 
