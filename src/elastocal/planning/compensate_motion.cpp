@@ -150,18 +150,18 @@ StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
 
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
                                    const JointMotion& planned, MotionLoads loads) {
-  if (model.tips.empty()) {
-    throw InputError(
-        project.file.string() +
-        ": no chain ends at a link that moves, so that nothing says what is to be where "
-        "the plan has it; 'chains: [{name: NAME, tip: LINK}]' was expected");
-  }
   for (const Sole& sole : project.soles) {
     if (!sole.ball_radius) continue;
     throw InputError(project.file.string() + ": sole '" +
                      project.tree.links[static_cast<std::size_t>(sole.link)].name +
                      "' is a ball, and commands can be corrected for flat soles only; the "
                      "calibrated URDF serves such a robot");
+  }
+  if (model.tips.empty()) {
+    throw InputError(
+        project.file.string() +
+        ": no chain ends at a link that moves, so that nothing says what is to be where "
+        "the plan has it; 'chains: [{name: NAME, tip: LINK}]' was expected");
   }
   CompensatedMotion result;
   result.planned.motion = planned;
