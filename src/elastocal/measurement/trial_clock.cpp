@@ -7,7 +7,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/stable_samples.hpp"
-#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/measurement/standing_kinematics.hpp"
 
 namespace elastocal {
 namespace {
@@ -23,63 +23,6 @@ constexpr double kSettled_s =
 constexpr double kMostUnexplained = 0.25;  // of the markers
 constexpr double kLeastSeen =
     0.5;  // least share of the trial in which a marker must be seen to count
-
-// Nominal marker positions in the frame of the link that stands still, or where the origins of
-// three and more links do.
-class StandingKinematics {
- public:
-  StandingKinematics(const MarkedRobot& robot, const std::vector<int>& markers,
-                     const std::vector<int>& standing) {
-    for (const int link : standing) standing_.push_back(robot.tree.links[link]);
-    std::vector<Marker> carried;
-    for (const int marker : markers) carried.push_back(robot.markers[marker]);
-    for (const Marker& marker : carried) {
-      const Link& link = robot.tree.links[marker.link];
-      bodies_.push_back(link.body);
-      p_body_marker_.push_back(link.T_body_link * marker.p_link_marker);
-    }
-    // The joints that carry the standing links must move in the model, even without markers.
-    for (const int link : standing) {
-      carried.push_back({.name = "on " + robot.tree.links[link].name, .link = link});
-    }
-    model_ = MakeErrorModel(robot.tree, std::move(carried));
-    geometry_ = ApplyErrors(model_, Eigen::VectorXd::Zero(model_.parameter_count()));
-    const Eigen::Matrix3Xd origins = Origins(BodyTransforms(model_, geometry_, robot.q_not_logged));
-    if (TellPose(origins)) origins_ = origins;
-  }
-
-  Eigen::Matrix3Xd Positions(const Eigen::VectorXd& q) const {
-    const std::vector<Transform> T_root_body = BodyTransforms(model_, geometry_, q);
-    const Transform T_standing_root =
-        origins_.cols() > 0 ? FitRigid(Origins(T_root_body), origins_)
-                            : (T_root_body[standing_.front().body] * standing_.front().T_body_link)
-                                  .inverse(Eigen::Isometry);
-    Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(bodies_.size()));
-    for (std::size_t m = 0; m < bodies_.size(); ++m) {
-      positions.col(static_cast<Eigen::Index>(m)) =
-          T_standing_root * (T_root_body[bodies_[m]] * p_body_marker_[m]);
-    }
-    return positions;
-  }
-
- private:
-  // Of the standing links, in the root link's frame.
-  Eigen::Matrix3Xd Origins(const std::vector<Transform>& T_root_body) const {
-    Eigen::Matrix3Xd origins(3, static_cast<Eigen::Index>(standing_.size()));
-    for (std::size_t k = 0; k < standing_.size(); ++k) {
-      origins.col(static_cast<Eigen::Index>(k)) =
-          T_root_body[standing_[k].body] * standing_[k].T_body_link.translation();
-    }
-    return origins;
-  }
-
-  std::vector<Link> standing_;
-  Eigen::Matrix3Xd origins_;  // in the frame in which they stand still; empty: one link does
-  std::vector<int> bodies_;
-  std::vector<Eigen::Vector3d> p_body_marker_;
-  ErrorModel model_;
-  Geometry geometry_;
-};
 
 // Mean of the known values of each row; NaN if fewer than `least` are known.
 Eigen::VectorXd MeanKnown(const Eigen::MatrixXd& values, const std::vector<bool>& columns,

@@ -8,6 +8,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/clock_by_positions.hpp"
 #include "elastocal/measurement/log_mistake.hpp"
 #include "elastocal/measurement/posture_frames.hpp"
 #include "elastocal/measurement/seen_from.hpp"
@@ -41,13 +42,8 @@ class TrialSampler {
     if (const auto moved = FindMovedSupport(robot_.tree, seen, trial_, trajectories_)) {
       return Refuse(Describe(*moved, robot_.tree));
     }
-    const SpeedsFrom seen_speeds = SpeedsForClock(speeds);
-    FitClock(seen_speeds);
-    if (summary().clock.state != ClockState::kReliable) {
-      const std::string cause = CauseOfBadClock(seen_speeds);
-      if (!cause.empty() || !RestsBearIt()) return Refuse(Describe(summary().clock) + cause);
-      summary().clock.state = ClockState::kReliable;
-    }
+    const std::string unclear = TellClock(MotionForClock(speeds));
+    if (!unclear.empty()) return Refuse(unclear);
     LeaveOutUnlogged(speeds);
     Average(ChooseFrames(speeds));
     if (result_.frames.empty()) Refuse("the robot is never at rest for long enough");
@@ -138,22 +134,23 @@ class TrialSampler {
     smoothed_log_ = SmoothLog(log_, options_.smoothing);
   }
 
-  // Speeds of the markers as seen from links.
-  struct SpeedsFrom {
+  // The markers' motion as seen from links.
+  struct Motion {
     std::vector<int> links;
     Eigen::MatrixXd speeds;
+    std::optional<MarkerTrajectories> relative;  // without: the trajectories themselves
   };
 
   // Seen from what stands still or, where the root is free, from a body with markers.
-  SpeedsFrom SpeedsForClock(const Eigen::MatrixXd& speeds) const {
+  Motion MotionForClock(const Eigen::MatrixXd& speeds) const {
     if (trial_.free_root) {
-      if (const auto seen = SeeFromMarkedBody(robot_, markers_, trajectories_)) {
+      if (auto seen = SeeFromMarkedBody(robot_, markers_, trajectories_)) {
         Eigen::MatrixXd relative = MarkerSpeeds(seen->trajectories);
         ForgetEdges(seen->trajectories, smoothed_log_.margin_s, relative);
-        return {{seen->link}, std::move(relative)};
+        return {{seen->link}, std::move(relative), std::move(seen->trajectories)};
       }
     }
-    return {trial_.support.empty() ? std::vector<int>{0} : trial_.support, speeds};
+    return {trial_.support.empty() ? std::vector<int>{0} : trial_.support, speeds, std::nullopt};
   }
 
   ClockOptions ClockSettings() const {
@@ -162,22 +159,34 @@ class TrialSampler {
     return options;
   }
 
-  void FitClock(const SpeedsFrom& seen) {
+  /// Estimates the clock; why it cannot be told, or nothing.
+  std::string TellClock(const Motion& seen) {
+    ClockFit& clock = summary().clock;
+    FitClock(seen);
+    if (clock.state == ClockState::kReliable) {
+      if (trial_.of_motion()) Refine(seen);  // half a millisecond matters there
+      return "";
+    }
+    const std::string cause = CauseOfBadClock(seen);
+    if (!cause.empty()) return Describe(clock) + cause;
+    if (clock.state == ClockState::kImprecise) Refine(seen);
+    return clock.state == ClockState::kReliable ? "" : Describe(clock);
+  }
+
+  void FitClock(const Motion& seen) {
     const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.links, smoothed_log_,
                                               coordinates_, trajectories_.rate_hz);
     summary().clock = EstimateTrialClock(seen.speeds, trajectories_.rate_hz, logged,
                                          options_.expected_lag_s, ClockSettings());
   }
 
-  /// Whether the lag is hardly worse known than asked, and the robot moves from rest to rest.
-  /// Errors of the description make the speeds of a robot with few moves fit badly.
-  bool RestsBearIt() const {
-    constexpr double kWorse = 5.0 / 3.0;
-    return result_.summary.clock.state == ClockState::kImprecise && !trial_.of_motion() &&
-           result_.summary.clock.sd_s <= kWorse * options_.largest_rest_lag_sd_s;
+  void Refine(const Motion& seen) {
+    summary().clock = RefineClock(robot_, markers_, seen.links, smoothed_log_, coordinates_,
+                                  seen.relative ? *seen.relative : trajectories_, summary().clock,
+                                  ClockSettings());
   }
 
-  std::string CauseOfBadClock(const SpeedsFrom& seen) const {
+  std::string CauseOfBadClock(const Motion& seen) const {
     const auto mistake = FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_,
                                         seen.speeds, trajectories_.rate_hz, options_.expected_lag_s,
                                         ClockSettings(), result_.summary.clock.peak);

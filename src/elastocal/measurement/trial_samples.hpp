@@ -31,9 +31,7 @@ struct MeasurementOptions {
   /// average out.
   StableSampleOptions rest = {.samples_per_run = 8};
   /// ClockOptions::largest_sd_s for trials of rests, where the clock matters little: samples are
-  /// away from the ends of a rest by a sixteenth of it, 60 ms of a second. A trial that is refused
-  /// leaves its joints uncalibrated: up to 5/3 of it is accepted where no mistake in the log would
-  /// explain it.
+  /// away from the ends of a rest by a sixteenth of it, 60 ms of a second.
   double largest_rest_lag_sd_s = 0.030;
   double sine_rate_hz = 10.0;  ///< rate of the moments taken from a motion without rests
   TorqueCheckOptions torques = {};
@@ -57,9 +55,10 @@ struct TrialSamples {
 ///    (CorrectLabels);
 /// 2. close short gaps; filter markers and log with the same low-pass (SmoothTrajectories,
 ///    SmoothLog);
-/// 3. estimate lag and drift of the robot's clock (EstimateTrialClock); the first support foot or,
-///    without one, the root link is at rest in the laboratory; a free root moves, and the motion is
-///    seen from a body with markers (SeeFromMarkedBody);
+/// 3. estimate lag and drift of the robot's clock by the markers' speeds (EstimateTrialClock); of a
+///    motion, and where the speeds do not tell them well enough, by their positions (RefineClock);
+///    the first support foot or, without one, the root link is at rest in the laboratory; a free
+///    root moves, and the motion is seen from a body with markers (SeeFromMarkedBody);
 /// 4. find stable samples (FindStableSamples) or, in a trial of motion, take moments at a constant
 /// rate
 ///    from the first motion to the last, both only where the robot's log covers the frame;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "elastocal/measurement/clock.hpp"
+#include "elastocal/measurement/marked_robot.hpp"
+#include "elastocal/measurement/smoothed_log.hpp"
+#include "elastocal/measurement/trial.hpp"
+
+namespace elastocal {
+
+/// Lag and drift of a clock that the speeds tell within some hundredths of a second (`by_speed`),
+/// by the positions of the markers `markers`, as `trajectories` has them in a frame in which the
+/// links `standing` do not move. `coordinates`: of the log's joints.
+///
+/// Speeds are scalars, of which errors of the robot explain little: their remainder limits the lag
+/// to several milliseconds in slow motion. Here each joint that moves may be mounted otherwise (six
+/// numbers) and each marker sit elsewhere, within what robots are off, and each joint with a torque
+/// sensor may give way to its torque; only what none of this explains is left (FindLagChange). The
+/// result is judged by the same bound (ClockOptions::largest_sd_s); `by_speed` itself where it is
+/// no better.
+ClockFit RefineClock(const MarkedRobot& robot, const std::vector<int>& markers,
+                     const std::vector<int>& standing, const SmoothedLog& log,
+                     const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,
+                     const ClockFit& by_speed, const ClockOptions& options);
+
+}  // namespace elastocal
