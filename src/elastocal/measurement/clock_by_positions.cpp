@@ -13,10 +13,11 @@
 namespace elastocal {
 namespace {
 
-constexpr int kMostMoments = 400;      // errors of the robot, not noise, limit the lag
-constexpr double kBlock_s = 2.0;       // about the time in which a joint passes a posture
-constexpr int kPasses = 3;             // the first change of the lag may be of tens of ms
-constexpr double kUnchanged_s = 2e-3;  // at usual accelerations, 10 um off a straight line
+constexpr int kMostMoments = 400;        // errors of the robot, not noise, limit the lag
+constexpr double kBlock_s = 2.0;         // about the time in which a joint passes a posture
+constexpr int kPasses = 3;               // the first change of the lag may be of tens of ms
+constexpr double kUnchanged_s = 2e-3;    // at usual accelerations, 10 um off a straight line
+constexpr double kWorthKnowing = 30e-6;  // standard deviation of a drift; clocks are as bad
 constexpr double kVelocityStep_s = 5e-3;
 constexpr double kJointMoves = 2e-3;  // rad or m: range of a joint that moves
 
@@ -236,6 +237,13 @@ class Comparison {
   std::vector<double> time_s_, robot_time_s_;
 };
 
+// With a drift, if the motion tells it.
+std::optional<LagChange> FindChange(const MarkerMotion& motion) {
+  const auto with_drift = FindLagChange(motion, true, kBlock_s);
+  if (with_drift && with_drift->slope_sd < kWorthKnowing) return with_drift;
+  return FindLagChange(motion, false, kBlock_s);
+}
+
 // robot time = (1 + 1e-6 drift) camera time - lag, with what is added to the lag at each time.
 void Add(const LagChange& change, ClockFit& clock) {
   clock.lag_s += change.At(0.0);
@@ -252,9 +260,10 @@ ClockFit RefineClock(const MarkedRobot& robot, const std::vector<int>& markers,
   ClockFit refined = by_speed;
   for (int pass = 0; pass < kPasses; ++pass) {
     const MarkerMotion motion = comparison.At(refined);
-    const auto change = FindLagChange(motion, by_speed.drift_estimated, kBlock_s);
+    const auto change = FindChange(motion);
     if (!change) return by_speed;
     Add(*change, refined);
+    refined.drift_estimated = by_speed.drift_estimated || change->slope_sd > 0.0;
     const double first_s = motion.time_s[0];
     const double last_s = motion.time_s[motion.time_s.size() - 1];
     refined.sd_s = std::max(change->Sd(first_s), change->Sd(last_s));
