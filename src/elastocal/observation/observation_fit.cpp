@@ -118,9 +118,7 @@ double UpdateWeights(const ObservationResiduals& residuals, const ObservedRobot&
   for (std::size_t i = 0; i < weights.size(); ++i) {
     if (weights[i] <= 0.0) continue;
     const Instrument& instrument = model.instrument(observations.all[i].instrument);
-    const double limit = ChiSquareQuantile(kHuberShare, instrument.size());
-    const double square = SquaredDistance(instrument, residuals.Left(static_cast<int>(i)), spread);
-    const double weight = square <= limit ? 1.0 : std::sqrt(limit / square);
+    const double weight = HuberWeight(instrument, residuals.Left(static_cast<int>(i)), spread);
     change = std::max(change, std::abs(weight - weights[i]));
     weights[i] = weight;
   }
@@ -252,6 +250,13 @@ ObservationFit FitObservations(const ObservedRobot& model, const Observations& o
   }
   fit.termination = fit.settled ? Termination::kConverged : Termination::kNoConvergence;
   return fit;
+}
+
+double HuberWeight(const Instrument& instrument, const Eigen::VectorXd& left,
+                   const Spread& spread) {
+  const double limit = ChiSquareQuantile(kHuberShare, instrument.size());
+  const double square = SquaredDistance(instrument, left, spread);
+  return square <= limit ? 1.0 : std::sqrt(limit / square);
 }
 
 ObservedEstimate EstimateObserved(const ObservedRobot& model, const Observations& observations,

@@ -53,6 +53,10 @@ ObservationFit FitObservations(const ObservedRobot& model, const Observations& o
 /// Where every fit begins: nominal robot, all observations, nothing known of variances.
 ObservationFit StartFit(const ObservedRobot& model, const Observations& observations);
 
+/// Huber's weight of an observation by how far it is off: 1 for 99 % of those that have no more
+/// than the noise of `spread`, less beyond.
+double HuberWeight(const Instrument& instrument, const Eigen::VectorXd& left, const Spread& spread);
+
 /// An observation that contradicts the others: it is left out.
 struct ObservationOutlier {
   int observation = 0;

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/tables/read_file.hpp"
@@ -55,6 +57,43 @@ std::optional<ObservedRobot> WithoutCompliances(const ObservedRobot& model,
                                           elasticity.torsion, elasticity.bending);
   KeepObservedUnknowns(observations, rigid);
   return rigid;
+}
+
+/// All joints give way about their axes; nothing where the project says which do, or the robot has
+/// no masses.
+std::optional<ObservedRobot> WithTorsion(const ObservedRobot& rigid,
+                                         const Observations& observations, const Project& project) {
+  const bool open = !project.elasticity.torsion && !project.elasticity.bending;
+  if (!open || !HasMasses(project.tree)) return std::nullopt;
+  std::vector<int> joints;
+  for (std::size_t k = 0; k < project.tree.joints.size(); ++k) {
+    joints.push_back(static_cast<int>(k));
+  }
+  ObservedRobot elastic =
+      MakeObservedRobot(project.tree, project.placement, rigid.setup, joints, {});
+  KeepObservedUnknowns(observations, elastic);
+  return elastic;
+}
+
+/// Where nobody says whether joints give way, left-out postures do: elastic joints enter where they
+/// lower the error by more than twice the standard error of that gain. Whether they did.
+bool TakeElasticity(const Project& project, const ContactRunOptions& options, int folds,
+                    ContactRun& run) {
+  constexpr double kPlainly = 2.0;
+  auto elastic = folds > 0 ? WithTorsion(run.model, run.observations, project) : std::nullopt;
+  if (!elastic) return false;
+  ContactOutcome outcome = Estimate(*elastic, run.observations, true, options, folds);
+  const double gain = GainInSds(*elastic, run.observations, run.calibrated.held_out.left,
+                                outcome.held_out.left, outcome.estimate.fit.spread);
+  if (!(gain > kPlainly) || outcome.estimate.fit.termination != Termination::kConverged) {
+    return false;
+  }
+  run.geometric = std::exchange(run.calibrated, std::move(outcome));
+  run.rigid_model = std::exchange(run.model, std::move(*elastic));
+  run.warnings.emplace_back(
+      "joints are taken as elastic about their axes, which predicts postures that were left out "
+      "better; elasticity in the project says otherwise where it is known");
+  return true;
 }
 
 /// Half width of a 95 % interval in standard deviations.
@@ -172,6 +211,7 @@ ContactRun CalibrateContacts(const Project& project,
   const int folds = options.folds.value_or(std::min(kUsualFolds, postures));
   run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
   run.calibrated = Estimate(run.model, run.observations, true, options, folds);
+  const bool chosen = TakeElasticity(project, options, folds, run);
   const ObservationFit& fit = run.calibrated.estimate.fit;
   const auto left = [&](const ContactOutcome& outcome) {
     return folds > 0 ? outcome.held_out.left
@@ -183,14 +223,17 @@ ContactRun CalibrateContacts(const Project& project,
   for (const Observation& of : run.observations.all) {
     equations += run.model.instrument(of.instrument).size();
   }
-  const auto rigid = WithoutCompliances(run.model, run.observations, project);
-  if (rigid) {  // a figure beside the result: ten folds will do
-    run.geometric = Estimate(*rigid, run.observations, true, options, std::min(kUsualFolds, folds));
+  if (!chosen) run.rigid_model = WithoutCompliances(run.model, run.observations, project);
+  if (run.rigid_model && !run.geometric) {  // a figure beside the result: ten folds will do
+    run.geometric =
+        Estimate(*run.rigid_model, run.observations, true, options, std::min(kUsualFolds, folds));
   }
   run.result = ResultOf(run.model, fit, equations);
   JudgeContacts(run);
   if (run.deployable()) {
-    if (rigid) run.in_urdf = ResultOf(*rigid, run.geometric->estimate.fit, equations);
+    if (run.rigid_model) {
+      run.in_urdf = ResultOf(*run.rigid_model, run.geometric->estimate.fit, equations);
+    }
     run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(),
                                   run.in_urdf ? *run.in_urdf : run.result, options.zero_offsets);
     run.warnings.insert(run.warnings.end(), run.urdf->warnings.begin(), run.urdf->warnings.end());

@@ -42,6 +42,7 @@ struct ContactRun {
   /// Where joints are elastic: the robot without compliances. The URDF has its geometry, because a
   /// URDF has no springs.
   std::optional<ContactOutcome> geometric;
+  std::optional<ObservedRobot> rigid_model;  ///< that of `geometric`
   ClosureEvidence closure;
   double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) postures, see GainInSds
   CalibrationResult result;  ///< the parameters of the robot
