@@ -72,9 +72,10 @@ PyCalibration CalibrateInstruments(const Project& project, const Paths& files,
                                    const CalibrateArguments& given) {
   Expect(given.fold_by == "posture", "fold_by", "a fold leaves out postures");
   Expect(given.prior.empty(), "prior", "an earlier calibration is used with markers only");
-  Expect(given.accept.empty(), "accept", "it is about recordings of trials");
-  ContactRunOptions options{
-      .folds = given.folds, .threads = given.threads, .zero_offsets = given.zero_offsets};
+  ContactRunOptions options{.folds = given.folds,
+                            .threads = given.threads,
+                            .zero_offsets = given.zero_offsets,
+                            .accept = given.accept};
   if (given.progress) {
     options.progress = [&](int done, int total) {
       given.progress("cross-validation", done, total);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A fixed arm whose tool a laser tracker sees, and what goes wrong with its table.
+#include <algorithm>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/tables/table_writer.hpp"
+#include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
@@ -54,26 +56,35 @@ class ArmWithTracker : public testing::Test {
                                                         std::min(2.0, joint.limits.upper));
       }
     }
+    Measure(model_, truth_);
+  }
+
+  /// What the tracker sees of this robot.
+  void Measure(const ObservedRobot& model, const ObservedValues& truth) {
     Observations all;
     all.q = q_;
     for (int i = 0; i < kPostures; ++i) {
       all.postures.push_back({0, i + 2});
       all.all.push_back({i, 0, {}, {}});
     }
-    const auto sights = SightsOf(model_, all, truth_, {});
-    for (const Sight& sight : sights) {
-      Eigen::VectorXd pose = model_.instrument(0).Predict(sight);
+    Random random(8);
+    poses_.clear();
+    for (const Sight& sight : SightsOf(model, all, truth, ObservedLoads(model, all, truth.robot))) {
+      Eigen::VectorXd pose = model.instrument(0).Predict(sight);
       pose += random.NormalVector(7, 1e-4);
       pose.tail<4>().normalize();
       poses_.push_back(pose);
     }
   }
 
-  ContactRun Calibrate(const Eigen::MatrixXd& q, int folds = 5) const {
-    return CalibrateContacts(project_, {Table(q)}, {.folds = folds});
+  ContactRun Calibrate(const Eigen::MatrixXd& q,
+                       const std::vector<std::string>& accept = {}) const {
+    return CalibrateContacts(project_, {Table(q)}, {.folds = 5, .accept = accept});
   }
 
-  std::filesystem::path Table(const Eigen::MatrixXd& q) const {
+  /// `first`: of the poses, that of the first row.
+  std::filesystem::path Table(const Eigen::MatrixXd& q, const std::string& file_name = "table.csv",
+                              std::size_t first = 0) const {
     TableWriter table;
     std::vector<int> joints;
     for (int joint : project_.tree.coordinate_joint) {
@@ -88,10 +99,10 @@ class ArmWithTracker : public testing::Test {
       for (int joint : joints) {
         table.Add(q(i, project_.tree.joints[static_cast<std::size_t>(joint)].coordinate));
       }
-      for (double number : poses_[static_cast<std::size_t>(i)]) table.Add(number);
+      for (double number : poses_[first + static_cast<std::size_t>(i)]) table.Add(number);
       table.EndRow();
     }
-    const std::filesystem::path file = folder_.path() / "table.csv";
+    const std::filesystem::path file = folder_.path() / file_name;
     std::ofstream(file) << table.text();
     return file;
   }
@@ -123,16 +134,159 @@ TEST_F(ArmWithTracker, ACleanTableIsDeployed) {
 TEST_F(ArmWithTracker, MistakesInTheJointsAreNamed) {
   Eigen::MatrixXd q = q_;
   q.col(Coordinate("elbow_joint")) *= -1.0;
-  EXPECT_EQ(First(Calibrate(q)).find("elbow_joint: the sign of its positions is reversed;"), 0u);
+  EXPECT_EQ(First(Calibrate(q))
+                .find("elbow_joint: the sign of its positions is reversed (--accept "
+                      "sign:elbow_joint corrects it);"),
+            0u);
   q = q_;
   q.col(Coordinate("shoulder_joint")).swap(q.col(Coordinate("elbow_joint")));
-  EXPECT_NE(First(Calibrate(q)).find(": their positions are exchanged;"), std::string::npos);
+  EXPECT_NE(First(Calibrate(q)).find(": their positions are exchanged (--accept exchange:"),
+            std::string::npos);
   q.topRows(kPostures - 1) = q_.bottomRows(kPostures - 1);
   q.row(kPostures - 1) = q_.row(0);
   EXPECT_EQ(First(Calibrate(q))
                 .find("what was observed belongs to the joint positions of the row "
-                      "before;"),
+                      "before (--accept rows:-1 corrects it);"),
             0u);
+}
+
+// Errors that a robot nearly explains: they are found in what the fit leaves.
+TEST_F(ArmWithTracker, FaultsOfTheTableAreNamed) {
+  const Eigen::Index elbow = Coordinate("elbow_joint");
+  Eigen::MatrixXd q = q_;
+  q.col(elbow) *= 1.03;
+  EXPECT_EQ(First(Calibrate(q)).find("elbow_joint: its positions are 1.0"), 0u);
+  q = q_;
+  q.col(elbow).tail(14).array() += 0.03;
+  const std::string off = First(Calibrate(q));
+  EXPECT_EQ(off.find("elbow_joint: its positions are off by 1."), 0u) << off;
+  EXPECT_NE(off.find("table.csv:18 on (--accept offset:elbow_joint@table.csv:17="),
+            std::string::npos)
+      << off;
+  q = q_;
+  q.col(elbow).segment(8, 9).setConstant(q_(8, elbow));
+  const std::string frozen = First(Calibrate(q));
+  EXPECT_EQ(frozen.find("elbow_joint: its positions are frozen in 9 postures from "), 0u) << frozen;
+  EXPECT_NE(frozen.find("table.csv:10 on, while it moved (--accept frozen:"), std::string::npos)
+      << frozen;
+}
+
+// What is accepted leaves the calibration of the sound table.
+TEST_F(ArmWithTracker, FaultsAreCorrectedOnRequest) {
+  const Eigen::Index elbow = Coordinate("elbow_joint"), shoulder = Coordinate("shoulder_joint");
+  const double sound = ContactRun::Judged(Calibrate(q_).calibrated).rows[0].rms;
+  const auto expect_sound = [&](const Eigen::MatrixXd& q, const std::string& name) {
+    const ContactRun run = Calibrate(q, {name});
+    EXPECT_EQ(First(run), "") << name;
+    EXPECT_LT(ContactRun::Judged(run.calibrated).rows[0].rms, 1.5 * sound) << name;
+    const auto corrected = [](const std::string& warning) {
+      return warning.starts_with("corrected on request: ");
+    };
+    EXPECT_TRUE(std::any_of(run.warnings.begin(), run.warnings.end(), corrected)) << name;
+  };
+  Eigen::MatrixXd q = q_;
+  q.col(elbow) *= -1.0;
+  expect_sound(q, "sign:elbow_joint");
+  q = q_;
+  q.col(elbow).swap(q.col(shoulder));
+  expect_sound(q, "exchange:elbow_joint,shoulder_joint");
+  q.topRows(kPostures - 1) = q_.bottomRows(kPostures - 1);
+  q.row(kPostures - 1) = q_.row(0);
+  expect_sound(q, "rows:-1");
+  q = q_;
+  q.col(elbow) *= 1.03;
+  expect_sound(q, "gain:elbow_joint=1.03");
+  q = q_;
+  q.col(elbow).tail(14).array() += 0.03;
+  expect_sound(q, "offset:elbow_joint@table.csv:17=1.71887");
+  q = q_;
+  q.col(elbow).segment(8, 9).setConstant(q_(8, elbow));
+  expect_sound(q, "frozen:elbow_joint");
+  for (Eigen::VectorXd& pose : poses_) pose.head<3>() *= 1.03;
+  expect_sound(q_, "scale=1.03");
+}
+
+TEST_F(ArmWithTracker, NamesThatCorrectNothingAreRefused) {
+  const auto refused = [&](const std::string& name, const std::string& why) {
+    ExpectInputError([&] { Calibrate(q_, {name}); }, {"--accept " + name, why});
+  };
+  refused("sign:elbow", "no moving joint 'elbow'");
+  refused("exchange:elbow_joint", "exchange:JOINT,JOINT was expected");
+  refused("frozen:elbow_joint", "not the same in five rows");
+  refused("rows:0", "rows:+1");
+  refused("rows:1.5", "rows:+1");
+  refused("offset:elbow_joint@other.csv=2", "no file 'other.csv'");
+  refused("scale:table.csv=1.02", "scale=FACTOR was expected");
+  refused("labels:A,B", "sign:JOINT, exchange:JOINT,JOINT");
+  ExpectInputError(
+      [&] {
+        Calibrate(q_, {"sign:elbow_joint", "sign:elbow_joint"});
+      },
+      {"given twice"});
+}
+
+TEST_F(ArmWithTracker, ATrackerThatWasMovedIsNamed) {
+  for (std::size_t i = 12; i < poses_.size(); ++i) poses_[i][1] += 0.006;
+  const std::string moved = First(Calibrate(q_));
+  EXPECT_EQ(moved.find("laser was moved by some "), 0u) << moved;
+  EXPECT_NE(moved.find("table.csv:14 (each file is a session of its own: split"), std::string::npos)
+      << moved;
+}
+
+// On the second day the tracker stands elsewhere: each file is a session of it.
+TEST_F(ArmWithTracker, ATrackerIsSetUpAnewForEachFile) {
+  constexpr int kFirstDay = 18;
+  const Transform T = FromXyzRpy({0.6, -1.1, 0.2}, {0.02, -0.03, 1.4});
+  for (std::size_t i = kFirstDay; i < poses_.size(); ++i) {
+    Eigen::VectorXd& pose = poses_[i];
+    const Eigen::Quaterniond turn(pose[6], pose[3], pose[4], pose[5]);
+    pose.head<3>() = T * pose.head<3>().eval();
+    pose.tail<4>() = (Eigen::Quaterniond(T.linear()) * turn).coeffs();
+  }
+  const auto first = Table(q_.topRows(kFirstDay), "first.csv");
+  const auto second = Table(q_.bottomRows(kPostures - kFirstDay), "second.csv", kFirstDay);
+  const ContactRun run = CalibrateContacts(project_, {first, second}, {.folds = 5});
+  EXPECT_EQ(First(run), "");
+  EXPECT_LT(ContactRun::Judged(run.calibrated).rows[0].rms, 4e-4);
+  ASSERT_EQ(run.calibrated.estimate.fit.values.effects.size(), 2u);
+  const auto& effects = run.calibrated.estimate.fit.values.effects;
+  EXPECT_NEAR((effects[1] - effects[0]).tail<3>().norm(), 1.4, 0.02);
+}
+
+TEST_F(ArmWithTracker, AWrongScaleIsNamed) {
+  for (Eigen::VectorXd& pose : poses_) pose.head<3>() *= 1.03;
+  const std::string scale = First(Calibrate(q_));
+  EXPECT_EQ(scale.find("lengths as they were measured seem 1.0"), 0u) << scale;
+}
+
+// Nobody says whether its joints give way. Where they do, left-out postures tell; a joint that
+// bends under gravity is no wrong gain.
+TEST_F(ArmWithTracker, JointsThatGiveWayAreFound) {
+  std::vector<int> all;
+  for (std::size_t k = 0; k < project_.tree.joints.size(); ++k) all.push_back(static_cast<int>(k));
+  const ObservedRobot elastic =
+      MakeObservedRobot(project_.tree, project_.placement, project_.contact->setup, all, {});
+  ObservedValues truth = truth_;
+  truth.robot = Eigen::VectorXd::Zero(elastic.robot.parameter_count());
+  for (int i = 0; i < elastic.robot.parameter_count(); ++i) {
+    const Parameter& parameter = elastic.robot.parameters[static_cast<std::size_t>(i)];
+    if (!IsCompliance(parameter.kind)) {
+      truth.robot[i] = truth_.robot[FindParameter(model_.robot.parameters, parameter.name)];
+    } else if (parameter.unit == ParameterUnit::kRadianPerNewtonMetre) {
+      truth.robot[i] = 300e-6;
+    }
+  }
+  EXPECT_FALSE(Calibrate(q_).geometric);
+  Measure(elastic, truth);
+  const ContactRun run = Calibrate(q_);
+  EXPECT_EQ(First(run), "");
+  ASSERT_TRUE(run.geometric);
+  EXPECT_LT(ContactRun::Judged(run.calibrated).rows[0].rms, 5e-4);
+  EXPECT_GT(ContactRun::Judged(*run.geometric).rows[0].rms,
+            2.0 * ContactRun::Judged(run.calibrated).rows[0].rms);
+  Project rigid = project_;
+  rigid.elasticity.torsion.emplace();
+  EXPECT_FALSE(CalibrateContacts(rigid, {Table(q_)}, {.folds = 5}).geometric);
 }
 
 // No mistake that has a name: the estimate needs what no robot is.

@@ -26,7 +26,6 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const Project project = ReadProject(options.project);
   if (project.contact) {
     if (!options.prior.empty()) throw InputError("--prior is about markers, not touches");
-    if (!options.accept.empty()) throw InputError("--accept is about recordings of trials");
     if (options.fold_by == "trial")
       throw InputError("--fold-by trial is about recordings of trials");
     return RunContactCalibration(options, project);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
@@ -68,8 +69,9 @@ std::string ComplianceText(const CalibrationResult& result) {
     const Parameter& parameter = result.model.parameters[i];
     if (!IsCompliance(parameter.kind) || !std::isfinite(result.sd[i])) continue;
     if (parameter.unit != ParameterUnit::kRadianPerNewtonMetre) continue;
-    text += fmt::format("  {} {:.2f} +- {:.2f} degrees per 100 N.m ({})\n", parameter.name,
-                        kPerHundredNm * result.delta[i], kPerHundredNm * result.sd[i],
+    const double sd = kPerHundredNm * result.sd[i];
+    text += fmt::format("  {} {} +- {} degrees per 100 N.m ({})\n", parameter.name,
+                        RoundedTo(kPerHundredNm * result.delta[i], sd), RoundedSd(sd),
                         StatusName(result.status[i]));
   }
   return text;
@@ -82,8 +84,9 @@ std::string OffsetText(const CalibrationResult& result) {
     const Parameter& parameter = result.model.parameters[i];
     if (parameter.kind != ParameterKind::kTheta || !std::isfinite(result.sd[i])) continue;
     if (!Significant(result, i)) continue;
-    text += fmt::format("  {} {:+.2f} +- {:.2f} degrees\n", parameter.name,
-                        kToDegrees * result.delta[i], kToDegrees * result.sd[i]);
+    const double sd = kToDegrees * result.sd[i];
+    text += fmt::format("  {} {} +- {} degrees\n", parameter.name,
+                        RoundedTo(kToDegrees * result.delta[i], sd), RoundedSd(sd));
   }
   return text.empty() ? "  none\n" : text;
 }
@@ -157,6 +160,7 @@ int RunContactCalibration(const CalibrateOptions& options, const Project& projec
                          .threads = options.threads,
                          .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
                                                                            : ZeroOffsets::kOrigin,
+                         .accept = options.accept,
                          .progress = of_folds});
   const auto files = MakeContactFiles(project, run);
   const std::string no_report = SetResults(

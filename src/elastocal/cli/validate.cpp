@@ -135,9 +135,10 @@ void AddValidate(CLI::App& app, Action& action) {
                     "Fit nothing: waist and markers as in the calibration (cameras and markers "
                     "must not have been moved)");
   command
-      ->add_option(
-          "--refit", options->refit,
-          "Of touches: what is registered anew, each touch by the others of the file: table")
+      ->add_option("--refit", options->refit,
+                   "Of tables of observations: what is registered anew, each posture by the others "
+                   "of the file: "
+                   "table (with it trackers, walls, wires and cameras in the room)")
       ->transform(CLI::IsMember({"table"}, CLI::ignore_case))
       ->type_name("WHAT");
   AddAcceptOption(*command, options->accept);

@@ -99,7 +99,10 @@ StoredContact ReadFit(const YamlValue& section, const Project& project) {
   const YamlValue spread = section.Get("spread");
   for (std::size_t s = 0; s < setup.sources.size(); ++s) {
     if (setup.sources[s].role == Source::Role::kFixed) continue;
-    stored.spread.sd[s] = spread.Get(setup.sources[s].name).Number(kPositive);
+    // An older file lacks those that came later.
+    if (const auto sd = spread.Find(setup.sources[s].name)) {
+      stored.spread.sd[s] = sd->Number(kPositive);
+    }
   }
   return stored;
 }

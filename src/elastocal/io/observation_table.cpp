@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "elastocal/io/detections.hpp"
 #include "elastocal/io/measured_cells.hpp"
@@ -11,6 +12,7 @@
 #include "elastocal/io/observation_sessions.hpp"
 #include "elastocal/io/posture_checks.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/observation/standing_robot.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
@@ -126,17 +128,23 @@ std::vector<int> PlatesOf(const ObservationFile& file, const Project& project,
 /// Adds observations with the effects of their sessions.
 class ObservationCollector {
  public:
-  explicit ObservationCollector(ObservationTables& tables) : tables_(tables) {}
+  /// `set_ups_vary`: trackers and wires were set up more than once.
+  ObservationCollector(ObservationTables& tables, bool set_ups_vary)
+      : tables_(tables), set_ups_vary_(set_ups_vary) {}
 
-  void Add(Observation observation, const std::string& session) {
+  /// `session`: of tables and walls; `set_up`: of trackers and wires.
+  void Add(Observation observation, const std::string& session, const std::string& set_up) {
     const Instrument& instrument =
         *tables_.setup.instruments[static_cast<std::size_t>(observation.instrument)];
-    if (instrument.varying >= 0) {
-      const int quantity = instrument.quantities[instrument.varying];
+    const int quantity =
+        instrument.varying < 0 ? -1 : instrument.quantities[Size(instrument.varying)];
+    const bool by_set_up = quantity >= 0 && tables_.setup.quantities[Size(quantity)].set_up_anew;
+    if (quantity >= 0 && (!by_set_up || set_ups_vary_)) {
+      const std::string& of = by_set_up ? set_up : session;
       std::vector<SessionEffect>& effects = tables_.observations.effects;
       const auto [effect, is_new] =
-          sessions_.emplace(std::pair(quantity, session), static_cast<int>(effects.size()));
-      if (is_new) effects.push_back({quantity, session});
+          sessions_.emplace(std::pair(quantity, of), static_cast<int>(effects.size()));
+      if (is_new) effects.push_back({quantity, of});
       observation.effects = {effect->second};
     }
     tables_.observations.all.push_back(std::move(observation));
@@ -144,8 +152,25 @@ class ObservationCollector {
 
  private:
   ObservationTables& tables_;
+  bool set_ups_vary_;
   std::map<std::pair<int, std::string>, int> sessions_;
 };
+
+/// By row, what tells how often trackers and wires were set up: nobody moves them when the robot is
+/// started anew, so that it is the file, unless the project tells sessions by a column.
+std::vector<std::string> SetUps(const ObservationFile& file, const Project& project) {
+  const SessionRule& rule = project.contact->sessions;
+  if (!rule.columns.empty() && rule.quantum == 0.0) return file.sessions;
+  return std::vector<std::string>(file.sessions.size(), file.postures.source);
+}
+
+bool SetUpsVary(const std::vector<ObservationFile>& files, const Project& project) {
+  std::set<std::string> sessions;
+  for (const ObservationFile& file : files) {
+    for (const std::string& session : SetUps(file, project)) sessions.insert(session);
+  }
+  return sessions.size() > 1;
+}
 
 void AddFile(const ObservationFile& file, const Project& project, int index,
              ObservationCollector& collector, ObservationTables& tables) {
@@ -153,11 +178,15 @@ void AddFile(const ObservationFile& file, const Project& project, int index,
   const int first = static_cast<int>(postures.size());
   for (int line : file.postures.line) postures.push_back({index, line});
   const std::vector<int> plates = PlatesOf(file, project, tables.setup);
+  const std::vector<std::string> set_ups = SetUps(file, project);
+  const auto add = [&](Observation observation, int row) {
+    collector.Add(std::move(observation), file.sessions[Size(row)], set_ups[Size(row)]);
+  };
   for (int row = 0; row < static_cast<int>(plates.size()); ++row) {
-    if (plates[row] >= 0) collector.Add({first + row, plates[row], {}, {}}, file.sessions[row]);
+    if (plates[row] >= 0) add({first + row, plates[row], {}, {}}, row);
   }
   for (const MeasuredRow& of : file.measured) {
-    collector.Add({first + of.row, of.instrument, of.measured, {}}, file.sessions[of.row]);
+    add({first + of.row, of.instrument, of.measured, {}}, of.row);
   }
 }
 
@@ -253,7 +282,7 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
   } else if (!tables.setup.feet.empty()) {
     PlaceFeet(project.tree, observations.q, project.contact->foot_placed, tables.setup);
   }
-  ObservationCollector collector(tables);
+  ObservationCollector collector(tables, SetUpsVary(read, project));
   for (std::size_t f = 0; f < read.size(); ++f) {
     observations.files.push_back(read[f].postures.source);
     AddFile(read[f], project, static_cast<int>(f), collector, tables);

@@ -229,8 +229,7 @@ class ObservationFaultSearch {
     }
   }
 
-  /// The longest run of each joint that stays where it is in some postures, and moves in others,
-  /// where these postures are worse than the others.
+  /// Joints that are frozen in postures that are worse than the others.
   void TryFrozen() {
     const int count = observations_.posture_count();
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(count);
@@ -238,21 +237,11 @@ class ObservationFaultSearch {
       squares[posture_[Size(i)]] += at_[Size(i)].squaredNorm();
     }
     for (const int c : MovingCoordinates()) {
-      ObservationFault longest;
-      longest.kind = ObservationFaultKind::kJointFrozen;
-      longest.coordinate = c;
-      for (int begin = 0, i = 1; i <= count; ++i) {
-        if (i < count && observations_.q(i, c) == observations_.q(begin, c)) continue;
-        if (i - begin > longest.count) {
-          longest.posture = begin;
-          longest.count = i - begin;
-        }
-        begin = i;
-      }
-      if (longest.count < kFewestFrozen || 2 * longest.count > count) continue;
-      longest.share = squares.segment(longest.posture, longest.count).sum() / squares_;
-      const double fair = static_cast<double>(longest.count) / static_cast<double>(count);
-      if (longest.share > std::max(kLeastShare, fair)) found_.push_back(longest);
+      auto longest = FindFrozen(observations_, c);
+      if (!longest) continue;
+      longest->share = squares.segment(longest->posture, longest->count).sum() / squares_;
+      const double fair = static_cast<double>(longest->count) / static_cast<double>(count);
+      if (longest->share > std::max(kLeastShare, fair)) found_.push_back(*longest);
     }
   }
 
@@ -281,6 +270,24 @@ class ObservationFaultSearch {
 };
 
 }  // namespace
+
+std::optional<ObservationFault> FindFrozen(const Observations& observations, int coordinate) {
+  const auto positions = observations.q.col(coordinate);
+  const int count = observations.posture_count();
+  ObservationFault longest;
+  longest.kind = ObservationFaultKind::kJointFrozen;
+  longest.coordinate = coordinate;
+  for (int begin = 0, i = 1; i <= count; ++i) {
+    if (i < count && positions[i] == positions[begin]) continue;
+    if (i - begin > longest.count) {
+      longest.posture = begin;
+      longest.count = i - begin;
+    }
+    begin = i;
+  }
+  if (longest.count < kFewestFrozen || 2 * longest.count > count) return std::nullopt;
+  return longest;
+}
 
 std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
                                                     const Observations& observations,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,10 @@ struct ObservationFault {
 std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
                                                     const Observations& observations,
                                                     const ObservationFit& fit);
+
+/// The longest run of postures in which a joint is logged in exactly the same place; nothing where
+/// it has fewer than five, or more than half of all.
+std::optional<ObservationFault> FindFrozen(const Observations& observations, int coordinate);
 
 /// The observations as they would be without the fault: what was moved varies from there on,
 /// postures with frozen positions are left out.

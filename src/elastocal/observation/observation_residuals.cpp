@@ -18,6 +18,12 @@ Matrix6d ScrewByMotion(const Eigen::Vector3d& p) {
   return by_motion;
 }
 
+/// What a quantity that differs between sessions varies by.
+int SourceOfEffect(const Quantity& quantity, bool angle) {
+  if (quantity.set_up_anew) return angle ? kTrackerTurn : kTrackerPlace;
+  return angle ? kSessionTilt : kSessionHeight;
+}
+
 /// Screw in a frame by a screw in another one.
 Matrix6d ScrewByScrew(const Transform& T) {
   Matrix6d by_screw = Matrix6d::Zero();
@@ -203,10 +209,11 @@ void ObservationResiduals::AddPriors() {
   }
   for (std::size_t i = 0; i < effect_block_.size(); ++i) {
     if (effect_block_[i] < 0) continue;
+    const Quantity& quantity = model_.setup.quantities[observations_.effects[i].quantity];
     std::vector<int> sources;
-    for (int source : model_.setup.quantities[observations_.effects[i].quantity].sources) {
+    for (int source : quantity.sources) {
       const bool angle = model_.setup.sources[source].unit == SourceUnit::kRadian;
-      sources.push_back(angle ? kSessionTilt : kSessionHeight);
+      sources.push_back(SourceOfEffect(quantity, angle));
     }
     AddPrior(effect_block_[i], sources, std::vector<double>(sources.size(), 1.0));
   }

@@ -1,34 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/observation/observed_posture.hpp"
 
+#include <optional>
 #include <stdexcept>
 
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
 namespace {
 
-/// Moves the origins of trackers' poses to where the nominal robot suggests them.
+/// The pose of a tracker by what it sees of points; nothing of too few.
+std::optional<Transform> Register(const Instrument::Landmarks& landmarks, std::size_t fewest) {
+  if (landmarks.size() < fewest) return std::nullopt;
+  Eigen::Matrix3Xd here(3, std::ssize(landmarks));
+  Eigen::Matrix3Xd there = here;
+  for (Eigen::Index i = 0; i < here.cols(); ++i) {
+    here.col(i) = landmarks[static_cast<std::size_t>(i)].first;
+    there.col(i) = landmarks[static_cast<std::size_t>(i)].second;
+  }
+  return FitRigid(there, here);
+}
+
+/// What a session adds to the numbers of a pose (QuantityValue::Pose) with this origin.
+Eigen::VectorXd EffectOf(const Transform& pose, const Transform& origin) {
+  Eigen::VectorXd effect(6);
+  const Eigen::Matrix3d turn = pose.linear() * origin.linear().transpose();
+  effect << pose.translation() - origin.translation(), RotationVector(turn);
+  return effect;
+}
+
+/// Moves the origins of trackers' poses to where the nominal robot suggests them: those that differ
+/// between sessions to where it does in the one of which they saw most, and the effects of the
+/// others likewise.
 void RegisterTrackers(const ObservedRobot& model, const Observations& observations,
                       const std::vector<Sight>& sights, ObservedValues& values) {
-  std::vector<Instrument::Landmarks> landmarks(values.quantities.size());
+  constexpr std::size_t kFewestOfSession = 8;  // points, else the session is as the others
+  std::vector<Instrument::Landmarks> fixed(values.quantities.size());  // without effect
+  std::vector<Instrument::Landmarks> of_effects(observations.effects.size());
   for (std::size_t i = 0; i < sights.size(); ++i) {
     const Observation& observation = observations.all[i];
     const Instrument& instrument = model.instrument(observation.instrument);
-    instrument.AddLandmarks(sights[i], observation.measured,
-                            landmarks[instrument.quantities.front()]);
-  }
-  for (std::size_t q = 0; q < landmarks.size(); ++q) {
-    const auto count = static_cast<Eigen::Index>(landmarks[q].size());
-    if (count == 0) continue;
-    Eigen::Matrix3Xd here(3, count);
-    Eigen::Matrix3Xd there(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      here.col(i) = landmarks[q][static_cast<std::size_t>(i)].first;
-      there.col(i) = landmarks[q][static_cast<std::size_t>(i)].second;
+    const int quantity = instrument.quantities.front();
+    bool varies = false;
+    for (const int effect : observation.effects) {
+      if (observations.effects[Size(effect)].quantity != quantity) continue;
+      varies = true;
+      instrument.AddLandmarks(sights[i], observation.measured, of_effects[Size(effect)]);
     }
-    values.quantities[q].origin = FitRigid(there, here);
+    if (!varies) instrument.AddLandmarks(sights[i], observation.measured, fixed[Size(quantity)]);
+  }
+  for (std::size_t q = 0; q < fixed.size(); ++q) {
+    const Instrument::Landmarks* most = &fixed[q];
+    for (std::size_t e = 0; e < of_effects.size() && fixed[q].empty(); ++e) {
+      const bool own = observations.effects[e].quantity == static_cast<int>(q);
+      if (own && of_effects[e].size() > most->size()) most = &of_effects[e];
+    }
+    const auto pose = Register(*most, 1);
+    if (pose) values.quantities[q].origin = *pose;
+  }
+  for (std::size_t e = 0; e < of_effects.size(); ++e) {
+    const QuantityValue& quantity = values.quantities[Size(observations.effects[e].quantity)];
+    const auto pose = Register(of_effects[e], kFewestOfSession);
+    if (pose) values.effects[e] = EffectOf(*pose, quantity.origin);
   }
 }
 

@@ -19,6 +19,7 @@ struct Quantity {
   /// Whether it belongs to the surroundings, which another day may have changed (a table, the
   /// frame of a tracker), or to the robot (a mounting).
   bool of_surroundings = false;
+  bool set_up_anew = false;  ///< for each file: the pose of a tracker, the anchor of a wire
   Transform origin = Transform::Identity();  ///< nominal, see QuantityValue
 
   int size() const { return static_cast<int>(sources.size()); }

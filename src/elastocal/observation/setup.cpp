@@ -106,7 +106,7 @@ void AddPlaneDistance(ObservationSetup& setup, const PlaneDistanceSetup& of) {
 }
 
 Tracker AddTracker(ObservationSetup& setup, const std::string& name, int carrier) {
-  Quantity pose{name + ".pose", {}, true};
+  Quantity pose{name + ".pose", {}, true, carrier < 0};
   pose.sources = {kUnknownPlace, kUnknownPlace, kUnknownPlace,
                   kUnknownTurn,  kUnknownTurn,  kUnknownTurn};
   return {AddQuantity(setup, std::move(pose)), carrier};
@@ -117,9 +117,11 @@ void AddTrackedPoint(ObservationSetup& setup, const TrackedPointSetup& of) {
   const int noise = of.noise >= 0
                         ? of.noise
                         : NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
-  setup.instruments.push_back(
+  auto tracked =
       MakeInstrument<TrackedPoint>(of.name, TrackedLinks(of.link, of.tracker),
-                                   {of.tracker.quantity, point}, std::vector<int>(3, noise)));
+                                   {of.tracker.quantity, point}, std::vector<int>(3, noise));
+  if (of.tracker.carrier < 0) tracked->varying = 0;
+  setup.instruments.push_back(std::move(tracked));
 }
 
 void AddTrackedBody(ObservationSetup& setup, const TrackedBodySetup& of) {
@@ -142,6 +144,7 @@ void AddTrackedBody(ObservationSetup& setup, const TrackedBodySetup& of) {
   auto body = MakeInstrument<TrackedBody>(of.name, TrackedLinks(of.link, of.tracker),
                                           {of.tracker.quantity, quantity}, noise);
   body->whitening = std::move(whitening);
+  if (of.tracker.carrier < 0) body->varying = 0;
   setup.instruments.push_back(std::move(body));
 }
 
@@ -162,7 +165,7 @@ void AddInertialUnit(ObservationSetup& setup, const InertialUnitSetup& of) {
 }
 
 void AddWire(ObservationSetup& setup, const WireSetup& of) {
-  Quantity anchor{of.name + ".anchor", {}, true};
+  Quantity anchor{of.name + ".anchor", {}, true, true};
   anchor.sources.assign(
       3, AddSource(setup, {of.name + ".anchor", SourceUnit::kMetre, of.anchor_sd, Role::kFixed}));
   anchor.sources.push_back(
@@ -171,8 +174,9 @@ void AddWire(ObservationSetup& setup, const WireSetup& of) {
   const int fixed = AddQuantity(setup, std::move(anchor));
   const int point = AddMountedPoint(setup, of.name, of.p_link, of.mounting_sd);
   const int noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
-  setup.instruments.push_back(
-      MakeInstrument<WireLength>(of.name, {of.link}, {fixed, point}, {noise}));
+  auto wire = MakeInstrument<WireLength>(of.name, {of.link}, {fixed, point}, {noise});
+  wire->varying = 0;
+  setup.instruments.push_back(std::move(wire));
 }
 
 MountedCamera AddCamera(ObservationSetup& setup, const CameraSetup& of) {

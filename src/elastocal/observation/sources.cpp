@@ -21,6 +21,8 @@ std::vector<Source> CommonSources() {
   set(kTilt, "tilt", radian, 0.3 * kDegreeOfArc, Source::Role::kNoise);
   set(kSessionHeight, "session_height", metre, 1e-3);
   set(kSessionTilt, "session_tilt", radian, 0.2 * kDegreeOfArc);
+  set(kTrackerPlace, "session_place", metre, 5e-3);
+  set(kTrackerTurn, "session_turn", radian, 0.5 * kDegreeOfArc);
   set(kTableTilt, "table_tilt", radian, kDegreeOfArc);
   set(kPlateTilt, "plate_tilt", radian, 0.5 * kDegreeOfArc);
   set(kLegOffset, "leg_offset", radian, prior[ParameterKind::kTheta]);

@@ -31,6 +31,8 @@ enum CommonSource {
   kTilt,           ///< noise of one flush touch in each tilt, rad
   kSessionHeight,  ///< height of the table that differs between sessions, m
   kSessionTilt,    ///< likewise its tilts, rad
+  kTrackerPlace,   ///< where a tracker or wire stands that differs between sessions, m
+  kTrackerTurn,    ///< likewise how it is turned, rad
   kTableTilt,      ///< tilt of a table against level, rad
   kPlateTilt,      ///< tilt of a plate on its link, rad
   kLegOffset,      ///< zero offsets (theta) of joints of legs, rad

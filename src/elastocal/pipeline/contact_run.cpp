@@ -13,6 +13,7 @@
 #include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
+#include "elastocal/pipeline/observed_corrections.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -188,11 +189,6 @@ ContactRun CalibrateContacts(const Project& project,
   run.observations = std::move(tables.observations);
   run.recording = JoinNames(run.observations.files);
   run.zero_offsets = options.zero_offsets;
-  const int postures = run.observations.posture_count();
-  if (postures < kFewestObservedPostures) {
-    throw InputError(run.recording + ": " + std::to_string(postures) + " postures; at least " +
-                     std::to_string(kFewestObservedPostures) + " were expected");
-  }
   tables.setup.hold = project.identifiability.hold;
   tables.setup.outlier_probability = project.calibration.outlier_probability;
   const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
@@ -205,6 +201,14 @@ ContactRun CalibrateContacts(const Project& project,
   } catch (const InputError& error) {
     throw InputError(project.file.string() +
                      ": contact.common or identifiability.hold: " + error.what());
+  }
+  for (const std::string& what : CorrectObservations(options.accept, run.model, run.observations)) {
+    run.warnings.push_back("corrected on request: " + what);
+  }
+  const int postures = run.observations.posture_count();
+  if (postures < kFewestObservedPostures) {
+    throw InputError(run.recording + ": " + std::to_string(postures) + " postures; at least " +
+                     std::to_string(kFewestObservedPostures) + " were expected");
   }
   KeepObservedUnknowns(run.observations, run.model);
   run.closure = CheckClosure(run.model, run.observations.q);

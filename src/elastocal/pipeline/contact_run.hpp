@@ -22,6 +22,7 @@ struct ContactRunOptions {
   std::optional<int> folds = {};
   int threads = 1;
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
+  std::vector<std::string> accept = {};  ///< mistakes that are corrected (CorrectObservations)
   Progress progress = {};
 };
 

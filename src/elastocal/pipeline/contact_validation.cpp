@@ -104,10 +104,12 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
     run.objections.push_back("the calibrated robot is worse here: " + row);
   }
   // Without registration, a table or tracker that has been moved says nothing of the robot.
-  if (run.surroundings_refitted) {
-    for (const std::string& row : LargeErrors(run.model, run.calibrated)) {
-      run.objections.push_back("no calibrated robot errs like this: " + row);
-    }
+  for (const std::string& row : LargeErrors(run.model, run.calibrated)) {
+    run.objections.push_back(run.surroundings_refitted
+                                 ? "no calibrated robot errs like this: " + row
+                                 : row +
+                                       ": was the tracker or the table moved since the "
+                                       "calibration? --refit table registers both anew");
   }
   if (!(run.gain_in_sds > 0.0)) {
     run.objections.emplace_back("calibrated is no better than uncalibrated here");

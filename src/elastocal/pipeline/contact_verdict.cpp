@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "elastocal/observation/observation_faults.hpp"
 #include "elastocal/observation/observed_posture.hpp"
+#include "elastocal/pipeline/contact_faults.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/observed_mistakes.hpp"
-#include "elastocal/pipeline/observed_scale.hpp"
 
 namespace elastocal {
 namespace {
@@ -25,10 +23,8 @@ constexpr double kMuchNoise = 4.0;      // times what the project says
 constexpr double kClearlyWorse = 1.25;  // of the error before
 constexpr double kMostLeftOut = 0.25;   // share of observations
 constexpr double kDegreeHere = 180.0 / M_PI;
-constexpr double kMatters = 0.1;        // of LargestError: below, it may be noise
-constexpr double kHalved = 0.5;         // of an error: what a fault explains once it is undone
-constexpr std::size_t kMostFaults = 3;  // that are tried by a fit
-constexpr double kNoRobot = 10.0;       // times what is expected, as of tables of markers
+constexpr double kMatters = 0.1;   // of LargestError: below, it may be noise
+constexpr double kNoRobot = 10.0;  // times what is expected, as of tables of markers
 // What calibrated robots do not leave, root mean square.
 constexpr double kLargestPlace = 0.02;  // m
 constexpr double kLargestShare = 0.01;  // of the robot's size
@@ -145,68 +141,6 @@ void ObjectToNonsense(ContactRun& run) {
       fmt::join(nonsense, "; ")));
 }
 
-/// Root mean square of what `values` leave in observations, but for some that are left out, in
-/// units of the noise of `spread`.
-double RmsLeft(const ObservedRobot& model, const Observations& observations,
-               const ObservedValues& values, const Spread& spread,
-               const std::vector<ObservationOutlier>& outliers) {
-  std::set<int> out;
-  for (const ObservationOutlier& outlier : outliers) out.insert(outlier.observation);
-  const std::vector<Eigen::VectorXd> left = LeftOf(model, observations, values);
-  double squares = 0.0, rows = 0.0;
-  for (int i = 0; i < observations.count(); ++i) {
-    if (out.contains(i)) continue;
-    const auto k = static_cast<std::size_t>(i);
-    const Instrument& instrument = model.instrument(observations.all[k].instrument);
-    squares += (instrument.Weights(spread) * left[k]).squaredNorm();
-    rows += instrument.size();
-  }
-  return std::sqrt(squares / std::max(1.0, rows));
-}
-
-/// What a fit without the fault leaves of what is left with it. Postures that are frozen count
-/// before: they were left out as outliers at best.
-double LeftWithout(const ContactRun& run, const ObservationFault& fault) {
-  const Observations without = WithoutFault(fault, run.model, run.observations);
-  const auto [fit, outliers] = EstimateObserved(run.model, without, {});
-  const bool fewer = fault.kind == ObservationFaultKind::kJointFrozen;
-  return RmsLeft(run.model, without, fit.values, fit.spread, outliers) /
-         RmsLeft(run.model, run.observations, run.calibrated.estimate.fit.values, fit.spread,
-                 fewer ? std::vector<ObservationOutlier>() : outliers);
-}
-
-/// Of the faults that explain most of what is left, the one without which a fit leaves least: less
-/// than half.
-void NameFault(ContactRun& run) {
-  std::vector<ObservationFault> faults =
-      FindObservationFaults(run.model, run.observations, run.calibrated.estimate.fit);
-  if (faults.size() > kMostFaults) faults.resize(kMostFaults);
-  const ObservationFault* best = nullptr;
-  double least = kHalved;
-  for (const ObservationFault& fault : faults) {
-    const double left = LeftWithout(run, fault);
-    if (!(left < least)) continue;
-    least = left;
-    best = &fault;
-  }
-  if (best == nullptr) return;
-  run.verdict.objections.insert(
-      run.verdict.objections.begin(),
-      fmt::format("{}; without that, the calibrated robot leaves {:.2g} times as much",
-                  DescribeFault(*best, run.model, run.observations), least));
-}
-
-/// Links are made one by one; a tracker of a wrong scale makes all of them too long or too short.
-void ObjectToScale(ContactRun& run) {
-  const auto scale = FindObservedScale(run.model, run.observations, run.calibrated.estimate.fit);
-  if (!scale) return;
-  run.verdict.objections.push_back(fmt::format(
-      "lengths as they were measured seem {:.4f} +- {:.4f} times the true ones, since all lengths "
-      "of the robot are off by as much: check the unit and scale of the trackers, or describe the "
-      "robot with its own size",
-      1.0 + scale->size, scale->sd));
-}
-
 /// What seems to be wrong with the tables, before what follows from it.
 bool NameMistakes(ContactRun& run) {
   const std::vector<std::string> mistakes = FindObservedMistakes(run.model, run.observations);
@@ -290,8 +224,10 @@ void JudgeContacts(ContactRun& run) {
         fmt::format("the calibrated robot is worse {}: {}", on, fmt::join(worse, "; ")));
   }
   ObjectToNonsense(run);
-  if (verdict.objections.empty() || !NameMistakes(run)) NameFault(run);
-  if (verdict.objections.empty()) ObjectToScale(run);
+  if (verdict.objections.empty() || !NameMistakes(run)) {
+    const std::string fault = FindContactFault(run);
+    if (!fault.empty()) verdict.objections.insert(verdict.objections.begin(), fault);
+  }
   if (verdict.objections.empty()) RemarkOnNoise(run);
   if (!held_out) {
     verdict.remarks.push_back("no " + std::string(touches ? "touch" : "posture") +

@@ -23,7 +23,7 @@ constexpr int kMostRowsOff = 2;          // by which rows are shifted
 constexpr int kMostFittedPostures = 24;  // that are fitted
 
 struct TriedMistake {
-  std::string what;
+  std::string what;  ///< with the name that undoes it
   double squares = 0.0;
 };
 
@@ -97,20 +97,22 @@ class ObservedMistakeSearch {
     return std::isfinite(squares) ? squares : std::numeric_limits<double>::infinity();
   }
 
-  void Try(const std::string& what, const Eigen::MatrixXd& q) {
-    tried_.push_back({what, Squares(q)});
+  void Try(const std::string& what, const std::string& name, const Eigen::MatrixXd& q) {
+    tried_.push_back({what + " (--accept " + name + " corrects it)", Squares(q)});
   }
 
   void TrySign(int c) {
     Eigen::MatrixXd q = observations_.q;
     q.col(c) *= -1.0;
-    Try(NameOfJoint(c) + ": the sign of its positions is reversed", q);
+    const std::string joint = NameOfJoint(c);
+    Try(joint + ": the sign of its positions is reversed", "sign:" + joint, q);
   }
 
   void TryExchange(int a, int b) {
     Eigen::MatrixXd q = observations_.q;
     q.col(a).swap(q.col(b));
-    Try(NameOfJoint(a) + " and " + NameOfJoint(b) + ": their positions are exchanged", q);
+    Try(NameOfJoint(a) + " and " + NameOfJoint(b) + ": their positions are exchanged",
+        "exchange:" + NameOfJoint(a) + "," + NameOfJoint(b), q);
   }
 
   /// Rows at the end of which the joints are not there keep their own: a few of many.
@@ -125,7 +127,7 @@ class ObservedMistakeSearch {
         std::to_string(std::abs(rows)) + (rows > 0 ? " rows further" : " rows before");
     Try("what was observed belongs to the joint positions of " +
             (std::abs(rows) == 1 ? one : several),
-        q);
+        "rows:" + std::string(rows > 0 ? "+" : "") + std::to_string(rows), q);
   }
 
   std::vector<std::string> Found() {

@@ -13,7 +13,8 @@ namespace elastocal {
 /// before), and where none of these is one, two joints exchanged. Each is undone and the nominal
 /// robot placed anew among what it sees, in two dozen postures; it is a mistake if a tenth of the
 /// squares is left (of each kind of row over LargestError), and less than twice what the best one
-/// leaves. In words, the best first: "j4: the sign of its positions is reversed". For a recording
+/// leaves. In words, the best first: "j4: the sign of its positions is reversed (--accept sign:j4
+/// corrects it)". For a recording
 /// that no robot explains: a clean one has none, but the search fits some hundred times.
 std::vector<std::string> FindObservedMistakes(const ObservedRobot& model,
                                               const Observations& observations);

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/contact_faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/observation/observation_faults.hpp"
+#include "elastocal/observation/observed_posture.hpp"
+#include "elastocal/pipeline/observed_corrections.hpp"
+#include "elastocal/pipeline/observed_scale.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kHalved = 0.5;         // what a fault may leave once it is undone
+constexpr std::size_t kMostFaults = 3;  // that are tried by a fit
+
+/// Root mean square of what `values` leave in observations, but for some that are left out, in
+/// units of the noise of `spread`.
+double RmsLeft(const ObservedRobot& model, const Observations& observations,
+               const ObservedValues& values, const Spread& spread,
+               const std::vector<ObservationOutlier>& outliers) {
+  std::set<int> out;
+  for (const ObservationOutlier& outlier : outliers) out.insert(outlier.observation);
+  const std::vector<Eigen::VectorXd> left = LeftOf(model, observations, values);
+  double squares = 0.0, rows = 0.0;
+  for (int i = 0; i < observations.count(); ++i) {
+    if (out.contains(i)) continue;
+    const auto k = static_cast<std::size_t>(i);
+    const Instrument& instrument = model.instrument(observations.all[k].instrument);
+    squares += (instrument.Weights(spread) * left[k]).squaredNorm();
+    rows += instrument.size();
+  }
+  return std::sqrt(squares / std::max(1.0, rows));
+}
+
+std::string RemedyOf(const ObservationFault& fault, const ObservedRobot& model,
+                     const Observations& observations) {
+  const auto name = NameOfFault(fault, model, observations);
+  if (name) return "--accept " + *name + " corrects it";
+  const auto varies = [&](const std::shared_ptr<const Instrument>& of) {
+    return of->varying >= 0 && of->quantities[Size(of->varying)] == fault.quantity;
+  };
+  const auto& instruments = model.setup.instruments;
+  return std::any_of(instruments.begin(), instruments.end(), varies)
+             ? "each file is a session of its own: split the table there"
+             : "calibrate the rows before and after apart";
+}
+
+bool Slides(const ObservedRobot& model, int coordinate) {
+  const RobotTree& tree = model.robot.tree;
+  const int joint = tree.coordinate_joint[Size(coordinate)];
+  return tree.joints[Size(joint)].type == JointType::kPrismatic;
+}
+
+/// What a fit without the fault leaves of what is left with it. Postures that are frozen count
+/// before: they were left out as outliers at best.
+double LeftWithout(const ContactRun& run, const ObservationFault& fault) {
+  const Observations without = WithoutFault(fault, run.model, run.observations);
+  const auto [fit, outliers] = EstimateObserved(run.model, without, {});
+  const bool fewer = fault.kind == ObservationFaultKind::kJointFrozen;
+  return RmsLeft(run.model, without, fit.values, fit.spread, outliers) /
+         RmsLeft(run.model, run.observations, run.calibrated.estimate.fit.values, fit.spread,
+                 fewer ? std::vector<ObservationOutlier>() : outliers);
+}
+
+/// Links are made one by one; a tracker of a wrong scale makes all of them too long or too short.
+std::string DescribeScale(const CommonScale& scale) {
+  constexpr double kLargestAccepted = 2.0;  // beyond, it is a unit
+  const double factor = 1.0 + scale.size;
+  const bool accepted = factor < kLargestAccepted && factor > 1.0 / kLargestAccepted;
+  return fmt::format(
+      "lengths as they were measured seem {:.4f} +- {:.4f} times the true ones, since all lengths "
+      "of the robot are off by as much: {}",
+      factor, scale.sd,
+      accepted ? fmt::format("check the scale of the trackers, or describe the robot with its own "
+                             "size (--accept scale={:.5f} corrects it)",
+                             factor)
+               : "metres were expected");
+}
+
+/// Of a wrong scale, most looks like the gain of a sliding joint; without that, lengths tell it.
+std::optional<CommonScale> ScaleBesideRails(const ContactRun& run,
+                                            const std::vector<ObservationFault>& faults) {
+  for (const ObservationFault& fault : faults) {
+    if (fault.kind != ObservationFaultKind::kJointGain) continue;
+    if (!Slides(run.model, fault.coordinate)) continue;
+    const Observations without = WithoutFault(fault, run.model, run.observations);
+    const ObservedEstimate estimate = EstimateObserved(run.model, without, {});
+    const auto scale = FindObservedScale(run.model, without, estimate.fit);
+    if (scale) return scale;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string FindContactFault(const ContactRun& run) {
+  const ObservationFit& fit = run.calibrated.estimate.fit;
+  std::vector<ObservationFault> faults = FindObservationFaults(run.model, run.observations, fit);
+  if (const auto scale = ScaleBesideRails(run, faults)) return DescribeScale(*scale);
+  if (faults.size() > kMostFaults) faults.resize(kMostFaults);
+  const ObservationFault* best = nullptr;
+  double least = kHalved;
+  for (const ObservationFault& fault : faults) {
+    const double left = LeftWithout(run, fault);
+    if (!(left < least)) continue;
+    least = left;
+    best = &fault;
+  }
+  if (best != nullptr) {
+    return fmt::format("{} ({}); without that, the calibrated robot leaves {:.2g} times as much",
+                       DescribeFault(*best, run.model, run.observations),
+                       RemedyOf(*best, run.model, run.observations), least);
+  }
+  const auto scale = FindObservedScale(run.model, run.observations, fit);
+  return scale ? DescribeScale(*scale) : "";
+}
+
+}  // namespace elastocal

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "elastocal/pipeline/contact_run.hpp"
+
+namespace elastocal {
+
+/// A fault of the tables that the estimate nearly explains (FindObservationFaults,
+/// FindObservedScale), in a sentence with what undoes it; empty where there is none. Of the faults
+/// that explain most of what is left, it is the one without which a fit leaves least: less than
+/// half. A scale is told by the lengths of the robot instead.
+std::string FindContactFault(const ContactRun& run);
+
+}  // namespace elastocal
