@@ -130,6 +130,7 @@ ClockFit EstimateClock(const MeasuredSpeed& measured, const PredictedSpeed& pred
   fit.lag_s = peaks.lag_s;
   fit.peak = peaks.peak;
   fit.second_peak = peaks.second_peak;
+  fit.second_lag_s = peaks.second_lag_s;
   const Overlap overlap(seen, expected, peaks.lag_s);
   fit.overlap_s = overlap.count / measured.rate_hz;
   fit.windows = FitWindows(seen, expected, options.window_s, peaks.lag_s);

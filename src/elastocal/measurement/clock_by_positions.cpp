@@ -18,6 +18,7 @@ constexpr double kBlock_s = 2.0;         // about the time in which a joint pass
 constexpr int kPasses = 3;               // the first change of the lag may be of tens of ms
 constexpr double kUnchanged_s = 2e-3;    // at usual accelerations, 10 um off a straight line
 constexpr double kWorthKnowing = 30e-6;  // standard deviation of a drift; clocks are as bad
+constexpr double kClearly = 0.5;         // share of what the other lag leaves
 constexpr double kVelocityStep_s = 5e-3;
 constexpr double kJointMoves = 2e-3;  // rad or m: range of a joint that moves
 
@@ -250,6 +251,43 @@ void Add(const LagChange& change, ClockFit& clock) {
   clock.drift_ppm -= 1e6 * change.slope;
 }
 
+struct Refined {
+  ClockFit clock;
+  double left_m = 0.0;
+};
+
+std::optional<Refined> Refine(Comparison& comparison, const ClockFit& first,
+                              const ClockOptions& options) {
+  Refined refined{first};
+  ClockFit& clock = refined.clock;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const MarkerMotion motion = comparison.At(clock);
+    const auto change = FindChange(motion);
+    if (!change) return std::nullopt;
+    Add(*change, clock);
+    clock.drift_estimated = first.drift_estimated || change->slope_sd > 0.0;
+    refined.left_m = change->left_m;
+    const double first_s = motion.time_s[0];
+    const double last_s = motion.time_s[motion.time_s.size() - 1];
+    clock.sd_s = std::max(change->Sd(first_s), change->Sd(last_s));
+    if (std::max(std::abs(change->At(first_s)), std::abs(change->At(last_s))) < kUnchanged_s) break;
+  }
+  clock.state = clock.sd_s <= options.largest_sd_s ? ClockState::kReliable : ClockState::kImprecise;
+  return refined;
+}
+
+// Of two lags.
+ClockFit Choose(Comparison& comparison, const ClockFit& by_speed, const ClockOptions& options) {
+  ClockFit other = by_speed;
+  other.lag_s = by_speed.second_lag_s;
+  other.drift_ppm = 0.0;
+  const auto a = Refine(comparison, by_speed, options);
+  const auto b = Refine(comparison, other, options);
+  if (a && (!b || a->left_m < kClearly * b->left_m)) return a->clock;
+  if (b && (!a || b->left_m < kClearly * a->left_m)) return b->clock;
+  return by_speed;
+}
+
 }  // namespace
 
 ClockFit RefineClock(const MarkedRobot& robot, const std::vector<int>& markers,
@@ -257,22 +295,9 @@ ClockFit RefineClock(const MarkedRobot& robot, const std::vector<int>& markers,
                      const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,
                      const ClockFit& by_speed, const ClockOptions& options) {
   Comparison comparison(robot, markers, standing, log, coordinates, trajectories);
-  ClockFit refined = by_speed;
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const MarkerMotion motion = comparison.At(refined);
-    const auto change = FindChange(motion);
-    if (!change) return by_speed;
-    Add(*change, refined);
-    refined.drift_estimated = by_speed.drift_estimated || change->slope_sd > 0.0;
-    const double first_s = motion.time_s[0];
-    const double last_s = motion.time_s[motion.time_s.size() - 1];
-    refined.sd_s = std::max(change->Sd(first_s), change->Sd(last_s));
-    if (std::max(std::abs(change->At(first_s)), std::abs(change->At(last_s))) < kUnchanged_s) break;
-  }
-  if (!(refined.sd_s < by_speed.sd_s)) return by_speed;
-  refined.state =
-      refined.sd_s <= options.largest_sd_s ? ClockState::kReliable : ClockState::kImprecise;
-  return refined;
+  if (by_speed.state == ClockState::kAmbiguous) return Choose(comparison, by_speed, options);
+  const auto refined = Refine(comparison, by_speed, options);
+  return refined && refined->clock.sd_s < by_speed.sd_s ? refined->clock : by_speed;
 }
 
 }  // namespace elastocal

@@ -20,6 +20,9 @@ namespace elastocal {
 /// sensor may give way to its torque; only what none of this explains is left (FindLagChange). The
 /// result is judged by the same bound (ClockOptions::largest_sd_s); `by_speed` itself where it is
 /// no better.
+///
+/// Where two lags explain the speeds about as well (ClockState::kAmbiguous), it is the one at which
+/// the positions leave less than half; `by_speed` itself where neither does.
 ClockFit RefineClock(const MarkedRobot& robot, const std::vector<int>& markers,
                      const std::vector<int>& standing, const SmoothedLog& log,
                      const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,

@@ -2,6 +2,7 @@
 #include "elastocal/measurement/clock_by_positions.hpp"
 
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -44,8 +45,11 @@ struct ToldClocks {
   ClockFit by_speed, by_positions;
 };
 
-// Standing on the foot, in slow motion between postures.
-ToldClocks Tell(const MarkedRobot& built, PlayOptions options, const ClockOptions& clock = {}) {
+using Change = std::function<void(ClockFit&)>;
+
+// Standing on the foot, in slow motion between postures. `change`: of what the speeds tell.
+ToldClocks Tell(const MarkedRobot& built, PlayOptions options, const ClockOptions& clock = {},
+                const Change& change = {}) {
   options.standing = 6;
   const ScriptedTrial played = Play(built, options);
   MarkerTrajectories markers = played.markers;
@@ -59,6 +63,7 @@ ToldClocks Tell(const MarkedRobot& built, PlayOptions options, const ClockOption
       PredictSpeeds(nominal, all, {options.standing}, log, coordinates, 100.0);
   ToldClocks clocks;
   clocks.by_speed = EstimateTrialClock(MarkerSpeeds(markers), 100.0, logged, {}, clock);
+  if (change) change(clocks.by_speed);
   clocks.by_positions = RefineClock(nominal, all, {options.standing}, log, coordinates, markers,
                                     clocks.by_speed, clock);
   return clocks;
@@ -108,6 +113,25 @@ TEST(RefineClock, JudgesByTheSameBound) {
   const ToldClocks clocks = Tell(LegAsBuilt(1), SlowMotion(1), {.largest_sd_s = 1e-7});
   EXPECT_LT(clocks.by_positions.sd_s, clocks.by_speed.sd_s);
   EXPECT_EQ(clocks.by_positions.state, ClockState::kImprecise);
+}
+
+// Speeds leave the choice between two lags, the first of which is another by five seconds.
+TEST(RefineClock, ChoosesOfTwoLags) {
+  const ToldClocks clocks = Tell(LegAsBuilt(2), SlowMotion(2), {}, [](ClockFit& clock) {
+    clock.state = ClockState::kAmbiguous;
+    clock.second_lag_s = clock.lag_s;
+    clock.lag_s += 5.2;
+  });
+  EXPECT_EQ(clocks.by_positions.state, ClockState::kReliable);
+  EXPECT_NEAR(clocks.by_positions.lag_s, kPlayedLag_s, 2e-3);
+}
+
+TEST(RefineClock, DoesNotChooseBetweenLagsThatAreAlike) {
+  const ToldClocks clocks = Tell(LegAsBuilt(2), SlowMotion(2), {}, [](ClockFit& clock) {
+    clock.state = ClockState::kAmbiguous;
+    clock.second_lag_s = clock.lag_s;
+  });
+  EXPECT_EQ(clocks.by_positions.state, ClockState::kAmbiguous);
 }
 
 // Three postures are over before the scatter of anything is known.

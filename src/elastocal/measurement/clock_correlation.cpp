@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "elastocal/math/numbers.hpp"
 
@@ -66,16 +67,17 @@ double CorrelationAt(const Masked& x, const Masked& y, Eigen::Index shift, doubl
   return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
 }
 
-// The highest value that a dip separates from the highest one of all.
-double SecondPeak(const Eigen::VectorXd& correlations, Eigen::Index best) {
+// Where the highest value is that a dip separates from the highest one of all; nothing without one.
+std::optional<Eigen::Index> SecondPeak(const Eigen::VectorXd& correlations, Eigen::Index best) {
   const double dip = kDip * correlations[best];
-  double second = 0.0;
+  std::optional<Eigen::Index> second;
   for (const int step : {-1, 1}) {
     double lowest = correlations[best];
     for (Eigen::Index i = best + step; i >= 0 && i < correlations.size(); i += step) {
       if (std::isnan(correlations[i])) break;
       lowest = std::min(lowest, correlations[i]);
-      if (correlations[i] > lowest + dip) second = std::max(second, correlations[i]);
+      if (!(correlations[i] > std::max(0.0, lowest + dip))) continue;
+      if (!second || correlations[i] > correlations[*second]) second = i;
     }
   }
   return second;
@@ -138,7 +140,10 @@ CorrelationPeaks Correlate(const UniformSpeed& measured, const UniformSpeed& pre
 
   result.overlap = true;
   result.peak = correlations[best];
-  result.second_peak = SecondPeak(correlations, best);
+  if (const auto second = SecondPeak(correlations, best)) {
+    result.second_peak = correlations[*second];
+    result.second_lag_s = offset - static_cast<double>(first + *second) / rate;
+  }
   result.at_the_rim = best == 0 || best == correlations.size() - 1 ||
                       std::isnan(correlations[best - 1]) || std::isnan(correlations[best + 1]);
   auto shift = static_cast<double>(first + best);

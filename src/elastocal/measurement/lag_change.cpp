@@ -105,6 +105,15 @@ class Estimate {
     });
   }
 
+  double RmsLeft() const {
+    double squares = 0.0, rows = 0.0;
+    for (const Equations& of : equations_) {
+      squares += SquaresLeft(of);
+      rows += static_cast<double>(of.off.size());
+    }
+    return std::sqrt(squares / rows);
+  }
+
   bool empty() const { return equations_.empty(); }
   Eigen::VectorXd lag() const { return unknowns_.tail(lags_); }
 
@@ -174,6 +183,7 @@ std::optional<LagChange> FindLagChange(const MarkerMotion& motion, bool with_slo
   }
   const auto covariance = estimate.Covariance(block_s);
   if (!covariance) return std::nullopt;
+  change.left_m = estimate.RmsLeft();
   change.level_s = estimate.lag()[0];
   change.level_sd_s = std::sqrt((*covariance)(0, 0));
   if (with_slope) {

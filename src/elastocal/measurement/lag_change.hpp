@@ -32,6 +32,7 @@ struct LagChange {
   double slope = 0.0;     ///< change in one second, s
   double level_sd_s = 0.0;
   double slope_sd = 0.0;
+  double left_m = 0.0;  ///< root mean square of what is left of a marker's coordinate
 
   double At(double time_s) const { return level_s + slope * (time_s - middle_s); }
   double Sd(double time_s) const;

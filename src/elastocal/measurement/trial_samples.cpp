@@ -169,7 +169,9 @@ class TrialSampler {
     }
     const std::string cause = CauseOfBadClock(seen);
     if (!cause.empty()) return Describe(clock) + cause;
-    if (clock.state == ClockState::kImprecise) Refine(seen);
+    const bool vague =
+        clock.state == ClockState::kImprecise || clock.state == ClockState::kAmbiguous;
+    if (vague) Refine(seen);
     return clock.state == ClockState::kReliable ? "" : Describe(clock);
   }
 
