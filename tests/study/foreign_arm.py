@@ -4,7 +4,9 @@
 sound and with the mistakes of a laboratory, go through `calibrate`, `check`, `validate` and `compensate`; what the program
 says is set against the truth. Prints the tables of docs/robustness.md and docs/accuracy.md (Markdown). Needs NumPy.
 
-  /usr/bin/python3 tests/study/foreign_arm.py --program build/release/bin/elastocal --work DIR [--only faults tracker few wall]
+  /usr/bin/python3 tests/study/foreign_arm.py --program build/release/bin/elastocal --work DIR [--only PART ...]
+
+Parts: faults, tracker (mistakes), sound (clean tables of a tracker), days (two of them), few, wall.
 """
 
 import argparse
@@ -289,20 +291,74 @@ def quaternion(turn):
     return np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1], 4 * w * w]) / (4 * w)
 
 
-def tracker(study):
-    """A laser tracker sees the pose of a body on the hand; no markers."""
-    arm, q, rng = Arm.real(5), postures(50, 1), np.random.default_rng(3)
-    body = (turned(np.array([0.1, 0.2, 0.3])), np.array([0.1, 0.02, 0.03]))
-    poses = []
+def poses_of(arm, q, rng, base=UPRIGHT):
+    """What a laser tracker sees of a body on the hand: 50 um and 0.2 mrad of noise."""
+    body, poses = (turned(np.array([0.1, 0.2, 0.3])), np.array([0.1, 0.02, 0.03])), []
     for row in q:
-        turn, place = arm.stands(row)[6]
-        turn = turned(rng.normal(size=3) * 2e-4) @ UPRIGHT[0] @ turn @ body[0]
-        at = UPRIGHT[0] @ (place + arm.stands(row)[6][0] @ body[1]) + UPRIGHT[1] + rng.normal(size=3) * 5e-5
+        hand = arm.stands(row)[6]
+        turn = turned(rng.normal(size=3) * 2e-4) @ base[0] @ hand[0] @ body[0]
+        at = base[0] @ (hand[1] + hand[0] @ body[1]) + base[1] + rng.normal(size=3) * 5e-5
         poses.append(np.concatenate([at, quaternion(turn)]))
-    poses = np.array(poses)
-    (study.work / "tracker.yaml").write_text(
+    return np.array(poses)
+
+
+def write_poses(file, q, poses):
+    with open(file, "w", newline="") as out:
+        rows = csv.writer(out)
+        rows.writerow(NAMES + [f"lt_{c}" for c in ("x", "y", "z", "qx", "qy", "qz", "qw")])
+        rows.writerows([f"{x:.8f}" for x in np.concatenate([a, b])] for a, b in zip(q, poses))
+    return file
+
+
+def tracker_project(study):
+    file = study.work / "tracker.yaml"
+    file.write_text(
         "robot: {urdf: arm.urdf}\ninstruments:\n  trackers: [{name: laser}]\n"
         "  poses: [{name: lt, link: link7, tracker: laser, xyz_mm: [100, 20, 30], rpy_deg: [6, 11, 17]}]\n")
+    return file
+
+
+def left_out(study, name):
+    """mm, by the model with compensation and by the URDF alone, on postures that were left out."""
+    contact = study.figures(name)["contact"]
+    of = lambda figures: next((i["position_mm"] for i in figures.get("instruments", []) if i["name"] == "lt"), float("nan"))
+    return of(contact["kfold"]), of(contact.get("urdf_alone", {}))
+
+
+def sound(study):
+    """Clean tables of 24 arms: none is to be accused."""
+    project_file, accused, left = tracker_project(study), 0, []
+    for seed in range(1, 25):
+        arm, q, rng = Arm.real(100 + seed), postures(40, seed), np.random.default_rng(seed)
+        table = write_poses(study.work / f"sound_{seed}.csv", q, poses_of(arm, q, rng))
+        done = study.run("calibrate", project_file, "--recording", table, "-o", study.work / f"sound_{seed}")
+        accused += done.returncode != 0
+        left.append(left_out(study, f"sound_{seed}")[0])
+    print("| clean tables | refused | left out, mm: median | largest |\n|---|---|---|---|")
+    print(f"| {len(left)} | {accused} | {np.median(left):.3f} | {max(left):.3f} |", flush=True)
+
+
+def days(study):
+    """A table of 25 postures, and one of 15 on another day, with the tracker elsewhere."""
+    project_file = tracker_project(study)
+    moves = [((0, 0, 0), (0, 0, 0)), ((3e-3, 0, 0), (0, 0, 0)), ((0.02, 0.01, 5e-3), (0.01, 0.02, 0.01)),
+             ((0.5, -0.8, 0.1), (0, 0, 1.2)), ((2, 1, 0), (0.1, 0.2, 3.0))]
+    print("| tracker moved by m | and rad | exit | left out, mm |\n|---|---|---|---|")
+    for k, (shift, turn) in enumerate(moves):
+        arm, rng = Arm.real(200 + k), np.random.default_rng(k)
+        other = (turned(np.array(turn, float)) @ UPRIGHT[0], UPRIGHT[1] + np.array(shift))
+        tables = []
+        for day, (count, base) in enumerate(((25, UPRIGHT), (15, other))):
+            q = postures(count, k + 50 * day)
+            tables.append(write_poses(study.work / f"days_{k}_{day}.csv", q, poses_of(arm, q, rng, base)))
+        done = study.run("calibrate", project_file, "--recording", *tables, "-o", study.work / f"days_{k}")
+        print(f"| {shift} | {turn} | {done.returncode} | {left_out(study, f'days_{k}')[0]:.3f} |", flush=True)
+
+
+def tracker(study):
+    """A laser tracker sees the pose of a body on the hand; no markers."""
+    arm, q = Arm.real(5), postures(50, 1)
+    poses, project_file = poses_of(arm, q, np.random.default_rng(3)), tracker_project(study)
     cases = {"sound": (q, poses)}
 
     def joints(name, change):
@@ -324,12 +380,8 @@ def tracker(study):
     print("| table of poses | exit | true error of the URDF, mm | said |\n|---|---|---|---|")
     for name, (positions, seen) in cases.items():
         folder = "tracker_" + name.replace(" ", "_")
-        with open(study.work / f"{folder}.csv", "w", newline="") as out:
-            rows = csv.writer(out)
-            rows.writerow(NAMES + [f"lt_{c}" for c in ("x", "y", "z", "qx", "qy", "qz", "qw")])
-            rows.writerows([f"{x:.8f}" for x in np.concatenate([a, b])] for a, b in zip(positions, seen))
-        done = study.run("calibrate", study.work / "tracker.yaml", "--recording", study.work / f"{folder}.csv", "-o",
-                         study.work / folder)
+        table = write_poses(study.work / f"{folder}.csv", positions, seen)
+        done = study.run("calibrate", project_file, "--recording", table, "-o", study.work / folder)
         model = study.urdf_of(folder)
         error = f"{error_of(model, arm, q, postures(100, 77)):.2f}" if model else ""
         remark = next((line for line in done.stdout.splitlines() if "the noise of" in line), first_words(done))
@@ -374,7 +426,7 @@ def wall(study):
     print(f"| model at run time | {error_of(frames, arm, q, judged):.3f} |", flush=True)
 
 
-PARTS = {"faults": faults, "tracker": tracker, "few": few, "wall": wall}
+PARTS = {"faults": faults, "tracker": tracker, "sound": sound, "days": days, "few": few, "wall": wall}
 
 
 def main():

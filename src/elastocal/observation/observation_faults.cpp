@@ -64,17 +64,8 @@ class ObservationFaultSearch {
       : model_(model), observations_(observations), fit_(fit), weights_(LimitedWeights()) {}
 
   std::vector<ObservationFault> Run() {
-    ObservationResiduals residuals(model_, observations_, fit_.loads, fit_.spread, weights_, {},
-                                   fit_.values);
-    residuals.Evaluate(residuals.Start(), true);
-    posture_.assign(residuals.residual_blocks.size(), -1);
-    for (int i = 0; i < observations_.count(); ++i) {
-      posture_[Size(i)] = observations_.all[Size(i)].posture;
-    }
-    at_ = ResidualsOf(residuals);
-    for (const Eigen::VectorXd& block : at_) squares_ += block.squaredNorm();
-    if (!(squares_ > 0.0)) return {};
-    const NormalEquations equations(residuals);
+    if (!Linearise()) return {};
+    const NormalEquations equations(*residuals_);
     const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
     for (const int coordinate : MovingCoordinates()) TryJoint(equations, covariance, coordinate);
     for (std::size_t k = 0; k < model_.setup.quantities.size(); ++k) {
@@ -87,7 +78,41 @@ class ObservationFaultSearch {
     return Best();
   }
 
+  /// How much of a fault of a joint's positions is left.
+  double Left(const ObservationFault& fault) {
+    if (!Linearise()) return 0.0;
+    const NormalEquations equations(*residuals_);
+    const bool gain = fault.kind == ObservationFaultKind::kJointGain;
+    const Eigen::VectorXd factor = gain ? Eigen::VectorXd(observations_.q.col(fault.coordinate))
+                                        : FromPostureOn(fault, fault.posture).factor;
+    const auto addition =
+        equations.Add(DerivativeBy(Moved(fault.coordinate), fit_.values), posture_, factor,
+                      InverseOfInformation(equations.information()))[0];
+    return -addition.value;
+  }
+
  private:
+  /// Evaluates the fit; false where nothing is left.
+  bool Linearise() {
+    residuals_.emplace(model_, observations_, fit_.loads, fit_.spread, weights_,
+                       ObservationFreedom{}, fit_.values);
+    residuals_->Evaluate(residuals_->Start(), true);
+    posture_.assign(residuals_->residual_blocks.size(), -1);
+    for (int i = 0; i < observations_.count(); ++i) {
+      posture_[Size(i)] = observations_.all[Size(i)].posture;
+    }
+    at_ = ResidualsOf(*residuals_);
+    squares_ = 0.0;
+    for (const Eigen::VectorXd& block : at_) squares_ += block.squaredNorm();
+    return squares_ > 0.0;
+  }
+
+  Observations Moved(int coordinate) const {
+    Observations changed = observations_;
+    changed.q.col(coordinate).array() += kDerivativeStep;
+    return changed;
+  }
+
   /// Those of the fit; what it left out counts as far as Huber's weights let it.
   std::vector<double> LimitedWeights() const {
     const std::vector<Eigen::VectorXd> left = LeftOf(model_, observations_, fit_.values);
@@ -199,9 +224,7 @@ class ObservationFaultSearch {
 
   void TryJoint(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
                 int coordinate) {
-    Observations changed = observations_;
-    changed.q.col(coordinate).array() += kDerivativeStep;
-    const std::vector<Eigen::VectorXd> derivative = DerivativeBy(changed, fit_.values);
+    const std::vector<Eigen::VectorXd> derivative = DerivativeBy(Moved(coordinate), fit_.values);
     const bool slides = JointOf(coordinate).type == JointType::kPrismatic;
     ObservationFault fault;
     fault.coordinate = coordinate;
@@ -263,7 +286,8 @@ class ObservationFaultSearch {
   const Observations& observations_;
   const ObservationFit& fit_;
   std::vector<double> weights_;  // by observation
-  std::vector<int> posture_;     // by residual block; -1: a prior
+  std::optional<ObservationResiduals> residuals_;
+  std::vector<int> posture_;  // by residual block; -1: a prior
   std::vector<Eigen::VectorXd> at_;
   double squares_ = 0.0;  // of the observations
   std::vector<ObservationFault> found_;
@@ -293,6 +317,20 @@ std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
                                                     const Observations& observations,
                                                     const ObservationFit& fit) {
   return ObservationFaultSearch(model, observations, fit).Run();
+}
+
+ObservationFault Refined(ObservationFault fault, const ObservedRobot& model,
+                         const Observations& observations) {
+  constexpr int kRounds = 2;
+  const bool gain = fault.kind == ObservationFaultKind::kJointGain;
+  if (!gain && fault.kind != ObservationFaultKind::kJointOffset) return fault;
+  for (int round = 0; round < kRounds; ++round) {
+    const Observations without = WithoutFault(fault, model, observations);
+    const ObservationFit fit = EstimateObserved(model, without, {}).fit;
+    const double size = ObservationFaultSearch(model, without, fit).Left(fault);
+    fault.size = gain ? (1.0 + fault.size) * (1.0 + size) - 1.0 : fault.size + size;
+  }
+  return fault;
 }
 
 Observations WithoutFault(const ObservationFault& fault, const ObservedRobot& model,

@@ -48,6 +48,12 @@ std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
 /// it has fewer than five, or more than half of all.
 std::optional<ObservationFault> FindFrozen(const Observations& observations, int coordinate);
 
+/// The fault with its size refined, by what is left of it beside a fit without it: the score test
+/// tells it to first order. The standard deviation stays: that of a fit without the fault does not
+/// know what the model lacks. Of frozen positions and what was moved, nothing changes.
+ObservationFault Refined(ObservationFault fault, const ObservedRobot& model,
+                         const Observations& observations);
+
 /// The observations as they would be without the fault: what was moved varies from there on,
 /// postures with frozen positions are left out.
 Observations WithoutFault(const ObservationFault& fault, const ObservedRobot& model,

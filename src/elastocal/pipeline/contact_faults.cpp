@@ -116,9 +116,11 @@ std::string FindContactFault(const ContactRun& run) {
     best = &fault;
   }
   if (best != nullptr) {
+    const ObservationFault fault = Refined(*best, run.model, run.observations);
     return fmt::format("{} ({}); without that, the calibrated robot leaves {:.2g} times as much",
-                       DescribeFault(*best, run.model, run.observations),
-                       RemedyOf(*best, run.model, run.observations), least);
+                       DescribeFault(fault, run.model, run.observations),
+                       RemedyOf(fault, run.model, run.observations),
+                       std::min(least, LeftWithout(run, fault)));
   }
   const auto scale = FindObservedScale(run.model, run.observations, fit);
   return scale ? DescribeScale(*scale) : "";
