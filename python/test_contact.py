@@ -139,9 +139,11 @@ class Instruments(SameAsTheProgram, unittest.TestCase):
             elastocal.calibrate(self.project, self.recordings, folds=3, progress=stop)
 
     def test_errors(self):
-        for argument, value in (("prior", self.folder), ("accept", ["lag"]), ("fold_by", "trial")):
+        for argument, value in (("prior", self.folder), ("fold_by", "trial")):
             with self.assertRaisesRegex(elastocal.InputError, f"^{argument}: not with contact or instruments"):
                 elastocal.calibrate(self.project, self.recordings, **{argument: value})
+        with self.assertRaisesRegex(elastocal.InputError, "accept lag: sign:JOINT, .* was expected"):
+            elastocal.calibrate(self.project, self.recordings, accept=["lag"])
         with self.assertRaisesRegex(elastocal.InputError, "folds"):
             elastocal.calibrate(self.project, self.recordings, folds=1)
         with self.assertRaisesRegex(elastocal.InputError, "^frozen: not with contact.*refit='table'"):
