@@ -140,9 +140,9 @@ py::object Validate(const Project& project, const Path& calibration, const py::o
   const bool refit_table = refit && Named<bool>("refit", *refit, {{"table", true}});
   if (project.contact) {
     Expect(!frozen, "frozen", "it is about markers; touches have refit='table'");
-    Expect(accept.empty(), "accept", "it is about recordings of trials");
     return FromJson(Unlocked([&] {
-      return MakeContactValidationJson(ValidateContacts(project, calibration, files, refit_table));
+      return MakeContactValidationJson(
+          ValidateContacts(project, calibration, files, refit_table, accept));
     }));
   }
   if (refit_table) throw InputError("refit: 'table' is about touches of a table");

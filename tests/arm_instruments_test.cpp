@@ -215,14 +215,57 @@ TEST_F(ArmWithTracker, NamesThatCorrectNothingAreRefused) {
   refused("frozen:elbow_joint", "not the same in five rows");
   refused("rows:0", "rows:+1");
   refused("rows:1.5", "rows:+1");
-  refused("offset:elbow_joint@other.csv=2", "no file 'other.csv'");
-  refused("scale:table.csv=1.02", "scale=FACTOR was expected");
+  refused("offset:elbow_joint@other.csv=2", "in a file 'other.csv'");
+  refused("offset:elbow_joint@table.csv:31=2", "no posture 31");
   refused("labels:A,B", "sign:JOINT, exchange:JOINT,JOINT");
   ExpectInputError(
       [&] {
         Calibrate(q_, {"sign:elbow_joint", "sign:elbow_joint"});
       },
       {"given twice"});
+}
+
+TEST_F(ArmWithTracker, ADriftIsNamed) {
+  Eigen::MatrixXd q = q_;
+  q.col(Coordinate("elbow_joint")) += Eigen::VectorXd::LinSpaced(kPostures, 0.0, 0.02);
+  const std::string drift = First(Calibrate(q));
+  EXPECT_EQ(drift.find("elbow_joint: its positions drift by 1."), 0u) << drift;
+  EXPECT_NE(drift.find("deg from the first row to the last (measure again);"), std::string::npos)
+      << drift;
+}
+
+TEST_F(ArmWithTracker, ABodyThatWasBumpedIsNamed) {
+  const Eigen::Vector3d shift(0.003, 0.004, 0.0);
+  for (std::size_t i = 15; i < poses_.size(); ++i) {
+    Eigen::VectorXd& pose = poses_[i];
+    pose.head<3>() += Eigen::Quaterniond(pose[6], pose[3], pose[4], pose[5]) * shift;
+  }
+  const std::string bumped = First(Calibrate(q_));
+  EXPECT_EQ(bumped.find("tool was moved on its link by some "), 0u) << bumped;
+  EXPECT_NE(bumped.find("table.csv:17 (calibrate the rows before and after apart);"),
+            std::string::npos)
+      << bumped;
+}
+
+// On the second of two days a joint has a wrong gain, or the tracker a wrong scale.
+TEST_F(ArmWithTracker, AFaultOfOneFileIsNamed) {
+  constexpr int kFirstDay = 18;
+  const auto first_of = [&](const Eigen::MatrixXd& q, const std::vector<std::string>& accept) {
+    const auto first = Table(q.topRows(kFirstDay), "first.csv");
+    const auto second = Table(q.bottomRows(kPostures - kFirstDay), "second.csv", kFirstDay);
+    return First(CalibrateContacts(project_, {first, second}, {.folds = 5, .accept = accept}));
+  };
+  Eigen::MatrixXd q = q_;
+  q.col(Coordinate("elbow_joint")).tail(kPostures - kFirstDay) *= 1.03;
+  const std::string gain = first_of(q, {});
+  EXPECT_EQ(gain.find("elbow_joint: its positions are 1.0"), 0u) << gain;
+  EXPECT_NE(gain.find("--accept gain:elbow_joint@second.csv=1.0"), std::string::npos) << gain;
+  EXPECT_EQ(first_of(q, {"gain:elbow_joint@second.csv=1.03"}), "");
+  for (std::size_t i = kFirstDay; i < poses_.size(); ++i) poses_[i].head<3>() *= 1.02;
+  const std::string scale = first_of(q_, {});
+  EXPECT_EQ(scale.find("lengths as they were measured in "), 0u) << scale;
+  EXPECT_NE(scale.find("--accept scale:second.csv=1.0"), std::string::npos) << scale;
+  EXPECT_EQ(first_of(q_, {"scale:second.csv=1.02"}), "");
 }
 
 TEST_F(ArmWithTracker, ATrackerThatWasMovedIsNamed) {
@@ -334,9 +377,31 @@ TEST_F(ArmWithTracker, ValidationRefusesWhatIsWorseOrNoRobot) {
   const ContactValidation wrong =
       ValidateContacts(project_, folder_.path() / "calibration.yaml", {Table(q)}, true);
   ASSERT_FALSE(wrong.better());
-  EXPECT_EQ(wrong.objections.front().find("no calibrated robot errs like this: position of tool"),
-            0u)
+  EXPECT_EQ(wrong.objections.front().find("elbow_joint: the sign of its positions is reversed"), 0u)
       << wrong.objections.front();
+  EXPECT_TRUE(ValidateContacts(project_, folder_.path() / "calibration.yaml", {Table(q)}, true,
+                               {"sign:elbow_joint"})
+                  .better());
+}
+
+// Errors that are far above what the calibration left are no better robot, though they are smaller
+// than those of the nominal one.
+TEST_F(ArmWithTracker, ValidationKnowsWhatTheCalibrationLeft) {
+  ContactRun run = Calibrate(q_);
+  ASSERT_EQ(First(run), "");
+  std::ofstream(folder_.path() / "calibration.yaml")
+      << MakeContactFiles(project_, run).at("calibration.yaml");
+  const auto validate = [&](double gain) {
+    Eigen::MatrixXd q = q_;
+    q.col(Coordinate("elbow_joint")) *= gain;
+    return ValidateContacts(project_, folder_.path() / "calibration.yaml", {Table(q)}, true);
+  };
+  EXPECT_TRUE(validate(1.0).warnings.empty());
+  const ContactValidation slightly = validate(1.002);
+  EXPECT_TRUE(slightly.better());
+  ASSERT_FALSE(slightly.warnings.empty());
+  EXPECT_NE(slightly.warnings.back().find("where the calibration left"), std::string::npos);
+  EXPECT_FALSE(validate(1.02).better());
 }
 
 }  // namespace

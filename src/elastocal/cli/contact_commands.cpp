@@ -190,8 +190,8 @@ int RunContactValidation(const ContactValidateOptions& options, const Project& p
   DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
 
-  const ContactValidation run =
-      ValidateContacts(project, options.calibration, recordings, options.refit_table);
+  const ContactValidation run = ValidateContacts(project, options.calibration, recordings,
+                                                 options.refit_table, options.accept);
   const std::string json = MakeContactValidationJson(run);
   outputs.Set(options.common.json_file, json);
   std::string no_report;

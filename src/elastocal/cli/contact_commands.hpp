@@ -15,6 +15,7 @@ struct ContactValidateOptions {
   std::vector<std::string> recording;  ///< tables of observations and of corners
   std::string output;                  ///< folder; empty: none
   bool refit_table = false;
+  std::vector<std::string> accept;  ///< mistakes that are corrected first
 };
 
 /// `validate` for such a project.

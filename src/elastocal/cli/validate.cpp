@@ -80,9 +80,8 @@ int Validate(const ValidateOptions& options) {
   const Project project = ReadProject(options.project);
   if (project.contact) {
     if (options.frozen) throw InputError("--frozen is about markers; touches have --refit table");
-    if (!options.accept.empty()) throw InputError("--accept is about recordings of trials");
     return RunContactValidation({options.common, options.calibration, options.recording,
-                                 options.output, options.refit == "table"},
+                                 options.output, options.refit == "table", options.accept},
                                 project);
   }
   if (!options.refit.empty()) throw InputError("--refit table is about touches of a table");

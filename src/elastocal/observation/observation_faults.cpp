@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <set>
 
@@ -18,43 +17,33 @@ namespace elastocal {
 namespace {
 
 constexpr double kDerivativeStep = 1e-6;  // rad, m
-constexpr double kLeastShare = 0.2;
+constexpr double kLeastShare = 0.1;
 constexpr double kCertain = 4.0;  // standard deviations, in noise that has the fault in it
 constexpr int kSplitsTried = 12;  // of the table, after which a fault may begin
-constexpr int kFewestFrozen = 5;  // postures
-constexpr double kPerDegree = M_PI / 180.0;
+constexpr double kOneDegree = M_PI / 180.0;
 
 /// Sizes from which a fault is none that a good robot and good instruments may have.
 double LeastSize(const ObservationFault& fault, bool slides) {
   switch (fault.kind) {
     case ObservationFaultKind::kJointGain:
       return 0.005;
+    case ObservationFaultKind::kScale:
+      return 0.003;
     case ObservationFaultKind::kJointOffset:
-      return slides ? 1e-3 : 0.25 * kPerDegree;
+    case ObservationFaultKind::kJointDrift:
+      return slides ? 1e-3 : 0.25 * kOneDegree;
     default:
-      return fault.turns ? 0.05 * kPerDegree : 0.5e-3;
+      return fault.turns ? 0.05 * kOneDegree : 0.5e-3;
   }
 }
 
 /// Sizes beyond which it is another fault that this one imitates.
 double LargestSize(const ObservationFault& fault, bool slides) {
-  const double angle = 15.0 * kPerDegree;
+  const double angle = 15.0 * kOneDegree;
   if (fault.kind == ObservationFaultKind::kJointGain) return 0.3;
-  if (fault.kind == ObservationFaultKind::kJointOffset) return slides ? 0.1 : angle;
+  if (fault.kind == ObservationFaultKind::kScale) return 0.3;
+  if (fault.coordinate >= 0) return slides ? 0.1 : angle;
   return fault.turns ? angle : 1.0;
-}
-
-/// Adds an effect on the quantity from a posture on.
-void AddEffect(const ObservedRobot& model, int quantity, int posture, Observations& observations) {
-  const auto effect = static_cast<int>(observations.effects.size());
-  observations.effects.push_back({quantity, "moved"});
-  for (Observation& observation : observations.all) {
-    const std::vector<int>& on = model.instrument(observation.instrument).quantities;
-    if (observation.posture < posture || std::find(on.begin(), on.end(), quantity) == on.end()) {
-      continue;
-    }
-    observation.effects.push_back(effect);
-  }
 }
 
 class ObservationFaultSearch {
@@ -68,26 +57,29 @@ class ObservationFaultSearch {
     const NormalEquations equations(*residuals_);
     const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
     for (const int coordinate : MovingCoordinates()) TryJoint(equations, covariance, coordinate);
-    for (std::size_t k = 0; k < model_.setup.quantities.size(); ++k) {
-      const bool here = model_.setup.quantities[k].of_surroundings;
-      if (here && static_cast<int>(k) != model_.root_tilt) {
-        TryMove(equations, covariance, static_cast<int>(k));
-      }
+    for (int k = 0; k < static_cast<int>(model_.setup.quantities.size()); ++k) {
+      if (k != model_.root_tilt) TryMove(equations, covariance, k);
+    }
+    const int files = static_cast<int>(observations_.files.size());
+    for (int file = 0; file < files && files > 1; ++file) {
+      ObservationFault fault;
+      fault.kind = ObservationFaultKind::kScale;
+      fault.file = file;
+      Keep(Try(equations, covariance, DerivativeBy(Scaled(), fit_.values),
+               {{fault, FactorOf(fault)}}, false));
     }
     TryFrozen();
     return Best();
   }
 
-  /// How much of a fault of a joint's positions is left.
+  /// How much of a fault of a joint's positions or of a scale is left.
   double Left(const ObservationFault& fault) {
     if (!Linearise()) return 0.0;
     const NormalEquations equations(*residuals_);
-    const bool gain = fault.kind == ObservationFaultKind::kJointGain;
-    const Eigen::VectorXd factor = gain ? Eigen::VectorXd(observations_.q.col(fault.coordinate))
-                                        : FromPostureOn(fault, fault.posture).factor;
+    const bool scale = fault.kind == ObservationFaultKind::kScale;
     const auto addition =
-        equations.Add(DerivativeBy(Moved(fault.coordinate), fit_.values), posture_, factor,
-                      InverseOfInformation(equations.information()))[0];
+        equations.Add(DerivativeBy(scale ? Scaled() : Moved(fault.coordinate), fit_.values),
+                      posture_, FactorOf(fault), InverseOfInformation(equations.information()))[0];
     return -addition.value;
   }
 
@@ -111,6 +103,33 @@ class ObservationFaultSearch {
     Observations changed = observations_;
     changed.q.col(coordinate).array() += kDerivativeStep;
     return changed;
+  }
+
+  Observations Scaled() const {
+    Observations changed = observations_;
+    for (Observation& observation : changed.all) {
+      observation.measured.head(LengthsMeasured(model_.instrument(observation.instrument))) *=
+          1.0 + kDerivativeStep;
+    }
+    return changed;
+  }
+
+  /// By posture, what the fault multiplies there: of a gain, the positions.
+  Eigen::VectorXd FactorOf(const ObservationFault& fault) const {
+    const int count = observations_.posture_count();
+    Eigen::VectorXd factor(count);
+    for (int i = 0; i < count; ++i) {
+      const int file = observations_.postures[Size(i)].file;
+      const bool here = i >= fault.posture && (fault.file < 0 || file == fault.file);
+      double shape = 1.0;
+      if (fault.kind == ObservationFaultKind::kJointGain) {
+        shape = observations_.q(i, fault.coordinate);
+      } else if (fault.kind == ObservationFaultKind::kJointDrift) {
+        shape = DriftedShare(i, count);
+      }
+      factor[i] = here ? shape : 0.0;
+    }
+    return factor;
   }
 
   /// Those of the fit; what it left out counts as far as Huber's weights let it.
@@ -167,9 +186,7 @@ class ObservationFaultSearch {
 
   Tried FromPostureOn(ObservationFault fault, int posture) const {
     fault.posture = posture;
-    Eigen::VectorXd factor = Eigen::VectorXd::Zero(observations_.posture_count());
-    factor.tail(observations_.posture_count() - posture).setOnes();
-    return {fault, std::move(factor)};
+    return {fault, FactorOf(fault)};
   }
 
   /// The best of these that is one; nothing where none is.
@@ -229,9 +246,17 @@ class ObservationFaultSearch {
     ObservationFault fault;
     fault.coordinate = coordinate;
     if (!IsMovedByRods(model_.robot.tree, model_.robot.tree.coordinate_joint[Size(coordinate)])) {
-      Keep(Try(equations, covariance, derivative, {{fault, observations_.q.col(coordinate)}},
-               slides));
+      std::vector<Tried> gains = {{fault, FactorOf(fault)}};
+      const int files = static_cast<int>(observations_.files.size());
+      for (int file = 0; file < files && files > 1; ++file) {
+        fault.file = file;
+        gains.push_back({fault, FactorOf(fault)});
+      }
+      fault.file = -1;
+      Keep(Try(equations, covariance, derivative, gains, slides));
     }
+    fault.kind = ObservationFaultKind::kJointDrift;
+    Keep(Try(equations, covariance, derivative, {{fault, FactorOf(fault)}}, slides));
     fault.kind = ObservationFaultKind::kJointOffset;
     Keep(TryFromSomewhereOn(equations, covariance, derivative, fault, slides));
   }
@@ -246,8 +271,9 @@ class ObservationFaultSearch {
     for (int number = 0; number < of.size(); ++number) {
       ObservedValues values = fit_.values;
       values.effects.emplace_back(kDerivativeStep * Eigen::VectorXd::Unit(of.size(), number));
-      fault.turns =
-          model_.setup.sources[Size(of.sources[Size(number)])].unit == SourceUnit::kRadian;
+      const SourceUnit unit = model_.setup.sources[Size(of.sources[Size(number)])].unit;
+      if (unit != SourceUnit::kMetre && unit != SourceUnit::kRadian) continue;
+      fault.turns = unit == SourceUnit::kRadian;
       Keep(TryFromSomewhereOn(equations, covariance, DerivativeBy(changed, values), fault, false));
     }
   }
@@ -275,7 +301,8 @@ class ObservationFaultSearch {
     std::vector<ObservationFault> best;
     for (const ObservationFault& fault : found_) {
       const bool known = std::any_of(best.begin(), best.end(), [&](const ObservationFault& one) {
-        return one.coordinate == fault.coordinate && one.quantity == fault.quantity;
+        return one.coordinate == fault.coordinate && one.quantity == fault.quantity &&
+               one.kind == fault.kind;
       });
       if (!known) best.push_back(fault);
     }
@@ -295,24 +322,6 @@ class ObservationFaultSearch {
 
 }  // namespace
 
-std::optional<ObservationFault> FindFrozen(const Observations& observations, int coordinate) {
-  const auto positions = observations.q.col(coordinate);
-  const int count = observations.posture_count();
-  ObservationFault longest;
-  longest.kind = ObservationFaultKind::kJointFrozen;
-  longest.coordinate = coordinate;
-  for (int begin = 0, i = 1; i <= count; ++i) {
-    if (i < count && positions[i] == positions[begin]) continue;
-    if (i - begin > longest.count) {
-      longest.posture = begin;
-      longest.count = i - begin;
-    }
-    begin = i;
-  }
-  if (longest.count < kFewestFrozen || 2 * longest.count > count) return std::nullopt;
-  return longest;
-}
-
 std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
                                                     const Observations& observations,
                                                     const ObservationFit& fit) {
@@ -322,8 +331,12 @@ std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
 ObservationFault Refined(ObservationFault fault, const ObservedRobot& model,
                          const Observations& observations) {
   constexpr int kRounds = 2;
-  const bool gain = fault.kind == ObservationFaultKind::kJointGain;
-  if (!gain && fault.kind != ObservationFaultKind::kJointOffset) return fault;
+  const bool gain =
+      fault.kind == ObservationFaultKind::kJointGain || fault.kind == ObservationFaultKind::kScale;
+  if (fault.kind == ObservationFaultKind::kJointFrozen ||
+      fault.kind == ObservationFaultKind::kMoved) {
+    return fault;
+  }
   for (int round = 0; round < kRounds; ++round) {
     const Observations without = WithoutFault(fault, model, observations);
     const ObservationFit fit = EstimateObserved(model, without, {}).fit;
@@ -331,58 +344,6 @@ ObservationFault Refined(ObservationFault fault, const ObservedRobot& model,
     fault.size = gain ? (1.0 + fault.size) * (1.0 + size) - 1.0 : fault.size + size;
   }
   return fault;
-}
-
-Observations WithoutFault(const ObservationFault& fault, const ObservedRobot& model,
-                          const Observations& observations) {
-  if (fault.kind == ObservationFaultKind::kJointFrozen) {
-    std::vector<int> others;
-    for (int i = 0; i < observations.posture_count(); ++i) {
-      if (i < fault.posture || i >= fault.posture + fault.count) others.push_back(i);
-    }
-    return SelectPostures(observations, others);
-  }
-  Observations without = observations;
-  if (fault.kind == ObservationFaultKind::kJointGain) {
-    without.q.col(fault.coordinate) /= 1.0 + fault.size;
-  } else if (fault.kind == ObservationFaultKind::kJointOffset) {
-    const Eigen::Index rows = observations.posture_count() - fault.posture;
-    without.q.col(fault.coordinate).tail(rows).array() -= fault.size;
-  } else {
-    AddEffect(model, fault.quantity, fault.posture, without);
-  }
-  return without;
-}
-
-std::string DescribeFault(const ObservationFault& fault, const ObservedRobot& model,
-                          const Observations& observations) {
-  const PosturePlace& place = observations.postures[Size(fault.posture)];
-  const std::string from = observations.files[Size(place.file)] + ":" + std::to_string(place.line);
-  char number[120];
-  if (fault.kind == ObservationFaultKind::kMoved) {
-    std::string name = model.setup.quantities[Size(fault.quantity)].name;
-    name = name.substr(0, name.find('.'));
-    const double unit = fault.turns ? kPerDegree : 1e-3;
-    std::snprintf(number, sizeof number, " was moved by some %.2g %s before ",
-                  std::abs(fault.size) / unit, fault.turns ? "deg" : "mm");
-    return name + number + from;
-  }
-  const RobotTree& tree = model.robot.tree;
-  const Joint& joint = tree.joints[Size(tree.coordinate_joint[Size(fault.coordinate)])];
-  if (fault.kind == ObservationFaultKind::kJointGain) {
-    std::snprintf(number, sizeof number, ": its positions are %.4f +- %.4f times the true ones",
-                  1.0 + fault.size, fault.sd);
-    return joint.name + number;
-  }
-  if (fault.kind == ObservationFaultKind::kJointFrozen) {
-    return joint.name + ": its positions are frozen in " + std::to_string(fault.count) +
-           " postures from " + from + " on, while it moved";
-  }
-  const bool slides = joint.type == JointType::kPrismatic;
-  const double unit = slides ? 1e-3 : kPerDegree;
-  std::snprintf(number, sizeof number, ": its positions are off by %.3f +- %.3f %s from ",
-                fault.size / unit, fault.sd / unit, slides ? "mm" : "deg");
-  return joint.name + number + from + " on";
 }
 
 }  // namespace elastocal

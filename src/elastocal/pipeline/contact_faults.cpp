@@ -20,7 +20,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kHalved = 0.5;         // what a fault may leave once it is undone
-constexpr std::size_t kMostFaults = 3;  // that are tried by a fit
+constexpr std::size_t kMostFaults = 8;  // that are tried by a fit
 
 /// Root mean square of what `values` leave in observations, but for some that are left out, in
 /// units of the noise of `spread`.
@@ -41,10 +41,24 @@ double RmsLeft(const ObservedRobot& model, const Observations& observations,
   return std::sqrt(squares / std::max(1.0, rows));
 }
 
+bool Slides(const ObservedRobot& model, int coordinate) {
+  const RobotTree& tree = model.robot.tree;
+  const int joint = tree.coordinate_joint[Size(coordinate)];
+  return tree.joints[Size(joint)].type == JointType::kPrismatic;
+}
+
 std::string RemedyOf(const ObservationFault& fault, const ObservedRobot& model,
                      const Observations& observations) {
   const auto name = NameOfFault(fault, model, observations);
+  if (name && fault.kind == ObservationFaultKind::kJointGain && fault.file < 0 &&
+      Slides(model, fault.coordinate)) {
+    return fmt::format(
+        "--accept {} corrects it; if its scale is right, that of what measured is "
+        "{:.4f} times the true one",
+        *name, 1.0 / (1.0 + fault.size));
+  }
   if (name) return "--accept " + *name + " corrects it";
+  if (fault.kind == ObservationFaultKind::kJointDrift) return "measure again";
   const auto varies = [&](const std::shared_ptr<const Instrument>& of) {
     return of->varying >= 0 && of->quantities[Size(of->varying)] == fault.quantity;
   };
@@ -52,12 +66,6 @@ std::string RemedyOf(const ObservationFault& fault, const ObservedRobot& model,
   return std::any_of(instruments.begin(), instruments.end(), varies)
              ? "each file is a session of its own: split the table there"
              : "calibrate the rows before and after apart";
-}
-
-bool Slides(const ObservedRobot& model, int coordinate) {
-  const RobotTree& tree = model.robot.tree;
-  const int joint = tree.coordinate_joint[Size(coordinate)];
-  return tree.joints[Size(joint)].type == JointType::kPrismatic;
 }
 
 /// What a fit without the fault leaves of what is left with it. Postures that are frozen count

@@ -16,6 +16,8 @@
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
+#include "elastocal/pipeline/observed_corrections.hpp"
+#include "elastocal/pipeline/observed_mistakes.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -62,11 +64,51 @@ std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
              : LeftOf(run.model, run.observations, values);
 }
 
+/// Noise of a kind of row as the calibration found it, SI.
+double NoiseOf(const ObservedRobot& model, const RowErrors& row, const Spread& spread) {
+  const Instrument& instrument = model.instrument(row.instrument);
+  const std::vector<RowMeaning> rows = instrument.rows();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (row.row == rows[i].name) return spread[instrument.noise[i]];
+  }
+  return 0.0;
+}
+
+/// A robot that is as it was calibrated errs by about the noise that the calibration left. Errors
+/// that are far larger are a warning, and an objection where they matter.
+void CompareWithCalibration(const Spread& spread, ContactValidation& run) {
+  constexpr double kLarger = 4.0, kFarLarger = 10.0, kMatters = 0.1;
+  const char* cause =
+      run.surroundings_refitted
+          ? "has the robot, or what is measured on it, changed, or is the table wrong?"
+          : "were trackers or tables moved since? --refit table registers them anew";
+  for (const RowErrors& row : run.calibrated.rows) {
+    const double noise = NoiseOf(run.model, row, spread);
+    if (row.unit == SourceUnit::kNone || !(row.rms > kLarger * noise)) continue;
+    const ShownUnit unit = ShownUnitOf(row.unit);
+    const std::string text =
+        fmt::format("{} of {} off by {:.3g} {}, where the calibration left {:.2g} ({})", row.row,
+                    run.model.instrument(row.instrument).name, unit.factor * row.rms, unit.name,
+                    unit.factor * noise, cause);
+    const bool grave =
+        row.rms > kFarLarger * noise && row.rms > kMatters * LargestError(run.model, row.unit);
+    (grave ? run.objections : run.warnings).push_back(text);
+  }
+}
+
+/// Mistakes in the tables that explain the objections.
+void NameMistakesOf(ContactValidation& run) {
+  if (run.objections.empty()) return;
+  const std::vector<std::string> mistakes = FindObservedMistakes(run.model, run.observations);
+  if (mistakes.empty()) return;
+  run.objections.insert(run.objections.begin(), fmt::format("{}", fmt::join(mistakes, "; or ")));
+}
+
 }  // namespace
 
 ContactValidation ValidateContacts(const Project& project, const std::filesystem::path& calibration,
                                    const std::vector<std::filesystem::path>& recordings,
-                                   bool refit_table) {
+                                   bool refit_table, const std::vector<std::string>& accept) {
   const std::filesystem::path file = FindCalibrationFiles(calibration).calibration;
   const StoredCalibration stored = ReadCalibration(file);
   const StoredContacts contacts = ReadContacts(file, project);
@@ -86,6 +128,9 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
       MakeObservedRobot(project.tree, project.placement, tables.setup,
                         ElasticJointsOf(stored, project.tree, {".compliance_z"}),
                         ElasticJointsOf(stored, project.tree, {".compliance_x", ".compliance_y"}));
+  for (const std::string& what : CorrectObservations(accept, run.model, run.observations)) {
+    run.warnings.push_back("corrected on request: " + what);
+  }
   if (stored.nominal != NominalFingerprint(run.model.robot)) {
     throw InputError(file.string() + ": made for robot '" + stored.robot +
                      "' with other nominal geometry than " + project.urdf.string() +
@@ -104,16 +149,16 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
     run.objections.push_back("the calibrated robot is worse here: " + row);
   }
   // Without registration, a table or tracker that has been moved says nothing of the robot.
-  for (const std::string& row : LargeErrors(run.model, run.calibrated)) {
-    run.objections.push_back(run.surroundings_refitted
-                                 ? "no calibrated robot errs like this: " + row
-                                 : row +
-                                       ": was the tracker or the table moved since the "
-                                       "calibration? --refit table registers both anew");
+  if (run.surroundings_refitted) {
+    for (const std::string& row : LargeErrors(run.model, run.calibrated)) {
+      run.objections.push_back("no calibrated robot errs like this: " + row);
+    }
   }
+  CompareWithCalibration(contacts.calibrated.spread, run);
   if (!(run.gain_in_sds > 0.0)) {
     run.objections.emplace_back("calibrated is no better than uncalibrated here");
   }
+  NameMistakesOf(run);
   return run;
 }
 

@@ -21,8 +21,9 @@ struct ContactValidation {
   ObservationFigures uncalibrated, calibrated;
   double gain_in_sds = 0.0;  ///< see GainInSds
   /// No gain in the sum of squares over the noise; kinds of observations that are clearly worse
-  /// (WorseRows) or, with the surroundings registered anew, off by more than any calibrated robot
-  /// is (LargeErrors).
+  /// (WorseRows), off by ten times what the calibration left and by a tenth of LargestError or,
+  /// with the surroundings registered anew, by more than any calibrated robot is (LargeErrors). The
+  /// first names mistakes in the tables that explain them (FindObservedMistakes).
   std::vector<std::string> objections;
   std::vector<std::string> warnings;
 
@@ -32,11 +33,12 @@ struct ContactValidation {
 /// Predicts the observations of `recordings` (tables of observations and of corners) by a stored
 /// calibration, with the surroundings where they were
 /// (`refit_table` false) or registered anew (LeftAfterRegistration). Sessions of another day are
-/// unknown: they have no effect. Throws InputError: files that cannot be read; a calibration of
+/// unknown: they have no effect. `accept`: mistakes that are corrected first (CorrectObservations).
+/// Throws InputError: files that cannot be read; a calibration of
 /// another robot or without touches.
 ContactValidation ValidateContacts(const Project& project, const std::filesystem::path& calibration,
                                    const std::vector<std::filesystem::path>& recordings,
-                                   bool refit_table);
+                                   bool refit_table, const std::vector<std::string>& accept = {});
 
 /// validation.json: the figures for programs (docs/formats.md).
 std::string MakeContactValidationJson(const ContactValidation& run);

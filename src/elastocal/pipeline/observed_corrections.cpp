@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -39,39 +38,39 @@ std::string JointName(const RobotTree& tree, int coordinate) {
   return tree.joints[Size(tree.coordinate_joint[Size(coordinate)])].name;
 }
 
-/// Of lengths in a measurement: a pose has three before its quaternion.
-int LengthsMeasured(const Instrument& instrument) {
-  const std::string_view kind = instrument.kind();
-  if (kind == "pose" || kind == "position") return 3;
-  return kind == "wire" ? 1 : 0;
-}
-
 std::string ApplyStated(const std::string& name, const StatedCorrection& correction,
                         const ObservedRobot& model, Observations& observations) {
-  if (correction.kind == FaultKind::kCameraScale) {
-    if (!correction.trial.empty()) RefuseName(name, "scale=FACTOR was expected");
-    for (Observation& observation : observations.all) {
-      const int lengths = LengthsMeasured(model.instrument(observation.instrument));
-      observation.measured.head(lengths) /= correction.size;
-    }
-    return fmt::format("positions and lengths as measured were divided by {:g}", correction.size);
-  }
-  bool found = correction.trial.empty();
+  std::vector<char> here(Size(observations.posture_count()), 0);
+  bool found = false;
   int number = 0;  // of the posture in its file
   for (int i = 0; i < observations.posture_count(); ++i) {
     const int file = observations.postures[Size(i)].file;
     if (i == 0 || file != observations.postures[Size(i - 1)].file) number = 0;
     ++number;
-    const bool here =
+    const bool of_file =
         correction.trial.empty() || FileName(observations.files[Size(file)]) == correction.trial;
-    if (!here) continue;
-    found = true;
-    if (number < correction.from) continue;
+    here[Size(i)] = of_file && number >= correction.from ? 1 : 0;
+    found = found || here[Size(i)] != 0;
+  }
+  if (!found) {
+    RefuseName(name, fmt::format("there is no posture {} in a file '{}'", correction.from,
+                                 correction.trial));
+  }
+  if (correction.kind == FaultKind::kCameraScale) {
+    for (Observation& observation : observations.all) {
+      if (here[Size(observation.posture)] == 0) continue;
+      const int lengths = LengthsMeasured(model.instrument(observation.instrument));
+      observation.measured.head(lengths) /= correction.size;
+    }
+    return fmt::format("positions and lengths as measured were divided by {:g} ({})",
+                       correction.size, name);
+  }
+  for (int i = 0; i < observations.posture_count(); ++i) {
+    if (here[Size(i)] == 0) continue;
     double& position = observations.q(i, correction.coordinate);
     position = correction.kind == FaultKind::kJointGain ? position / correction.size
                                                         : position - correction.size;
   }
-  if (!found) RefuseName(name, "there is no file '" + correction.trial + "'");
   return fmt::format("{}: {}", correction.joint, name);
 }
 
@@ -134,12 +133,19 @@ std::vector<std::string> CorrectObservations(const std::vector<std::string>& acc
 
 std::optional<std::string> NameOfFault(const ObservationFault& fault, const ObservedRobot& model,
                                        const Observations& observations) {
-  if (fault.kind == ObservationFaultKind::kMoved) return std::nullopt;
+  if (fault.kind == ObservationFaultKind::kMoved ||
+      fault.kind == ObservationFaultKind::kJointDrift) {
+    return std::nullopt;
+  }
+  const std::string in = fault.file < 0 ? "" : FileName(observations.files[Size(fault.file)]);
+  if (fault.kind == ObservationFaultKind::kScale) {
+    return fmt::format("scale:{}={:.5f}", in, 1.0 + fault.size);
+  }
   const RobotTree& tree = model.robot.tree;
   const std::string joint = JointName(tree, fault.coordinate);
   if (fault.kind == ObservationFaultKind::kJointFrozen) return "frozen:" + joint;
   if (fault.kind == ObservationFaultKind::kJointGain) {
-    return fmt::format("gain:{}={:.5f}", joint, 1.0 + fault.size);
+    return fmt::format("gain:{}{}={:.5f}", joint, in.empty() ? "" : "@" + in, 1.0 + fault.size);
   }
   const bool slides = tree.joints[Size(tree.coordinate_joint[Size(fault.coordinate)])].type ==
                       JointType::kPrismatic;

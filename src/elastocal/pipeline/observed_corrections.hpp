@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/observation/observation_faults.hpp"
+#include "elastocal/observation/observation_fault.hpp"
 
 namespace elastocal {
 
@@ -16,9 +16,11 @@ namespace elastocal {
 ///     frozen:JOINT             its positions stay the same in some rows, which are left out
 ///     rows:+1                  what was observed belongs to the joint positions of the next row
 ///     gain:JOINT=1.03          the joint's positions are 1.03 times the true ones
+///     gain:JOINT@FILE=1.03     in this file alone
 ///     offset:JOINT@FILE:14=2   they are 2 deg (of a sliding joint: mm) too large from the
 ///                              fourteenth posture of this file on; without :14, in all of it
 ///     scale=1.02               positions and lengths as measured are 1.02 times the true ones
+///     scale:FILE=1.02          in this file alone
 ///
 /// All but `frozen` are done as they say. Returns what was undone, in words. Throws InputError for
 /// other names, joints or files that are not there, sizes that no fault has

@@ -13,6 +13,7 @@
 #include "elastocal/observation/observation_fit.hpp"
 #include "elastocal/observation/observed_posture.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
+#include "elastocal/pipeline/observed_corrections.hpp"
 
 namespace elastocal {
 namespace {
@@ -30,7 +31,7 @@ struct TriedMistake {
 class ObservedMistakeSearch {
  public:
   ObservedMistakeSearch(const ObservedRobot& model, const Observations& observations)
-      : model_(model), observations_(observations), before_(Squares(observations.q)) {}
+      : model_(model), observations_(observations), before_(Squares(observations)) {}
 
   std::vector<std::string> Run() {
     const RobotTree& tree = model_.robot.tree;
@@ -61,31 +62,19 @@ class ObservedMistakeSearch {
   std::string NameOfJoint(int coordinate) const { return JointOf(coordinate).name; }
   bool Slides(int coordinate) const { return JointOf(coordinate).type == JointType::kPrismatic; }
 
-  /// Some postures, evenly spread, with joint positions of their own.
-  Observations SomeWith(const Eigen::MatrixXd& q) const {
-    const int stride = 1 + observations_.posture_count() / kMostFittedPostures;
-    Observations some = observations_;
-    some.postures.clear();
-    some.all.clear();
+  /// Some postures, evenly spread.
+  static Observations SomeOf(const Observations& all) {
+    const int stride = 1 + all.posture_count() / kMostFittedPostures;
     std::vector<int> rows;
-    for (int i = 0; i < observations_.posture_count(); i += stride) {
-      rows.push_back(i);
-      some.postures.push_back(observations_.postures[Size(i)]);
-    }
-    some.q = q(rows, Eigen::all);
-    for (const Observation& observation : observations_.all) {
-      if (observation.posture % stride != 0) continue;
-      some.all.push_back(observation);
-      some.all.back().posture = observation.posture / stride;
-    }
-    return some;
+    for (int i = 0; i < all.posture_count(); i += stride) rows.push_back(i);
+    return SelectPostures(all, rows);
   }
 
   /// Squares over the largest errors that calibrated robots have, summed over the kinds of rows,
   /// once the nominal robot is placed; infinite where it cannot be.
-  double Squares(const Eigen::MatrixXd& q) const {
+  double Squares(const Observations& all) const {
     InterruptionPoint();
-    const Observations some = SomeWith(q);
+    const Observations some = SomeOf(all);
     const ObservationFit fit =
         FitObservations(model_, some, StartFit(model_, some),
                         {.freedom = {.robot = false}, .estimate_spread = false});
@@ -97,37 +86,38 @@ class ObservedMistakeSearch {
     return std::isfinite(squares) ? squares : std::numeric_limits<double>::infinity();
   }
 
-  void Try(const std::string& what, const std::string& name, const Eigen::MatrixXd& q) {
-    tried_.push_back({what + " (--accept " + name + " corrects it)", Squares(q)});
+  void Try(const std::string& what, const std::string& name, const Observations& undone) {
+    tried_.push_back({what + " (--accept " + name + " corrects it)", Squares(undone)});
+  }
+
+  Observations With(const Eigen::MatrixXd& q) const {
+    Observations undone = observations_;
+    undone.q = q;
+    return undone;
   }
 
   void TrySign(int c) {
     Eigen::MatrixXd q = observations_.q;
     q.col(c) *= -1.0;
     const std::string joint = NameOfJoint(c);
-    Try(joint + ": the sign of its positions is reversed", "sign:" + joint, q);
+    Try(joint + ": the sign of its positions is reversed", "sign:" + joint, With(q));
   }
 
   void TryExchange(int a, int b) {
     Eigen::MatrixXd q = observations_.q;
     q.col(a).swap(q.col(b));
     Try(NameOfJoint(a) + " and " + NameOfJoint(b) + ": their positions are exchanged",
-        "exchange:" + NameOfJoint(a) + "," + NameOfJoint(b), q);
+        "exchange:" + NameOfJoint(a) + "," + NameOfJoint(b), With(q));
   }
 
-  /// Rows at the end of which the joints are not there keep their own: a few of many.
   void TryShift(int rows) {
-    Eigen::MatrixXd q = observations_.q;
-    for (Eigen::Index i = 0; i < q.rows(); ++i) {
-      const Eigen::Index partner = std::clamp<Eigen::Index>(i + rows, 0, q.rows() - 1);
-      q.row(i) = observations_.q.row(partner);
-    }
     const std::string one = rows > 0 ? "the next row" : "the row before";
     const std::string several =
         std::to_string(std::abs(rows)) + (rows > 0 ? " rows further" : " rows before");
     Try("what was observed belongs to the joint positions of " +
             (std::abs(rows) == 1 ? one : several),
-        "rows:" + std::string(rows > 0 ? "+" : "") + std::to_string(rows), q);
+        "rows:" + std::string(rows > 0 ? "+" : "") + std::to_string(rows),
+        WithRowsOf(observations_, rows));
   }
 
   std::vector<std::string> Found() {
