@@ -172,6 +172,7 @@ class TrialSampler {
     const bool vague =
         clock.state == ClockState::kImprecise || clock.state == ClockState::kAmbiguous;
     if (vague) Refine(seen);
+    if (RestsBearIt()) clock.state = ClockState::kReliable;
     return clock.state == ClockState::kReliable ? "" : Describe(clock);
   }
 
@@ -186,6 +187,14 @@ class TrialSampler {
     summary().clock = RefineClock(robot_, markers_, seen.links, smoothed_log_, coordinates_,
                                   seen.relative ? *seen.relative : trajectories_, summary().clock,
                                   ClockSettings());
+  }
+
+  /// Whether the lag is hardly worse known than asked, and the robot moves from rest to rest. A
+  /// joint that was frozen for a while spoils the clock, and is named once the trial is used.
+  bool RestsBearIt() const {
+    constexpr double kWorse = 5.0 / 3.0;
+    return result_.summary.clock.state == ClockState::kImprecise && !trial_.of_motion() &&
+           result_.summary.clock.sd_s <= kWorse * options_.largest_rest_lag_sd_s;
   }
 
   std::string CauseOfBadClock(const Motion& seen) const {

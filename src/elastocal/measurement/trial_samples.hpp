@@ -31,7 +31,9 @@ struct MeasurementOptions {
   /// average out.
   StableSampleOptions rest = {.samples_per_run = 8};
   /// ClockOptions::largest_sd_s for trials of rests, where the clock matters little: samples are
-  /// away from the ends of a rest by a sixteenth of it, 60 ms of a second.
+  /// away from the ends of a rest by a sixteenth of it, 60 ms of a second. A trial that is refused
+  /// leaves its joints uncalibrated: up to 5/3 of it is accepted where no mistake in the log would
+  /// explain it.
   double largest_rest_lag_sd_s = 0.030;
   double sine_rate_hz = 10.0;  ///< rate of the moments taken from a motion without rests
   TorqueCheckOptions torques = {};
