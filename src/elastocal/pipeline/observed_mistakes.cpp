@@ -22,6 +22,7 @@ constexpr double kLeftWithout = 0.1;
 constexpr double kNearTheBest = 2.0;     // times the squares that the best one leaves
 constexpr int kMostRowsOff = 2;          // by which rows are shifted
 constexpr int kMostFittedPostures = 24;  // that are fitted
+constexpr int kFewestRowsTried = 8;      // of few, anything is explained
 
 struct TriedMistake {
   std::string what;  ///< with the name that undoes it
@@ -74,6 +75,7 @@ class ObservedMistakeSearch {
   /// once the nominal robot is placed; infinite where it cannot be.
   double Squares(const Observations& all) const {
     InterruptionPoint();
+    if (all.posture_count() < kFewestRowsTried) return std::numeric_limits<double>::infinity();
     const Observations some = SomeOf(all);
     const ObservationFit fit =
         FitObservations(model_, some, StartFit(model_, some),
