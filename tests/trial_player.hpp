@@ -9,8 +9,19 @@
 #include "elastocal/math/random.hpp"
 #include "elastocal/measurement/marked_robot.hpp"
 #include "elastocal/measurement/trial.hpp"
+#include "tests/test_robots.hpp"
 
 namespace elastocal {
+
+/// The leg with its markers, and one on the waist.
+inline MarkedRobot MarkedTalosLeg() {
+  MarkedRobot robot;
+  robot.tree = TalosLeg();
+  robot.markers = TalosLegModel().markers;
+  robot.markers.push_back({"WAIST", 0, {0.1, 0.2, 0.0}});
+  robot.q_not_logged.setZero(6);
+  return robot;
+}
 
 /// How a trial is played for tests: kinematics only, with clocks and noise. What this cannot show
 /// is left to the virtual experiment on another engine.

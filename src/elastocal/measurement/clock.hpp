@@ -64,8 +64,8 @@ struct ClockFit {
   bool drift_estimated = false;  ///< true with at least three windows with motion
   double sd_s = 0.0;             ///< largest standard deviation of the lag over the common time
   double peak = 0.0;             ///< correlation at the best lag, in [-1, 1]
-  double second_peak = 0.0;  ///< correlation at the second peak, outside the slopes of the first
-  double second_lag_s = 0.0;
+  double second_peak = 0.0;   ///< correlation at the second peak, outside the slopes of the first
+  double second_lag_s = 0.0;  ///< of that peak
   double line_residual_s = 0.0;  ///< root mean square of used windows' lags from the line
   double overlap_s = 0.0;        ///< time during which both speeds are known
   std::vector<WindowLag> windows;

@@ -19,18 +19,9 @@ namespace {
 constexpr double kPlayedLag_s = 0.8;
 constexpr double kPlayedDrift_ppm = 30.0;
 
-MarkedRobot NominalLeg() {
-  MarkedRobot robot;
-  robot.tree = TalosLeg();
-  robot.markers = TalosLegModel().markers;
-  robot.markers.push_back({"WAIST", 0, {0.1, 0.2, 0.0}});
-  robot.q_not_logged.setZero(6);
-  return robot;
-}
-
 // As it is: all joints a degree and some millimetres from where they should be.
 MarkedRobot LegAsBuilt(std::uint64_t seed) {
-  MarkedRobot robot = NominalLeg();
+  MarkedRobot robot = MarkedTalosLeg();
   Random random(seed);
   for (Joint& joint : robot.tree.joints) {
     const Eigen::Vector3d turn = random.NormalVector(3, 0.015);
@@ -54,7 +45,7 @@ ToldClocks Tell(const MarkedRobot& built, PlayOptions options, const ClockOption
   const ScriptedTrial played = Play(built, options);
   MarkerTrajectories markers = played.markers;
   SmoothTrajectories({}, markers);
-  const MarkedRobot nominal = NominalLeg();
+  const MarkedRobot nominal = MarkedTalosLeg();
   std::vector<int> all(nominal.markers.size());
   std::iota(all.begin(), all.end(), 0);
   const std::vector<int> coordinates = {0, 1, 2, 3, 4, 5};
@@ -105,7 +96,7 @@ TEST(RefineClock, IsHardlyDisturbedByErrorsOfTheRobot) {
 TEST(RefineClock, IsExactForTheNominalRobot) {
   PlayOptions options = SlowMotion(3);
   options.marker_sd = 0.0;
-  const ToldClocks clocks = Tell(NominalLeg(), options);
+  const ToldClocks clocks = Tell(MarkedTalosLeg(), options);
   EXPECT_NEAR(clocks.by_positions.lag_s, kPlayedLag_s, 5e-5);
 }
 

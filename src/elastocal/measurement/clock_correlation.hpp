@@ -24,9 +24,9 @@ struct CorrelationPeaks {
       false;  ///< whether any lag has enough data in common; otherwise the rest has no meaning
   double lag_s = 0.0;  ///< refined by a parabola
   double peak = 0.0;
-  double second_peak = 0.0;  ///< 0 if there is none
-  double second_lag_s = 0.0;
-  bool at_the_rim = false;  ///< the highest peak is at the first or the last lag
+  double second_peak = 0.0;   ///< 0 if there is none
+  double second_lag_s = 0.0;  ///< of that peak
+  bool at_the_rim = false;    ///< the highest peak is at the first or the last lag
 };
 
 /// Normalised correlation at about 20 Hz. Both speeds must have the same rate.

@@ -14,15 +14,6 @@
 namespace elastocal {
 namespace {
 
-MarkedRobot Leg() {
-  MarkedRobot robot;
-  robot.tree = TalosLeg();
-  robot.markers = TalosLegModel().markers;
-  robot.markers.push_back({"WAIST", 0, {0.1, 0.2, 0.0}});
-  robot.q_not_logged.setZero(6);
-  return robot;
-}
-
 std::vector<int> AllMarkers() {
   std::vector<int> markers(10);
   std::iota(markers.begin(), markers.end(), 0);
@@ -35,7 +26,7 @@ LoggedSpeeds Predict(const MarkedRobot& robot, const JointLog& log, int standing
 }
 
 TEST(PredictSpeeds, AreThoseThatCamerasSee) {
-  const MarkedRobot robot = Leg();
+  const MarkedRobot robot = MarkedTalosLeg();
   for (const int standing : {0, 6}) {
     PlayOptions options{.postures = 5, .marker_sd = 0.0, .standing = standing};
     const ScriptedTrial played = Play(robot, options);
@@ -100,7 +91,7 @@ TEST(PredictSpeeds, TurnAboutTheCentresOfThreeFeet) {
 }
 
 TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {
-  const MarkedRobot robot = Leg();
+  const MarkedRobot robot = MarkedTalosLeg();
   ScriptedTrial played = Play(robot, {.postures = 40, .lag_s = 3.0, .drift_ppm = 20.0});
   Random random(3);
   // The markers of the foot, the fastest, are gone half of the time, in the midst of motions.
@@ -118,7 +109,7 @@ TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {
 }
 
 TEST(EstimateTrialClock, IsNotMisledByLabelsThatWereExchangedForAWhile) {
-  const MarkedRobot robot = Leg();
+  const MarkedRobot robot = MarkedTalosLeg();
   ScriptedTrial played = Play(robot, {.postures = 5, .lag_s = 3.0});
   // Two markers far apart, so that each jumps; the rest of the trial is short and slow.
   Eigen::MatrixXd& positions = played.markers.positions;
@@ -133,7 +124,7 @@ TEST(EstimateTrialClock, IsNotMisledByLabelsThatWereExchangedForAWhile) {
 }
 
 TEST(EstimateTrialClock, SearchesAllWaysInWhichCamerasAndLogCanHaveRunTogether) {
-  const MarkedRobot robot = Leg();
+  const MarkedRobot robot = MarkedTalosLeg();
   ScriptedTrial played = Play(robot, {.postures = 40, .lag_s = 1e6});
   SmoothTrajectories({}, played.markers);
   const Eigen::MatrixXd speeds = MarkerSpeeds(played.markers);

@@ -52,8 +52,8 @@ int LengthsMeasured(const Instrument& instrument);
 Observations WithoutFault(const ObservationFault& fault, const ObservedRobot& model,
                           const Observations& observations);
 
-/// "j4: its positions are 1.0292 +- 0.0004 times the true ones", "laser was moved by 5.1 +- 0.1 mm
-/// at left.csv:26".
+/// "j4: its positions are 1.0292 +- 0.0004 times the true ones", "laser was moved by some 5.1 mm
+/// before left.csv:26".
 std::string DescribeFault(const ObservationFault& fault, const ObservedRobot& model,
                           const Observations& observations);
 

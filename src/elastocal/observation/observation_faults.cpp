@@ -60,14 +60,7 @@ class ObservationFaultSearch {
     for (int k = 0; k < static_cast<int>(model_.setup.quantities.size()); ++k) {
       if (k != model_.root_tilt) TryMove(equations, covariance, k);
     }
-    const int files = static_cast<int>(observations_.files.size());
-    for (int file = 0; file < files && files > 1; ++file) {
-      ObservationFault fault;
-      fault.kind = ObservationFaultKind::kScale;
-      fault.file = file;
-      Keep(Try(equations, covariance, DerivativeBy(Scaled(), fit_.values),
-               {{fault, FactorOf(fault)}}, false));
-    }
+    if (observations_.files.size() > 1) TryScales(equations, covariance);
     TryFrozen();
     return Best();
   }
@@ -259,6 +252,16 @@ class ObservationFaultSearch {
     Keep(Try(equations, covariance, derivative, {{fault, FactorOf(fault)}}, slides));
     fault.kind = ObservationFaultKind::kJointOffset;
     Keep(TryFromSomewhereOn(equations, covariance, derivative, fault, slides));
+  }
+
+  /// Of single files.
+  void TryScales(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    const std::vector<Eigen::VectorXd> derivative = DerivativeBy(Scaled(), fit_.values);
+    ObservationFault fault;
+    fault.kind = ObservationFaultKind::kScale;
+    for (fault.file = 0; fault.file < std::ssize(observations_.files); ++fault.file) {
+      Keep(Try(equations, covariance, derivative, {{fault, FactorOf(fault)}}, false));
+    }
   }
 
   void TryMove(const NormalEquations& equations, const Eigen::MatrixXd& covariance, int quantity) {
