@@ -376,6 +376,9 @@ def tracker(study):
     joints("elbow frozen in half the rows", lambda w: w.__setitem__((slice(25, 50), 3), q[25, 3]))
     joints("elbow times 1.03", lambda w: w.__setitem__((slice(None), 3), 1.03 * q[:, 3]))
     joints("elbow off by 2 degrees from the middle on", lambda w: w.__setitem__((slice(25, 50), 3), q[25:, 3] + 0.035))
+    joints("sign of elbow from the middle on", lambda w: w.__setitem__((slice(25, 50), 3), -q[25:, 3]))
+    joints("shoulder and elbow exchanged from the middle on", lambda w: w.__setitem__((slice(25, 50), [1, 3]), q[25:, [3, 1]]))
+    joints("rows shifted by one from the middle on", lambda w: w.__setitem__(slice(26, 50), q[25:49]))
     cases["positions times 1.02"] = (q, poses * np.array([1.02] * 3 + [1] * 4))
     print("| table of poses | exit | true error of the URDF, mm | said |\n|---|---|---|---|")
     for name, (positions, seen) in cases.items():

@@ -14,6 +14,7 @@
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/pipeline/observed_corrections.hpp"
+#include "elastocal/pipeline/observed_mistakes.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -212,8 +213,15 @@ ContactRun CalibrateContacts(const Project& project,
   }
   KeepObservedUnknowns(run.observations, run.model);
   run.closure = CheckClosure(run.model, run.observations.q);
-  const int folds = options.folds.value_or(std::min(kUsualFolds, postures));
+  int folds = options.folds.value_or(std::min(kUsualFolds, postures));
   run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
+  if (!LargeErrors(run.model, run.uncalibrated.in_sample).empty()) {
+    run.mistakes = FindObservedMistakes(run.model, run.observations);
+    if (!run.mistakes->empty()) {
+      folds = 0;
+      run.uncalibrated.held_out = {};
+    }
+  }
   run.calibrated = Estimate(run.model, run.observations, true, options, folds);
   const bool chosen = TakeElasticity(project, options, folds, run);
   const ObservationFit& fit = run.calibrated.estimate.fit;

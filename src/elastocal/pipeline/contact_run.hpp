@@ -44,6 +44,9 @@ struct ContactRun {
   /// URDF has no springs.
   std::optional<ContactOutcome> geometric;
   std::optional<ObservedRobot> rigid_model;  ///< that of `geometric`
+  /// Mistakes in the tables, which are sought where the nominal robot is off by more than robots
+  /// are (FindObservedMistakes). With one, nothing is left out: there is nothing to validate.
+  std::optional<std::vector<std::string>> mistakes;
   ClosureEvidence closure;
   double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) postures, see GainInSds
   CalibrationResult result;  ///< the parameters of the robot

@@ -143,12 +143,12 @@ void ObjectToNonsense(ContactRun& run) {
 
 /// What seems to be wrong with the tables, before what follows from it.
 bool NameMistakes(ContactRun& run) {
-  const std::vector<std::string> mistakes = FindObservedMistakes(run.model, run.observations);
-  if (mistakes.empty()) return false;
+  if (!run.mistakes) run.mistakes = FindObservedMistakes(run.model, run.observations);
+  if (run.mistakes->empty()) return false;
   run.verdict.objections.insert(
       run.verdict.objections.begin(),
       fmt::format("{}; without that, even the uncalibrated robot errs by less than a third",
-                  fmt::join(mistakes, "; or ")));
+                  fmt::join(*run.mistakes, "; or ")));
   return true;
 }
 
@@ -224,12 +224,13 @@ void JudgeContacts(ContactRun& run) {
         fmt::format("the calibrated robot is worse {}: {}", on, fmt::join(worse, "; ")));
   }
   ObjectToNonsense(run);
-  if (verdict.objections.empty() || !NameMistakes(run)) {
+  const bool mistaken = run.mistakes && !run.mistakes->empty();
+  if ((verdict.objections.empty() && !mistaken) || !NameMistakes(run)) {
     const std::string fault = FindContactFault(run);
     if (!fault.empty()) verdict.objections.insert(verdict.objections.begin(), fault);
   }
   if (verdict.objections.empty()) RemarkOnNoise(run);
-  if (!held_out) {
+  if (!held_out && !mistaken) {
     verdict.remarks.push_back("no " + std::string(touches ? "touch" : "posture") +
                               " was left out (--kfold 0): nothing was validated");
   }
