@@ -18,8 +18,9 @@ constexpr double kClosedAngle = 0.01 * M_PI / 180.0;
 
 double DegreesOf(double angle) { return angle * 180.0 / M_PI; }
 
-/// The root link on the floor by the nominal robot.
+/// The root link on the floor by the nominal robot; without feet it is held still.
 Transform NominalRoot(const ObservationSetup& setup, const std::vector<Transform>& T_root_link) {
+  if (setup.feet.empty()) return Transform::Identity();
   std::vector<StandingFoot> feet;
   for (const ContactFoot& foot : setup.feet) {
     feet.push_back({T_root_link[foot.link], foot.T_floor_foot, foot.share});
@@ -37,6 +38,7 @@ std::string Rounded(double value, const char* format) {
 
 void PlaceFeet(const RobotTree& tree, const Eigen::MatrixXd& q, const std::vector<char>& placed,
                ObservationSetup& setup) {
+  if (setup.feet.empty()) return;
   const std::vector<Transform> upright =
       LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   for (ContactFoot& foot : setup.feet) {

@@ -99,7 +99,7 @@ void ReadContact(const YamlValue& section, bool instruments, Project& project) {
     return items;
   };
   for (const YamlValue& plate : list("plates", !instruments)) ReadPlate(plate, project);
-  for (const YamlValue& foot : list("feet", !setup.plates.empty())) ReadFoot(foot, project);
+  for (const YamlValue& foot : list("feet", false)) ReadFoot(foot, project);
   if (const auto column = section.Find("plate_column")) {
     project.contact->plate_column = column->Text();
   }

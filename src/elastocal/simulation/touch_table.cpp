@@ -63,8 +63,9 @@ void MovePlate(const PhysicalPlate& described, const Vector6d& by, MovingChain& 
 
 Touch TouchTable(VirtualRobot& robot, int plate, const PhysicalPlate& described, MovingChain& arm,
                  const TouchOptions& options, Eigen::VectorXd& command) {
-  constexpr double kFirst = 0.5;      // N: there is something
-  constexpr double kSettled_s = 0.3;  // flush all the time
+  constexpr double kFirst = 0.5;       // N: there is something
+  constexpr double kSettled_s = 0.3;   // flush all the time
+  constexpr double kPatience_s = 4.0;  // then it slows down: a stiff arm rocks from edge to edge
   const int steps = static_cast<int>(std::lround(kTick / robot.time_step_s()));
   Touch touch;
   Answer down;
@@ -76,7 +77,8 @@ Touch TouchTable(VirtualRobot& robot, int plate, const PhysicalPlate& described,
     met = met || wrench[2] > kFirst;
     const Answer answer = met ? AnswerTo(wrench, described.edge, options) : down;
     flush_s = answer.flush ? flush_s + kTick : 0.0;
-    MovePlate(described, kTick * answer.twist, arm, command);
+    const double pace = std::exp2(-std::max(0.0, touch.time_s - kPatience_s));
+    MovePlate(described, kTick * pace * answer.twist, arm, command);
     robot.Command(command);
     for (int i = 0; i < steps; ++i) robot.Step();
   }
