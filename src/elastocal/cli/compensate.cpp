@@ -87,7 +87,7 @@ int Compensate(const CompensateOptions& options) {
 
   const bool quiet = options.common.Silent();
   Print(quiet, DescribeCompensation(result));
-  WarnOfExtra(robot);
+  WarnOfExtra(robot, options.as == "compensated");
   for (const std::string& reason : result.broken) spdlog::error("{}", reason);
   if (!fine) {
     spdlog::error("the corrected motion must not be played: nothing was written");

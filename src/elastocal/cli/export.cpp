@@ -36,7 +36,7 @@ int Export(const ExportCommand& command) {
   const ExportedCalibration exported = ExportCalibration(robot, options);
   outputs.Set(command.output, exported.text);
   outputs.Publish();
-  WarnOfExtra(robot);
+  WarnOfExtra(robot, options.format == "c99" || options.format == "runtime");
   for (const std::string& note : exported.notes) Print(command.quiet, note + "\n");
   Print(command.quiet, fmt::format("Written: {}\n", command.output));
   return kFine;

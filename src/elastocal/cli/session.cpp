@@ -24,9 +24,9 @@ void PrintWarnings(const std::vector<std::string>& warnings, bool verbose) {
   }
 }
 
-void WarnOfExtra(const CalibratedRobot& robot) {
+void WarnOfExtra(const CalibratedRobot& robot, bool at_run_time) {
   const std::string text =
-      NotApplied(StoredCauses(robot.project.tree, robot.calibration.joint_errors));
+      NotApplied(StoredCauses(robot.project.tree, robot.calibration.joint_errors), at_run_time);
   if (!text.empty()) PrintWarnings({text});
 }
 

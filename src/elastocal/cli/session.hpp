@@ -17,8 +17,9 @@ void Print(bool quiet, const std::string& text);
 /// Prints warnings to stderr; those that say the same of several things together, unless `verbose`.
 void PrintWarnings(const std::vector<std::string>& warnings, bool verbose = false);
 
-/// Says what a calibration knows that its exports do not apply.
-void WarnOfExtra(const CalibratedRobot& robot);
+/// Says what a calibration knows that an export does not apply. `at_run_time`: to a robot at run
+/// time.
+void WarnOfExtra(const CalibratedRobot& robot, bool at_run_time);
 
 /// A parameter in the units that people use: mm and deg.
 double InUserUnits(const Parameter& parameter, double value);

@@ -235,7 +235,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   Append(measured.warnings, run.warnings);
   for (const std::string& what : run.undone) run.warnings.push_back(DescribeUndone(what));
   Append(run.verdict.remarks, run.warnings);
-  if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra));
+  if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra, false));
   run.zero_offsets = options.zero_offsets;
   if (run.deployable()) {
     run.urdf = MakeCalibratedUrdf(

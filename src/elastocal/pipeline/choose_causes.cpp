@@ -2,6 +2,8 @@
 #include "elastocal/pipeline/choose_causes.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
@@ -91,14 +93,29 @@ std::optional<CauseReport> ChooseCauses(const Measurements& measured,
   return report;
 }
 
-std::string NotApplied(const std::vector<std::string>& causes) {
-  if (causes.empty()) return "";
-  std::string names;
-  for (const std::string& cause : causes) names += (names.empty() ? "" : ", ") + cause;
-  return names +
-         ": estimated beside geometry and springs; the calibrated URDF, exported models and "
-         "compensate "
-         "do not apply this";
+std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time) {
+  // These depend on more than positions and loads.
+  constexpr std::string_view kUnknownAtRunTime[] = {".hysteresis", ".suspension", ".drift",
+                                                    ".creep"};
+  std::string applied, never;
+  for (const std::string& cause : causes) {
+    const bool unknown = std::any_of(std::begin(kUnknownAtRunTime), std::end(kUnknownAtRunTime),
+                                     [&](std::string_view end) { return cause.ends_with(end); });
+    std::string& names = unknown ? never : applied;
+    names += (names.empty() ? "" : ", ") + cause;
+  }
+  std::string text;
+  if (!applied.empty() && !at_run_time) {
+    text =
+        applied +
+        ": estimated beside geometry and springs; compensate and export --format c99 and runtime "
+        "apply it, a URDF and other formats cannot";
+  }
+  if (!never.empty()) {
+    text += (text.empty() ? "" : "; ") + never +
+            ": estimated beside geometry and springs; no export applies it";
+  }
+  return text;
 }
 
 std::vector<std::string> StoredCauses(const RobotTree& tree,

@@ -38,7 +38,8 @@ std::optional<CauseReport> ChooseCauses(const Measurements& measured,
 std::vector<std::string> StoredCauses(const RobotTree& tree,
                                       const std::map<std::string, double>& joint_errors);
 
-/// What to say where a calibration with these causes is put to use; empty where there are none.
-std::string NotApplied(const std::vector<std::string>& causes);
+/// What to say where a calibration with these causes is put to use; empty where all are applied.
+/// `at_run_time`: in a robot at run time, which knows what positions and loads tell.
+std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time);
 
 }  // namespace elastocal

@@ -43,13 +43,15 @@ double EvaluateJoint(const RobotTree& tree, const Correction& correction, const 
     case Shape::kCoupling:
       return JointPosition(tree.joints[correction.source], q) - correction.centre;
     case Shape::kBacklash:
-      return std::tanh(load / (KnowsEffort(joint) ? kSmoothing * joint.limits.effort : kLeastLoad));
+      return std::tanh(load / LoadScale(tree, correction));
     case Shape::kHysteresis: {
       const double sign = history.approach.size() > 0 ? history.approach[joint.coordinate] : 0.0;
       return joint.multiplier < 0.0 ? -sign : sign;
     }
-    default:
-      return load * std::abs(load) / (joint.limits.effort * joint.limits.effort);
+    default: {
+      const double effort = LoadScale(tree, correction);
+      return load * std::abs(load) / (effort * effort);
+    }
   }
 }
 
@@ -207,6 +209,12 @@ Eigen::VectorXd EvaluateShapes(const RobotTree& tree, const std::vector<Correcti
     shapes[i] = Evaluate(tree, corrections[static_cast<std::size_t>(i)], q, load_z, history);
   }
   return shapes;
+}
+
+double LoadScale(const RobotTree& tree, const Correction& correction) {
+  const Joint& joint = tree.joints[correction.joint];
+  if (!KnowsEffort(joint)) return kLeastLoad;
+  return (correction.shape == Shape::kBacklash ? kSmoothing : 1.0) * joint.limits.effort;
 }
 
 std::vector<Correction> PossibleCorrections(const RobotTree& tree, std::optional<double> hours,

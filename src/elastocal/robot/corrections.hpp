@@ -71,6 +71,10 @@ struct PostureHistory {
   Eigen::Vector3d root_moment = Eigen::Vector3d::Zero();
 };
 
+/// The load against which that of a joint counts: of backlash, below which its sign is smooth; of
+/// stiffening, the effort. N.m or N.
+double LoadScale(const RobotTree& tree, const Correction& correction);
+
 /// The functions at one posture, one for each correction. `load_z`: m_z by joint, N.m or N.
 Eigen::VectorXd EvaluateShapes(const RobotTree& tree, const std::vector<Correction>& corrections,
                                const Eigen::VectorXd& q, const Eigen::VectorXd& load_z,

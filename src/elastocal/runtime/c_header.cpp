@@ -65,6 +65,12 @@ std::string TipText(const ec_tip& tip) {
          std::to_string(tip.branch) + ", " + std::to_string(tip.freedom) + "}";
 }
 
+std::string ShiftText(const ec_shift& shift) {
+  return "{" + std::to_string(shift.joint) + ", " + std::to_string(shift.function) + ", " +
+         std::to_string(shift.source) + ", " + CNumber(shift.amount) + ", " +
+         CNumber(shift.centre) + ", " + CNumber(shift.scale) + "}";
+}
+
 std::string UpperName(const std::string& name) {
   std::string upper;
   for (unsigned char c : name) {
@@ -173,6 +179,9 @@ class CHeaderWriter {
     std::vector<ec_tip> tips = model_.tips;
     if (tips.empty()) tips.emplace_back();
     Table("ec_tip", "tip", tips, TipText);
+    std::vector<ec_shift> shifts = model_.shifts;
+    if (shifts.empty()) shifts.emplace_back();
+    Table("ec_shift", "shift", shifts, ShiftText);
     Numbers("mass", model_.mass.data(), model_.mass.size());
     Numbers("moment", model_.moment.data(), model_.moment.size());
     Numbers("lower", model_.lower.data(), model_.lower.size());
@@ -190,9 +199,9 @@ class CHeaderWriter {
   void Robot() {
     out_ << "static const ec_robot " << name_ << "_robot = {\n    " << robot_.joints << ", "
          << robot_.coordinates << ", " << robot_.links << ", " << robot_.feet << ", " << robot_.tips
-         << ", " << robot_.branches << ",\n    ";
+         << ", " << robot_.branches << ", " << robot_.shifts << ",\n    ";
     for (const char* table :
-         {"nominal", "calibrated", "mass", "moment", "leg_of_body", "link", "foot", "tip",
+         {"nominal", "calibrated", "mass", "moment", "leg_of_body", "link", "foot", "tip", "shift",
           "branch_of_q", "column_of_q", "branch_size", "lower", "upper"}) {
       out_ << name_ << "_" << table << ", ";
     }
@@ -225,14 +234,15 @@ class CHeaderWriter {
     array("double", "good_q", robot_.coordinates);
     array("double", "good_torque", robot_.joints);
     array("double", "work_q", robot_.coordinates);
+    array("double", "shift", robot_.joints);
     array("double", "centre", 3 * robot_.feet);
     array("double", "share", robot_.feet);
     out_ << "  ec_memory memory;\n} " << name_ << "_state;\n\n";
     out_ << "/* To be called once before anything else. */\nstatic inline void " << name_
          << "_init(" << name_ << "_state* s) {\n  ec_memory* m = &s->memory;\n";
-    for (const char* name :
-         {"body", "twisted", "target", "sole", "motion", "axis", "beyond", "load", "root_load",
-          "normal", "gradient", "column", "good_q", "good_torque", "work_q", "centre", "share"}) {
+    for (const char* name : {"body", "twisted", "target", "sole", "motion", "axis", "beyond",
+                             "load", "root_load", "normal", "gradient", "column", "good_q",
+                             "good_torque", "work_q", "shift", "centre", "share"}) {
       out_ << "  m->" << name << " = s->" << name << ";\n";
     }
     out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";

@@ -77,6 +77,7 @@ void Compensator::Link(const RuntimeBranches& branches, const CompensatorOptions
   robot_.feet = count(model_.feet);
   robot_.tips = count(model_.tips);
   robot_.branches = count(branches.branch_size);
+  robot_.shifts = count(model_.shifts);
   robot_.nominal = model_.nominal.data();
   robot_.calibrated = model_.calibrated.data();
   robot_.mass = model_.mass.data();
@@ -85,6 +86,7 @@ void Compensator::Link(const RuntimeBranches& branches, const CompensatorOptions
   robot_.link = model_.links.data();
   robot_.foot = model_.feet.data();
   robot_.tip = model_.tips.data();
+  robot_.shift = model_.shifts.data();
   robot_.branch_of_coordinate = branches.branch_of_coordinate.data();
   robot_.column_of_coordinate = branches.column_of_coordinate.data();
   robot_.branch_size = branches.branch_size.data();
@@ -113,6 +115,7 @@ void Compensator::Allocate() {
                                               {&memory_.good_q, coordinates},
                                               {&memory_.good_torque, joints},
                                               {&memory_.work_q, coordinates},
+                                              {&memory_.shift, joints},
                                               {&memory_.centre, 3 * feet},
                                               {&memory_.share, feet},
                                               {&memory_.motion, 3 * joints}};

@@ -214,8 +214,8 @@ static inline unsigned ec_forward(const ec_robot* robot, const double* q, const 
   ec_place_feet(robot, memory, placed);
   ec_move(robot, robot->calibrated, memory->good_q, memory);
   ec_walk(robot, robot->calibrated, 0, memory, &status);
-  ec_settle(robot, memory->good_support, torque ? memory->good_torque : 0, memory, gravity,
-            &status);
+  ec_settle(robot, memory->good_q, memory->good_support, torque ? memory->good_torque : 0, memory,
+            gravity, &status);
   for (i = 0; i < robot->links; ++i) {
     ec_compose(&memory->body[robot->link[i].body], &robot->link[i].pose, &links[i]);
   }
@@ -248,7 +248,7 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   ec_move(robot, robot->calibrated, q, memory);
   ec_walk(robot, robot->calibrated, 0, memory, &status);
   ec_place_feet(robot, memory, straight);
-  ec_settle(robot, memory->good_support, torque ? memory->good_torque : 0, memory, gravity,
+  ec_settle(robot, q, memory->good_support, torque ? memory->good_torque : 0, memory, gravity,
             &status);
   ec_tip_poses(robot, memory, memory->target);
   ec_root_on_feet(robot, memory->good_support, placed, memory->sole, memory->share, &root);
@@ -263,9 +263,10 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   for (k = 0; k < robot->joints; ++k) {
     const ec_joint* joint = &robot->calibrated[k];
     if (joint->multiplier != 1.0) continue;
-    start[joint->coordinate] += ec_cut(
-        joint->compliance[2] * memory->load[3 * k + 2],
-        joint->prismatic ? robot->largest_shift : robot->largest_turn, EC_DEFLECTION_CUT, &status);
+    start[joint->coordinate] +=
+        memory->shift[k] + ec_cut(joint->compliance[2] * memory->load[3 * k + 2],
+                                  joint->prismatic ? robot->largest_shift : robot->largest_turn,
+                                  EC_DEFLECTION_CUT, &status);
   }
   for (c = 0; c < robot->coordinates; ++c) rigid[c] = start[c];
   for (i = 0; i < 2; ++i) {
@@ -313,6 +314,7 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
   for (i = 0; i < EC_ITERATIONS; ++i) {
     unsigned cut = EC_FINE; /* only what holds at the end counts */
     ec_move(robot, robot->calibrated, command, memory);
+    ec_shift_joints(robot, command, memory);
     ec_walk(robot, robot->calibrated, 1, memory, &cut);
     ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
     ec_sole_poses(robot, 1, gravity, memory, &cut);
@@ -320,6 +322,7 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
     ec_limit(robot, nominal, command, i + 1 == EC_ITERATIONS ? status : &cut);
   }
   ec_move(robot, robot->calibrated, command, memory);
+  ec_shift_joints(robot, command, memory);
   ec_walk(robot, robot->calibrated, 1, memory, status);
   ec_sole_poses(robot, 1, gravity, memory, status);
   ec_residual(robot, memory, residual);

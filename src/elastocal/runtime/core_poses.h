@@ -33,11 +33,28 @@ typedef struct {
   int parent, coordinate, prismatic;
   double multiplier, offset; /* position = multiplier * q[coordinate] + offset */
   ec_pose twisted;
-  double theta, r, centre; /* centre: z of the joint's physical centre in the twisted frame */
-  double compliance[3];    /* rad/(N.m); of a prismatic joint along z, m/N */
-  double root_compliance[3]; /* of a joint on the root link: of this link about its origin, rad/(N.m) */
+  double theta, r, centre;   /* centre: z of the joint's physical centre in the twisted frame */
+  double compliance[3];      /* rad/(N.m); of a prismatic joint along z, m/N */
+  double root_compliance[3]; /* of a joint on the root link: of this link about its origin,
+                                rad/(N.m) */
   ec_pose body;
 } ec_joint;
+
+/* What a joint's position is off by beside its zero: an amount times a function of the posture. */
+enum {
+  EC_SIN,
+  EC_COS,
+  EC_SIN_TWICE,
+  EC_COS_TWICE, /* of the joint's position */
+  EC_GEAR,      /* position of the joint `source` (itself, or a neighbour) less `centre` */
+  EC_BACKLASH,  /* sign of the load, smooth below `scale` */
+  EC_STIFFENING /* load times its size, over the square of `scale` */
+};
+
+typedef struct {
+  int joint, function, source;
+  double amount, centre, scale; /* amount: rad, m or a ratio; scale: N.m or N */
+} ec_shift;
 
 typedef struct {
   int body;
@@ -60,7 +77,7 @@ typedef struct {
 } ec_tip;
 
 typedef struct {
-  int joints, coordinates, links, feet, tips, branches;
+  int joints, coordinates, links, feet, tips, branches, shifts;
   const ec_joint *nominal, *calibrated;
   const double* mass;     /* by body, kg */
   const double* moment;   /* by body, 3 each: mass times centre of mass in the body, kg.m */
@@ -68,6 +85,7 @@ typedef struct {
   const ec_frame* link;
   const ec_foot* foot;
   const ec_tip* tip;
+  const ec_shift* shift;
   const int* branch_of_coordinate; /* or -1: it moves no tip, and is not corrected */
   const int* column_of_coordinate; /* its place among the coordinates of its branch */
   const int* branch_size;
@@ -96,6 +114,7 @@ typedef struct {
   double* good_q;      /* coordinates */
   double* good_torque; /* joints; NaN: never seen */
   double* work_q;      /* coordinates */
+  double* shift;       /* joints: of their positions, by the calibration's causes */
   double* centre;      /* 3 x feet: of the soles */
   double* share;       /* feet: of the weight */
   ec_pose* sole;       /* feet */

@@ -58,6 +58,49 @@ static inline void ec_move(const ec_robot* robot, const ec_joint* joints, const 
   }
 }
 
+static inline double ec_shift_of(const ec_robot* robot, const ec_shift* shift, const double* q,
+                                 const ec_memory* memory) {
+  const double position = ec_position(&robot->calibrated[shift->source], q);
+  const double load = memory->load[3 * shift->joint + 2];
+  switch (shift->function) {
+    case EC_SIN:
+      return shift->amount * sin(position);
+    case EC_COS:
+      return shift->amount * cos(position);
+    case EC_SIN_TWICE:
+      return shift->amount * sin(2.0 * position);
+    case EC_COS_TWICE:
+      return shift->amount * cos(2.0 * position);
+    case EC_GEAR:
+      return shift->amount * (position - shift->centre);
+    case EC_BACKLASH:
+      return shift->amount * tanh(load / shift->scale);
+    default:
+      return shift->amount * load * fabs(load) / (shift->scale * shift->scale);
+  }
+}
+
+/* After ec_move of the calibrated joints to q: shifts them by what the calibration found beside
+   geometry and springs, under the loads in memory. */
+static inline void ec_shift_joints(const ec_robot* robot, const double* q, ec_memory* memory) {
+  int i, k;
+  for (k = 0; k < robot->joints; ++k) memory->shift[k] = 0.0;
+  for (i = 0; i < robot->shifts; ++i) {
+    memory->shift[robot->shift[i].joint] += ec_shift_of(robot, &robot->shift[i], q, memory);
+  }
+  for (k = 0; k < robot->joints; ++k) {
+    const ec_joint* joint = &robot->calibrated[k];
+    const double theta = joint->theta + ec_position(joint, q) + memory->shift[k];
+    if (memory->shift[k] == 0.0) continue;
+    if (joint->prismatic) {
+      memory->motion[3 * k + 2] = joint->r + ec_position(joint, q) + memory->shift[k];
+    } else {
+      memory->motion[3 * k] = cos(theta);
+      memory->motion[3 * k + 1] = sin(theta);
+    }
+  }
+}
+
 /* Poses of all bodies (eq. 3) after ec_move, deflected by the loads in memory if `loaded`. */
 static inline void ec_walk(const ec_robot* robot, const ec_joint* joints, int loaded,
                            ec_memory* memory, unsigned* status) {
@@ -326,14 +369,16 @@ static inline void ec_tip_poses(const ec_robot* robot, const ec_memory* memory, 
   for (t = 0; t < robot->tips; ++t) ec_tip_pose(robot, t, memory, &poses[t]);
 }
 
-/* The calibrated robot at rest, after an unloaded walk: loads, deflections and loads of the
-   deflected robot (a third time changes nothing, see docs/algorithms.md). Leaves body, twisted,
+/* The calibrated robot at rest at q, after an unloaded walk there: loads, deflections and loads of
+   the deflected robot (a third time changes nothing, see docs/algorithms.md). Leaves body, twisted,
    axis, load and sole in memory. */
-static inline void ec_settle(const ec_robot* robot, unsigned support, const double* torque,
-                             ec_memory* memory, double* gravity, unsigned* status) {
+static inline void ec_settle(const ec_robot* robot, const double* q, unsigned support,
+                             const double* torque, ec_memory* memory, double* gravity,
+                             unsigned* status) {
   int i;
   for (i = 0; i < 2; ++i) {
     ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
+    ec_shift_joints(robot, q, memory);
     ec_walk(robot, robot->calibrated, 1, memory, status);
   }
   ec_sole_poses(robot, 1, gravity, memory, status);

@@ -28,6 +28,7 @@ struct RuntimeModel {
   std::vector<ec_frame> links;
   std::vector<ec_foot> feet;  ///< at most 32
   std::vector<ec_tip> tips;
+  std::vector<ec_shift> shifts;      ///< of positions of the calibrated joints
   std::vector<double> lower, upper;  ///< by coordinate
   /// In the root link's frame where that is held, m/s^2: how it hung or stood when the robot was
   /// calibrated. A robot on its feet takes the floor as level.

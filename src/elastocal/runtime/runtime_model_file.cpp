@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-constexpr const char* kHeading = "elastocal-runtime-model 3";
+constexpr const char* kHeading = "elastocal-runtime-model 4";
 constexpr int kMost = 10000;  // entries of a list: a robot has some dozens
 
 // One description of the file serves both directions: `archive(name, value)` writes a line, or
@@ -171,6 +171,16 @@ void Items(Archive& archive, ec_tip& tip) {
 }
 
 template <typename Archive>
+void Items(Archive& archive, ec_shift& shift) {
+  archive.Value(shift.joint);
+  archive.Value(shift.function);
+  archive.Value(shift.source);
+  archive.Value(shift.amount);
+  archive.Value(shift.centre);
+  archive.Value(shift.scale);
+}
+
+template <typename Archive>
 void Entries(Archive& archive, RuntimeModel& model) {
   archive("robot", model.robot);
   archive("calibration", model.calibration);
@@ -189,6 +199,7 @@ void Entries(Archive& archive, RuntimeModel& model) {
   archive("link", model.links);
   archive("foot", model.feet);
   archive("tip", model.tips);
+  archive("shift", model.shifts);
   archive("lower", model.lower);
   archive("upper", model.upper);
 }
@@ -227,6 +238,12 @@ void CheckSizes(const RuntimeModel& model, Reader& reader) {
     reader.Check(good_frame(tip.frame) && tip.frame.body > 0 && tip.foot >= -1 &&
                      tip.foot < model.foot_count(),
                  "tip", "a body beyond the root link, and a foot or -1");
+  }
+  for (const ec_shift& shift : model.shifts) {
+    reader.Check(Within(shift.joint, joints) && Within(shift.source, joints) &&
+                     shift.function >= EC_SIN && shift.function <= EC_STIFFENING &&
+                     shift.scale > 0.0 && std::isfinite(shift.amount + shift.centre),
+                 "shift", "a joint, a known function of the posture, and numbers");
   }
   reader.Check(model.lower.size() == coordinates && model.upper.size() == coordinates, "lower",
                "an entry for each coordinate");
