@@ -86,6 +86,34 @@ TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
   EXPECT_EQ(status(), "implausible");
 }
 
+// One bad posture of twelve; a joint's gain, which looks like other joints that moved.
+TEST_F(Program, CheckNamesNoJointBesideErrorsThatNoneExplains) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const int elbow = project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate;
+  const Recording sound = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
+  Recording bad = sound, gain = sound;
+  bad.q(4, elbow) += 0.05;
+  gain.q.col(elbow) *= 1.03;
+  for (const Recording& recording : {bad, gain}) {
+    const std::filesystem::path table = scratch_.path() / "today.csv";
+    WritePostureTable(table, recording, project.tree);
+    const std::string file = (scratch_.path() / "check.json").string();
+    const ProgramResult result = RunProgram("check " + project_ + " --calibration " + out_ +
+                                            " --recording " + table.string() + " --json " + file);
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_TRUE(result.out.starts_with("Not explained: even if every joint may have moved"))
+        << result.out;
+    const nlohmann::json json = nlohmann::json::parse(ReadFile(file));
+    EXPECT_EQ(json["status"], "unexplained");
+    EXPECT_GT(json["rmse_3d_mm"]["updated"], 4.0 * json["left_by_calibration_mm"].get<double>());
+    if (recording.q == bad.q) {
+      EXPECT_NE(result.out.find("Farthest off: line 6 ("), std::string::npos) << result.out;
+    }
+  }
+}
+
 TEST_F(Program, APriorMakesAFewPosturesEnough) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string today =

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -70,6 +71,43 @@ std::string JointTable(const JointCheck& check) {
   return table.Render();
 }
 
+std::string PlaceOf(const Recording& recording, Eigen::Index posture) {
+  return recording.line.empty()
+             ? fmt::format("posture {}", posture + 1)
+             : fmt::format("line {}", recording.line[static_cast<std::size_t>(posture)]);
+}
+
+/// Postures that leave more than they should, the worst first.
+std::vector<std::string> FarPostures(const CheckRun& run) {
+  constexpr std::size_t kMostFar = 5;
+  std::vector<Eigen::Index> far;
+  for (Eigen::Index i = 0; i < run.left.size(); ++i) {
+    if (run.left[i] > run.most_left()) far.push_back(i);
+  }
+  std::stable_sort(far.begin(), far.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return run.left[a] > run.left[b]; });
+  std::vector<std::string> texts;
+  for (const Eigen::Index i : far) {
+    if (texts.size() == kMostFar) break;
+    texts.push_back(
+        fmt::format("{} ({} mm)", PlaceOf(run.recording, i), Millimetres(run.left[i], 2)));
+  }
+  return texts;
+}
+
+/// Moved joints are not named beside errors that they do not explain.
+std::string Unexplained(const CheckRun& run) {
+  std::string text = fmt::format(
+      "Not explained: even if every joint may have moved, the robot errs by {} mm here, where the "
+      "calibration left {} mm. Is something else wrong: a joint's gain, a marker or a cluster that "
+      "was moved, one bad posture, the scale of the cameras? Look at the recording and measure "
+      "again.\n",
+      Millimetres(run.rmse_estimate, 3), Millimetres(run.left_before, 3));
+  const std::vector<std::string> far = FarPostures(run);
+  if (!far.empty()) text += fmt::format("Farthest off: {}\n", fmt::join(far, ", "));
+  return text;
+}
+
 std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
   if (!run.mistakes.empty()) {
     return fmt::format("The recording is wrong: {}\n", fmt::join(run.mistakes, "; "));
@@ -81,6 +119,7 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
         "recording, project and calibration belong together?\n",
         Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3), 1e3 * run.expected_error);
   }
+  if (!run.explained()) return Unexplained(run);
   if (!run.check.changed()) {
     return fmt::format(
         "Unchanged: the calibration explains these postures (chance of a false alarm {:.3g} %).\n",
@@ -109,6 +148,10 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
       Millimetres(run.rmse_estimate, 3));
   if (!check.suspects.empty() || command.common.verbose) {
     text += "\n" + JointTable(check);
+  }
+  if (run.explained() && !FarPostures(run).empty()) {
+    text += fmt::format("These are far off, and the others are not: {}. Look at them.\n",
+                        fmt::join(FarPostures(run), ", "));
   }
   if (!check.not_told.empty()) {
     text +=

@@ -281,6 +281,10 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   stored.robot = estimate.robot;
   stored.nominal = estimate.nominal;
   stored.recording = estimate.recording;
+  if (const auto sd = root.Find("marker_sd_mm")) {
+    stored.marker_sd = 1e-3 * sd->Number();
+    sd->Expect(stored.marker_sd >= 0.0, "a standard deviation");
+  }
   for (const ParameterEstimate& parameter : estimate.parameters) {
     (parameter.external ? stored.externals : stored.joint_errors)[parameter.name] = parameter.value;
   }

@@ -45,6 +45,7 @@ struct StoredCalibration {
   std::string robot;
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
+  double marker_sd = 0.0;  ///< what it left of a coordinate of a marker, m; 0: the file is silent
   std::map<std::string, double> joint_errors;  ///< by parameter name, SI
   /// The errors that the calibrated URDF has, where they are others; else empty.
   std::map<std::string, double> urdf_errors;

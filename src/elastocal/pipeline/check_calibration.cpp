@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/check_calibration.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -54,11 +57,16 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   const Recording& postures = fit.measured.calibration;
   run.expected_error = ExpectedError(fit.robot.model, postures, project.calibration.prior);
   const auto seen = SeenMask(postures);
-  run.rmse_estimate =
-      ComputeMetrics(
-          Predict(fit.estimate.model, fit.estimate.delta, postures, project.calibration).distances,
-          seen)
-          .rmse_3d;
+  const Eigen::MatrixXd distances =
+      Predict(fit.estimate.model, fit.estimate.delta, postures, project.calibration).distances;
+  run.rmse_estimate = ComputeMetrics(distances, seen).rmse_3d;
+  run.left_before = std::sqrt(3.0) * fit.stored.marker_sd;
+  run.left.setZero(postures.posture_count());
+  for (Eigen::Index i = 0; i < run.left.size(); ++i) {
+    const Eigen::ArrayXd counts = seen.row(i).cast<double>().transpose();
+    const double squares = (counts * distances.row(i).transpose().array().square()).sum();
+    run.left[i] = std::sqrt(squares / std::max(1.0, counts.sum()));
+  }
 
   // The joints as calibrated.
   const auto as_calibrated = [&](const RecordedModel& robot, const Recording& of) {
@@ -87,16 +95,24 @@ bool CheckRun::plausible() const {
   return !(transfer.calibrated.metrics_all.rmse_3d > kImplausible * expected_error);
 }
 
+double CheckRun::most_left() const {
+  constexpr double kMore = 4.0;
+  constexpr double kMatters = 0.02;  // of what an uncalibrated robot errs by: below, it is little
+  return left_before > 0.0 ? std::max(kMore * left_before, kMatters * expected_error)
+                           : std::numeric_limits<double>::infinity();
+}
+
 bool CheckRun::unchanged() const {
-  return converged() && mistakes.empty() && !check.changed() && plausible();
+  return converged() && mistakes.empty() && !check.changed() && plausible() && explained();
 }
 
 std::string CheckStatus(const CheckRun& run) {
   if (!run.converged()) return "not converged";
   if (!run.mistakes.empty()) return "recording wrong";
+  if (!run.check.changed() && !run.plausible()) return "implausible";
+  if (!run.explained()) return "unexplained";
   if (!run.check.moved.empty()) return "moved";
-  if (run.check.changed()) return "changed";
-  return run.plausible() ? "unchanged" : "implausible";
+  return run.check.changed() ? "changed" : "unchanged";
 }
 
 std::string MakeCheckJson(const CheckRun& run) {
@@ -108,6 +124,9 @@ std::string MakeCheckJson(const CheckRun& run) {
   json["rmse_3d_mm"]["uncalibrated"] = 1e3 * run.transfer.uncalibrated.metrics_all.rmse_3d;
   json["rmse_3d_mm"]["calibrated"] = 1e3 * run.transfer.calibrated.metrics_all.rmse_3d;
   json["rmse_3d_mm"]["updated"] = 1e3 * run.rmse_estimate;
+  if (run.left_before > 0.0) json["left_by_calibration_mm"] = 1e3 * run.left_before;
+  json["left_by_posture_mm"] = Json::array();
+  for (const double left : run.left) json["left_by_posture_mm"].push_back(1e3 * left);
   json["moved"] = Json::array();
   for (const JointSuspect& joint : run.check.moved) json["moved"].push_back(SuspectJson(joint));
   json["suspects"] = run.check.suspects;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/validation/moved_joints.hpp"
@@ -24,12 +26,18 @@ struct CheckRun {
   JointCheck check;
   std::vector<std::string> mistakes;  ///< of the recording, which say nothing of the robot
   double expected_error = 0.0;        ///< of a robot that was never calibrated (ExpectedError), m
+  double left_before = 0.0;  ///< by the calibration, rms over its own markers, m; 0: unknown
+  Eigen::VectorXd left;      ///< by `estimate`, rms over the markers of each posture, m
   std::vector<std::string> warnings;
 
   bool converged() const { return estimate.termination == Termination::kConverged; }
   /// Whether the calibrated robot errs by less than twice what one that was never calibrated is
   /// expected to. Otherwise "nothing has moved" would only mean that no single joint explains it.
   bool plausible() const;
+  /// What no robot whose joints may have moved is to leave: four times what the calibration did, m.
+  double most_left() const;
+  /// Whether the robot, with every joint free to have moved, leaves no more than that.
+  bool explained() const { return !(rmse_estimate > most_left()); }
   /// Whether the calibration still explains the robot.
   bool unchanged() const;
 };
@@ -52,7 +60,7 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
                           const std::filesystem::path& recording, const CheckOptions& options = {});
 
 /// "unchanged", "moved", "changed" (no single joint can be named), "recording wrong" (`mistakes`),
-/// "implausible" or "not converged".
+/// "unexplained" (moved joints do not explain it), "implausible" or "not converged".
 std::string CheckStatus(const CheckRun& run);
 
 /// The figures for programs (docs/formats.md).
