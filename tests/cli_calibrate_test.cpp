@@ -223,5 +223,49 @@ TEST_F(Program, ARobotWithoutLegsHasNoTableOfLegs) {
   EXPECT_EQ(text.find("leg at the waist"), std::string::npos) << text;
 }
 
+// A joint that rests while others are measured looks frozen where these are wrong: without their
+// postures, all is well.
+TEST_F(Program, AJointAtRestIsNotCalledFrozenForAnothersSign) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const auto coordinate = [&](const char* name) {
+    return project.tree.joints[static_cast<std::size_t>(FindJoint(project.tree, name))].coordinate;
+  };
+  constexpr int kHalf = 25;
+  Recording recording = MakeSyntheticRecording(model, truth_, {.postures = 2 * kHalf, .seed = 4});
+  const int elbow = coordinate("elbow_joint"), rail = coordinate("rail_joint");
+  const int turret = coordinate("turret_joint");
+  recording.q.col(elbow).head(kHalf).setZero();
+  recording.q.col(rail).tail(kHalf).setZero();
+  recording.q.col(turret).tail(kHalf).setZero();
+  const Geometry geometry = ApplyErrors(model, truth_);
+  for (int i = 0; i < 2 * kHalf; ++i) {
+    recording.markers.row(i) =
+        MarkerPositions(model, geometry, recording.q.row(i).transpose()).reshaped().transpose();
+  }
+  recording.q.col(elbow) *= -1.0;
+  const std::string table = (scratch_.path() / "sign.csv").string();
+  WritePostureTable(table, recording, project.tree);
+  const ProgramResult named = Calibrate(project_, table);
+  EXPECT_EQ(named.exit_code, 4) << named.out << named.err;
+  EXPECT_NE(named.out.find("--accept sign:elbow_joint corrects it"), std::string::npos)
+      << named.out;
+  EXPECT_EQ(Calibrate(project_, table, "--accept sign:elbow_joint --kfold 3").exit_code, 0);
+}
+
+// What a wrong scale of the cameras changes most is the way of a sliding joint.
+TEST_F(Program, AGainOfASlidingJointMayBeTheScaleOfTheCameras) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  Recording recording = MakeSyntheticRecording(model, truth_, {.postures = 40, .seed = 4});
+  recording.markers *= 1.01;
+  const std::string table = (scratch_.path() / "scaled.csv").string();
+  WritePostureTable(table, recording, project.tree);
+  const ProgramResult result = Calibrate(project_, table);
+  EXPECT_EQ(result.exit_code, 4) << result.out << result.err;
+  EXPECT_NE(result.out.find("the cameras"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("--accept scale=1.0"), std::string::npos) << result.out;
+}
+
 }  // namespace
 }  // namespace elastocal

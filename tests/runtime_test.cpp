@@ -129,6 +129,20 @@ TEST_F(Runtime, DeflectsAsTheEstimatorsModelDoes) {
   }
 }
 
+// A head gives way to the arms on its trunk; a limb that is alone on its joints gives way to none.
+TEST_F(Runtime, OnlyShortLimbsBesideLongOnesYield) {
+  RuntimeModel model = MakeRuntimeModel(project_, stored_);
+  int yielding = 0;
+  for (const ec_tip& tip : model.tips) {
+    EXPECT_EQ(tip.yields != 0, tip.freedom < 6);
+    yielding += tip.yields;
+  }
+  EXPECT_GT(yielding, 0);
+  std::erase_if(model.tips, [](const ec_tip& tip) { return tip.freedom >= 6; });
+  FindBranches(model);
+  for (const ec_tip& tip : model.tips) EXPECT_EQ(tip.yields, 0);
+}
+
 // What the calibration found beside geometry and springs shifts joints, and changes what they
 // carry.
 TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {

@@ -157,13 +157,13 @@ std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
 }
 
 std::string Describe(const CommonScale& scale) {
-  char text[300];
+  char text[400];
   std::snprintf(
       text, sizeof text,
       "the cameras' positions seem %.4f +- %.4f times the true ones in all trials, since all "
       "lengths of the robot are off by as much: calibrate the cameras again with the right "
-      "wand, or describe the robot with its own size",
-      1.0 + scale.size, scale.sd);
+      "wand, or describe the robot with its own size (--accept scale=%.5f corrects it)",
+      1.0 + scale.size, scale.sd, 1.0 + scale.size);
   return text;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -45,15 +46,23 @@ std::string MakeCompensationJson(const CompensatedMotion& result) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-std::string DescribeCompensation(const CompensatedMotion& result) {
+std::string DescribeCompensation(const CompensatedMotion& result, const RobotTree& tree) {
   TextTable table({"over all samples", "worst", "at s", "where"});
   const auto add = [&](const char* what, const MotionExtreme& at, double scale) {
     table.Add({what, fmt::format("{:.2f}", scale * at.value), fmt::format("{:.2f}", at.time_s),
                at.where});
   };
   constexpr double kDegreesARadian = 180.0 / M_PI;
-  add("change of a joint, deg", result.correction, kDegreesARadian);
-  add("joint to its limit, deg", result.position, kDegreesARadian);
+  const auto add_of_joint = [&](const char* what, const MotionExtreme& at) {
+    const bool slides =
+        std::any_of(tree.joints.begin(), tree.joints.end(), [&](const Joint& joint) {
+          return joint.name == at.where && joint.type == JointType::kPrismatic;
+        });
+    add((what + std::string(slides ? ", mm" : ", deg")).c_str(), at,
+        slides ? 1e3 : kDegreesARadian);
+  };
+  add_of_joint("change of a joint", result.correction);
+  add_of_joint("joint to its limit", result.position);
   add("velocity, % of limit", result.velocity, 100.0);
   if (result.has_clearance) add("least distance of parts, mm", result.clearance, 1e3);
   return table.Render() +
@@ -86,7 +95,7 @@ int Compensate(const CompensateOptions& options) {
   outputs.Publish();
 
   const bool quiet = options.common.Silent();
-  Print(quiet, DescribeCompensation(result));
+  Print(quiet, DescribeCompensation(result, robot.project.tree));
   WarnOfExtra(robot, options.as == "compensated");
   for (const std::string& reason : result.broken) spdlog::error("{}", reason);
   if (!fine) {

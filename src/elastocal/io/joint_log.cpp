@@ -161,8 +161,8 @@ JointLog ReadColumns(Table& table, const Project& project) {
     const Joint& joint = project.tree.joints[columns.joints[i]];
     const auto column = static_cast<Eigen::Index>(i);
     log.names.push_back(joint.name);
-    CheckRadians(joint, log.positions.col(column),
-                 [&](Eigen::Index row) { return RowPlace(source, row); });
+    CheckUnits(joint, log.positions.col(column),
+               [&](Eigen::Index row) { return RowPlace(source, row); });
     if (columns.torques[i] < 0) continue;
     CheckTorques(log.torques.col(column), table.header()[columns.torques[i]], source);
   }

@@ -108,7 +108,7 @@ std::vector<int> ReadSupport(const Table& table, int column, const LinksByName& 
 void CheckJoint(const JointMotion& motion, int coordinate, const Joint& joint,
                 const std::string& column) {
   const auto place = [&](Eigen::Index row) { return Place(motion.source, motion.line[row]); };
-  CheckRadians(joint, motion.q.col(coordinate), place);
+  CheckUnits(joint, motion.q.col(coordinate), place);
   const auto fail = [&](Eigen::Index row, const std::string& what) {
     throw InputError(place(row) + "column " + Quote(column) + ": " + what);
   };

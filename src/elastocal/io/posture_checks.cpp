@@ -16,6 +16,7 @@ namespace {
 constexpr double kDegreesPerRadian = 180.0 / M_PI;
 /// Beyond two turns a joint is more likely in degrees than wound up.
 constexpr double kLargestAngle = 4.0 * M_PI;
+constexpr double kLargestSlide = 20.0;  // of the limit of a sliding joint
 /// Marker positions of a robot that stands fixed cannot range over more than its size; three times
 /// leaves room for long tools.
 constexpr double kLargestRange = 3.0;
@@ -204,12 +205,22 @@ std::string LimitWarning(const Recording& recording, const Joint& joint, int coo
 
 }  // namespace
 
-void CheckRadians(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
-                  const std::function<std::string(Eigen::Index)>& place) {
-  if (joint.type != JointType::kRevolute || positions.size() == 0) return;
+void CheckUnits(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
+                const std::function<std::string(Eigen::Index)>& place) {
+  if (positions.size() == 0) return;
+  const bool slides = joint.type == JointType::kPrismatic;
+  const double range = std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
+  const double most = !slides       ? kLargestAngle
+                      : range > 0.0 ? kLargestSlide * range
+                                    : std::numeric_limits<double>::infinity();
   Eigen::Index worst = 0;
   const double largest = positions.cwiseAbs().maxCoeff(&worst);
-  if (largest <= kLargestAngle) return;
+  if (largest <= most) return;
+  if (slides) {
+    throw InputError(place(worst) + "joint " + Quote(joint.name) + " is at " +
+                     FormatNumber(positions[worst]) + ", its limit is at " + FormatNumber(range) +
+                     " m: this looks like millimetres; metres were expected");
+  }
   throw InputError(place(worst) + "joint " + Quote(joint.name) + " is at " +
                    FormatNumber(positions[worst]) +
                    ": this looks like degrees; radians were expected");
@@ -227,8 +238,8 @@ void CheckPlausible(const Recording& recording, const RobotTree& tree) {
     CheckDistances(recording, size);
   }
   for (int c = 0; c < tree.coordinate_count(); ++c) {
-    CheckRadians(tree.joints[tree.coordinate_joint[c]], recording.q.col(c),
-                 [&](Eigen::Index i) { return PlaceOf(recording, i); });
+    CheckUnits(tree.joints[tree.coordinate_joint[c]], recording.q.col(c),
+               [&](Eigen::Index i) { return PlaceOf(recording, i); });
   }
   CheckIdentical(recording);
   CheckPosturesDiffer(recording);

@@ -19,8 +19,8 @@ void CheckPlausible(const Recording& recording, const RobotTree& tree);
 
 /// The last of these for the recorded positions of one joint, none of them NaN; `place(i)` begins a
 /// message about the i-th.
-void CheckRadians(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
-                  const std::function<std::string(Eigen::Index)>& place);
+void CheckUnits(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
+                const std::function<std::string(Eigen::Index)>& place);
 
 /// Whether a position is beyond the joint's limits by more than a degree or 5 mm.
 bool BeyondLimits(const Joint& joint, double position);

@@ -2,6 +2,7 @@
 #include "elastocal/io/posture_checks.hpp"
 
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -154,6 +155,23 @@ TEST(PostureChecks, WarnsBeyondADegree) {
   EXPECT_EQ(LimitWarnings(recording, Arm())[0].rfind("t.csv:7: ", 0), 0u);
   recording.joints_not_recorded = {"turn"};
   EXPECT_TRUE(LimitWarnings(recording, Arm()).empty());
+}
+
+TEST(PostureChecks, ASlidingJointIsInMetres) {
+  Joint slide;
+  slide.name = "lift";
+  slide.type = JointType::kPrismatic;
+  slide.limits.lower = 0.0;
+  slide.limits.upper = 0.4;
+  const auto check = [&](double most) {
+    CheckUnits(slide, Eigen::Vector2d(0.1, most),
+               [](Eigen::Index i) { return "t.csv:" + std::to_string(i + 2) + ": "; });
+  };
+  EXPECT_NO_THROW(check(0.5));
+  ExpectInputError([&] { check(343.4); },
+                   {"t.csv:3: joint 'lift' is at 343.4", "millimetres; metres were expected"});
+  slide.limits = JointLimits();  // none
+  EXPECT_NO_THROW(check(343.4));
 }
 
 }  // namespace

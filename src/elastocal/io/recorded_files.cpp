@@ -258,7 +258,7 @@ JointLog TakeColumns(const JointLog& from, const Project& project) {
     const auto joint = joint_of.find(name);
     if (joint == joint_of.end()) FailUnknown(from, name, known, project);
     if (joints[joint->second].mimic) continue;
-    CheckRadians(joints[joint->second], from.positions.col(column), [&](Eigen::Index sample) {
+    CheckUnits(joints[joint->second], from.positions.col(column), [&](Eigen::Index sample) {
       return from.source + ": sample " + std::to_string(sample + 1) + ": ";
     });
     const Eigen::Index to = log.positions.cols();

@@ -25,7 +25,58 @@ std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
                            const Recording& recording) {
   const std::string text = DescribeFault(fault, tree, recording);
   const std::optional<std::string> name = NameOfCorrection(fault, tree, recording);
+  const auto& of = tree.coordinate_joint;
+  const bool slides = fault.kind == FaultKind::kJointGain && fault.coordinate >= 0 &&
+                      tree.joints[Size(of[Size(fault.coordinate)])].type == JointType::kPrismatic;
+  if (name && slides && fault.trial < 0) {
+    const double scale = 1.0 / (1.0 + fault.size);
+    return fmt::format(
+        "{} (--accept {} corrects it; if its scale is right, the cameras' is {:.4f} times the true "
+        "one, which --accept scale={:.5f} corrects: measure a known length)",
+        text, *name, scale, scale);
+  }
   return name ? text + " (--accept " + *name + " corrects it)" : text;
+}
+
+/// Gains of sliding joints are what a wrong scale of the cameras looks like: several that are alike
+/// are one, and of one that the other lengths bear out both are said. Nothing for other faults.
+std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
+                          const CalibrationResult& result, const CalibrationOptions& options) {
+  constexpr double kAlike = 1e-3, kPlain = 2.0, kConsistent = 3.0;
+  const RobotTree& tree = result.model.tree;
+  double least = 1.0, most = -1.0, sd = 0.0;
+  std::string joints;
+  for (const RecordingFault& fault : faults) {
+    const Joint& joint =
+        tree.joints[Size(tree.coordinate_joint[Size(std::max(0, fault.coordinate))])];
+    if (fault.kind != FaultKind::kJointGain || fault.coordinate < 0 || fault.trial >= 0 ||
+        joint.type != JointType::kPrismatic) {
+      return "";
+    }
+    least = std::min(least, fault.size);
+    most = std::max(most, fault.size);
+    sd = std::max(sd, fault.sd);
+    joints += (joints.empty() ? "" : ", ") + joint.name;
+  }
+  if (faults.empty() || most - least > kAlike + kConsistent * sd) return "";
+  const double size = 1.0 / (1.0 + 0.5 * (least + most)) - 1.0;
+  const std::string accept = fmt::format("--accept scale={:.5f} corrects it", 1.0 + size);
+  if (faults.size() > 1) {
+    return fmt::format(
+        "the cameras' positions seem {:.4f} +- {:.4f} times the true ones: {} seem to be wrong by "
+        "the same factor ({})",
+        1.0 + size, sd, joints, accept);
+  }
+  const auto scale = EstimateCommonScale(result, options);
+  if (!scale || std::abs(scale->size - size) > kConsistent * scale->sd ||
+      std::abs(scale->size) < kPlain * scale->sd) {
+    return "";
+  }
+  return fmt::format(
+      "the cameras' positions seem {:.4f} +- {:.4f} times the true ones, or those of {} {:.4f} "
+      "times; the other lengths of the robot say {:.4f} +- {:.4f} of the cameras. Measure a known "
+      "length first (if the cameras are wrong, {}; else --accept gain:{}={:.5f})",
+      1.0 + size, sd, joints, 1.0 + most, 1.0 + scale->size, scale->sd, accept, joints, 1.0 + most);
 }
 
 constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
@@ -57,6 +108,14 @@ std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result)
   return faults;
 }
 
+/// Whether reference lengths say of every trial that its scale is right.
+bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
+  return !trials.empty() &&
+         std::all_of(trials.begin(), trials.end(), [](const TrialSummary& trial) {
+           return !trial.refused.empty() || (trial.scale && !IsWrong(*trial.scale));
+         });
+}
+
 /// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
 /// for without the knocks, too.
 std::vector<std::string> FindGeneralFault(const Project& project, std::optional<std::uint64_t> seed,
@@ -77,6 +136,10 @@ std::vector<std::string> FindGeneralFault(const Project& project, std::optional<
     }
   }
   if (faults.empty()) return {};
+  if (!ScaleIsKnown(as_recorded.trials)) {
+    const std::string of_slides = ScaleOfSlides({faults.front()}, result, project.calibration);
+    if (!of_slides.empty()) return {of_slides};
+  }
   return {FaultAndRemedy(faults.front(), project.tree, *of)};
 }
 
@@ -115,14 +178,6 @@ std::string DescribeWrongScales(const std::vector<TrialSummary>& trials) {
       "in {} (--accept{} corrects it)",
       Describe(*wrong.front()->scale), all ? "all trials" : "trial " + names,
       ScaleCorrections(wrong, all));
-}
-
-/// Whether reference lengths say of every trial that its scale is right.
-bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
-  return !trials.empty() &&
-         std::all_of(trials.begin(), trials.end(), [](const TrialSummary& trial) {
-           return !trial.refused.empty() || (trial.scale && !IsWrong(*trial.scale));
-         });
 }
 
 /// A group of chains whose held-out trials the largest model predicts worse than it fits those of
@@ -171,15 +226,18 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
        FindRecordingMistakes(project, seed, as_recorded, recording, comparison.largest())) {
     faults.push_back(DescribeMistake(mistake));
   }
+  const std::vector<RecordingFault> gears = FindImpossibleGears(comparison.largest());
+  const std::string of_slides = ScaleOfSlides(gears, comparison.largest(), project.calibration);
   // Where the cameras are right, a robot whose lengths are all off is of another size.
   if (wrong_scales.empty() && !ScaleIsKnown(as_recorded.trials)) {
     const auto scale = FindWrongScale(comparison.largest(), project.calibration);
-    if (scale) faults.push_back(Describe(*scale));
+    if (scale) faults.push_back(of_slides.empty() ? Describe(*scale) : of_slides);
   }
   // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;
   if (const auto up = FindUpByLoads(project, seed, as_recorded)) return {Describe(*up, recording)};
-  for (const RecordingFault& gear : FindImpossibleGears(comparison.largest())) {
+  if (!of_slides.empty() && !ScaleIsKnown(as_recorded.trials)) return {of_slides};
+  for (const RecordingFault& gear : gears) {
     faults.push_back(FaultAndRemedy(gear, project.tree, recording));
   }
   if (!faults.empty()) return faults;

@@ -28,6 +28,7 @@ constexpr std::size_t kMostMistakes = 3;
 constexpr std::size_t kMostTried = 3;     // of a kind, at a time
 constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
 constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
+constexpr double kNoWorse = 1.2;          // of what is left without the postures
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
 
@@ -36,6 +37,8 @@ struct TriedCorrection {
   std::string name, what;
   Recording corrected;
   std::vector<int> left_out = {};  ///< postures that `corrected` is without, ascending
+  /// It takes postures out and corrects none: whatever is wrong with them is gone, too.
+  bool only_leaves_out = false;
 };
 
 std::string NameOf(const LabelSuspicion& suspicion) {
@@ -64,7 +67,8 @@ std::string NameOf(const LogSuspicion& suspicion, const RobotTree& tree) {
 TriedCorrection Undone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording) {
   return {NameOf(one, tree), DescribeSuspicion(one, tree, recording),
           WithoutMistake(recording, one),
-          one.kind == LogContradiction::kFrozen ? one.postures : std::vector<int>()};
+          one.kind == LogContradiction::kFrozen ? one.postures : std::vector<int>(),
+          one.kind == LogContradiction::kFrozen};
 }
 
 /// Joints whose axes the fit turned by more than a right angle: the sign of their positions is
@@ -102,16 +106,43 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
     tried.push_back(
         {NameOf(one), DescribeSuspicion(one, recording), WithoutExchange(recording, one)});
   }
-  const std::size_t labels = tried.size();
+  std::size_t frozen = 0, others = 0;
   for (const LogSuspicion& one : suspicions.log) {
-    if (tried.size() >= labels + most) break;
-    tried.push_back(Undone(one, project.tree, recording));
+    std::size_t& used = one.kind == LogContradiction::kFrozen ? frozen : others;
+    if (used < most) tried.push_back(Undone(one, project.tree, recording));
+    ++used;
   }
   if (const std::optional<RowShift> shift = FindRowShift(nominal, recording)) {
     tried.push_back({fmt::format("rows:{:+d}", shift->rows), DescribeShift(*shift, recording),
                      WithoutShift(recording, *shift), WithoutPartner(*shift, recording)});
   }
   return tried;
+}
+
+std::vector<int> AllPostures(const Recording& recording) {
+  std::vector<int> all(static_cast<std::size_t>(recording.posture_count()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// The signs of the joints that move in these postures, undone in all.
+std::vector<TriedCorrection> SignsIn(const std::vector<int>& postures, const RobotTree& tree,
+                                     const Recording& recording) {
+  std::vector<TriedCorrection> signs;
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    const Eigen::VectorXd positions = recording.q.col(c)(postures);
+    if (!(positions.maxCoeff() > positions.minCoeff())) continue;
+    const LogSuspicion sign{
+        .kind = LogContradiction::kSign, .coordinate = c, .postures = AllPostures(recording)};
+    signs.push_back(Undone(sign, tree, recording));
+  }
+  return signs;
+}
+
+/// Of a table of postures, any joint's sign: the nominal robot does not show all that a fit proves.
+std::vector<TriedCorrection> SignsOfTable(const Recording& recording, const RobotTree& tree) {
+  if (!recording.trials.empty()) return {};
+  return SignsIn(AllPostures(recording), tree, recording);
 }
 
 ErrorModel NominalModel(const Project& project, const Recording& recording) {
@@ -124,6 +155,7 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
             std::vector<std::string>& undone) {
   if (recording.posture_count() == 0) return;
   const ErrorModel nominal = NominalModel(project, recording);
+  std::set<std::string> signs_done;
   for (std::size_t round = 0; round < kMostUndone; ++round) {
     const TriedCorrection* next = nullptr;
     const std::vector<TriedCorrection> tried = Suspicions(project, nominal, recording, kMostUndone);
@@ -132,7 +164,13 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
       const bool wanted = std::find(names.begin(), names.end(), one.name) != names.end();
       if (wanted && next == nullptr) next = &one;
     }
-    if (next == nullptr) return;
+    const std::vector<TriedCorrection> signs =
+        next == nullptr ? SignsOfTable(recording, project.tree) : std::vector<TriedCorrection>();
+    for (const TriedCorrection& one : signs) {
+      const bool wanted = std::find(names.begin(), names.end(), one.name) != names.end();
+      if (wanted && !shown.contains(one.name) && signs_done.insert(one.name).second) next = &one;
+    }
+    if (next == nullptr) break;
     undone.push_back(next->what);
     if (!truth.empty()) {
       std::for_each(next->left_out.rbegin(), next->left_out.rend(),
@@ -140,6 +178,7 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
     }
     recording = Recording(next->corrected);
   }
+  shown.insert(signs_done.begin(), signs_done.end());
 }
 
 /// Whether the prior had to be widened beyond what an error of a robot can be: axes turned by half
@@ -214,18 +253,33 @@ std::vector<RecordingMistake> FindMistakesBy(
     if (mistakes.empty()) {
       for (const LogSuspicion& one : more) tried.push_back(Undone(one, project.tree, current));
     }
+    // A joint that rests while another limb is measured looks frozen where that limb is wrong.
+    std::stable_partition(tried.begin(), tried.end(),
+                          [](const TriedCorrection& one) { return !one.only_leaves_out; });
     const TriedCorrection* best = nullptr;
     double least = kLeftOfError * error;
-    for (const TriedCorrection& one : tried) {
+    const auto try_one = [&](const TriedCorrection& one) {  // whether it is clearly right
       const double left = error_of(one.corrected);
-      if (!(left < least)) continue;
+      if (!(left < least)) return false;
       least = left;
       best = &one;
-      if (left < kClearlyRight * error) break;
+      return left < kClearlyRight * error;
+    };
+    for (const TriedCorrection& one : tried) {
+      if (one.only_leaves_out && best != nullptr) break;
+      if (try_one(one)) break;
     }
     if (best == nullptr) break;
-    mistakes.push_back({best->name, best->what, error, least});
-    current = Recording(best->corrected);
+    TriedCorrection found = *best;
+    if (found.only_leaves_out) {
+      const std::vector<TriedCorrection> signs = SignsIn(found.left_out, project.tree, current);
+      least *= kNoWorse;
+      for (const TriedCorrection& one : signs) try_one(one);
+      found = *best;
+      least = error_of(found.corrected);
+    }
+    mistakes.push_back({found.name, found.what, error, least});
+    current = found.corrected;
     error = least;
   }
   return mistakes;

@@ -97,8 +97,13 @@ std::vector<LimitUse> LimitUses(const Project& project, const MotionMargins& mar
            percent(limits.torque_share), list.Joint(margins.torque), Constraint::kTorque);
   list.Add("velocity, % of limit", margins.velocity, percent(margins.velocity.value),
            percent(limits.velocity_share), list.Joint(margins.velocity), Constraint::kVelocity);
-  list.Add("joint to end of range, deg", margins.position, degrees(margins.position.value),
-           degrees(limits.position_margin), list.Joint(margins.position), Constraint::kPosition);
+  const bool slides =
+      margins.position.index >= 0 &&
+      project.tree.joints[Size(margins.position.index)].type == JointType::kPrismatic;
+  list.Add(slides ? "joint to end of range, mm" : "joint to end of range, deg", margins.position,
+           slides ? mm(margins.position.value) : degrees(margins.position.value),
+           slides ? mm(limits.position_margin) : degrees(limits.position_margin),
+           list.Joint(margins.position), Constraint::kPosition);
   list.Add("acceleration, rad/s^2", margins.acceleration,
            fmt::format("{:.1f}", margins.acceleration.value), "", list.Joint(margins.acceleration),
            Constraint::kVelocity);

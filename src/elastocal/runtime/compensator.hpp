@@ -96,7 +96,7 @@ class Compensator {
   const Eigen::VectorXd& rigid_positions() const noexcept { return rigid_; }
   const Eigen::Matrix<double, 6, 1>& root_displacement() const noexcept { return displacement_; }
 
-  /// Of the last Command. What is left is that of limbs of six joints and more.
+  /// Of the last Command. What is left is that of limbs that do not yield (ec_tip).
   const Eigen::VectorXd& command() const noexcept { return command_; }
   double residual_m() const noexcept { return residual_[0]; }
   double residual_rad() const noexcept { return residual_[1]; }

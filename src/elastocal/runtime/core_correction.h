@@ -12,8 +12,8 @@
    hardly determine (stretched arms and knees) moves little. */
 #define EC_STAY 1e-3
 #define EC_DAMP 0.02
-/* Weight of a limb of fewer than six joints (a head), which cannot keep its pose: the joints that
-   it shares with others do not go far for it. */
+/* Weight of a limb of fewer than six joints, which cannot keep its pose, where it shares joints
+   with one that can (a head on the trunk that carries arms): these do not go far for it. */
 #define EC_SHORT 0.05
 #define EC_ITERATIONS 4
 /* After a step as small as this, rad or m, the next one would change the square of it. */
@@ -24,7 +24,7 @@ static inline void ec_add_tip(const ec_robot* robot, const ec_joint* joints, int
                               const ec_pose* now, const ec_pose* target, ec_memory* memory) {
   const ec_tip* tip = &robot->tip[t];
   const int size = robot->branch_size[tip->branch];
-  const double share = tip->freedom < 6 ? EC_SHORT * EC_SHORT : 1.0;
+  const double share = tip->yields ? EC_SHORT * EC_SHORT : 1.0;
   double error[6], turn[9], *J = memory->column;
   int columns[64], used = 0, body, i, a, b;
   for (i = 0; i < 9; ++i) {
@@ -115,8 +115,8 @@ static inline double ec_step(const ec_robot* robot, const double* reference, dou
   return largest;
 }
 
-/* Largest distance [m] and angle [rad] of the ends of limbs of six joints and more to their
-   targets; shorter ones cannot keep them. */
+/* Largest distance [m] and angle [rad] of the ends of limbs to their targets, but for those that
+   yield. */
 static inline void ec_residual(const ec_robot* robot, const ec_memory* memory, double* residual) {
   int t, i;
   residual[0] = residual[1] = 0.0;
@@ -124,7 +124,7 @@ static inline void ec_residual(const ec_robot* robot, const ec_memory* memory, d
     const ec_pose* target = &memory->target[t];
     ec_pose now;
     double turn[9], v[3], distance = 0.0, angle;
-    if (robot->tip[t].freedom < 6) continue;
+    if (robot->tip[t].yields) continue;
     ec_tip_pose(robot, t, memory, &now);
     for (i = 0; i < 3; ++i) {
       distance += (target->p[i] - now.p[i]) * (target->p[i] - now.p[i]);
@@ -330,7 +330,7 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
 
 /* Commands with which the real robot has hands, feet and waist where the nominal robot has them at
    `nominal`. `torque`: those of the planned motion, by joint, or null: statics. `residual`: largest
-   distance [m] and angle [rad] that is left at the end of a limb of six joints and more. */
+   distance [m] and angle [rad] that is left at the end of a limb that does not yield (ec_tip). */
 static inline unsigned ec_command(const ec_robot* robot, const double* nominal,
                                   const double* torque, unsigned support, ec_memory* memory,
                                   double* command, double* residual) {

@@ -74,6 +74,7 @@ typedef struct {
   int foot;    /* of which leg, or -1 */
   int branch;  /* group of coordinates that move it, see ec_robot */
   int freedom; /* number of these that move it: six and more can give it any pose nearby */
+  int yields;  /* it has fewer, and shares some with a limb of six and more */
 } ec_tip;
 
 typedef struct {

@@ -44,6 +44,12 @@ RuntimeBranches FindBranches(RuntimeModel& model) {
       body = joint.parent;
     }
   }
+  for (ec_tip& tip : model.tips) {
+    const auto longer = [&](const ec_tip& other) {
+      return other.branch == tip.branch && other.freedom >= 6;
+    };
+    tip.yields = tip.freedom < 6 && std::any_of(model.tips.begin(), model.tips.end(), longer);
+  }
   return branches;
 }
 
