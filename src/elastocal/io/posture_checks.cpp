@@ -179,6 +179,41 @@ std::vector<double> RowNumbers(const Recording& recording, int posture) {
   return row;
 }
 
+/// The speed that no joint of a robot has, rad/s or m/s.
+double ImpossibleSpeed(const Joint& joint) {
+  constexpr double kTimesLimit = 5.0, kLeast = 20.0;  // some URDFs have limits that are too low
+  const double limit = joint.limits.velocity;
+  return std::isfinite(limit) ? std::max(kLeast, kTimesLimit * limit) : kLeast;
+}
+
+/// Times in which a robot would have to fly from one posture to the next are not in seconds.
+void CheckSeconds(const Recording& recording, const RobotTree& tree) {
+  int steps = 0, flying = 0;
+  Eigen::Index worst = 0, joint = 0;
+  double most = 0.0;
+  for (Eigen::Index i = 1; i < recording.time_s.size(); ++i) {
+    const double step = recording.time_s[i] - recording.time_s[i - 1];
+    if (!(step > 0.0)) continue;
+    ++steps;
+    bool flies = false;
+    for (int c = 0; c < tree.coordinate_count(); ++c) {
+      const double speed = std::abs(recording.q(i, c) - recording.q(i - 1, c)) / step;
+      flies = flies || speed > ImpossibleSpeed(tree.joints[tree.coordinate_joint[c]]);
+      if (speed <= most) continue;
+      most = speed;
+      worst = i;
+      joint = tree.coordinate_joint[c];
+    }
+    flying += flies ? 1 : 0;
+  }
+  if (2 * flying <= steps) return;
+  throw InputError(PlaceOf(recording, worst) + "joint " + Quote(tree.joints[joint].name) +
+                   " would have moved at " + FormatNumber(std::round(most)) +
+                   (tree.joints[joint].type == JointType::kRevolute ? " rad/s" : " m/s") +
+                   " since the posture before: these times look like hours or minutes; seconds "
+                   "were expected");
+}
+
 std::string LimitWarning(const Recording& recording, const Joint& joint, int coordinate) {
   const bool revolute = joint.type == JointType::kRevolute;
   int count = 0, worst = 0;
@@ -241,6 +276,7 @@ void CheckPlausible(const Recording& recording, const RobotTree& tree) {
     CheckUnits(tree.joints[tree.coordinate_joint[c]], recording.q.col(c),
                [&](Eigen::Index i) { return PlaceOf(recording, i); });
   }
+  CheckSeconds(recording, tree);
   CheckIdentical(recording);
   CheckPosturesDiffer(recording);
 }

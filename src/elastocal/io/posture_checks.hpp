@@ -13,12 +13,14 @@ namespace elastocal {
 /// Checks that a recording can be what it says it is: throws InputError for two markers with
 /// identical numbers, for positions that are not in metres (a marker ranges over more than three
 /// times the robot's size though the root is held, or is that far from another one in a posture;
-/// the message names the units that fit), joints that look
-/// like degrees (beyond two turns) and two or more postures that are all the same.
+/// the message names the units that fit), joints that look like degrees (beyond two turns) or
+/// millimetres (20 times their limit), times in which joints would have to move faster than any
+/// does (mostly above 20 rad/s and five times their limit), and two or more postures that are all
+/// the same.
 void CheckPlausible(const Recording& recording, const RobotTree& tree);
 
-/// The last of these for the recorded positions of one joint, none of them NaN; `place(i)` begins a
-/// message about the i-th.
+/// Degrees or millimetres in the recorded positions of one joint, none of them NaN; `place(i)`
+/// begins a message about the i-th.
 void CheckUnits(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
                 const std::function<std::string(Eigen::Index)>& place);
 

@@ -174,5 +174,16 @@ TEST(PostureChecks, ASlidingJointIsInMetres) {
   EXPECT_NO_THROW(check(343.4));
 }
 
+TEST(PostureChecks, TimesInHoursAreRefused) {
+  Recording recording = TwoPostures();
+  recording.line = {2, 3};
+  recording.q(0, 0) = 0.9;
+  recording.time_s = Eigen::Vector2d(0.0, 45.0);
+  EXPECT_NO_THROW(CheckPlausible(recording, Arm()));
+  recording.time_s /= 3600.0;
+  ExpectInputError([&] { CheckPlausible(recording, Arm()); },
+                   {"t.csv:3: joint 'turn' would have moved at 72 rad/s", "seconds were expected"});
+}
+
 }  // namespace
 }  // namespace elastocal

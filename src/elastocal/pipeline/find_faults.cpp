@@ -20,6 +20,20 @@
 namespace elastocal {
 namespace {
 
+/// "; if its scale is right, look at ..." where other joints follow the one of a gain; else empty.
+std::string Followers(const RecordingFault& fault, const RobotTree& tree) {
+  if (fault.kind != FaultKind::kJointGain || fault.coordinate < 0 || fault.trial >= 0) return "";
+  std::string names;
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const bool own = tree.coordinate_joint[Size(fault.coordinate)] == static_cast<int>(k);
+    if (own || !IsMovedBy(tree.joints[k], fault.coordinate)) continue;
+    names += (names.empty() ? "" : ", ") + tree.joints[k].name;
+  }
+  return names.empty() ? ""
+                       : "; if its scale is right, look at the factors by which " + names +
+                             " follow it (couplings of the project, mimic of the URDF)";
+}
+
 /// "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME corrects it)"
 std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
                            const Recording& recording) {
@@ -35,7 +49,9 @@ std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
         "one, which --accept scale={:.5f} corrects: measure a known length)",
         text, *name, scale, scale);
   }
-  return name ? text + " (--accept " + *name + " corrects it)" : text;
+  const std::string followers = Followers(fault, tree);
+  return name ? fmt::format("{} (--accept {} corrects it{})", text, *name, followers)
+              : text + followers;
 }
 
 /// Gains of sliding joints are what a wrong scale of the cameras looks like: several that are alike
