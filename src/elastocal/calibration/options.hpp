@@ -116,8 +116,9 @@ struct CalibrationOptions {
   /// What an earlier calibration of the robot says; of its parameters it is the prior, and it is
   /// not widened.
   EarlierEstimate earlier = {};
-  /// By how much a parameter drifts in a day, as a part of its prior's standard deviation: what an
-  /// earlier calibration says is less certain by the day (a random walk).
+  /// By how much the zero of a joint drifts in a day, as a part of its prior's standard deviation,
+  /// and other parameters by a quarter of that: what an earlier calibration says is less certain by
+  /// the day (a random walk).
   double drift = 0.02;
   /// White noise of one marker coordinate, m. Zero: estimated from the residuals.
   double marker_sd = 0.0;

@@ -16,6 +16,9 @@
 namespace elastocal {
 namespace {
 
+/// Zeros drift where encoders are homed anew; links and springs do not change, but by an accident.
+constexpr double kDriftOfOthers = 0.25;
+
 /// Errors with another frame of the root link are those of other quantities.
 void CheckGauge(const std::filesystem::path& calibration, const Project& project) {
   const CalibrationEstimate earlier = ReadEstimate(FindCalibrationFiles(calibration).calibration);
@@ -81,7 +84,8 @@ EarlierEstimate MakeEarlierEstimate(const CalibrationEstimate& calibration, cons
     earlier.names.push_back(name);
     rows.push_back(static_cast<int>(row));
     mean.push_back(estimate->second->value);
-    drift.push_back(options.drift * options.prior.Of(model.tree, *parameter->second));
+    const double part = IsZeroOffset(*parameter->second, model.tree) ? 1.0 : kDriftOfOthers;
+    drift.push_back(part * options.drift * options.prior.Of(model.tree, *parameter->second));
   }
   const auto count = static_cast<Eigen::Index>(rows.size());
   earlier.mean = Eigen::Map<const Eigen::VectorXd>(mean.data(), count);
