@@ -18,6 +18,7 @@
 #include "elastocal/calibration/row_shift.hpp"
 #include "elastocal/calibration/table_check.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/stated_corrections.hpp"
 
 namespace elastocal {
@@ -28,6 +29,7 @@ constexpr std::size_t kMostMistakes = 3;
 constexpr std::size_t kMostTried = 3;     // of a kind, at a time
 constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
 constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
+constexpr std::size_t kManyLeftOut = 4;   // a quarter of the postures
 constexpr double kNoWorse = 1.2;          // of what is left without the postures
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
@@ -271,7 +273,8 @@ std::vector<RecordingMistake> FindMistakesBy(
     }
     if (best == nullptr) break;
     TriedCorrection found = *best;
-    if (found.only_leaves_out) {
+    const bool many = kManyLeftOut * found.left_out.size() >= Size(current.posture_count());
+    if (found.only_leaves_out && many) {
       const std::vector<TriedCorrection> signs = SignsIn(found.left_out, project.tree, current);
       least *= kNoWorse;
       for (const TriedCorrection& one : signs) try_one(one);
