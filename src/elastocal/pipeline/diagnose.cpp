@@ -185,7 +185,7 @@ std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
   } else if (significant > 0) {
     sentences.push_back(fmt::format(
         "{} of {} causes are significant, but none lowers the held-out error of {:.2f} mm by more "
-        "than its uncertainty:",
+        "than its uncertainty and 2 %:",
         significant, search.findings.size(), 1e3 * search.error));
     for (const CauseFinding& finding : search.findings) {
       if (finding.p_adjusted >= kLevel) break;
