@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The calibrated robot at run time: kinematics, loads and deflections. See core_poses.h. */
+/* The calibrated robot at run time: loads and deflections. See core_poses.h. */
 #ifndef ELASTOCAL_CORE_STATICS_H
 #define ELASTOCAL_CORE_STATICS_H
 
-#include "elastocal/runtime/core_poses.h"
-
-static inline double ec_position(const ec_joint* joint, const double* q) {
-  return joint->multiplier * q[joint->coordinate] + joint->offset;
-}
+#include "elastocal/runtime/core_motion.h"
 
 /* Turns (or shifts) the twisted frame by its load (eq. 5). */
 static inline void ec_deflect(const ec_robot* robot, const ec_joint* joint, const double* load,
@@ -42,63 +38,6 @@ static inline void ec_bend_root(const ec_robot* robot, const ec_joint* joint, co
     root->p[i] = 0.0;
   }
   ec_exp(phi, root->R);
-}
-
-/* The joints' own motion at the positions q, for the walks that follow. */
-static inline void ec_move(const ec_robot* robot, const ec_joint* joints, const double* q,
-                           ec_memory* memory) {
-  int k;
-  for (k = 0; k < robot->joints; ++k) {
-    const ec_joint* joint = &joints[k];
-    const double position = ec_position(joint, q);
-    const double theta = joint->theta + (joint->prismatic ? 0.0 : position);
-    memory->motion[3 * k] = cos(theta);
-    memory->motion[3 * k + 1] = sin(theta);
-    memory->motion[3 * k + 2] = joint->r + (joint->prismatic ? position : 0.0);
-  }
-}
-
-static inline double ec_shift_of(const ec_robot* robot, const ec_shift* shift, const double* q,
-                                 const ec_memory* memory) {
-  const double position = ec_position(&robot->calibrated[shift->source], q);
-  const double load = memory->load[3 * shift->joint + 2];
-  switch (shift->function) {
-    case EC_SIN:
-      return shift->amount * sin(position);
-    case EC_COS:
-      return shift->amount * cos(position);
-    case EC_SIN_TWICE:
-      return shift->amount * sin(2.0 * position);
-    case EC_COS_TWICE:
-      return shift->amount * cos(2.0 * position);
-    case EC_GEAR:
-      return shift->amount * (position - shift->centre);
-    case EC_BACKLASH:
-      return shift->amount * tanh(load / shift->scale);
-    default:
-      return shift->amount * load * fabs(load) / (shift->scale * shift->scale);
-  }
-}
-
-/* After ec_move of the calibrated joints to q: shifts them by what the calibration found beside
-   geometry and springs, under the loads in memory. */
-static inline void ec_shift_joints(const ec_robot* robot, const double* q, ec_memory* memory) {
-  int i, k;
-  for (k = 0; k < robot->joints; ++k) memory->shift[k] = 0.0;
-  for (i = 0; i < robot->shifts; ++i) {
-    memory->shift[robot->shift[i].joint] += ec_shift_of(robot, &robot->shift[i], q, memory);
-  }
-  for (k = 0; k < robot->joints; ++k) {
-    const ec_joint* joint = &robot->calibrated[k];
-    const double theta = joint->theta + ec_position(joint, q) + memory->shift[k];
-    if (memory->shift[k] == 0.0) continue;
-    if (joint->prismatic) {
-      memory->motion[3 * k + 2] = joint->r + ec_position(joint, q) + memory->shift[k];
-    } else {
-      memory->motion[3 * k] = cos(theta);
-      memory->motion[3 * k + 1] = sin(theta);
-    }
-  }
 }
 
 /* Poses of all bodies (eq. 3) after ec_move, deflected by the loads in memory if `loaded`. */

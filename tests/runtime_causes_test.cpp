@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a calibration takes beside geometry and springs, and which limbs yield, at run time.
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "tests/runtime_fixture.hpp"
+
+namespace elastocal {
+namespace {
+
+// A head gives way to the arms on its trunk; a limb that is alone on its joints gives way to none.
+TEST_F(Runtime, OnlyShortLimbsBesideLongOnesYield) {
+  RuntimeModel model = MakeRuntimeModel(project_, stored_);
+  int yielding = 0;
+  for (const ec_tip& tip : model.tips) {
+    EXPECT_EQ(tip.yields != 0, tip.freedom < 6);
+    yielding += tip.yields;
+  }
+  EXPECT_GT(yielding, 0);
+  std::erase_if(model.tips, [](const ec_tip& tip) { return tip.freedom >= 6; });
+  FindBranches(model);
+  for (const ec_tip& tip : model.tips) EXPECT_EQ(tip.yields, 0);
+}
+
+// What the calibration found beside geometry and springs shifts joints, and changes what they
+// carry.
+TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
+  const RobotTree& tree = project_.tree;
+  const auto joint = [&](const char* name) { return FindJoint(tree, name); };
+  const int elbow = joint("arm_left_4_joint"), forearm = joint("arm_left_5_joint");
+  const int shoulder = joint("arm_right_2_joint"), torso = joint("torso_2_joint");
+  const std::string link =
+      tree.links[static_cast<std::size_t>(tree.joints[static_cast<std::size_t>(elbow)].child_link)]
+          .name;
+  const std::map<std::string, double> causes = {
+      {"arm_left_4_joint.gear", 0.004},
+      {"arm_left_4_joint.eccentricity_sin", 0.002},
+      {"arm_left_4_joint.ellipticity_cos", -0.001},
+      {"arm_left_5_joint.coupling_arm_left_4_joint", 0.003},
+      {"arm_right_2_joint.backlash", 0.0015},
+      {"torso_2_joint.stiffening", 0.05},
+      {link + ".mass", 0.4},
+      {link + ".moment_y", -0.02}};
+  stored_.joint_errors.insert(causes.begin(), causes.end());
+  Compensator robot = Make();
+  const Eigen::VectorXd q = Posture(4);
+  const auto of = [&](int k) { return JointPosition(tree.joints[static_cast<std::size_t>(k)], q); };
+  const auto limits = [&](int k) { return tree.joints[static_cast<std::size_t>(k)].limits; };
+  const double middle = 0.5 * (limits(elbow).lower + limits(elbow).upper);
+  const auto shifted = [&](const JointLoads& loads) {
+    Eigen::VectorXd moved = q;
+    const auto add = [&](int k, double by) {
+      moved[tree.joints[static_cast<std::size_t>(k)].coordinate] += by;
+    };
+    add(elbow, 0.004 * (of(elbow) - middle) + 0.002 * std::sin(of(elbow)) -
+                   0.001 * std::cos(2.0 * of(elbow)));
+    add(forearm, 0.003 * (of(elbow) - middle));
+    add(shoulder, 0.0015 * std::tanh(loads(2, shoulder) / (0.02 * limits(shoulder).effort)));
+    add(torso,
+        0.05 * loads(2, torso) * std::abs(loads(2, torso)) / std::pow(limits(torso).effort, 2));
+    return moved;
+  };
+  ErrorModel heavier = robot_.model;
+  Link& arm = heavier.tree.links[static_cast<std::size_t>(FindLink(tree, link))];
+  double mass = 0.0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (const Link& other : tree.links) {
+    if (other.body != elbow + 1) continue;
+    mass += other.mass;
+    moment += other.mass * (other.T_body_link * other.com);
+  }
+  const Eigen::Vector3d added = 0.4 * (arm.T_body_link.inverse() * Eigen::Vector3d(moment / mass)) -
+                                0.02 * Eigen::Vector3d::UnitY();
+  arm.com = (arm.mass * arm.com + added) / (arm.mass + 0.4);
+  arm.mass += 0.4;
+  const JointLoads first = GravityLoads(heavier, geometry_, q, kGravity, 0);
+  const JointLoads loads = GravityLoads(heavier, geometry_, shifted(first), kGravity, 0, first);
+  const std::vector<Transform> expected =
+      CalibratedLinkTransforms(robot_.model, geometry_, shifted(loads), loads);
+  const std::vector<Transform> without =
+      CalibratedLinkTransforms(robot_.model, geometry_, q, loads);
+  EXPECT_EQ(robot.Forward(q, kNoTorque, 0), 0u);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_LT(Distance(robot.link_pose(static_cast<int>(i)), expected[i]), 10.0 * kRounding);
+    largest = std::max(largest, Distance(expected[i], without[i]));
+  }
+  EXPECT_GT(largest, 1e-3);
+  // A command brings the hands to where the nominal robot has them.
+  EXPECT_EQ(robot.Command(q, kNoTorque, 0), 0u);
+  EXPECT_LT(robot.residual_m(), 1e-5);
+  std::stringstream file;
+  WriteRuntimeModel(robot.model(), file);
+  Compensator read(ReadRuntimeModel(file, "file"));
+  read.Forward(q, kNoTorque, 0);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_LT(Distance(read.link_pose(static_cast<int>(i)), expected[i]), 10.0 * kRounding);
+  }
+}
+
+}  // namespace
+}  // namespace elastocal
