@@ -55,7 +55,6 @@ TEST(ContactInput, TheProjectSaysWhatIsWrong) {
     ExpectInputError([&] { ProjectOf(contact, rest); }, {"project.yaml", message});
   };
   error(std::string(kFeet) + "plate: []", "did you mean 'plates'?");
-  error(kPlates, "feet");
   error("feet: [{link: left_sole_lnk}], " + std::string(kPlates), "did you mean 'left_sole_link'?");
   error("feet: [{link: base_link}], " + std::string(kPlates), "a foot was expected");
   error("feet: [{link: left_sole_link, position_mm: [0, 1, 0]}], " + std::string(kPlates),

@@ -149,5 +149,31 @@ TEST_F(DesignProgram, AProjectWithoutDesignSaysSo) {
   EXPECT_NE(result.err.find("design"), std::string::npos);
 }
 
+// A stiff arm on a bench lays a plate of its own on a table: there are no feet, and no cameras.
+TEST_F(DesignProgram, AnArmWithoutFeetIsCalibratedByTouches) {
+  const std::string project = scratch_.Write(
+      "bench.yaml", "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() +
+                        "}\ncontact:\n  plates:\n    - {name: plate, link: tool, point_mm: [0, 0, "
+                        "50], normal: [0, 0, "
+                        "-1], table: {centre_mm: [700, 0, 500], size_mm: [500, 500]}}\n"
+                        "recording: {not_recorded_mm: {finger_left_joint: 10}}\n");
+  const auto run = [](const std::string& words) {
+    const ProgramResult result = RunProgram(words);
+    EXPECT_EQ(result.exit_code, 0) << words << "\n" << result.out << result.err;
+    return result;
+  };
+  run("design " + project + " -o " + File("postures.yaml") + " --count 20 --seed 1");
+  const ProgramResult simulated =
+      run("simulate " + project + " --postures " + File("postures.yaml") + " -o " +
+          File("touches") + " --seed 1");
+  EXPECT_EQ(simulated.err.find("did not come to lie flush"), std::string::npos) << simulated.err;
+  run("calibrate " + project + " --recording " + File("touches") + "/observations.csv -o " +
+      File("out") + " --kfold 10");
+  const auto json = nlohmann::json::parse(ReadFile(File("out/summary.json")));
+  const double height = json["contact"]["kfold"]["height_mm"];
+  EXPECT_LT(height, 1.0);
+  EXPECT_GT(height, 0.0);
+}
+
 }  // namespace
 }  // namespace elastocal

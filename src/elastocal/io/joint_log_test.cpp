@@ -133,7 +133,9 @@ TEST(JointLog, SuspectsDegrees) {
   ExpectLogError("t,elbow_joint\n1,0\n2,-45\n3,12\n",
                  {"j.csv:3: ", "'elbow_joint'", "-45", "degrees"});
   // A prismatic joint is in metres, and two turns are 12.57 rad.
-  EXPECT_NO_THROW(ReadLog("t,elbow_joint,rail_joint\n1,12.5,45\n"));
+  EXPECT_NO_THROW(ReadLog("t,elbow_joint,rail_joint\n1,12.5,0.5\n"));
+  ExpectLogError("t,elbow_joint,rail_joint\n1,12.5,450\n",
+                 {"j.csv:2: ", "'rail_joint'", "450", "millimetres; metres were expected"});
 }
 
 TEST(JointLog, RefusesARecordingWithoutEnd) {

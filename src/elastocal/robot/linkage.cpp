@@ -226,11 +226,16 @@ void CheckJoints(const Linkage& linkage, const RobotTree& tree) {
     if (joint.type != JointType::kRevolute) {
       throw InputError("joint " + Quoted(joint.name) + " is prismatic; rods move revolute joints");
     }
+    constexpr const char* kNeither =
+        " (coupling or mimic); a joint of a linkage neither follows nor leads";
+    if (joint.mimic) {
+      throw InputError("joint " + Quoted(joint.name) + " follows another joint" + kNeither);
+    }
     for (std::size_t other = 0; other < tree.joints.size(); ++other) {
-      const bool own = static_cast<int>(other) == k;
-      if (own ? !joint.mimic : !IsMovedBy(tree.joints[other], joint.coordinate)) continue;
-      throw InputError("joint " + Quoted(tree.joints[own ? k : static_cast<int>(other)].name) +
-                       " follows another joint; a joint of a linkage neither follows nor leads");
+      if (static_cast<int>(other) == k || !IsMovedBy(tree.joints[other], joint.coordinate))
+        continue;
+      throw InputError("joint " + Quoted(joint.name) + " is followed by joint " +
+                       Quoted(tree.joints[other].name) + kNeither);
     }
   }
 }
