@@ -105,6 +105,7 @@ TEST_F(ArmWithTracker, NamesThatCorrectNothingAreRefused) {
   refused("sign:elbow_joint@other.csv", "in a file 'other.csv'");
   refused("sign:elbow_joint@table.csv:31", "no posture 31");
   refused("sign:elbow_joint@table.csv:x", "the number of a posture");
+  refused("frozen:elbow_joint@table.csv", "frozen:JOINT was expected, for all files");
   refused("knock:tool", "sign:JOINT, exchange:JOINT,JOINT");
   ExpectInputError(
       [&] {

@@ -17,6 +17,7 @@ constexpr double kDegreesPerRadian = 180.0 / M_PI;
 /// Beyond two turns a joint is more likely in degrees than wound up.
 constexpr double kLargestAngle = 4.0 * M_PI;
 constexpr double kLargestSlide = 20.0;  // of the limit of a sliding joint
+constexpr double kLeastSlide = 1.0;     // m: limits of grippers are often too narrow
 /// Marker positions of a robot that stands fixed cannot range over more than its size; three times
 /// leaves room for long tools.
 constexpr double kLargestRange = 3.0;
@@ -246,7 +247,7 @@ void CheckUnits(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& pos
   const bool slides = joint.type == JointType::kPrismatic;
   const double range = std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
   const double most = !slides       ? kLargestAngle
-                      : range > 0.0 ? kLargestSlide * range
+                      : range > 0.0 ? std::max(kLeastSlide, kLargestSlide * range)
                                     : std::numeric_limits<double>::infinity();
   Eigen::Index worst = 0;
   const double largest = positions.cwiseAbs().maxCoeff(&worst);

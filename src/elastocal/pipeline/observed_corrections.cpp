@@ -156,6 +156,7 @@ std::string ApplyName(const std::string& name, const ObservedRobot& model,
     return a + " and " + b + ": what they measured was exchanged" + named.where();
   }
   if (named.word == "frozen") {
+    if (!named.file.empty()) RefuseName(name, "frozen:JOINT was expected, for all files");
     const auto frozen = FindFrozen(observations, CoordinateOf(name, of, tree));
     if (!frozen) RefuseName(name, "its positions are not the same in five rows one after another");
     observations = WithoutFault(*frozen, model, observations);

@@ -275,11 +275,15 @@ std::vector<RecordingMistake> FindMistakesBy(
     TriedCorrection found = *best;
     const bool many = kManyLeftOut * found.left_out.size() >= Size(current.posture_count());
     if (found.only_leaves_out && many) {
+      const double without = std::exchange(least, kNoWorse * least);
       const std::vector<TriedCorrection> signs = SignsIn(found.left_out, project.tree, current);
-      least *= kNoWorse;
+      best = nullptr;
       for (const TriedCorrection& one : signs) try_one(one);
-      found = *best;
-      least = error_of(found.corrected);
+      if (best != nullptr) {
+        found = *best;
+      } else {
+        least = without;
+      }
     }
     mistakes.push_back({found.name, found.what, error, least});
     current = found.corrected;

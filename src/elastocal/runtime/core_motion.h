@@ -55,13 +55,14 @@ static inline void ec_shift_joints(const ec_robot* robot, const double* q, ec_me
   }
   for (k = 0; k < robot->joints; ++k) {
     const ec_joint* joint = &robot->calibrated[k];
-    const double theta = joint->theta + ec_position(joint, q) + memory->shift[k];
+    double position;
     if (memory->shift[k] == 0.0) continue;
+    position = ec_position(joint, q) + memory->shift[k];
     if (joint->prismatic) {
-      memory->motion[3 * k + 2] = joint->r + ec_position(joint, q) + memory->shift[k];
+      memory->motion[3 * k + 2] = joint->r + position;
     } else {
-      memory->motion[3 * k] = cos(theta);
-      memory->motion[3 * k + 1] = sin(theta);
+      memory->motion[3 * k] = cos(joint->theta + position);
+      memory->motion[3 * k + 1] = sin(joint->theta + position);
     }
   }
 }

@@ -42,10 +42,10 @@ typedef struct {
 
 /* What a joint's position is off by beside its zero: an amount times a function of the posture. */
 enum {
-  EC_SIN,
-  EC_COS,
-  EC_SIN_TWICE,
-  EC_COS_TWICE, /* of the joint's position */
+  EC_SIN,       /* sine of the joint's position */
+  EC_COS,       /* its cosine */
+  EC_SIN_TWICE, /* sine of twice the position */
+  EC_COS_TWICE, /* its cosine */
   EC_GEAR,      /* position of the joint `source` (itself, or a neighbour) less `centre` */
   EC_BACKLASH,  /* sign of the load, smooth below `scale` */
   EC_STIFFENING /* load times its size, over the square of `scale` */
