@@ -6,10 +6,14 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "elastocal/calibration/positions_by_markers.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/robot/linkage.hpp"
 
 namespace elastocal {
 namespace {
@@ -199,6 +203,34 @@ class SuspicionSearch {
   std::map<std::array<int, 3>, LogSuspicion> found_;
 };
 
+std::string NameOfEntry(const LogSuspicion& suspicion, int entry, const RobotTree& tree) {
+  if (suspicion.linkage >= 0) {
+    return tree.linkages[Size(suspicion.linkage)].rods[Size(entry)].motor;
+  }
+  return tree.joints[Size(tree.coordinate_joint[Size(entry)])].name;
+}
+
+/// Positions of a linkage's joints, of which the log's mistake is one of its motors.
+void CorrectMotors(const LogSuspicion& suspicion, const RobotTree& tree,
+                   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> q) {
+  const Linkage& linkage = tree.linkages[Size(suspicion.linkage)];
+  const std::vector<int> entries = CoordinatesOf(tree, linkage);
+  auto motors = MotorPositions(tree, linkage, q(entries).transpose());
+  if (motors) {
+    if (suspicion.kind == LogContradiction::kSign) {
+      (*motors)[suspicion.coordinate] *= -1.0;
+    } else {
+      std::swap((*motors)[suspicion.coordinate], (*motors)[suspicion.other]);
+    }
+    if (const auto joints = JointsFromMotors(tree, linkage, *motors)) {
+      q(entries) = joints->transpose();
+      return;
+    }
+  }
+  throw InputError("linkage '" + linkage.name +
+                   "' would not close without that mistake: " + NameOf(suspicion, tree));
+}
+
 }  // namespace
 
 std::vector<LogSuspicion> FindLogSuspicions(const ErrorModel& model, const Recording& recording) {
@@ -206,7 +238,42 @@ std::vector<LogSuspicion> FindLogSuspicions(const ErrorModel& model, const Recor
   return SuspicionSearch(model, recording).Run();
 }
 
-Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspicion) {
+std::vector<LogSuspicion> PossibleLogMistakes(const Recording& recording, const RobotTree& tree) {
+  std::vector<LogSuspicion> signs, exchanges;
+  if (!recording.trials.empty() || recording.posture_count() == 0) return signs;
+  LogSuspicion sign, exchange{.kind = LogContradiction::kExchange};
+  for (int i = 0; i < recording.posture_count(); ++i) sign.postures.push_back(i);
+  exchange.postures = sign.postures;
+  const auto add = [&](int linkage, const std::vector<int>& entries, const auto& slides) {
+    sign.linkage = exchange.linkage = linkage;
+    for (std::size_t a = 0; a < entries.size(); ++a) {
+      sign.coordinate = exchange.coordinate = entries[a];
+      signs.push_back(sign);
+      for (std::size_t b = a + 1; b < entries.size(); ++b) {
+        if (slides(entries[a]) != slides(entries[b])) continue;
+        exchange.other = entries[b];
+        exchanges.push_back(exchange);
+      }
+    }
+  };
+  for (std::size_t k = 0; k < tree.linkages.size(); ++k) {
+    const std::vector<Rod>& rods = tree.linkages[k].rods;
+    std::vector<int> motors(rods.size());
+    std::iota(motors.begin(), motors.end(), 0);
+    add(static_cast<int>(k), motors, [&](int motor) { return rods[Size(motor)].actuator; });
+  }
+  std::vector<int> moving;
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    const bool logged = !IsMovedByRods(tree, tree.coordinate_joint[Size(c)]);  // else its motors
+    if (logged && Range(recording.q.col(c)) > 0.0) moving.push_back(c);
+  }
+  add(-1, moving, [&](int c) { return Slides(tree, c); });
+  signs.insert(signs.end(), exchanges.begin(), exchanges.end());
+  return signs;
+}
+
+Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspicion,
+                         const RobotTree& tree) {
   Recording corrected = recording;
   if (suspicion.kind == LogContradiction::kFrozen) {
     std::vector<int> kept;
@@ -218,7 +285,9 @@ Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspici
     return SelectPostures(recording, kept);
   }
   for (int i : suspicion.postures) {
-    if (suspicion.kind == LogContradiction::kSign) {
+    if (suspicion.linkage >= 0) {
+      CorrectMotors(suspicion, tree, corrected.q.row(i));
+    } else if (suspicion.kind == LogContradiction::kSign) {
       corrected.q(i, suspicion.coordinate) *= -1.0;
     } else {
       std::swap(corrected.q(i, suspicion.coordinate), corrected.q(i, suspicion.other));
@@ -227,18 +296,24 @@ Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspici
   return corrected;
 }
 
+std::string NameOf(const LogSuspicion& suspicion, const RobotTree& tree) {
+  const std::string name = NameOfEntry(suspicion, suspicion.coordinate, tree);
+  if (suspicion.kind == LogContradiction::kSign) return "sign:" + name;
+  if (suspicion.kind == LogContradiction::kFrozen) return "frozen:" + name;
+  const std::string other = NameOfEntry(suspicion, suspicion.other, tree);
+  return "exchange:" + std::min(name, other) + "," + std::max(name, other);
+}
+
 std::string DescribeSuspicion(const LogSuspicion& suspicion, const RobotTree& tree,
                               const Recording& recording) {
-  const auto name = [&](int coordinate) {
-    return tree.joints[tree.coordinate_joint[coordinate]].name;
-  };
-  std::string text = name(suspicion.coordinate);
+  std::string text = NameOfEntry(suspicion, suspicion.coordinate, tree);
   switch (suspicion.kind) {
     case LogContradiction::kSign:
       text += ": the sign of its positions is reversed";
       break;
     case LogContradiction::kExchange:
-      text += " and " + name(suspicion.other) + ": their positions are exchanged";
+      text += " and " + NameOfEntry(suspicion, suspicion.other, tree) +
+              ": their positions are exchanged";
       break;
     case LogContradiction::kFrozen:
       text += ": its positions are frozen, while it moved, in " +

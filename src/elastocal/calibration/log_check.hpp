@@ -19,8 +19,9 @@ enum class LogContradiction {
 /// A mistake in the joint log or a table, as the markers show it.
 struct LogSuspicion {
   LogContradiction kind = LogContradiction::kSign;
-  int coordinate = 0;              ///< of the robot tree
-  int other = -1;                  ///< the one that it is exchanged with
+  int coordinate = 0;  ///< of the robot tree
+  int other = -1;      ///< the one that it is exchanged with
+  int linkage = -1;    ///< of the tree: `coordinate` and `other` are motors of it; -1: of q
   std::vector<int> postures = {};  ///< ascending, in which the log is wrong
   /// PositionsByMarkers less the log there, median of the absolute, rad or m; of a table, how far
   /// markers are from the nominal robot, m.
@@ -35,9 +36,17 @@ struct LogSuspicion {
 /// for a table of postures (FindTableSuspicions).
 std::vector<LogSuspicion> FindLogSuspicions(const ErrorModel& model, const Recording& recording);
 
+/// Every mistake that the log of a posture table may have in all postures, of joints that moved:
+/// signs, then exchanges, each of motors of linkages first. None for a recording of trials.
+std::vector<LogSuspicion> PossibleLogMistakes(const Recording& recording, const RobotTree& tree);
+
 /// The recording without that mistake: positions corrected, or the postures left out in which a
-/// joint was frozen.
-Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspicion);
+/// joint was frozen. Throws InputError where the rods of a linkage would not close.
+Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspicion,
+                         const RobotTree& tree);
+
+/// What `--accept` calls it: "sign:arm_left_7_joint".
+std::string NameOf(const LogSuspicion& suspicion, const RobotTree& tree);
 
 /// "arm_left_7_joint: the sign of its positions is reversed in trial a"
 std::string DescribeSuspicion(const LogSuspicion& suspicion, const RobotTree& tree,

@@ -102,7 +102,7 @@ TEST_F(LogCheckTest, AReversedSignIsTold) {
               std::string(joint) + ": the sign of its positions is reversed in trial a, b");
     const auto found = FindLogSuspicions(robot_.model, changed);
     ASSERT_FALSE(found.empty());
-    EXPECT_TRUE(WithoutMistake(changed, found.front()).q == recording_.q);
+    EXPECT_TRUE(WithoutMistake(changed, found.front(), robot_.biped.tree).q == recording_.q);
   }
 }
 
@@ -136,8 +136,9 @@ TEST_F(LogCheckTest, AnExchangeOfJointsInOneTrialIsTold) {
   changed.q.col(hip).head(kPlayed) = recording_.q.col(ankle).head(kPlayed);
   changed.q.col(ankle).head(kPlayed) = recording_.q.col(hip).head(kPlayed);
   EXPECT_EQ(First(changed), "left_3 and left_5: their positions are exchanged in trial a");
-  EXPECT_TRUE(WithoutMistake(changed, FindLogSuspicions(robot_.model, changed).front()).q ==
-              recording_.q);
+  EXPECT_TRUE(
+      WithoutMistake(changed, FindLogSuspicions(robot_.model, changed).front(), robot_.biped.tree)
+          .q == recording_.q);
 }
 
 TEST_F(LogCheckTest, AFrozenJointIsTold) {
@@ -148,7 +149,8 @@ TEST_F(LogCheckTest, AFrozenJointIsTold) {
   EXPECT_EQ(First(changed),
             "right_4: its positions are frozen, while it moved, in 6 postures in trial b");
   const auto found = FindLogSuspicions(robot_.model, changed);
-  EXPECT_EQ(WithoutMistake(changed, found.front()).posture_count(), 2 * kPlayed - 6);
+  EXPECT_EQ(WithoutMistake(changed, found.front(), robot_.biped.tree).posture_count(),
+            2 * kPlayed - 6);
 }
 
 TEST_F(LogCheckTest, AJointThatIsLoggedInOnePlaceThroughoutIsTold) {

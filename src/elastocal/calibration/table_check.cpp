@@ -12,6 +12,7 @@
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/robot/linkage.hpp"
 
 namespace elastocal {
 namespace {
@@ -51,13 +52,16 @@ class TableSearch {
   std::vector<LogSuspicion> Log() {
     std::vector<LogSuspicion> found;
     if (misfit_ > kFarFromNominal) {
-      for (std::size_t a = 0; a < coordinates_.size(); ++a) {
-        TryLog({.kind = LogContradiction::kSign, .coordinate = coordinates_[a]}, found);
-        for (std::size_t b = a + 1; b < coordinates_.size(); ++b) {
-          if (Slides(coordinates_[a]) != Slides(coordinates_[b])) continue;
-          TryLog({.kind = LogContradiction::kExchange,
-                  .coordinate = coordinates_[a],
-                  .other = coordinates_[b]},
+      std::vector<int> logged;  // of joints that rods move, the motors are
+      std::copy_if(coordinates_.begin(), coordinates_.end(), std::back_inserter(logged),
+                   [&](int c) {
+                     return !IsMovedByRods(model_.tree, model_.tree.coordinate_joint[Size(c)]);
+                   });
+      for (std::size_t a = 0; a < logged.size(); ++a) {
+        TryLog({.kind = LogContradiction::kSign, .coordinate = logged[a]}, found);
+        for (std::size_t b = a + 1; b < logged.size(); ++b) {
+          if (Slides(logged[a]) != Slides(logged[b])) continue;
+          TryLog({.kind = LogContradiction::kExchange, .coordinate = logged[a], .other = logged[b]},
                  found);
         }
       }
@@ -189,7 +193,7 @@ class TableSearch {
     suspicion.postures.resize(Size(thinned_.posture_count()));
     std::iota(suspicion.postures.begin(), suspicion.postures.end(), 0);
     suspicion.before = misfit_;
-    suspicion.after = Misfit(WithoutMistake(thinned_, suspicion));
+    suspicion.after = Misfit(WithoutMistake(thinned_, suspicion, model_.tree));
     suspicion.postures = all_;
     if (suspicion.after <= kLeftOfMisfit * misfit_) found.push_back(std::move(suspicion));
   }

@@ -129,7 +129,8 @@ TEST_F(TableCheckTest, AReversedSignIsToldAndUndone) {
     Recording changed = table_;
     changed.q.col(Coordinate(joint)) *= -1.0;
     EXPECT_EQ(FirstOfLog(changed), std::string(joint) + ": the sign of its positions is reversed");
-    EXPECT_TRUE(WithoutMistake(changed, Find(changed).log.front()).q == table_.q);
+    EXPECT_TRUE(WithoutMistake(changed, Find(changed).log.front(), robot_.biped.tree).q ==
+                table_.q);
   }
 }
 
@@ -145,7 +146,8 @@ TEST_F(TableCheckTest, AFrozenJointIsToldAndARestingOneIsNot) {
   Recording changed = table_;
   changed.q.col(knee).segment(10, 8).setConstant(changed.q(10, knee));
   EXPECT_EQ(FirstOfLog(changed), "left_4: its positions are frozen, while it moved, in 8 postures");
-  EXPECT_EQ(WithoutMistake(changed, Find(changed).log.front()).posture_count(), 22);
+  EXPECT_EQ(WithoutMistake(changed, Find(changed).log.front(), robot_.biped.tree).posture_count(),
+            22);
 
   Recording rests = table_;
   rests.q.col(knee).segment(10, 8).setConstant(rests.q(10, knee));

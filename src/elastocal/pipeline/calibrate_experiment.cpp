@@ -13,9 +13,11 @@
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
+#include "elastocal/pipeline/plain_mistakes.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -136,18 +138,22 @@ CalibrationRun CalibrateExperiment(const Project& given,
   Measurements measured = ReadMeasurements(project, recordings);
   run.undone = AcceptMistakes(project, options.accept, measured);
 
-  if (options.prior.empty()) {
-    // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
-    run.elasticity = ChooseElasticity(measured.calibration, options.seed, kElasticityFolds,
-                                      options.threads, project);
+  // Not in the paper: what is plainly wrong is named, and nothing is chosen or judged by it.
+  run.faults = FindPlainMistakes(project, measured.calibration);
+  const bool sound = run.faults.empty();
+
+  if (!sound) {
+    project.elasticity.extra.clear();
+  } else if (options.prior.empty()) {
+    ModelChoice choice =
+        ChooseModel(measured, options.seed, kElasticityFolds, options.threads, project);
+    run.elasticity = std::move(choice.elasticity);
+    run.causes = std::move(choice.causes);
     if (measured.calibration.trials.empty() && !HasMasses(project.tree)) {
       run.warnings.emplace_back(
           "the robot description has no masses: it is not known whether joints give way under "
           "loads");
     }
-
-    // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
-    run.causes = ChooseCauses(measured, options.seed, project);
   } else {
     // Not in the paper: an earlier calibration tells both, and is the prior of the estimates.
     Append(StartFromEarlier(options.prior, options.days, measured, options.seed, project),
@@ -176,7 +182,9 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.comparison = CompareModels(std::move(calibrated), robot.model, recording, robot.base,
                                  settings, OfStep(options.progress, "fit"));
 
-  run.faults = FindFaults(project, options.seed, as_recorded, robot, recording, run.comparison);
+  if (sound) {
+    run.faults = FindFaults(project, options.seed, as_recorded, robot, recording, run.comparison);
+  }
 
   run.common_scale = EstimateCommonScale(run.comparison.largest(), settings);
 
@@ -184,10 +192,14 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording, settings.earlier);
 
   // Section 6.1.4, Table 2: errors on postures and on motions that took no part in the estimate.
-  const int folds = options.folds.value_or(UsualFolds(recording));
+  const int folds = sound ? options.folds.value_or(UsualFolds(recording)) : 0;
   if (folds > 0) {
     ExperimentData data{project, as_recorded.calibration, options.seed, {}};
-    if (!run.elasticity.empty()) data.open_elasticity = given.elasticity;
+    if (!run.elasticity.empty()) {
+      data.open_elasticity = project.elasticity;
+      data.open_elasticity->torsion = given.elasticity.torsion;
+      data.open_elasticity->bending = given.elasticity.bending;
+    }
     try {
       run.cross_validation = CrossValidateExperiment(data, robot, run.comparison,
                                                      {.folds = folds,

@@ -24,7 +24,6 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftOfError = 0.5;  // at most, without a mistake
 constexpr std::size_t kMostMistakes = 3;
 constexpr std::size_t kMostTried = 3;     // of a kind, at a time
 constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
@@ -47,30 +46,20 @@ std::string NameOf(const LabelSuspicion& suspicion) {
   return "labels:" + std::min(suspicion.a, suspicion.b) + "," + std::max(suspicion.a, suspicion.b);
 }
 
-std::string NameOf(const LogSuspicion& suspicion, const RobotTree& tree) {
-  const auto joint = [&](int coordinate) {
-    return tree
-        .joints[static_cast<std::size_t>(
-            tree.coordinate_joint[static_cast<std::size_t>(coordinate)])]
-        .name;
-  };
-  switch (suspicion.kind) {
-    case LogContradiction::kSign:
-      return "sign:" + joint(suspicion.coordinate);
-    case LogContradiction::kFrozen:
-      return "frozen:" + joint(suspicion.coordinate);
-    default: {
-      const std::string a = joint(suspicion.coordinate), b = joint(suspicion.other);
-      return "exchange:" + std::min(a, b) + "," + std::max(a, b);
-    }
-  }
-}
-
 TriedCorrection Undone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording) {
   return {NameOf(one, tree), DescribeSuspicion(one, tree, recording),
-          WithoutMistake(recording, one),
+          WithoutMistake(recording, one, tree),
           one.kind == LogContradiction::kFrozen ? one.postures : std::vector<int>(),
           one.kind == LogContradiction::kFrozen};
+}
+
+/// Adds it; not where rods would not close without it.
+void AddUndone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording,
+               std::vector<TriedCorrection>& tried) {
+  try {
+    tried.push_back(Undone(one, tree, recording));
+  } catch (const InputError&) {
+  }
 }
 
 /// Joints whose axes the fit turned by more than a right angle: the sign of their positions is
@@ -141,10 +130,15 @@ std::vector<TriedCorrection> SignsIn(const std::vector<int>& postures, const Rob
   return signs;
 }
 
-/// Of a table of postures, any joint's sign: the nominal robot does not show all that a fit proves.
-std::vector<TriedCorrection> SignsOfTable(const Recording& recording, const RobotTree& tree) {
-  if (!recording.trials.empty()) return {};
-  return SignsIn(AllPostures(recording), tree, recording);
+/// Mistakes in the log of a table of these names: the nominal robot does not show all of them.
+std::vector<TriedCorrection> NamedOfTable(const std::vector<std::string>& names,
+                                          const Recording& recording, const RobotTree& tree) {
+  std::vector<TriedCorrection> named;
+  for (const LogSuspicion& one : PossibleLogMistakes(recording, tree)) {
+    const bool wanted = std::find(names.begin(), names.end(), NameOf(one, tree)) != names.end();
+    if (wanted) AddUndone(one, tree, recording, named);
+  }
+  return named;
 }
 
 ErrorModel NominalModel(const Project& project, const Recording& recording) {
@@ -157,7 +151,7 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
             std::vector<std::string>& undone) {
   if (recording.posture_count() == 0) return;
   const ErrorModel nominal = NominalModel(project, recording);
-  std::set<std::string> signs_done;
+  std::set<std::string> named_done;
   for (std::size_t round = 0; round < kMostUndone; ++round) {
     const TriedCorrection* next = nullptr;
     const std::vector<TriedCorrection> tried = Suspicions(project, nominal, recording, kMostUndone);
@@ -166,11 +160,11 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
       const bool wanted = std::find(names.begin(), names.end(), one.name) != names.end();
       if (wanted && next == nullptr) next = &one;
     }
-    const std::vector<TriedCorrection> signs =
-        next == nullptr ? SignsOfTable(recording, project.tree) : std::vector<TriedCorrection>();
-    for (const TriedCorrection& one : signs) {
-      const bool wanted = std::find(names.begin(), names.end(), one.name) != names.end();
-      if (wanted && !shown.contains(one.name) && signs_done.insert(one.name).second) next = &one;
+    const std::vector<TriedCorrection> named = next == nullptr
+                                                   ? NamedOfTable(names, recording, project.tree)
+                                                   : std::vector<TriedCorrection>();
+    for (const TriedCorrection& one : named) {
+      if (!shown.contains(one.name) && named_done.insert(one.name).second) next = &one;
     }
     if (next == nullptr) break;
     undone.push_back(next->what);
@@ -180,7 +174,7 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
     }
     recording = Recording(next->corrected);
   }
-  shown.insert(signs_done.begin(), signs_done.end());
+  shown.insert(named_done.begin(), named_done.end());
 }
 
 /// Whether the prior had to be widened beyond what an error of a robot can be: axes turned by half
@@ -190,22 +184,6 @@ bool IsNoRobot(const PriorScale& scale) {
     return scale.factor[static_cast<std::size_t>(group)] >= kLikeTheMost * MostWidening(group);
   };
   return at_most(PriorGroup::kAngles) || at_most(PriorGroup::kLengths);
-}
-
-/// rms distance of all markers from where a calibrated robot has them, m; infinite where that is no
-/// robot.
-double FitError(const CalibrationResult& result, const Recording& recording,
-                const CalibrationOptions& options) {
-  if (IsNoRobot(result.prior_scale)) return std::numeric_limits<double>::infinity();
-  const Prediction prediction = Predict(result.model, result.delta, recording, options);
-  double squares = 0.0;
-  double count = 0.0;
-  for (double distance : prediction.distances.reshaped()) {
-    if (!std::isfinite(distance)) continue;
-    squares += distance * distance;
-    ++count;
-  }
-  return count == 0.0 ? std::numeric_limits<double>::infinity() : std::sqrt(squares / count);
 }
 
 /// Calibrates the robot from recordings of the same trials.
@@ -242,24 +220,41 @@ class Refitting {
 
 }  // namespace
 
+double FitError(const CalibrationResult& result, const Recording& recording,
+                const CalibrationOptions& options) {
+  if (IsNoRobot(result.prior_scale)) return std::numeric_limits<double>::infinity();
+  return MarkerError(result, recording, options);
+}
+
+double MarkerError(const CalibrationResult& result, const Recording& recording,
+                   const CalibrationOptions& options) {
+  const Prediction prediction = Predict(result.model, result.delta, recording, options);
+  double squares = 0.0;
+  double count = 0.0;
+  for (double distance : prediction.distances.reshaped()) {
+    if (!std::isfinite(distance)) continue;
+    squares += distance * distance;
+    ++count;
+  }
+  return count == 0.0 ? std::numeric_limits<double>::infinity() : std::sqrt(squares / count);
+}
+
 std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, const Recording& recording, double error,
-    const std::function<double(const Recording&)>& error_of,
-    const std::vector<LogSuspicion>& more) {
+    const std::function<double(const Recording&)>& error_of, const std::vector<LogSuspicion>& more,
+    double left_of_error) {
   std::vector<RecordingMistake> mistakes;
   if (recording.posture_count() == 0) return mistakes;
   const ErrorModel nominal = NominalModel(project, recording);
   Recording current = recording;
   while (mistakes.size() < kMostMistakes) {
     std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
-    if (mistakes.empty()) {
-      for (const LogSuspicion& one : more) tried.push_back(Undone(one, project.tree, current));
-    }
+    for (const LogSuspicion& one : more) AddUndone(one, project.tree, current, tried);
     // A joint that rests while another limb is measured looks frozen where that limb is wrong.
     std::stable_partition(tried.begin(), tried.end(),
                           [](const TriedCorrection& one) { return !one.only_leaves_out; });
     const TriedCorrection* best = nullptr;
-    double least = kLeftOfError * error;
+    double least = left_of_error * error;
     const auto try_one = [&](const TriedCorrection& one) {  // whether it is clearly right
       const double left = error_of(one.corrected);
       if (!(left < least)) return false;
@@ -285,7 +280,7 @@ std::vector<RecordingMistake> FindMistakesBy(
         least = without;
       }
     }
-    mistakes.push_back({found.name, found.what, error, least});
+    mistakes.push_back({found.name, found.what, error, least, found.corrected});
     current = found.corrected;
     error = least;
   }

@@ -21,7 +21,17 @@ struct RecordingMistake {
   std::string what;     ///< in words
   double before = 0.0;  ///< rms distance of all markers from the fit, m; infinite: no robot fits
   double after = 0.0;   ///< the same once it is undone
+  Recording corrected;  ///< without it and those before it
 };
+
+/// rms distance of all markers from where a calibrated robot has them, m.
+double MarkerError(const CalibrationResult& result, const Recording& recording,
+                   const CalibrationOptions& options);
+
+/// The same, but infinite where that is no robot: axes turned by half a turn explain a reversed
+/// sign perfectly.
+double FitError(const CalibrationResult& result, const Recording& recording,
+                const CalibrationOptions& options);
 
 /// Mistakes of a recording that a fit proves. Suspicions come from the nominal robot
 /// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions, FindRowShift), and from
@@ -37,11 +47,12 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const CalibrationResult& result);
 
 /// The same by any figure of how well a recording is explained, m: `error_of`, infinite where it is
-/// not explained at all. `error`: of the recording itself; `more`: further suspicions.
+/// not explained at all. `error`: of the recording itself; `more`: further suspicions;
+/// `left_of_error`: what each mistake may at most leave of the error.
 std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, const Recording& recording, double error,
     const std::function<double(const Recording&)>& error_of,
-    const std::vector<LogSuspicion>& more = {});
+    const std::vector<LogSuspicion>& more = {}, double left_of_error = 0.5);
 
 /// The same by how well a stored calibration explains a recording, m. `error_of` gets the model of
 /// the recording as well; where it throws InputError, nothing is explained.

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/plain_mistakes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/log_check.hpp"
+#include "elastocal/calibration/placed_misfit.hpp"
+#include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kFewestPlaced = 8;       // of few, anything is explained
+constexpr double kLeftOfMisfit = 0.4;  // of the placed nominal robot
+constexpr double kLeftByOneOfSeveral = 0.9;
+constexpr double kLeftOfOffsets = 0.5;  // of the robot with joint offsets
+constexpr double kFarFromRobot = 3e-3;  // m: beyond what geometric errors leave
+constexpr double kLeftOfGeometry = 0.3;
+constexpr int kFewestBodies = 3;  // that show whether the root stands elsewhere
+
+/// A robot and what was recorded of it, once a mistake is undone.
+struct Alternative {
+  std::string what;  ///< the mistake, in words
+  std::string name;  ///< what `--accept` calls it; empty: it is in the project
+  ErrorModel model;
+  Recording recording;
+};
+
+ErrorModel ModelOf(const Project& project, const Recording& recording) {
+  return SelectMarkers(MakeProjectModel(project, {}), recording.marker_names);
+}
+
+double MisfitOf(const ErrorModel& model, const Recording& recording) {
+  try {
+    return PlacedMisfit(model, recording);
+  } catch (const InputError&) {  // rods that do not close
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
+/// Nothing where it cannot be fitted.
+std::optional<CalibrationResult> Fit(const Alternative& robot, ModelKind kind,
+                                     const Project& project) {
+  IdentifiabilityOptions identifiability = project.identifiability;
+  if (robot.recording.free_root) identifiability.root = RootPose::kFree;
+  try {
+    const BaseParameters base = FindBaseParameters(robot.model, identifiability);
+    return Calibrate(robot.model, robot.recording, base, kind, project.calibration);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// rms distance of the markers from a robot whose joint offsets are estimated, m: these may be so
+/// large that the nominal robot is better with a mistake than without.
+double OffsetsError(const Alternative& robot, const Project& project) {
+  const auto result = Fit(robot, ModelKind::kOffsetsOnly, project);
+  return result ? FitError(*result, robot.recording, project.calibration)
+                : std::numeric_limits<double>::infinity();
+}
+
+/// The same of a robot with all geometric errors, whatever they are.
+double GeometricError(const Alternative& robot, const Project& project) {
+  const auto result = Fit(robot, ModelKind::kGeometric, project);
+  return result ? MarkerError(*result, robot.recording, project.calibration)
+                : std::numeric_limits<double>::infinity();
+}
+
+/// Looks for what the placed nominal robot shows, and a robot with joint offsets confirms.
+class PlainSearch {
+ public:
+  PlainSearch(const Project& project, const Recording& recording)
+      : project_(project),
+        given_{"", "", ModelOf(project, recording), recording},
+        misfit_(MisfitOf(given_.model, recording)) {}
+
+  /// Mistakes, each beside those before it; empty: none.
+  std::vector<Alternative> Run() {
+    const std::vector<LogSuspicion> possible = PossibleLogMistakes(given_.recording, project_.tree);
+    for (const auto& search : {&PlainSearch::FindInTable, &PlainSearch::FindExchange}) {
+      std::vector<Alternative> found = Confirmed((this->*search)(possible));
+      if (!found.empty()) return found;
+    }
+    std::vector<Alternative> found = Confirmed(FindWrongFollower());
+    return found.empty() ? FindMovedRoot() : found;
+  }
+
+ private:
+  using Possible = std::vector<LogSuspicion>;
+
+  std::vector<Alternative> FindInTable(const Possible& possible) const {
+    Possible signs;
+    std::copy_if(possible.begin(), possible.end(), std::back_inserter(signs),
+                 [](const auto& one) { return one.kind == LogContradiction::kSign; });
+    std::vector<Alternative> found;
+    std::size_t told = 0;  // the last one that explains most of what is left
+    for (RecordingMistake& one : FindMistakesBy(
+             project_, given_.recording, misfit_,
+             [&](const Recording& corrected) { return MisfitOf(given_.model, corrected); }, signs,
+             kLeftByOneOfSeveral)) {
+      found.push_back({one.what, one.name, given_.model, std::move(one.corrected)});
+      if (one.after < kLeftOfMisfit * one.before) told = found.size();
+    }
+    found.resize(told);
+    return found;
+  }
+
+  std::vector<Alternative> FindExchange(const Possible& possible) const {
+    const LogSuspicion* best = nullptr;
+    double least = kLeftOfMisfit * misfit_;
+    for (const LogSuspicion& one : possible) {
+      if (one.kind != LogContradiction::kExchange) continue;
+      const double left = MisfitWithout(one);
+      if (!(left < least)) continue;
+      least = left;
+      best = &one;
+    }
+    if (best == nullptr) return {};
+    return {{DescribeSuspicion(*best, project_.tree, given_.recording),
+             NameOf(*best, project_.tree), given_.model,
+             WithoutMistake(given_.recording, *best, project_.tree)}};
+  }
+
+  double MisfitWithout(const LogSuspicion& mistake) const {
+    try {
+      return MisfitOf(given_.model, WithoutMistake(given_.recording, mistake, project_.tree));
+    } catch (const InputError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+
+  /// Joints that follow others otherwise than described: the other way, or not; each, and all that
+  /// follow the same one.
+  std::vector<Alternative> FindWrongFollower() const {
+    const RobotTree& tree = project_.tree;
+    std::vector<std::vector<Follower>> groups;
+    std::map<int, std::vector<Follower>> led;
+    for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+      if (!tree.joints[k].mimic) continue;
+      const std::vector<Drive> drives = DrivesOf(tree.joints[k]);
+      for (std::size_t d = 0; d < drives.size(); ++d) {
+        groups.push_back({{k, d}});
+        led[drives[d].coordinate].push_back({k, d});
+      }
+    }
+    for (const auto& [coordinate, followers] : led) {
+      if (followers.size() > 1) groups.push_back(followers);
+    }
+    std::vector<Alternative> found;
+    double least = kLeftOfMisfit * misfit_;
+    for (const std::vector<Follower>& group : groups) {
+      for (const double factor : {-1.0, 0.0}) {
+        Alternative other = Following(group, factor);
+        const double left = MisfitOf(other.model, other.recording);
+        if (!(left < least)) continue;
+        least = left;
+        found = {std::move(other)};
+      }
+    }
+    return found;
+  }
+
+  /// A joint, and which of those that it follows.
+  struct Follower {
+    std::size_t joint = 0, drive = 0;
+  };
+
+  Alternative Following(const std::vector<Follower>& group, double factor) const {
+    Project other = project_;
+    const RobotTree& tree = project_.tree;
+    std::string what;
+    for (const Follower& one : group) {
+      const Drive drive = DrivesOf(tree.joints[one.joint])[one.drive];
+      Joint& joint = other.tree.joints[one.joint];
+      (one.drive == 0 ? joint.multiplier : joint.more[one.drive - 1].multiplier) *= factor;
+      const Joint& leads = tree.joints[Size(tree.coordinate_joint[Size(drive.coordinate)])];
+      what +=
+          (what.empty() ? "" : ", ") +
+          fmt::format("{} seems to follow {} by a factor of {:g}, not {:g} as described",
+                      joint.name, leads.name, factor * drive.multiplier + 0.0, drive.multiplier);
+    }
+    return {what + " (couplings of the project, mimic of the URDF)", "",
+            ModelOf(other, given_.recording), given_.recording};
+  }
+
+  /// A root link that was taken to stand still, and does not. In each posture, its pose explains
+  /// errors of the robot as well: all of them are estimated before it is said to move.
+  std::vector<Alternative> FindMovedRoot() const {
+    if (given_.recording.free_root) return {};
+    std::set<int> bodies;
+    for (const Marker& marker : given_.model.markers) {
+      bodies.insert(project_.tree.links[Size(marker.link)].body);
+    }
+    if (bodies.size() < kFewestBodies) return {};
+    Alternative free = given_;
+    free.recording.free_root = true;
+    if (!(MisfitOf(free.model, free.recording) < kLeftOfMisfit * misfit_)) return {};
+    const double before = GeometricError(given_, project_);
+    const double after = GeometricError(free, project_);
+    if (!(before > kFarFromRobot) || !(after < kLeftOfGeometry * before)) return {};
+    free.what = fmt::format(
+        "the root link seems to stand elsewhere in each posture (if it does, write recording: "
+        "{{root: free}} into the project); with all geometric errors estimated, markers are {:.3g} "
+        "mm off if so, and {:.3g} mm if not",
+        1e3 * after, 1e3 * before);
+    return {free};
+  }
+
+  /// All of them, with the evidence, unless offsets of joints explain them.
+  std::vector<Alternative> Confirmed(std::vector<Alternative> steps) const {
+    if (steps.empty()) return {};
+    const double left = MisfitOf(steps.back().model, steps.back().recording);
+    if (left > kLeftOfMisfit * misfit_) return {};
+    const double before = OffsetsError(given_, project_);
+    const double after = OffsetsError(steps.back(), project_);
+    if (!std::isfinite(after) || after > kLeftOfOffsets * before) return {};
+    for (Alternative& one : steps) {
+      one.what += fmt::format(
+          "; without that, and with joint offsets estimated, markers are {:.3g} mm off, with it {}",
+          1e3 * after,
+          std::isfinite(before) ? fmt::format("{:.3g} mm", 1e3 * before)
+                                : "no errors of a robot explain them");
+    }
+    return steps;
+  }
+
+  const Project& project_;
+  Alternative given_;
+  double misfit_;  ///< m
+};
+
+}  // namespace
+
+std::vector<std::string> FindPlainMistakes(const Project& project, const Recording& recording) {
+  if (!recording.trials.empty() || recording.posture_count() < kFewestPlaced) return {};
+  std::vector<std::string> found;
+  for (const Alternative& one : PlainSearch(project, recording).Run()) {
+    found.push_back(one.name.empty() ? one.what
+                                     : one.what + " (--accept " + one.name + " corrects it)");
+  }
+  return found;
+}
+
+}  // namespace elastocal

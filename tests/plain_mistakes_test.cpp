@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mistakes in tables of markers, and in projects, that show before anything is estimated.
+#include "elastocal/pipeline/plain_mistakes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/elastocal.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/robot/coupling.hpp"
+#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/linked_biped.hpp"
+
+namespace elastocal {
+namespace {
+
+std::string First(const std::vector<std::string>& found) {
+  return found.empty() ? "" : found.front();
+}
+
+void ExpectNamed(const std::vector<std::string>& found, const std::string& begin,
+                 const std::string& accept) {
+  ASSERT_EQ(found.size(), 1u) << First(found);
+  EXPECT_EQ(found[0].find(begin), 0u) << found[0];
+  EXPECT_NE(found[0].find(accept), std::string::npos) << found[0];
+}
+
+/// An arm whose joints are off by a degree or so.
+class PlainMistakes : public testing::Test {
+ protected:
+  PlainMistakes() { Record(0.02); }
+
+  void Record(double offset_sd) {
+    const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+    const BaseParameters base = FindBaseParameters(model, project_.identifiability);
+    recorded_ = MakeSyntheticRecording(
+        model, DrawErrors(model, base.kept, {{ParameterKind::kTheta, offset_sd}}, 1),
+        {.postures = 30});
+  }
+
+  std::vector<std::string> Find(const Recording& recording) const {
+    return FindPlainMistakes(project_, recording);
+  }
+
+  Project project_ = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  Recording recorded_;
+};
+
+TEST_F(PlainMistakes, NoneOfACleanTableWhateverItsOffsets) {
+  for (const double sd : {0.01, 0.05, 0.2}) {
+    Record(sd);
+    EXPECT_EQ(First(Find(recorded_)), "") << sd;
+  }
+}
+
+TEST_F(PlainMistakes, SignsAndExchangesOfAnyJoints) {
+  const auto& tree = project_.tree;
+  const auto name = [&](int c) { return tree.joints[Size(tree.coordinate_joint[Size(c)])].name; };
+  for (const int joint : MakeErrorModel(tree, project_.markers, project_.placement).active_joints) {
+    const int c = tree.joints[Size(joint)].coordinate;
+    Recording wrong = recorded_;
+    wrong.q.col(c) *= -1.0;
+    ExpectNamed(Find(wrong), name(c) + ": the sign of its positions is reversed",
+                "(--accept sign:" + name(c) + " corrects it)");
+  }
+  Recording wrong = recorded_;
+  wrong.q.col(1).swap(wrong.q.col(4));
+  ExpectNamed(Find(wrong), "", ": their positions are exchanged");
+}
+
+TEST_F(PlainMistakes, TwoAreNamedBesideEachOther) {
+  Recording wrong = recorded_;
+  wrong.q.col(1) *= -1.0;
+  wrong.q.col(3) *= -1.0;
+  const std::vector<std::string> found = Find(wrong);
+  ASSERT_EQ(found.size(), 2u) << First(found);
+  Measurements measured;
+  measured.calibration = wrong;
+  std::vector<std::string> names;
+  for (const std::string& one : found) {
+    const std::size_t begin = one.find("--accept ") + 9;
+    names.push_back(one.substr(begin, one.find(' ', begin) - begin));
+  }
+  AcceptMistakes(project_, names, measured);
+  EXPECT_EQ(measured.calibration.q, recorded_.q);
+}
+
+TEST_F(PlainMistakes, NothingIsEstimatedOrChosenBesideThem) {
+  Recording wrong = recorded_;
+  wrong.q.col(2) *= -1.0;
+  ScratchFolder scratch;
+  WritePostureTable(scratch.path() / "table.csv", wrong, project_.tree);
+  const CalibrationRun run = CalibrateExperiment(project_, {scratch.path() / "table.csv"});
+  ASSERT_EQ(run.faults.size(), 1u);
+  EXPECT_EQ(run.verdict.objections.front(), run.faults.front());
+  EXPECT_EQ(run.cross_validation.folds, 0);
+  EXPECT_TRUE(run.elasticity.empty());
+  EXPECT_FALSE(run.urdf.has_value());
+}
+
+class PlainMistakesOfLinks : public LinkedBiped {
+ protected:
+  PlainMistakesOfLinks()
+      : recorded_(MakeSyntheticRecording(model_, Truth(1), {.postures = 30, .marker_sd = 2e-4})) {}
+
+  const Rod& Motor(int linkage, int rod) const {
+    return project_.tree.linkages[Size(linkage)].rods[Size(rod)];
+  }
+
+  Recording recorded_;
+};
+
+TEST_F(PlainMistakesOfLinks, MotorsOfRods) {
+  EXPECT_EQ(First(FindPlainMistakes(project_, recorded_)), "");
+  const std::vector<LogSuspicion> possible = PossibleLogMistakes(recorded_, project_.tree);
+  int tried = 0;
+  for (const LogSuspicion& mistake : possible) {
+    if (mistake.linkage < 0 || tried == 3) continue;
+    // Rods that would not close with the mistake are refused when the table is read.
+    Recording wrong;
+    try {
+      wrong = WithoutMistake(recorded_, mistake, project_.tree);
+    } catch (const InputError&) {
+      continue;
+    }
+    ++tried;
+    const std::string name = NameOf(mistake, project_.tree);
+    ExpectNamed(FindPlainMistakes(project_, wrong), "", "(--accept " + name + " corrects it)");
+    Measurements measured;
+    measured.calibration = wrong;
+    AcceptMistakes(project_, {name}, measured);
+    EXPECT_LT((measured.calibration.q - recorded_.q).cwiseAbs().maxCoeff(), 1e-9) << name;
+  }
+  EXPECT_GE(tried, 2);
+}
+
+TEST_F(PlainMistakes, FollowersThatFollowTheOtherWay) {
+  const RobotTree free = project_.tree;
+  const int leads = 1, follows = 3;
+  project_.tree = Couple(free, {{follows, {{leads, 0.5}}, 0.0}});
+  Record(0.02);
+  EXPECT_EQ(First(Find(recorded_)), "");
+  project_.tree = Couple(free, {{follows, {{leads, -0.5}}, 0.0}});
+  const std::string joint = free.joints[Size(follows)].name, of = free.joints[Size(leads)].name;
+  ExpectNamed(Find(recorded_),
+              joint + " seems to follow " + of + " by a factor of 0.5, not -0.5 as described",
+              "(couplings of the project, mimic of the URDF)");
+}
+
+TEST_F(PlainMistakes, ARootThatMoved) {
+  Random random(2);
+  for (int i = 0; i < recorded_.posture_count(); ++i) {
+    const Eigen::Vector3d shift = random.NormalVector(3, 0.1);
+    for (int m = 0; m < recorded_.marker_count(); ++m) {
+      recorded_.markers.block<1, 3>(i, 3 * m) += shift.transpose();
+    }
+  }
+  ExpectNamed(Find(recorded_), "the root link seems to stand elsewhere in each posture",
+              "{root: free}");
+}
+
+}  // namespace
+}  // namespace elastocal
