@@ -2,6 +2,8 @@
 // Mistakes in tables of markers, and in projects, that show before anything is estimated.
 #include "elastocal/pipeline/plain_mistakes.hpp"
 
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 #include "elastocal/elastocal.hpp"
@@ -133,6 +135,29 @@ TEST_F(PlainMistakesOfLinks, MotorsOfRods) {
     EXPECT_LT((measured.calibration.q - recorded_.q).cwiseAbs().maxCoeff(), 1e-9) << name;
   }
   EXPECT_GE(tried, 2);
+}
+
+// In trials, the markers show each joint, and so each motor.
+TEST_F(PlainMistakesOfLinks, MotorsOfRodsInTrials) {
+  recorded_.trials = {{.name = "a", .chains = {}}};
+  recorded_.trial.assign(Size(recorded_.posture_count()), 0);
+  EXPECT_TRUE(FindLogSuspicions(model_, recorded_).empty());
+  const RobotTree& tree = project_.tree;
+  std::vector<int> all(Size(recorded_.posture_count()));
+  std::iota(all.begin(), all.end(), 0);
+  const LogSuspicion of_ankle = {.coordinate = 0, .linkage = 1, .postures = all};
+  LogSuspicion exchanged = of_ankle;
+  exchanged.kind = LogContradiction::kExchange;
+  exchanged.other = 1;
+  for (const LogSuspicion& mistake : {of_ankle, exchanged}) {
+    const Recording wrong = WithoutMistake(recorded_, mistake, tree);
+    const std::vector<LogSuspicion> found = FindLogSuspicions(model_, wrong);
+    ASSERT_FALSE(found.empty());
+    EXPECT_EQ(NameOf(found.front(), tree), NameOf(mistake, tree));
+    EXPECT_NE(DescribeSuspicion(found.front(), tree, wrong).find("left_ankle_outer"),
+              std::string::npos);
+    EXPECT_LT((WithoutMistake(wrong, found.front(), tree).q - recorded_.q).norm(), 1e-6);
+  }
 }
 
 TEST_F(PlainMistakes, FollowersThatFollowTheOtherWay) {

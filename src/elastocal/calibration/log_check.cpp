@@ -38,17 +38,21 @@ double Typical(const Eigen::VectorXd& values) {
 
 double Range(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
-/// What the logged and the shown positions of the trials say.
+/// What the logged and the shown positions of the trials say. Entries are those of q, then the
+/// motors of the linkages: where rods move joints, their motors are logged.
 class SuspicionSearch {
  public:
   SuspicionSearch(const ErrorModel& model, const Recording& recording)
-      : tree_(model.tree), recording_(recording), shown_(PositionsByMarkers(model, recording)) {
-    for (int joint : model.active_joints) {
-      const int coordinate = tree_.joints[joint].coordinate;
-      if (std::find(coordinates_.begin(), coordinates_.end(), coordinate) == coordinates_.end()) {
-        coordinates_.push_back(coordinate);
-      }
+      : tree_(model.tree),
+        recording_(recording),
+        logged_(recording.q),
+        shown_(PositionsByMarkers(model, recording)) {
+    for (const int joint : model.active_joints) {
+      const int coordinate = tree_.joints[Size(joint)].coordinate;
+      const bool known = std::count(entries_.begin(), entries_.end(), coordinate) > 0;
+      if (!known && !IsMovedByRods(tree_, joint)) entries_.push_back(coordinate);
     }
+    for (std::size_t k = 0; k < tree_.linkages.size(); ++k) AddMotors(static_cast<int>(k));
   }
 
   std::vector<LogSuspicion> Run() {
@@ -58,10 +62,10 @@ class SuspicionSearch {
         if (recording_.trial[i] == trial) postures.push_back(i);
       }
       if (static_cast<int>(postures.size()) < kLeastJudged) continue;
-      for (int a : coordinates_) {
+      for (int a : entries_) {
         if (Range(Logged(a, postures)) >= LeastRange(a)) TrySign(a, postures);
         TryFrozen(a, postures);
-        for (int b : coordinates_) {
+        for (int b : entries_) {
           if (a < b) TryExchange(a, b, postures);
         }
       }
@@ -86,12 +90,44 @@ class SuspicionSearch {
            (suspicion.before * suspicion.before - suspicion.after * suspicion.after);
   }
 
-  double LeastRange(int c) const { return Slides(tree_, c) ? kLeastSlideRange : kLeastRange; }
+  /// Of a linkage, all of whose joints move markers.
+  void AddMotors(int k) {
+    const Linkage& linkage = tree_.linkages[Size(k)];
+    const std::vector<int> joints = CoordinatesOf(tree_, linkage);
+    const auto count = static_cast<Eigen::Index>(linkage.rods.size());
+    const Eigen::Index first = logged_.cols();
+    for (Eigen::MatrixXd* positions : {&logged_, &shown_}) {
+      positions->conservativeResize(Eigen::NoChange, first + count);
+    }
+    for (Eigen::Index i = 0; i < logged_.rows(); ++i) {
+      const auto logged = MotorPositions(tree_, linkage, logged_(i, joints).transpose());
+      const auto shown = MotorPositions(tree_, linkage, shown_(i, joints).transpose());
+      // Where rods do not reach, nothing is said of them.
+      const Eigen::VectorXd unknown = logged.value_or(Eigen::VectorXd::Zero(count));
+      logged_.row(i).tail(count) = unknown.transpose();
+      shown_.row(i).tail(count) = (logged && shown ? *shown : unknown).transpose();
+    }
+    for (int rod = 0; rod < count; ++rod) {
+      motors_.push_back({k, rod});
+      entries_.push_back(static_cast<int>(first) + rod);
+    }
+  }
+
+  bool IsMotor(int entry) const { return entry >= tree_.coordinate_count(); }
+  std::pair<int, int> MotorOf(int entry) const {
+    return motors_[Size(entry - tree_.coordinate_count())];
+  }
+  bool EntrySlides(int entry) const {
+    if (!IsMotor(entry)) return Slides(tree_, entry);
+    const auto [linkage, rod] = MotorOf(entry);
+    return tree_.linkages[Size(linkage)].rods[Size(rod)].actuator;
+  }
+  double LeastRange(int c) const { return EntrySlides(c) ? kLeastSlideRange : kLeastRange; }
   double LeastDiscrepancy(int c) const {
-    return Slides(tree_, c) ? kLeastSlideDiscrepancy : kLeastDiscrepancy;
+    return EntrySlides(c) ? kLeastSlideDiscrepancy : kLeastDiscrepancy;
   }
   Eigen::VectorXd Logged(int c, const std::vector<int>& postures) const {
-    return recording_.q(postures, c);
+    return logged_(postures, c);
   }
   Eigen::VectorXd Shown(int c, const std::vector<int>& postures) const {
     return shown_(postures, c);
@@ -102,8 +138,9 @@ class SuspicionSearch {
            double after) {
     LogSuspicion& suspicion = found_[{static_cast<int>(kind), a, b}];
     suspicion.kind = kind;
-    suspicion.coordinate = a;
-    suspicion.other = b;
+    suspicion.coordinate = IsMotor(a) ? MotorOf(a).second : a;
+    suspicion.other = b >= 0 && IsMotor(b) ? MotorOf(b).second : b;
+    suspicion.linkage = IsMotor(a) ? MotorOf(a).first : -1;
     suspicion.postures.insert(suspicion.postures.end(), postures.begin(), postures.end());
     const auto count = static_cast<double>(postures.size());
     suspicion.before += count * before * before;
@@ -134,7 +171,7 @@ class SuspicionSearch {
   void FollowSigns() {
     std::vector<int> reversed;
     for (const auto& [key, suspicion] : found_) {
-      if (suspicion.kind == LogContradiction::kSign) reversed.push_back(suspicion.coordinate);
+      if (suspicion.kind == LogContradiction::kSign) reversed.push_back(key[1]);
     }
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       std::vector<int> postures;
@@ -152,7 +189,8 @@ class SuspicionSearch {
   }
 
   void TryExchange(int a, int b, const std::vector<int>& postures) {
-    if (Slides(tree_, a) != Slides(tree_, b)) return;
+    if (EntrySlides(a) != EntrySlides(b) || IsMotor(a) != IsMotor(b)) return;
+    if (IsMotor(a) && MotorOf(a).first != MotorOf(b).first) return;
     const auto both = [&](int of_a, int of_b) {
       return std::hypot(Typical(Shown(a, postures) - Logged(of_a, postures)),
                         Typical(Shown(b, postures) - Logged(of_b, postures)));
@@ -169,7 +207,7 @@ class SuspicionSearch {
     std::vector<int> longest;
     std::vector<int> run;
     for (int i : postures) {
-      if (!run.empty() && std::abs(recording_.q(i, c) - recording_.q(run.front(), c)) > kStill) {
+      if (!run.empty() && std::abs(logged_(i, c) - logged_(run.front(), c)) > kStill) {
         run.clear();
       }
       run.push_back(i);
@@ -198,8 +236,9 @@ class SuspicionSearch {
 
   const RobotTree& tree_;
   const Recording& recording_;
-  const Eigen::MatrixXd shown_;
-  std::vector<int> coordinates_;
+  Eigen::MatrixXd logged_, shown_;           ///< postures x entries
+  std::vector<int> entries_;                 ///< that move a marker
+  std::vector<std::pair<int, int>> motors_;  ///< linkage and rod, of the entries beyond q
   std::map<std::array<int, 3>, LogSuspicion> found_;
 };
 

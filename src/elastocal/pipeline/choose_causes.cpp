@@ -2,7 +2,9 @@
 #include "elastocal/pipeline/choose_causes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <map>
 #include <string_view>
 
 #include "elastocal/math/input_error.hpp"
@@ -38,6 +40,42 @@ std::vector<std::string> CausesMatching(const std::vector<std::string>& causes,
     matching.push_back(causes[static_cast<std::size_t>(i)]);
   }
   return matching;
+}
+
+/// Of the project's extra causes, the one that is least in a calibration with all of them, if that
+/// is within its uncertainty: another cause, or a spring, explains what it was found by.
+std::optional<std::string> IdleCause(const Project& project, const Measurements& measured,
+                                     std::optional<std::uint64_t> seed) {
+  constexpr double kPlain = 2.0;  // standard deviations
+  Measurements own = measured;
+  const RecordedModel robot = MakeRecordedModel(project, seed, own, KnockSearch::kNone);
+  const CalibrationResult result = Calibrate(robot.model, own.calibration, robot.base,
+                                             ModelKinds(robot.model).back(), project.calibration);
+  std::map<std::string, double> size;  // the most of a cause's parameters
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const int correction = result.model.parameters[static_cast<std::size_t>(i)].correction;
+    if (correction < 0 || !(result.sd[i] > 0.0)) continue;
+    double& most =
+        size[result.model.elasticity.corrections[static_cast<std::size_t>(correction)].cause];
+    most = std::max(most, std::abs(result.delta[i]) / result.sd[i]);
+  }
+  const auto least = std::min_element(
+      size.begin(), size.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (least == size.end() || least->second > kPlain) return std::nullopt;
+  return least->first;
+}
+
+/// Leaves out causes one by one until each is more than its uncertainty.
+void LeaveOutIdle(const Measurements& measured, std::optional<std::uint64_t> seed, Project& project,
+                  CauseSearch& search) {
+  std::vector<std::string>& extra = project.elasticity.extra;
+  while (!extra.empty()) {
+    const std::optional<std::string> idle = IdleCause(project, measured, seed);
+    if (!idle) return;
+    if (std::erase(extra, *idle) == 0) return;
+    std::erase_if(search.chosen, [&](const CauseFinding& one) { return one.cause == *idle; });
+  }
+  search.accepted = false;
 }
 
 }  // namespace
@@ -89,6 +127,7 @@ std::optional<CauseReport> ChooseCauses(const Measurements& measured,
     for (const CauseFinding& finding : report.search.chosen) {
       project.elasticity.extra.push_back(finding.cause);
     }
+    LeaveOutIdle(measured, seed, project, report.search);
   }
   return report;
 }

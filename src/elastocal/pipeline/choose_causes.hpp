@@ -28,8 +28,9 @@ CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed);
 
 /// Sets the extra causes of the project's models as `calibration.extra` says: those named, none,
-/// or those that the held-out error of a table of 15 to 300 postures asks for; then what was found
-/// on the way.
+/// or those that the held-out error of a table of 15 to 300 postures asks for and that a
+/// calibration with all of them does not find within their uncertainty; then what was found on the
+/// way.
 std::optional<CauseReport> ChooseCauses(const Measurements& measured,
                                         std::optional<std::uint64_t> seed, Project& project);
 

@@ -100,7 +100,7 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
   std::size_t frozen = 0, others = 0;
   for (const LogSuspicion& one : suspicions.log) {
     std::size_t& used = one.kind == LogContradiction::kFrozen ? frozen : others;
-    if (used < most) tried.push_back(Undone(one, project.tree, recording));
+    if (used < most) AddUndone(one, project.tree, recording, tried);
     ++used;
   }
   if (const std::optional<RowShift> shift = FindRowShift(nominal, recording)) {
