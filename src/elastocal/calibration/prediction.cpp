@@ -125,7 +125,7 @@ class Predictor {
   /// Markers that place a footing, see FootingBy.
   std::vector<char> MarkersThatPlace(const Footing& footing) const {
     std::vector<char> all(model_.marker_count(), 1);
-    if (by_ == FootingBy::kAllMarkers || footing.leg < 0) return all;
+    if (by_ != FootingBy::kFootMarkers || footing.leg < 0) return all;
     std::vector<char> on_foot(model_.marker_count(), 0);
     int count = 0;
     for (int m = 0; m < model_.marker_count(); ++m) {
@@ -162,8 +162,9 @@ class Predictor {
   void PlaceByMarkers(int posture) {
     Registration registration;
     const std::vector<int> placing = PlacingMarkers(model_, recording_, posture);
+    const bool by_all = by_ == FootingBy::kAllOfPosture && HasFreeRoot(recording_, posture);
     const auto places = [&](int m) {
-      return std::binary_search(placing.begin(), placing.end(), m);
+      return by_all || std::binary_search(placing.begin(), placing.end(), m);
     };
     AddMarkers(recording_, posture, MarkersInWaist(posture), places, registration);
     const auto T = registration.Solve();

@@ -27,6 +27,9 @@ enum class FootingBy {
   /// Those on the foot alone: where the waist is with respect to its foot then shows. Where fewer
   /// than three of them were seen, all.
   kFootMarkers,
+  /// As kAllMarkers, and a root that is free in a posture by all its markers: what the robot's
+  /// joints leave then shows beside the noise of few markers, which long levers magnify.
+  kAllOfPosture,
 };
 
 /// Predicts the markers of a recording by a model with errors `delta`, as a user of the robot

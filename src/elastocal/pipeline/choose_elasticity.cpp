@@ -80,7 +80,9 @@ std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
     try {
       const CrossValidation folds =
           CrossValidate(std::vector<ModelKind>{kind}, model, sample, base, project.calibration,
-                        {.folds = FoldsFor(sample, most_folds), .threads = threads});
+                        {.folds = FoldsFor(sample, most_folds),
+                         .threads = threads,
+                         .by = FootingBy::kAllOfPosture});
       trial.rmse_3d = folds.metrics[static_cast<int>(kind)].rmse_3d;
       const Eigen::VectorXd errors = ErrorsByPosture(folds.distances[static_cast<int>(kind)]);
       if (best.size() == 0) best = errors;

@@ -17,8 +17,9 @@ bool HasMasses(const RobotTree& tree);
 /// A choice of elastic parameters that was tried, and what it brings on postures that were left
 /// out.
 struct ElasticityTrial {
-  std::string kinds;     ///< "none", "torsion", "torsion and bending"
-  double rmse_3d = 0.0;  ///< of the left-out postures, m
+  std::string kinds;  ///< "none", "torsion", "torsion and bending"
+  /// Of the left-out postures, m; where the root is free, as far as no pose of it explains them.
+  double rmse_3d = 0.0;
   /// By how much the mean error of a posture is less than with the choice before, m, and the
   /// standard error of that.
   double gain = 0.0, gain_sd = 0.0;

@@ -87,7 +87,8 @@ Eigen::MatrixXd InWholeRecording(const Eigen::MatrixXd& distances, const std::ve
 }
 
 void PredictFold(const std::vector<ModelKind>& kinds, const FoldData& fold,
-                 const CalibrationOptions& options, int marker_count, FoldResult& result) {
+                 const CalibrationOptions& options, FootingBy by, int marker_count,
+                 FoldResult& result) {
   // The largest model decides what is an outlier of the other postures; each model its own weights.
   std::optional<Selection> selection;
   std::optional<CalibrationResult> largest;
@@ -106,8 +107,9 @@ void PredictFold(const std::vector<ModelKind>& kinds, const FoldData& fold,
       largest = estimate;
     }
     result.unconverged += estimate.termination == Termination::kConverged ? 0 : 1;
-    distances = Predict(estimate.model, estimate.delta, fold.held_out, options, &estimate.placement)
-                    .distances;
+    distances =
+        Predict(estimate.model, estimate.delta, fold.held_out, options, &estimate.placement, by)
+            .distances;
     // A marker that is in no other fold has no estimated position.
     for (int m = 0; m < fold.model.marker_count(); ++m) {
       if (!estimate.used.col(m).any()) distances.col(m).setConstant(kNaN);
@@ -121,14 +123,15 @@ void PredictFold(const std::vector<ModelKind>& kinds, const FoldData& fold,
 }
 
 /// Observations that a prediction can be judged by: on two feet, and where the root is free, not by
-/// the markers that place it.
-ObservationMask Judged(const ErrorModel& model, const Recording& recording) {
+/// the markers that place it, unless all do.
+ObservationMask Judged(const ErrorModel& model, const Recording& recording, FootingBy by) {
   ObservationMask judged = SeenMask(recording);
   if (!HasPoseByPosture(recording)) return judged;
   for (int i = 0; i < static_cast<int>(judged.rows()); ++i) {
     const bool on_two_feet =
         !recording.trials.empty() && recording.trials[recording.trial[i]].support.size() > 1;
-    if (!on_two_feet && !HasFreeRoot(recording, i)) continue;
+    const bool free_root = HasFreeRoot(recording, i);
+    if (!on_two_feet && (!free_root || by == FootingBy::kAllOfPosture)) continue;
     for (int m : PlacingMarkers(model, recording, i)) judged(i, m) = false;
   }
   return judged;
@@ -245,7 +248,7 @@ CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorMo
             const bool out = fold_of[i] == static_cast<int>(fold);
             (out ? results[fold].held_out : training).push_back(i);
           }
-          PredictFold(kinds, make(training, results[fold].held_out), options,
+          PredictFold(kinds, make(training, results[fold].held_out), options, folds.by,
                       recording.marker_count(), results[fold]);
         } catch (const InputError& error) {
           throw InputError("cross-validation, without fold " + std::to_string(fold + 1) + " of " +
@@ -253,7 +256,7 @@ CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorMo
         }
       },
       progress);
-  const ObservationMask judged = Judged(model, recording);
+  const ObservationMask judged = Judged(model, recording, folds.by);
   CrossValidation validation;
   validation.folds = folds.folds;
   for (const FoldResult& result : results) validation.unconverged += result.unconverged;

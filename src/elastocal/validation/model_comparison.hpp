@@ -52,6 +52,7 @@ struct FoldOptions {
   FoldUnit unit = FoldUnit::kPosture;
   std::uint64_t seed = 1;  ///< deals the units to the folds at random
   int threads = 1;
+  FootingBy by = FootingBy::kAllMarkers;  ///< of the left-out postures
 };
 
 /// `wanted` folds, or as many as there are different postures. Those of a motion
