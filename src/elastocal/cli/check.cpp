@@ -119,6 +119,12 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
         "recording, project and calibration belong together?\n",
         Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3), 1e3 * run.expected_error);
   }
+  if (run.recording_explains()) {
+    return fmt::format(
+        "The recording seems wrong, not the robot: {}; once that is corrected, the calibration "
+        "holds\n",
+        fmt::join(run.alternatives, ", or "));
+  }
   if (!run.explained()) return Unexplained(run);
   if (!run.check.changed()) {
     return fmt::format(
@@ -132,6 +138,9 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
   }
   if (!run.check.suspects.empty()) {
     text += fmt::format("Changed: one of {}.\n", fmt::join(run.check.suspects, ", "));
+  }
+  if (!run.alternatives.empty()) {
+    text += fmt::format("Or {}: this explains it as well.\n", fmt::join(run.alternatives, ", or "));
   }
   return text;
 }

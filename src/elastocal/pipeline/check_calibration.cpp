@@ -10,6 +10,7 @@
 
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/check_alternatives.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
@@ -38,13 +39,19 @@ Json SuspectJson(const JointSuspect& suspect) {
   return json;
 }
 
+/// postures x markers, m
+Eigen::MatrixXd DistancesBy(const EarlierFit& fit, const CalibrationOptions& options) {
+  return Predict(fit.estimate.model, fit.estimate.delta, fit.measured.calibration, options)
+      .distances;
+}
+
 }  // namespace
 
-CheckRun CheckCalibration(const Project& given, const std::filesystem::path& calibration,
+CheckRun CheckCalibration(const Project& given, const std::filesystem::path& calibration_file,
                           const std::filesystem::path& recording, const CheckOptions& options) {
   CheckHasMarkers(given);
   CheckRun run;
-  run.calibration_file = FindCalibrationFiles(calibration).calibration.string();
+  run.calibration_file = FindCalibrationFiles(calibration_file).calibration.string();
   Project project = given;
   Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
   for (const std::string& what : AcceptMistakes(project, options.accept, measured)) {
@@ -52,13 +59,12 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   }
 
   // Every joint free to have moved since the calibration.
-  EarlierFit fit =
-      FitAfterEarlier(calibration, options.days, measured, options.seed, options.joints, project);
+  EarlierFit fit = FitAfterEarlier(calibration_file, options.days, measured, options.seed,
+                                   options.joints, project);
   const Recording& postures = fit.measured.calibration;
   run.expected_error = ExpectedError(fit.robot.model, postures, project.calibration.prior);
   const auto seen = SeenMask(postures);
-  const Eigen::MatrixXd distances =
-      Predict(fit.estimate.model, fit.estimate.delta, postures, project.calibration).distances;
+  const Eigen::MatrixXd distances = DistancesBy(fit, project.calibration);
   run.rmse_estimate = ComputeMetrics(distances, seen).rmse_3d;
   run.left_before = std::sqrt(3.0) * fit.stored.marker_sd;
   run.left.setZero(postures.posture_count());
@@ -83,6 +89,21 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
     run.mistakes.push_back(DescribeMistake(mistake));
   }
 
+  if (mistakes.empty() && (fit.check.changed() || !run.explained())) {
+    const CheckedCalibration calibration = {
+        [&](const Recording& of) { return as_calibrated(fit.robot, of).calibrated; },
+        [&](const Measurements& corrected) {
+          Project again = given;
+          const EarlierFit other = FitAfterEarlier(calibration_file, options.days, corrected,
+                                                   options.seed, options.joints, again);
+          const double left = ComputeMetrics(DistancesBy(other, again.calibration),
+                                             SeenMask(other.measured.calibration))
+                                  .rmse_3d;
+          return !other.check.changed() && left <= run.most_left();
+        }};
+    run.alternatives = FindAlternatives(calibration, postures, measured, project);
+  }
+
   run.warnings.insert(run.warnings.end(), fit.measured.warnings.begin(),
                       fit.measured.warnings.end());
   run.estimate = std::move(fit.estimate);
@@ -102,6 +123,11 @@ double CheckRun::most_left() const {
                            : std::numeric_limits<double>::infinity();
 }
 
+bool CheckRun::recording_explains() const {
+  const bool by_one_joint = check.moved.size() == 1 && check.suspects.empty() && explained();
+  return !alternatives.empty() && !by_one_joint;
+}
+
 bool CheckRun::unchanged() const {
   return converged() && mistakes.empty() && !check.changed() && plausible() && explained();
 }
@@ -110,6 +136,7 @@ std::string CheckStatus(const CheckRun& run) {
   if (!run.converged()) return "not converged";
   if (!run.mistakes.empty()) return "recording wrong";
   if (!run.check.changed() && !run.plausible()) return "implausible";
+  if (run.recording_explains()) return "recording wrong";
   if (!run.explained()) return "unexplained";
   if (!run.check.moved.empty()) return "moved";
   return run.check.changed() ? "changed" : "unchanged";
@@ -135,6 +162,7 @@ std::string MakeCheckJson(const CheckRun& run) {
   for (const JointSuspect& joint : run.check.joints) json["joints"].push_back(SuspectJson(joint));
   json["expected_error_mm"] = 1e3 * run.expected_error;
   json["mistakes"] = run.mistakes;
+  json["alternatives"] = run.alternatives;
   json["warnings"] = run.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -25,9 +25,11 @@ struct CheckRun {
   double rmse_estimate = 0.0;   ///< of `estimate` on the recording, outliers included, m
   JointCheck check;
   std::vector<std::string> mistakes;  ///< of the recording, which say nothing of the robot
-  double expected_error = 0.0;        ///< of a robot that was never calibrated (ExpectedError), m
-  double left_before = 0.0;  ///< by the calibration, rms over its own markers, m; 0: unknown
-  Eigen::VectorXd left;      ///< by `estimate`, rms over the markers of each posture, m
+  /// What explains it as well as joints that have moved (FindAlternatives).
+  std::vector<std::string> alternatives;
+  double expected_error = 0.0;  ///< of a robot that was never calibrated (ExpectedError), m
+  double left_before = 0.0;     ///< by the calibration, rms over its own markers, m; 0: unknown
+  Eigen::VectorXd left;         ///< by `estimate`, rms over the markers of each posture, m
   std::vector<std::string> warnings;
 
   bool converged() const { return estimate.termination == Termination::kConverged; }
@@ -38,6 +40,8 @@ struct CheckRun {
   double most_left() const;
   /// Whether the robot, with every joint free to have moved, leaves no more than that.
   bool explained() const { return !(rmse_estimate > most_left()); }
+  /// Whether an alternative explains what otherwise takes several joints, or none does.
+  bool recording_explains() const;
   /// Whether the calibration still explains the robot.
   bool unchanged() const;
 };
@@ -59,8 +63,9 @@ struct CheckOptions {
 CheckRun CheckCalibration(const Project& given, const std::filesystem::path& calibration,
                           const std::filesystem::path& recording, const CheckOptions& options = {});
 
-/// "unchanged", "moved", "changed" (no single joint can be named), "recording wrong" (`mistakes`),
-/// "unexplained" (moved joints do not explain it), "implausible" or "not converged".
+/// "unchanged", "moved", "changed" (no single joint can be named), "recording wrong" (`mistakes`,
+/// or `alternatives` where these explain it and no single joint does), "unexplained" (moved joints
+/// do not explain it), "implausible" or "not converged".
 std::string CheckStatus(const CheckRun& run);
 
 /// The figures for programs (docs/formats.md).

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/check_alternatives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "elastocal/calibration/prediction.hpp"
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/stated_corrections.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeastScale = 2e-4;  // cameras are hardly calibrated better
+constexpr int kTurns = 3;             // by which a scale is found: a refit takes a part of it
+
+double CameraScale(const CheckedCalibration& calibration, Recording recording,
+                   const CalibrationOptions& options) {
+  double scale = 1.0;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const CalibrationResult& result = calibration.refit(recording).result;
+    const double more = ScaleOfMarkers(
+        recording, Predict(result.model, result.delta, recording, options).positions);
+    scale *= more;
+    recording.markers /= more;
+  }
+  return scale;
+}
+
+/// The gain of a joint that explains most of what the joints as calibrated leave.
+std::optional<RecordingFault> WrongGain(const CheckedCalibration& calibration,
+                                        const Recording& recording,
+                                        const CalibrationOptions& options) {
+  for (const RecordingFault& fault :
+       FindRecordingFaults(calibration.refit(recording).result, recording, options)) {
+    if (fault.kind == FaultKind::kJointGain && fault.trial < 0) return fault;
+  }
+  return std::nullopt;
+}
+
+bool Explains(const CheckedCalibration& calibration, const StatedCorrection& correction,
+              const RobotTree& tree, Measurements measured) {
+  try {
+    ApplyCorrection(correction, tree, measured);
+    return calibration.holds(measured);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+double ScaleOfMarkers(const Recording& recording, const Eigen::MatrixXd& predicted) {
+  const bool one_pose = !HasPoseByPosture(recording);
+  double along = 0.0, squares = 0.0;
+  std::vector<Eigen::Vector3d> at, off;
+  const auto add = [&] {  // the markers that one pose places
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero(), mean_off = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      centre += at[k] / static_cast<double>(at.size());
+      mean_off += off[k] / static_cast<double>(at.size());
+    }
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      along += (at[k] - centre).dot(off[k] - mean_off);
+      squares += (at[k] - centre).squaredNorm();
+    }
+    at.clear();
+    off.clear();
+  };
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      const Eigen::Vector3d position = predicted.block<1, 3>(i, 3 * m).transpose();
+      if (!Seen(recording, i, m) || !position.allFinite()) continue;
+      at.push_back(position);
+      off.push_back(MarkerPosition(recording, i, m) - position);
+    }
+    if (!one_pose) add();
+  }
+  add();
+  return squares > 0.0 ? 1.0 + along / squares : 1.0;
+}
+
+std::vector<std::string> FindAlternatives(const CheckedCalibration& calibration,
+                                          const Recording& recording,
+                                          const Measurements& as_recorded, const Project& project) {
+  std::vector<std::string> found;
+  StatedCorrection scale{.kind = FaultKind::kCameraScale};
+  scale.size = CameraScale(calibration, recording, project.calibration);
+  if (std::abs(scale.size - 1.0) > kLeastScale &&
+      Explains(calibration, scale, project.tree, as_recorded)) {
+    found.push_back(fmt::format(
+        "the cameras' positions are {0:.5f} times the true ones (--accept scale={0:.5f} corrects "
+        "it; a known length tells)",
+        scale.size));
+  }
+  if (const auto fault = WrongGain(calibration, recording, project.calibration)) {
+    const auto name = NameOfCorrection(*fault, project.tree, recording);
+    const auto gain = name ? ParseStatedCorrection(*name, project.tree) : std::nullopt;
+    if (gain && Explains(calibration, *gain, project.tree, as_recorded)) {
+      found.push_back(fmt::format("{} (--accept {} corrects it)",
+                                  DescribeFault(*fault, project.tree, recording), *name));
+    }
+  }
+  return found;
+}
+
+}  // namespace elastocal
