@@ -86,32 +86,61 @@ TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
   EXPECT_EQ(status(), "implausible");
 }
 
-// One bad posture of twelve; a joint's gain, which looks like other joints that moved.
+// One bad posture of twelve.
 TEST_F(Program, CheckNamesNoJointBesideErrorsThatNoneExplains) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const Project project = ReadProject(project_);
   const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   const int elbow = project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate;
-  const Recording sound = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
-  Recording bad = sound, gain = sound;
+  Recording bad = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
   bad.q(4, elbow) += 0.05;
+  const std::filesystem::path table = scratch_.path() / "today.csv";
+  WritePostureTable(table, bad, project.tree);
+  const std::string file = (scratch_.path() / "check.json").string();
+  const ProgramResult result = RunProgram("check " + project_ + " --calibration " + out_ +
+                                          " --recording " + table.string() + " --json " + file);
+  EXPECT_EQ(result.exit_code, 4) << result.err;
+  EXPECT_TRUE(result.out.starts_with("Not explained: even if every joint may have moved"))
+      << result.out;
+  EXPECT_NE(result.out.find("Farthest off: line 6 ("), std::string::npos) << result.out;
+  const nlohmann::json json = nlohmann::json::parse(ReadFile(file));
+  EXPECT_EQ(json["status"], "unexplained");
+  EXPECT_GT(json["rmse_3d_mm"]["updated"], 4.0 * json["left_by_calibration_mm"].get<double>());
+  EXPECT_TRUE(json["alternatives"].empty());
+}
+
+// The gain of a joint and the scale of the cameras look like several joints that moved.
+TEST_F(Program, CheckNamesAGainAndAScale) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const int elbow = project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate;
+  const Recording sound = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
+  Recording gain = sound, scale = sound;
   gain.q.col(elbow) *= 1.03;
-  for (const Recording& recording : {bad, gain}) {
+  scale.markers *= 1.002;
+  const auto expect = [&](const Recording& recording, const std::string& begin, double size) {
     const std::filesystem::path table = scratch_.path() / "today.csv";
     WritePostureTable(table, recording, project.tree);
     const std::string file = (scratch_.path() / "check.json").string();
-    const ProgramResult result = RunProgram("check " + project_ + " --calibration " + out_ +
-                                            " --recording " + table.string() + " --json " + file);
+    const std::string words = "check " + project_ + " --calibration " + out_ + " --recording " +
+                              table.string() + " --json " + file;
+    const ProgramResult result = RunProgram(words);
     EXPECT_EQ(result.exit_code, 4) << result.err;
-    EXPECT_TRUE(result.out.starts_with("Not explained: even if every joint may have moved"))
+    EXPECT_TRUE(result.out.starts_with("The recording seems wrong, not the robot: " + begin))
         << result.out;
     const nlohmann::json json = nlohmann::json::parse(ReadFile(file));
-    EXPECT_EQ(json["status"], "unexplained");
-    EXPECT_GT(json["rmse_3d_mm"]["updated"], 4.0 * json["left_by_calibration_mm"].get<double>());
-    if (recording.q == bad.q) {
-      EXPECT_NE(result.out.find("Farthest off: line 6 ("), std::string::npos) << result.out;
-    }
-  }
+    EXPECT_EQ(json["status"], "recording wrong");
+    ASSERT_EQ(json["alternatives"].size(), 1u) << result.out;
+    const std::string text = json["alternatives"][0];
+    const std::size_t at = text.find("--accept ") + 9;
+    const std::string name = text.substr(at, text.find(' ', at) - at);
+    EXPECT_NEAR(std::stod(name.substr(name.find('=') + 1)), size, 4e-4) << name;
+    const ProgramResult accepted = RunProgram(words + " --accept " + name);
+    EXPECT_EQ(accepted.exit_code, 0) << accepted.out << accepted.err;
+  };
+  expect(gain, "elbow_joint: its positions are 1.0", 1.03);
+  expect(scale, "the cameras' positions are 1.00", 1.002);
 }
 
 TEST_F(Program, APriorMakesAFewPosturesEnough) {

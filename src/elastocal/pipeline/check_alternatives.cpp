@@ -32,13 +32,32 @@ double CameraScale(const CheckedCalibration& calibration, Recording recording,
   return scale;
 }
 
-/// The gain of a joint that explains most of what the joints as calibrated leave.
+double SquaresWithGain(const CheckedCalibration& calibration, Recording recording, int coordinate,
+                       double gain) {
+  recording.q.col(coordinate) /= gain;
+  return std::pow(calibration.refit(recording).metrics_all.rmse_3d, 2);
+}
+
+/// The gain of a joint that explains most of what the joints as calibrated leave. It is found to
+/// first order, and then by parabolas through what is left with it and beside it.
 std::optional<RecordingFault> WrongGain(const CheckedCalibration& calibration,
                                         const Recording& recording,
                                         const CalibrationOptions& options) {
-  for (const RecordingFault& fault :
+  for (RecordingFault& fault :
        FindRecordingFaults(calibration.refit(recording).result, recording, options)) {
-    if (fault.kind == FaultKind::kJointGain && fault.trial < 0) return fault;
+    if (fault.kind != FaultKind::kJointGain || fault.trial >= 0) continue;
+    double step = 0.1 * std::abs(fault.size);
+    for (int turn = 0; turn < kTurns; ++turn, step *= 0.3) {
+      const auto squares = [&](double size) {
+        return SquaresWithGain(calibration, recording, fault.coordinate, 1.0 + size);
+      };
+      const double here = squares(fault.size);
+      const double below = squares(fault.size - step), above = squares(fault.size + step);
+      const double curvature = below + above - 2.0 * here;
+      if (!(curvature > 0.0)) break;
+      fault.size += std::clamp(0.5 * (below - above) / curvature, -3.0, 3.0) * step;
+    }
+    return fault;
   }
   return std::nullopt;
 }
