@@ -20,8 +20,10 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/motion/motion_check.hpp"
+#include "elastocal/pipeline/stated_corrections.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage_errors.hpp"
+#include "elastocal/robot/move_motors.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/simulation/true_robot.hpp"
 #include "elastocal/simulation/virtual_robot.hpp"
@@ -60,6 +62,15 @@ TEST_F(LinkedBiped, ItsTablesHoldTheMotors) {
   motors.q(2, named.joints[outer].coordinate) = 3.0;
   ExpectInputError([&] { ReadBack(motors, named); },
                    {"table.csv:4: ", "'left_ankle_outer' at 3 rad", "'left_ankle'"});
+  Recording degrees = recording;
+  RobotTree in_degrees = JointsToMotors(project_.tree, {}, degrees.q);
+  in_degrees.linkages.clear();
+  for (const char* name : {"left_ankle_outer", "left_ankle_inner"}) {
+    const Joint& joint = in_degrees.joints[Size(FindJoint(in_degrees, name))];
+    degrees.q.col(joint.coordinate) *= 180.0 / M_PI;
+  }
+  ExpectInputError([&] { ReadBack(degrees, in_degrees); },
+                   {"'left_ankle'", "(in all postures they close with degrees read as such)"});
   named.joints[outer].name = "left_ankle_pitch";
   ExpectInputError([&] { ReadBack(recording, named); },
                    {"table.csv: ", "'left_ankle_inner'", "none of 'left_ankle_outer'"});
@@ -300,6 +311,50 @@ TEST_F(OfMujoco, LeversThatAreOffAreNoFaultsOfTheRecording) {
   for (const RecordingFault& fault : FindRecordingFaults(result, recording, options)) {
     ADD_FAILURE() << DescribeFault(fault, model_.tree, recording);
   }
+}
+
+// An encoder that slips is one of a motor: its offset turns both joints of the ankle, by what the
+// rods make of it in each posture.
+TEST_F(OfMujoco, AnOffsetOfAMotorIsNamedAndCorrected) {
+  Recording recording = Record();
+  Random random(3);
+  for (auto row : recording.markers.rowwise()) row += random.NormalVector(row.size(), 2e-5);
+  const Recording sound = recording;
+  const RobotTree& tree = project_.tree;
+  const int from = recording.posture_count() / 2;
+  const auto slip = [](Eigen::VectorXd& motors) { motors[0] += 0.03; };
+  for (int i = from; i < recording.posture_count(); ++i) {
+    Eigen::VectorXd q = recording.q.row(i).transpose();
+    ASSERT_TRUE(MoveMotors(tree, tree.linkages[1], slip, q));
+    recording.q.row(i) = q.transpose();
+  }
+  const CalibrationOptions options;
+  const CalibrationResult result =
+      Calibrate(model_, recording, FindBaseParameters(model_, {}), ModelKind::kGeometric, options);
+  const std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, options);
+  ASSERT_FALSE(faults.empty());
+  EXPECT_EQ(faults[0].linkage, 1);
+  EXPECT_EQ(faults[0].coordinate, 0);
+  EXPECT_NEAR(faults[0].size, 0.03, 2e-3);
+  EXPECT_NEAR(faults[0].posture, from, 1);
+  EXPECT_EQ(DescribeFault(faults[0], tree, recording).find("left_ankle_outer: its positions are"),
+            0u);
+
+  // The same in one trial, corrected by its name.
+  Measurements measured;
+  measured.calibration = recording;
+  measured.calibration.trials = {{.name = "a", .chains = {}}, {.name = "b", .chains = {}}};
+  measured.calibration.trial.assign(Size(recording.posture_count()), 0);
+  for (int i = from; i < recording.posture_count(); ++i) measured.calibration.trial[Size(i)] = 1;
+  RecordingFault of_trial = faults[0];
+  of_trial.trial = 1;
+  of_trial.size = 0.03;
+  const auto name = NameOfCorrection(of_trial, tree, measured.calibration);
+  ASSERT_TRUE(name);
+  EXPECT_EQ(*name, "offset:left_ankle_outer@b=1.7189");
+  EXPECT_EQ(ApplyCorrection(*ParseStatedCorrection(*name, tree), tree, measured),
+            "1.7189 deg were taken from the positions of left_ankle_outer in trial b");
+  EXPECT_LT((measured.calibration.q - sound.q).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 }  // namespace

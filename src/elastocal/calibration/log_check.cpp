@@ -14,6 +14,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/robot/linkage.hpp"
+#include "elastocal/robot/move_motors.hpp"
 
 namespace elastocal {
 namespace {
@@ -90,7 +91,7 @@ class SuspicionSearch {
            (suspicion.before * suspicion.before - suspicion.after * suspicion.after);
   }
 
-  /// Of a linkage, all of whose joints move markers.
+  /// Where markers do not show a linkage's joints, these are as logged, and so are its motors.
   void AddMotors(int k) {
     const Linkage& linkage = tree_.linkages[Size(k)];
     const std::vector<int> joints = CoordinatesOf(tree_, linkage);
@@ -249,25 +250,22 @@ std::string NameOfEntry(const LogSuspicion& suspicion, int entry, const RobotTre
   return tree.joints[Size(tree.coordinate_joint[Size(entry)])].name;
 }
 
-/// Positions of a linkage's joints, of which the log's mistake is one of its motors.
-void CorrectMotors(const LogSuspicion& suspicion, const RobotTree& tree,
-                   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> q) {
+/// A posture without the mistake, which is one of a linkage's motors.
+Eigen::VectorXd WithoutMotorMistake(const LogSuspicion& suspicion, const RobotTree& tree,
+                                    Eigen::VectorXd q) {
   const Linkage& linkage = tree.linkages[Size(suspicion.linkage)];
-  const std::vector<int> entries = CoordinatesOf(tree, linkage);
-  auto motors = MotorPositions(tree, linkage, q(entries).transpose());
-  if (motors) {
+  const auto undo = [&](Eigen::VectorXd& motors) {
     if (suspicion.kind == LogContradiction::kSign) {
-      (*motors)[suspicion.coordinate] *= -1.0;
+      motors[suspicion.coordinate] *= -1.0;
     } else {
-      std::swap((*motors)[suspicion.coordinate], (*motors)[suspicion.other]);
+      std::swap(motors[suspicion.coordinate], motors[suspicion.other]);
     }
-    if (const auto joints = JointsFromMotors(tree, linkage, *motors)) {
-      q(entries) = joints->transpose();
-      return;
-    }
+  };
+  if (!MoveMotors(tree, linkage, undo, q)) {
+    throw InputError("linkage '" + linkage.name +
+                     "' would not close without that mistake: " + NameOf(suspicion, tree));
   }
-  throw InputError("linkage '" + linkage.name +
-                   "' would not close without that mistake: " + NameOf(suspicion, tree));
+  return q;
 }
 
 }  // namespace
@@ -325,7 +323,8 @@ Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspici
   }
   for (int i : suspicion.postures) {
     if (suspicion.linkage >= 0) {
-      CorrectMotors(suspicion, tree, corrected.q.row(i));
+      corrected.q.row(i) =
+          WithoutMotorMistake(suspicion, tree, corrected.q.row(i).transpose()).transpose();
     } else if (suspicion.kind == LogContradiction::kSign) {
       corrected.q(i, suspicion.coordinate) *= -1.0;
     } else {

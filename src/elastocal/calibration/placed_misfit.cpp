@@ -61,14 +61,7 @@ class PlacedRobot {
     for (const Sighting& one : sightings_) {
       if (const auto distance = DistanceOf(one)) distances[Size(one.marker)].push_back(*distance);
     }
-    double squares = 0.0;
-    int count = 0;
-    for (const std::vector<double>& of_marker : distances) {
-      if (of_marker.empty()) continue;
-      squares += std::pow(Median(of_marker), 2);
-      ++count;
-    }
-    return count == 0 ? 0.0 : std::sqrt(squares / count);
+    return TypicalDistance(distances);
   }
 
  private:
@@ -138,6 +131,17 @@ class PlacedRobot {
 };
 
 }  // namespace
+
+double TypicalDistance(const std::vector<std::vector<double>>& by_marker) {
+  double squares = 0.0;
+  int count = 0;
+  for (const std::vector<double>& of_marker : by_marker) {
+    if (of_marker.empty()) continue;
+    squares += std::pow(Median(of_marker), 2);
+    ++count;
+  }
+  return count == 0 ? 0.0 : std::sqrt(squares / count);
+}
 
 double PlacedMisfit(const ErrorModel& model, const Recording& recording) {
   return PlacedRobot(model, recording).Misfit();

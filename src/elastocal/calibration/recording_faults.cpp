@@ -9,6 +9,8 @@
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/variances.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/robot/linkage.hpp"
+#include "elastocal/robot/move_motors.hpp"
 
 namespace elastocal {
 namespace {
@@ -64,7 +66,13 @@ class FaultSearch {
     }
     const NormalEquations equations(body);
     const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
-    for (int coordinate : Coordinates()) TryJoint(equations, covariance, coordinate);
+    for (const int coordinate : Coordinates()) TryJoint(equations, covariance, coordinate);
+    const std::vector<Linkage>& linkages = result.model.tree.linkages;
+    for (std::size_t k = 0; k < linkages.size(); ++k) {
+      for (std::size_t rod = 0; rod < linkages[k].rods.size(); ++rod) {
+        TryMotor(equations, covariance, {static_cast<int>(k), static_cast<int>(rod)});
+      }
+    }
     TryScale(equations, covariance);
     std::stable_sort(
         found_.begin(), found_.end(),
@@ -106,7 +114,8 @@ class FaultSearch {
 
   std::set<int> Coordinates() const {
     std::set<int> coordinates;
-    for (int joint : result_.model.active_joints) {
+    for (const int joint : result_.model.active_joints) {
+      if (IsMovedByRods(result_.model.tree, joint)) continue;  // its motors are logged
       coordinates.insert(result_.model.tree.joints[joint].coordinate);
     }
     return coordinates;
@@ -151,13 +160,48 @@ class FaultSearch {
     Recording changed = recording_;
     changed.q.col(coordinate).array() += kStep;
     const Blocks derivative = Derivative(changed);
-    const auto joint =
-        std::find_if(result_.model.tree.joints.begin(), result_.model.tree.joints.end(),
-                     [&](const Joint& candidate) { return candidate.coordinate == coordinate; });
+    const std::vector<Joint>& joints = result_.model.tree.joints;
+    const auto joint = std::find_if(joints.begin(), joints.end(), [&](const Joint& candidate) {
+      return candidate.coordinate == coordinate;
+    });
     const bool slides = joint->type == JointType::kPrismatic;
+    RecordingFault fault;
+    fault.coordinate = coordinate;
+    Try(equations, covariance, derivative,
+        {MakeTrial(fault, [&](int i) { return recording_.q(i, coordinate); })}, slides);
+    TryOffsets(equations, covariance, derivative, fault, slides);
+  }
+
+  void TryMotor(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+                const MotorIndex& motor) {
+    const RobotTree& tree = result_.model.tree;
+    const Linkage& linkage = tree.linkages[static_cast<std::size_t>(motor.linkage)];
+    Recording changed = recording_;
+    const std::vector<int> joints = CoordinatesOf(tree, linkage);
+    for (int i = 0; i < recording_.posture_count(); ++i) {
+      const Eigen::VectorXd at = recording_.q(i, joints).transpose();
+      const auto motors = MotorPositions(tree, linkage, at);
+      if (!motors) continue;
+      if (const auto closure = CloseLinkage(tree, linkage, *motors, {}, at)) {
+        changed.q(i, joints) += kStep * closure->by_motors.col(motor.rod).transpose();
+      }
+    }
+    RecordingFault fault;
+    fault.coordinate = motor.rod;
+    fault.linkage = motor.linkage;
+    TryOffsets(equations, covariance, Derivative(changed), fault,
+               linkage.rods[static_cast<std::size_t>(motor.rod)].actuator);
+  }
+
+  /// Of a joint or motor, by the derivative of its position.
+  void TryOffsets(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+                  const Blocks& derivative, const RecordingFault& of, bool slides) {
     std::vector<Trial> trials;
-    const auto add = [&](RecordingFault fault, const auto& factor) {
-      fault.coordinate = coordinate;
+    const auto add = [&](int trial, int posture, const auto& factor) {
+      RecordingFault fault = of;
+      fault.kind = FaultKind::kJointOffset;
+      fault.trial = trial;
+      fault.posture = posture;
       trials.push_back(MakeTrial(fault, factor));
     };
     const auto try_all = [&] {
@@ -168,14 +212,8 @@ class FaultSearch {
     const int stride = std::max(1, count / kSplits);
     const auto add_split = [&](int split) {
       if (split <= 0 || split >= count) return;
-      add({.kind = FaultKind::kJointOffset, .posture = split},
-          [&](int i) { return i >= split ? 1.0 : 0.0; });
+      add(-1, split, [&](int i) { return i >= split ? 1.0 : 0.0; });
     };
-    const auto at = static_cast<int>(joint - result_.model.tree.joints.begin());
-    if (!IsMovedByRods(result_.model.tree, at)) {
-      add({FaultKind::kJointGain}, [&](int i) { return recording_.q(i, coordinate); });
-      try_all();
-    }
     const std::size_t before = found_.size();
     for (int split = stride; split < count; split += stride) add_split(split);
     try_all();
@@ -193,8 +231,7 @@ class FaultSearch {
       const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);
       if (first == recording_.trial.end()) continue;
       const int posture = static_cast<int>(first - recording_.trial.begin());
-      add({.kind = FaultKind::kJointOffset, .trial = trial, .posture = posture},
-          [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; });
+      add(trial, posture, [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; });
     }
     try_all();
   }
@@ -237,8 +274,14 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
   const bool joint = fault.kind != FaultKind::kCameraScale;
   std::string text = "camera positions";
   bool slides = false;
+  if (fault.linkage >= 0) {
+    const Rod& rod = tree.linkages[static_cast<std::size_t>(fault.linkage)]
+                         .rods[static_cast<std::size_t>(fault.coordinate)];
+    text = rod.motor;
+    slides = rod.actuator;
+  }
   for (const Joint& candidate : tree.joints) {
-    if (!joint || candidate.coordinate != fault.coordinate) continue;
+    if (!joint || fault.linkage >= 0 || candidate.coordinate != fault.coordinate) continue;
     text = candidate.name;
     slides = candidate.type == JointType::kPrismatic;
     break;

@@ -24,13 +24,14 @@ struct RecordingFault {
   double size = 0.0;    ///< gain less 1; offset, rad or m; scale less 1
   double sd = 0.0;      ///< of `size`, as wide as the postures scatter
   double share = 0.0;   ///< of the sum of squared residuals that it explains
+  int linkage = -1;     ///< of the tree: `coordinate` is a motor of it; -1: of q
 };
 
 /// Looks for the fault that explains most of what a fit has left: each candidate is one more
 /// unknown beside all others (score test), so that it is not confused with what the robot's own
 /// errors explain as well. Candidates are the gain of each joint (but of those that rods
-/// move, whose levers are the robot's own errors), an offset of each joint from a
-/// posture on (twelve of them, then all near the best one) or in one trial alone, and the scale
+/// move, whose levers are the robot's own errors), an offset of each joint, or motor of rods, from
+/// a posture on (twelve of them, then all near the best one) or in one trial alone, and the scale
 /// of the cameras in one of several trials (a scale of all of them looks like a robot all of whose
 /// lengths are off). Only faults that no good robot has are returned, the one that explains most
 /// first: of a size that matters (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain

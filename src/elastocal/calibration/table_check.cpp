@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "elastocal/calibration/placed_misfit.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/math/transform.hpp"
@@ -157,19 +158,6 @@ class TableSearch {
     }
   }
 
-  /// Root mean square over the markers of the median of each: a mistake of one joint moves few
-  /// markers, a wrong sighting is one of many.
-  static double Typical(const Distances& distances) {
-    double squares = 0.0;
-    int count = 0;
-    for (const std::vector<double>& of_marker : distances) {
-      if (of_marker.empty()) continue;
-      squares += std::pow(Median(of_marker), 2);
-      ++count;
-    }
-    return count == 0 ? 0.0 : std::sqrt(squares / count);
-  }
-
   /// How far markers typically are from a nominal robot whose root link is best placed, m.
   double Misfit(const Recording& recording) {
     std::vector<int> all(Size(recording.posture_count()));
@@ -186,7 +174,7 @@ class TableSearch {
         AddDistances(sightings, *T_ref_root, distances);
       }
     }
-    return Typical(distances);
+    return TypicalDistance(distances);
   }
 
   void TryLog(LogSuspicion suspicion, std::vector<LogSuspicion>& found) {
@@ -227,8 +215,8 @@ class TableSearch {
     AddDistances(SightingsOf(recording_, Thinned(longest)), *T_ref_root, frozen);
     AddDistances(elsewhere, *T_ref_root, moving);
     LogSuspicion suspicion{.kind = LogContradiction::kFrozen, .coordinate = c, .postures = longest};
-    suspicion.before = Typical(frozen);
-    suspicion.after = Typical(moving);
+    suspicion.before = TypicalDistance(frozen);
+    suspicion.after = TypicalDistance(moving);
     if (suspicion.before > kFarFromNominal && suspicion.after <= kLeftOfMisfit * suspicion.before) {
       found.push_back(std::move(suspicion));
     }

@@ -2,6 +2,7 @@
 #include "elastocal/io/motor_columns.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "elastocal/io/recording_columns.hpp"
@@ -57,6 +58,43 @@ std::optional<std::vector<int>> ColumnsOf(const std::vector<std::string>& names,
     columns.push_back(static_cast<int>(found - log.names.begin()));
   }
   return columns;
+}
+
+/// Whether the loops close in all of at most so many rows, evenly spread, and in the row `one`.
+bool ClosesInAll(const RobotTree& tree, const Linkage& linkage, const Eigen::MatrixXd& motors,
+                 Eigen::Index one) {
+  constexpr Eigen::Index kMostRows = 100;
+  if (!JointsFromMotors(tree, linkage, motors.row(one).transpose())) return false;
+  for (Eigen::Index row = 0; row < motors.rows(); row += 1 + motors.rows() / kMostRows) {
+    if (!JointsFromMotors(tree, linkage, motors.row(row).transpose())) return false;
+  }
+  return true;
+}
+
+/// "with the sign of 'a' reversed, or with 'a' and 'b' exchanged"; empty where nothing helps.
+std::string WhatWouldClose(const RobotTree& tree, const Linkage& linkage,
+                           const Eigen::MatrixXd& motors, Eigen::Index failed) {
+  std::string found;
+  const auto attempt = [&](const Eigen::MatrixXd& changed, const std::string& what) {
+    if (!ClosesInAll(tree, linkage, changed, failed)) return;
+    found += (found.empty() ? "with " : ", or with ") + what;
+  };
+  const auto name = [&](Eigen::Index i) { return Quote(linkage.rods[Size(i)].motor); };
+  for (Eigen::Index i = 0; i < motors.cols(); ++i) {
+    Eigen::MatrixXd changed = motors;
+    changed.col(i) *= -1.0;
+    attempt(changed, "the sign of " + name(i) + " reversed");
+    for (Eigen::Index k = 0; k < i; ++k) {
+      changed = motors;
+      changed.col(i).swap(changed.col(k));
+      attempt(changed, name(k) + " and " + name(i) + " exchanged");
+    }
+  }
+  const bool turns = std::none_of(linkage.rods.begin(), linkage.rods.end(),
+                                  [](const Rod& rod) { return rod.actuator; });
+  const bool may_be_degrees = motors.cwiseAbs().maxCoeff() > 2.0 * M_PI;
+  if (turns && may_be_degrees) attempt(motors * (M_PI / 180.0), "degrees read as such");
+  return found;
 }
 
 std::vector<std::string> MotorNames(const Linkage& linkage) {
@@ -134,15 +172,19 @@ Eigen::Index MotorsToJoints(const RobotTree& tree, const Linkage& linkage,
   return -1;
 }
 
-std::string CannotClose(const Linkage& linkage, const Eigen::VectorXd& motors) {
+std::string CannotClose(const RobotTree& tree, const Linkage& linkage,
+                        const Eigen::MatrixXd& motors, Eigen::Index failed) {
   std::string text;
   for (std::size_t i = 0; i < linkage.rods.size(); ++i) {
     const Rod& rod = linkage.rods[i];
     text += std::string(i == 0 ? "motor " : " and motor ") + Quote(rod.motor) + " at " +
-            FormatNumber(motors[static_cast<Eigen::Index>(i)]) + (rod.actuator ? " m" : " rad");
+            FormatNumber(motors(failed, static_cast<Eigen::Index>(i))) +
+            (rod.actuator ? " m" : " rad");
   }
-  return text + ": the rods of linkage " + Quote(linkage.name) +
-         " do not reach there; positions at which its loops close were expected";
+  text += ": the rods of linkage " + Quote(linkage.name) +
+          " do not reach there; positions at which its loops close were expected";
+  const std::string cause = WhatWouldClose(tree, linkage, motors, failed);
+  return cause.empty() ? text : text + " (in all postures they close " + cause + ")";
 }
 
 void MotorsToJoints(const RobotTree& tree, JointLog& log) {
@@ -154,7 +196,7 @@ void MotorsToJoints(const RobotTree& tree, JointLog& log) {
     const Eigen::Index failed = MotorsToJoints(tree, linkage, *columns, log.positions, &by_motors);
     if (failed >= 0) {
       throw InputError(log.source + ": sample " + std::to_string(failed + 1) + ": " +
-                       CannotClose(linkage, motors(failed, *columns).transpose()));
+                       CannotClose(tree, linkage, motors(Eigen::all, *columns), failed));
     }
     for (Eigen::Index row = 0; row < log.torques.rows(); ++row) {
       const Eigen::VectorXd torques = log.torques(row, *columns).transpose();

@@ -34,8 +34,11 @@ Eigen::Index MotorsToJoints(const RobotTree& tree, const Linkage& linkage,
                             const std::vector<int>& columns, Eigen::MatrixXd& table,
                             std::vector<Eigen::MatrixXd>* by_motors = nullptr);
 
-/// "the motors a (0.1 rad) and b (3 rad) cannot be there together ...", about one row.
-std::string CannotClose(const Linkage& linkage, const Eigen::VectorXd& motors);
+/// "motor 'a' at 3 rad and motor 'b' at 0.1 rad: the rods of linkage 'l' do not reach there ...",
+/// about the row `failed` of positions of the linkage's motors, and which sign, exchange or unit
+/// would let the loops close in all rows.
+std::string CannotClose(const RobotTree& tree, const Linkage& linkage,
+                        const Eigen::MatrixXd& motors, Eigen::Index failed);
 
 /// The log of motors as that of the joints; torques by the virtual work: those of the joints have
 /// the power of those of the motors. A joint has no torque where one of its motors has none. Throws

@@ -140,10 +140,11 @@ void CloseLinkages(const Project& with_motors, const RobotTree& tree, Recording&
     const auto first = static_cast<std::size_t>(linkage.joints[0]);
     if (with_motors.tree.joints[first].name == tree.joints[first].name) continue;
     const std::vector<int> columns = CoordinatesOf(tree, linkage);
+    const Eigen::MatrixXd motors = recording.q(Eigen::all, columns);
     const Eigen::Index failed = MotorsToJoints(tree, linkage, columns, recording.q);
     if (failed < 0) continue;
     throw InputError(Place(recording.source, recording.line[static_cast<std::size_t>(failed)]) +
-                     CannotClose(linkage, recording.q(failed, columns).transpose()));
+                     CannotClose(tree, linkage, motors, failed));
   }
 }
 

@@ -22,7 +22,8 @@ namespace {
 
 /// "; if its scale is right, look at ..." where other joints follow the one of a gain; else empty.
 std::string Followers(const RecordingFault& fault, const RobotTree& tree) {
-  if (fault.kind != FaultKind::kJointGain || fault.coordinate < 0 || fault.trial >= 0) return "";
+  const bool joint = fault.coordinate >= 0 && fault.linkage < 0;
+  if (fault.kind != FaultKind::kJointGain || !joint || fault.trial >= 0) return "";
   std::string names;
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     const bool own = tree.coordinate_joint[Size(fault.coordinate)] == static_cast<int>(k);

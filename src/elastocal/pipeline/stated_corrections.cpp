@@ -7,6 +7,9 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/robot/linkage.hpp"
+#include "elastocal/robot/move_motors.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -15,27 +18,42 @@ namespace {
 constexpr double kLeastFactor = 0.5, kLargestFactor = 2.0;
 constexpr double kLargestOffsetDeg = 60.0, kLargestOffsetMm = 200.0;
 
-const Joint* JointOfCoordinate(const RobotTree& tree, int coordinate) {
-  for (const Joint& joint : tree.joints) {
-    if (joint.coordinate == coordinate) return &joint;
-  }
-  return nullptr;
+/// A joint, or a motor of rods, whose positions are logged.
+struct LoggedName {
+  std::string name;
+  int coordinate = -1, linkage = -1;  ///< as in StatedCorrection
+  bool slides = false;
+
+  double unit() const { return slides ? 1e-3 : M_PI / 180.0; }  ///< of an offset in files
+};
+
+LoggedName NameOfMotor(const RobotTree& tree, int linkage, int rod) {
+  const Rod& of =
+      tree.linkages[static_cast<std::size_t>(linkage)].rods[static_cast<std::size_t>(rod)];
+  return {of.motor, rod, linkage, of.actuator};
 }
 
-/// Of an offset in files.
-double UnitOf(const Joint& joint) {
-  return joint.type == JointType::kPrismatic ? 1e-3 : M_PI / 180.0;
+std::optional<LoggedName> NameLogged(const RobotTree& tree, int linkage, int coordinate) {
+  if (linkage >= 0) return NameOfMotor(tree, linkage, coordinate);
+  for (const Joint& joint : tree.joints) {
+    if (joint.coordinate != coordinate) continue;
+    return LoggedName{joint.name, coordinate, -1, joint.type == JointType::kPrismatic};
+  }
+  return std::nullopt;
 }
 
 [[noreturn]] void Refuse(const std::string& name, const std::string& why) {
   throw InputError("--accept " + name + ": " + why);
 }
 
-const Joint& FindJoint(const std::string& name, const std::string& joint, const RobotTree& tree) {
-  for (const Joint& candidate : tree.joints) {
-    if (candidate.name == joint && candidate.coordinate >= 0) return candidate;
+LoggedName FindLogged(const std::string& name, const std::string& of, const RobotTree& tree) {
+  const MotorIndex motor = FindMotor(tree, of);
+  if (motor.linkage >= 0) return NameOfMotor(tree, motor.linkage, motor.rod);
+  for (const Joint& joint : tree.joints) {
+    if (joint.name != of || joint.coordinate < 0) continue;
+    return {joint.name, joint.coordinate, -1, joint.type == JointType::kPrismatic};
   }
-  Refuse(name, "the robot has no moving joint '" + joint + "'");
+  Refuse(name, "the robot has no moving joint '" + of + "'");
 }
 
 void CheckSize(const std::string& name, double size, double least, double largest,
@@ -45,7 +63,7 @@ void CheckSize(const std::string& name, double size, double least, double larges
 }
 
 /// Undoes it in one recording; whether the recording has the trial.
-bool ApplyTo(const StatedCorrection& correction, Recording& recording) {
+bool ApplyTo(const StatedCorrection& correction, const RobotTree& tree, Recording& recording) {
   bool found = correction.trial.empty();
   int number = 0;  // of the posture in the trial
   for (int i = 0; i < recording.posture_count(); ++i) {
@@ -57,17 +75,29 @@ bool ApplyTo(const StatedCorrection& correction, Recording& recording) {
     if (!here) continue;
     found = true;
     if (++number < correction.from) continue;
-    switch (correction.kind) {
-      case FaultKind::kJointGain:
-        recording.q(i, correction.coordinate) /= correction.size;
-        break;
-      case FaultKind::kJointOffset:
-        recording.q(i, correction.coordinate) -= correction.size;
-        break;
-      case FaultKind::kCameraScale:
-        recording.markers.row(i) /= correction.size;
-        break;
+    if (correction.kind == FaultKind::kCameraScale) {
+      recording.markers.row(i) /= correction.size;
+      continue;
     }
+    const auto undo = [&](double& position) {
+      if (correction.kind == FaultKind::kJointGain) {
+        position /= correction.size;
+      } else {
+        position -= correction.size;
+      }
+    };
+    if (correction.linkage < 0) {
+      undo(recording.q(i, correction.coordinate));
+      continue;
+    }
+    const Linkage& linkage = tree.linkages[static_cast<std::size_t>(correction.linkage)];
+    Eigen::VectorXd q = recording.q.row(i).transpose();
+    const auto undo_motor = [&](Eigen::VectorXd& motors) { undo(motors[correction.coordinate]); };
+    if (!MoveMotors(tree, linkage, undo_motor, q)) {
+      throw InputError(fmt::format("--accept: the rods of linkage '{}' would not close in {}",
+                                   linkage.name, DescribePosture(recording, i)));
+    }
+    recording.q.row(i) = q.transpose();
   }
   return found;
 }
@@ -86,7 +116,7 @@ void ReadFirstPosture(const std::string& name, StatedCorrection& correction) {
 }
 
 /// The names that undo an offset in all trials from a posture on.
-std::string NamesFromPosture(const RecordingFault& fault, const Joint& joint,
+std::string NamesFromPosture(const RecordingFault& fault, const LoggedName& logged,
                              const Recording& recording) {
   const auto trial_of = [&](int posture) {
     return recording.trial[static_cast<std::size_t>(posture)];
@@ -98,9 +128,9 @@ std::string NamesFromPosture(const RecordingFault& fault, const Joint& joint,
   for (int i = fault.posture; i < recording.posture_count(); ++i) {
     if (i > fault.posture && trial_of(i) == trial_of(i - 1)) continue;
     const int from = trial_of(i) == first ? i - begin + 1 : 1;
-    names += fmt::format("{}offset:{}@{}{}={:.4f}", names.empty() ? "" : " ", joint.name,
+    names += fmt::format("{}offset:{}@{}{}={:.4f}", names.empty() ? "" : " ", logged.name,
                          recording.trials[static_cast<std::size_t>(trial_of(i))].name,
-                         from > 1 ? fmt::format(":{}", from) : "", fault.size / UnitOf(joint));
+                         from > 1 ? fmt::format(":{}", from) : "", fault.size / logged.unit());
   }
   return names;
 }
@@ -114,12 +144,12 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
     return fmt::format("the positions of {}{} were divided by {:g}", correction.joint, where,
                        correction.size);
   }
-  const Joint& joint = *JointOfCoordinate(tree, correction.coordinate);
+  const LoggedName logged = *NameLogged(tree, correction.linkage, correction.coordinate);
   const std::string from =
       correction.from > 1 ? fmt::format(" from posture {} on", correction.from) : "";
   return fmt::format("{:g} {} were taken from the positions of {}{}{}",
-                     correction.size / UnitOf(joint),
-                     joint.type == JointType::kPrismatic ? "mm" : "deg", joint.name, where, from);
+                     correction.size / logged.unit(), logged.slides ? "mm" : "deg", logged.name,
+                     where, from);
 }
 
 }  // namespace
@@ -164,9 +194,10 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
     correction.trial = of.substr(at + 1);
     of.resize(at);
   }
-  const Joint& joint = FindJoint(name, of, tree);
-  correction.joint = joint.name;
-  correction.coordinate = joint.coordinate;
+  const LoggedName logged = FindLogged(name, of, tree);
+  correction.joint = logged.name;
+  correction.coordinate = logged.coordinate;
+  correction.linkage = logged.linkage;
   if (correction.kind == FaultKind::kJointGain) {
     CheckSize(name, *size, kLeastFactor, kLargestFactor, "");
     correction.size = *size;
@@ -178,10 +209,9 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
            "expected");
   }
   ReadFirstPosture(name, correction);
-  const bool slides = joint.type == JointType::kPrismatic;
-  const double largest = slides ? kLargestOffsetMm : kLargestOffsetDeg;
-  CheckSize(name, *size, -largest, largest, slides ? " mm" : " deg");
-  correction.size = *size * UnitOf(joint);
+  const double largest = logged.slides ? kLargestOffsetMm : kLargestOffsetDeg;
+  CheckSize(name, *size, -largest, largest, logged.slides ? " mm" : " deg");
+  correction.size = *size * logged.unit();
   return correction;
 }
 
@@ -193,23 +223,23 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
     if (trial.empty()) return std::nullopt;
     return fmt::format("scale:{}={:.5f}", trial, 1.0 + fault.size);
   }
-  const Joint* joint = JointOfCoordinate(tree, fault.coordinate);
-  if (joint == nullptr) return std::nullopt;
+  const std::optional<LoggedName> logged = NameLogged(tree, fault.linkage, fault.coordinate);
+  if (!logged) return std::nullopt;
   const std::string where = trial.empty() ? "" : "@" + trial;
   if (fault.kind == FaultKind::kJointGain) {
-    return fmt::format("gain:{}{}={:.5f}", joint->name, where, 1.0 + fault.size);
+    return fmt::format("gain:{}{}={:.5f}", logged->name, where, 1.0 + fault.size);
   }
   if (trial.empty()) {
     if (recording.trial.empty()) return std::nullopt;
-    return NamesFromPosture(fault, *joint, recording);
+    return NamesFromPosture(fault, *logged, recording);
   }
-  return fmt::format("offset:{}{}={:.4f}", joint->name, where, fault.size / UnitOf(*joint));
+  return fmt::format("offset:{}{}={:.4f}", logged->name, where, fault.size / logged->unit());
 }
 
 std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree& tree,
                             Measurements& measured) {
-  const bool first = ApplyTo(correction, measured.calibration);
-  const bool second = ApplyTo(correction, measured.validation);
+  const bool first = ApplyTo(correction, tree, measured.calibration);
+  const bool second = ApplyTo(correction, tree, measured.validation);
   if (!first && !second) {
     std::set<std::string> known;
     for (const Recording* of : {&measured.calibration, &measured.validation}) {

@@ -10,7 +10,7 @@
 
 namespace elastocal {
 
-/// A correction of a recording that says its own size, for `--accept`:
+/// A correction of a recording that says its own size, for `--accept` (JOINT: or a motor of rods):
 ///
 ///     gain:JOINT=1.05          the joint's positions are 1.05 times the true ones, in all trials
 ///     gain:JOINT@TRIAL=1.05    in this trial alone
@@ -21,6 +21,7 @@ namespace elastocal {
 struct StatedCorrection {
   FaultKind kind = FaultKind::kJointGain;
   int coordinate = -1;     ///< of the robot tree; of a scale: -1
+  int linkage = -1;        ///< of the tree: `coordinate` is a motor of it; -1: of q
   std::string joint = {};  ///< of a scale: empty
   std::string trial = {};  ///< empty: all
   int from = 1;            ///< the first posture of the trial that has it, from 1
