@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "elastocal/elastocal.hpp"
@@ -86,6 +87,39 @@ TEST_F(PlainMistakes, TwoAreNamedBesideEachOther) {
   }
   AcceptMistakes(project_, names, measured);
   EXPECT_EQ(measured.calibration.q, recorded_.q);
+}
+
+// Rows without a partner are left out: what is tried next is of the shorter table.
+TEST_F(PlainMistakes, RowsThatAreShifted) {
+  for (const int rows : {-2, -1, 1, 2, 3}) {
+    Recording wrong = recorded_;
+    for (int i = 0; i < wrong.posture_count(); ++i) {
+      wrong.q.row(i) = recorded_.q.row((i - rows + wrong.posture_count()) % wrong.posture_count());
+    }
+    const std::string name = fmt::format("rows:{:+d}", rows);
+    ExpectNamed(Find(wrong), "markers belong to the joint positions", "--accept " + name);
+    Measurements measured;
+    measured.calibration = wrong;
+    AcceptMistakes(project_, {name}, measured);
+    EXPECT_EQ(measured.calibration.posture_count(), 30 - std::abs(rows));
+    EXPECT_EQ(First(Find(measured.calibration)), "");
+  }
+}
+
+// Offsets of two joints may look like anything; what is left then is no explanation.
+TEST_F(PlainMistakes, NothingIsNamedThatLeavesCentimetres) {
+  Measurements measured;
+  measured.calibration = recorded_;
+  const auto left = [](const RecordedModel&, const Recording& recording) {
+    return recording.posture_count() < 30 ? 0.1 : 0.5;
+  };
+  Recording& wrong = measured.calibration;
+  for (int i = 0; i < 30; ++i) wrong.q.row(i) = recorded_.q.row((i + 1) % 30);
+  EXPECT_TRUE(FindMistakesBy(project_, {}, measured, 0.5, left).empty());
+  const auto explained = [](const RecordedModel&, const Recording& recording) {
+    return recording.posture_count() < 30 ? 0.01 : 0.5;
+  };
+  ASSERT_EQ(FindMistakesBy(project_, {}, measured, 0.5, explained).size(), 1u);
 }
 
 TEST_F(PlainMistakes, NothingIsEstimatedOrChosenBesideThem) {

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "elastocal/calibration/positions_by_markers.hpp"
@@ -109,7 +110,7 @@ class SuspicionSearch {
       shown_.row(i).tail(count) = (logged && shown ? *shown : unknown).transpose();
     }
     for (int rod = 0; rod < count; ++rod) {
-      motors_.push_back({k, rod});
+      motors_.emplace_back(k, rod);
       entries_.push_back(static_cast<int>(first) + rod);
     }
   }
@@ -322,6 +323,9 @@ Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspici
     return SelectPostures(recording, kept);
   }
   for (int i : suspicion.postures) {
+    if (i >= recording.posture_count()) {
+      throw std::invalid_argument("a suspicion of another recording");
+    }
     if (suspicion.linkage >= 0) {
       corrected.q.row(i) =
           WithoutMotorMistake(suspicion, tree, corrected.q.row(i).transpose()).transpose();

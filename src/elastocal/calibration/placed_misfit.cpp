@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "elastocal/math/interruption.hpp"
@@ -97,15 +98,12 @@ class PlacedRobot {
       nominal[group].push_back(InRoot(one));
       measured[group].push_back(one.measured);
     }
-    roots_.clear();
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const std::size_t group = free_root_ ? i : 0;
-      if (group == i) {
-        roots_.push_back(FitRigid(nominal[group], measured[group]));
-      } else {
-        roots_.push_back(std::optional<Transform>(roots_.front()));
-      }
+    std::vector<std::optional<Transform>> placed;
+    for (std::size_t group = 0; group < groups; ++group) {
+      placed.push_back(FitRigid(nominal[group], measured[group]));
     }
+    roots_ = free_root_ ? std::move(placed)
+                        : std::vector<std::optional<Transform>>(bodies_.size(), placed.front());
   }
 
   /// Each marker goes where most sightings have it on its link.

@@ -18,7 +18,8 @@ namespace {
 constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
 constexpr double kLeastExplained = 0.08;
 constexpr double kLeastSds = 8.0;
-constexpr int kSplits = 12;  // of the recording, after which an offset of a joint may begin
+constexpr int kLeastSide = 3;  // postures before and after it
+constexpr int kSplits = 12;    // of the recording, after which an offset of a joint may begin
 
 /// Sizes from which a fault is none that a good robot and good cameras may have.
 double LeastSize(FaultKind kind, bool slides) {
@@ -211,7 +212,8 @@ class FaultSearch {
     const int count = recording_.posture_count();
     const int stride = std::max(1, count / kSplits);
     const auto add_split = [&](int split) {
-      if (split <= 0 || split >= count) return;
+      // Nearly all postures, or nearly none: an error of the robot, or one bad posture.
+      if (split < kLeastSide || split > count - kLeastSide) return;
       add(-1, split, [&](int i) { return i >= split ? 1.0 : 0.0; });
     };
     const std::size_t before = found_.size();

@@ -126,6 +126,14 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
         fmt::join(run.alternatives, ", or "));
   }
   if (!run.explained()) return Unexplained(run);
+  if (run.changed_beyond_telling()) {
+    return fmt::format(
+        "Changed: the calibrated robot errs by {} mm here, where the calibration left {} mm; these "
+        "postures are too few to tell which joint has moved. Record more, and more different "
+        "ones.\n",
+        Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3),
+        Millimetres(run.left_before, 3));
+  }
   if (!run.check.changed()) {
     return fmt::format(
         "Unchanged: the calibration explains these postures (chance of a false alarm {:.3g} %).\n",

@@ -17,46 +17,55 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastScale = 2e-4;  // cameras are hardly calibrated better
-constexpr int kTurns = 3;             // by which a scale is found: a refit takes a part of it
+constexpr int kTurns = 4;             // by which a size is found
+constexpr double kMostSteps = 10.0;   // of a turn
 
-double CameraScale(const CheckedCalibration& calibration, Recording recording,
-                   const CalibrationOptions& options) {
-  double scale = 1.0;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    const CalibrationResult& result = calibration.refit(recording).result;
-    const double more = ScaleOfMarkers(
-        recording, Predict(result.model, result.delta, recording, options).positions);
-    scale *= more;
-    recording.markers /= more;
-  }
-  return scale;
-}
-
-double SquaresWithGain(const CheckedCalibration& calibration, Recording recording, int coordinate,
-                       double gain) {
-  recording.q.col(coordinate) /= gain;
+/// What a recording leaves of the joints as calibrated, m^2.
+double SquaresOf(const CheckedCalibration& calibration, const Recording& recording) {
   return std::pow(calibration.refit(recording).metrics_all.rmse_3d, 2);
 }
 
-/// The gain of a joint that explains most of what the joints as calibrated leave. It is found to
-/// first order, and then by parabolas through what is left with it and beside it.
+/// The size at which least is left, by parabolas from `start`.
+double LeastSquares(const std::function<double(double)>& squares, double start) {
+  double size = start, step = 0.1 * std::abs(start);
+  for (int turn = 0; turn < kTurns; ++turn, step *= 0.3) {
+    const double here = squares(size), below = squares(size - step), above = squares(size + step);
+    const double curvature = below + above - 2.0 * here;
+    if (!(curvature > 0.0)) break;
+    size += std::clamp(0.5 * (below - above) / curvature, -kMostSteps, kMostSteps) * step;
+  }
+  return size;
+}
+
+/// The scale of the cameras. That of the predicted markers is where its search begins: the refit of
+/// root and markers has taken a part of it.
+double CameraScale(const CheckedCalibration& calibration, const Recording& recording,
+                   const CalibrationOptions& options) {
+  const CalibrationResult result = calibration.refit(recording).result;
+  const double start =
+      ScaleOfMarkers(recording, Predict(result.model, result.delta, recording, options).positions);
+  const auto squares = [&](double size) {
+    Recording corrected = recording;
+    corrected.markers /= 1.0 + size;
+    return SquaresOf(calibration, corrected);
+  };
+  return 1.0 + LeastSquares(squares, start - 1.0);
+}
+
+/// The gain of a joint that explains most of what the joints as calibrated leave; its size to first
+/// order is where the search for it begins.
 std::optional<RecordingFault> WrongGain(const CheckedCalibration& calibration,
                                         const Recording& recording,
                                         const CalibrationOptions& options) {
   for (RecordingFault& fault :
        FindRecordingFaults(calibration.refit(recording).result, recording, options)) {
     if (fault.kind != FaultKind::kJointGain || fault.trial >= 0) continue;
-    double step = 0.1 * std::abs(fault.size);
-    for (int turn = 0; turn < kTurns; ++turn, step *= 0.3) {
-      const auto squares = [&](double size) {
-        return SquaresWithGain(calibration, recording, fault.coordinate, 1.0 + size);
-      };
-      const double here = squares(fault.size);
-      const double below = squares(fault.size - step), above = squares(fault.size + step);
-      const double curvature = below + above - 2.0 * here;
-      if (!(curvature > 0.0)) break;
-      fault.size += std::clamp(0.5 * (below - above) / curvature, -3.0, 3.0) * step;
-    }
+    const auto squares = [&](double size) {
+      Recording corrected = recording;
+      corrected.q.col(fault.coordinate) /= 1.0 + size;
+      return SquaresOf(calibration, corrected);
+    };
+    fault.size = LeastSquares(squares, fault.size);
     return fault;
   }
   return std::nullopt;
@@ -96,7 +105,7 @@ double ScaleOfMarkers(const Recording& recording, const Eigen::MatrixXd& predict
       const Eigen::Vector3d position = predicted.block<1, 3>(i, 3 * m).transpose();
       if (!Seen(recording, i, m) || !position.allFinite()) continue;
       at.push_back(position);
-      off.push_back(MarkerPosition(recording, i, m) - position);
+      off.emplace_back(MarkerPosition(recording, i, m) - position);
     }
     if (!one_pose) add();
   }

@@ -89,7 +89,9 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
     run.mistakes.push_back(DescribeMistake(mistake));
   }
 
-  if (mistakes.empty() && (fit.check.changed() || !run.explained())) {
+  run.estimate = std::move(fit.estimate);
+  run.check = std::move(fit.check);
+  if (mistakes.empty() && !run.unchanged()) {
     const CheckedCalibration calibration = {
         [&](const Recording& of) { return as_calibrated(fit.robot, of).calibrated; },
         [&](const Measurements& corrected) {
@@ -106,8 +108,6 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
 
   run.warnings.insert(run.warnings.end(), fit.measured.warnings.begin(),
                       fit.measured.warnings.end());
-  run.estimate = std::move(fit.estimate);
-  run.check = std::move(fit.check);
   run.recording = std::move(fit.measured.calibration);
   return run;
 }
@@ -128,8 +128,13 @@ bool CheckRun::recording_explains() const {
   return !alternatives.empty() && !by_one_joint;
 }
 
+bool CheckRun::changed_beyond_telling() const {
+  return !check.changed() && transfer.calibrated.metrics_all.rmse_3d > most_left();
+}
+
 bool CheckRun::unchanged() const {
-  return converged() && mistakes.empty() && !check.changed() && plausible() && explained();
+  return converged() && mistakes.empty() && !check.changed() && plausible() && explained() &&
+         !changed_beyond_telling();
 }
 
 std::string CheckStatus(const CheckRun& run) {
@@ -139,7 +144,7 @@ std::string CheckStatus(const CheckRun& run) {
   if (run.recording_explains()) return "recording wrong";
   if (!run.explained()) return "unexplained";
   if (!run.check.moved.empty()) return "moved";
-  return run.check.changed() ? "changed" : "unchanged";
+  return run.unchanged() ? "unchanged" : "changed";
 }
 
 std::string MakeCheckJson(const CheckRun& run) {

@@ -42,6 +42,9 @@ struct CheckRun {
   bool explained() const { return !(rmse_estimate > most_left()); }
   /// Whether an alternative explains what otherwise takes several joints, or none does.
   bool recording_explains() const;
+  /// Whether the robot as calibrated leaves more than `most_left`, and no joint is accused of it:
+  /// too few postures, or markers, tell which one.
+  bool changed_beyond_telling() const;
   /// Whether the calibration still explains the robot.
   bool unchanged() const;
 };

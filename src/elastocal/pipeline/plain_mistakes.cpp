@@ -24,12 +24,13 @@ namespace elastocal {
 namespace {
 
 constexpr int kFewestPlaced = 8;       // of few, anything is explained
-constexpr double kLeftOfMisfit = 0.4;  // of the placed nominal robot
+constexpr double kLeftOfMisfit = 0.7;  // of the placed nominal robot
 constexpr double kLeftByOneOfSeveral = 0.9;
 constexpr double kLeftOfOffsets = 0.5;  // of the robot with joint offsets
 constexpr double kFarFromRobot = 3e-3;  // m: beyond what geometric errors leave
 constexpr double kLeftOfGeometry = 0.3;
-constexpr int kFewestBodies = 3;  // that show whether the root stands elsewhere
+constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated leaves more
+constexpr int kFewestBodies = 2;    // that show whether the root stands elsewhere
 
 /// A robot and what was recorded of it, once a mistake is undone.
 struct Alternative {
@@ -89,28 +90,28 @@ class PlainSearch {
 
   /// Mistakes, each beside those before it; empty: none.
   std::vector<Alternative> Run() {
-    const std::vector<LogSuspicion> possible = PossibleLogMistakes(given_.recording, project_.tree);
-    for (const auto& search : {&PlainSearch::FindInTable, &PlainSearch::FindExchange}) {
-      std::vector<Alternative> found = Confirmed((this->*search)(possible));
+    for (const auto& search :
+         {&PlainSearch::FindInTable, &PlainSearch::FindExchange, &PlainSearch::FindWrongFollower}) {
+      std::vector<Alternative> found = Confirmed((this->*search)());
       if (!found.empty()) return found;
     }
-    std::vector<Alternative> found = Confirmed(FindWrongFollower());
-    return found.empty() ? FindMovedRoot() : found;
+    return FindMovedRoot();
   }
 
  private:
-  using Possible = std::vector<LogSuspicion>;
+  std::vector<LogSuspicion> SignsIn(const Recording& recording) const {
+    std::vector<LogSuspicion> signs = PossibleLogMistakes(recording, project_.tree);
+    std::erase_if(signs, [](const auto& one) { return one.kind != LogContradiction::kSign; });
+    return signs;
+  }
 
-  std::vector<Alternative> FindInTable(const Possible& possible) const {
-    Possible signs;
-    std::copy_if(possible.begin(), possible.end(), std::back_inserter(signs),
-                 [](const auto& one) { return one.kind == LogContradiction::kSign; });
+  std::vector<Alternative> FindInTable() const {
     std::vector<Alternative> found;
     std::size_t told = 0;  // the last one that explains most of what is left
     for (RecordingMistake& one : FindMistakesBy(
              project_, given_.recording, misfit_,
-             [&](const Recording& corrected) { return MisfitOf(given_.model, corrected); }, signs,
-             kLeftByOneOfSeveral)) {
+             [&](const Recording& corrected) { return MisfitOf(given_.model, corrected); },
+             [&](const Recording& recording) { return SignsIn(recording); }, kLeftByOneOfSeveral)) {
       found.push_back({one.what, one.name, given_.model, std::move(one.corrected)});
       if (one.after < kLeftOfMisfit * one.before) told = found.size();
     }
@@ -118,7 +119,8 @@ class PlainSearch {
     return found;
   }
 
-  std::vector<Alternative> FindExchange(const Possible& possible) const {
+  std::vector<Alternative> FindExchange() const {
+    const std::vector<LogSuspicion> possible = PossibleLogMistakes(given_.recording, project_.tree);
     const LogSuspicion* best = nullptr;
     double least = kLeftOfMisfit * misfit_;
     for (const LogSuspicion& one : possible) {
@@ -210,7 +212,8 @@ class PlainSearch {
     if (!(MisfitOf(free.model, free.recording) < kLeftOfMisfit * misfit_)) return {};
     const double before = GeometricError(given_, project_);
     const double after = GeometricError(free, project_);
-    if (!(before > kFarFromRobot) || !(after < kLeftOfGeometry * before)) return {};
+    const bool moved = before > kFarFromRobot && after < kLeftOfGeometry * before;
+    if (!moved || after > kMostLeft) return {};
     free.what = fmt::format(
         "the root link seems to stand elsewhere in each posture (if it does, write recording: "
         "{{root: free}} into the project); with all geometric errors estimated, markers are {:.3g} "

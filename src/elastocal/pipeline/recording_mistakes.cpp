@@ -29,7 +29,9 @@ constexpr std::size_t kMostTried = 3;     // of a kind, at a time
 constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
 constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
 constexpr std::size_t kManyLeftOut = 4;   // a quarter of the postures
-constexpr double kNoWorse = 1.2;          // of what is left without the postures
+constexpr double kLeftByLeavingOut = 0.3;
+constexpr double kExplained = 0.02;  // m: no robot whose errors are estimated leaves more
+constexpr double kNoWorse = 1.2;     // of what is left without the postures
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
 
@@ -218,6 +220,12 @@ class Refitting {
   std::optional<BaseParameters> base_;
 };
 
+/// None where too much is left in the end.
+std::vector<RecordingMistake> Explained(std::vector<RecordingMistake> mistakes) {
+  if (!mistakes.empty() && mistakes.back().after > kExplained) mistakes.clear();
+  return mistakes;
+}
+
 }  // namespace
 
 double FitError(const CalibrationResult& result, const Recording& recording,
@@ -241,7 +249,7 @@ double MarkerError(const CalibrationResult& result, const Recording& recording,
 
 std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, const Recording& recording, double error,
-    const std::function<double(const Recording&)>& error_of, const std::vector<LogSuspicion>& more,
+    const std::function<double(const Recording&)>& error_of, const FurtherSuspicions& more,
     double left_of_error) {
   std::vector<RecordingMistake> mistakes;
   if (recording.posture_count() == 0) return mistakes;
@@ -249,7 +257,9 @@ std::vector<RecordingMistake> FindMistakesBy(
   Recording current = recording;
   while (mistakes.size() < kMostMistakes) {
     std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
-    for (const LogSuspicion& one : more) AddUndone(one, project.tree, current, tried);
+    if (more) {
+      for (const LogSuspicion& one : more(current)) AddUndone(one, project.tree, current, tried);
+    }
     // A joint that rests while another limb is measured looks frozen where that limb is wrong.
     std::stable_partition(tried.begin(), tried.end(),
                           [](const TriedCorrection& one) { return !one.only_leaves_out; });
@@ -258,6 +268,7 @@ std::vector<RecordingMistake> FindMistakesBy(
     const auto try_one = [&](const TriedCorrection& one) {  // whether it is clearly right
       const double left = error_of(one.corrected);
       if (!(left < least)) return false;
+      if (one.only_leaves_out && left > kLeftByLeavingOut * error) return false;
       least = left;
       best = &one;
       return left < kClearlyRight * error;
@@ -291,7 +302,7 @@ std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, std::optional<std::uint64_t> seed, const Measurements& as_recorded,
     double error, const std::function<double(const RecordedModel&, const Recording&)>& error_of) {
   std::optional<RecordedModel> robot;  // made when there is a suspicion
-  return FindMistakesBy(project, as_recorded.calibration, error, [&](const Recording& corrected) {
+  const auto error_of_corrected = [&](const Recording& corrected) {
     if (!robot) {
       Measurements measured = as_recorded;
       robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
@@ -301,7 +312,8 @@ std::vector<RecordingMistake> FindMistakesBy(
     } catch (const InputError&) {
       return std::numeric_limits<double>::infinity();
     }
-  });
+  };
+  return Explained(FindMistakesBy(project, as_recorded.calibration, error, error_of_corrected));
 }
 
 std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
@@ -310,10 +322,10 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result) {
   Refitting refitting(project, seed, measured);
-  return FindMistakesBy(
+  return Explained(FindMistakesBy(
       project, measured.calibration, FitError(result, fitted, project.calibration),
       [&](const Recording& recording) { return refitting.Error(recording); },
-      TurnedAxes(result, measured.calibration));
+      [&](const Recording& recording) { return TurnedAxes(result, recording); }));
 }
 
 std::vector<std::string> AcceptMistakes(const Project& project,

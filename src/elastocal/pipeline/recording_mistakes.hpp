@@ -37,25 +37,29 @@ double FitError(const CalibrationResult& result, const Recording& recording,
 /// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions, FindRowShift), and from
 /// axes that `result` has turned by more than a right angle: the sign of their joints. Each is
 /// undone, the robot is calibrated again, and it is a mistake if the error falls to less than half
-/// (that of `result` on the recording `fitted`). Then the next is sought in the corrected
-/// recording, at most three in all. Without suspicions, which no clean recording has, nothing is
-/// fitted. `measured` as recorded.
+/// (that of `result` on the recording `fitted`) and, in the end, to less than 20 mm. Then the next
+/// is sought in the corrected recording, at most three in all. Without suspicions, which no clean
+/// recording has, nothing is fitted. `measured` as recorded.
 std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     std::optional<std::uint64_t> seed,
                                                     const Measurements& measured,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result);
 
+using FurtherSuspicions = std::function<std::vector<LogSuspicion>(const Recording&)>;
+
 /// The same by any figure of how well a recording is explained, m: `error_of`, infinite where it is
-/// not explained at all. `error`: of the recording itself; `more`: further suspicions;
-/// `left_of_error`: what each mistake may at most leave of the error.
+/// not explained at all. `error`: of the recording itself; `more`: further suspicions of it and of
+/// what is left of it once a mistake is undone; `left_of_error`: what each mistake may at most
+/// leave of the error.
 std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, const Recording& recording, double error,
-    const std::function<double(const Recording&)>& error_of,
-    const std::vector<LogSuspicion>& more = {}, double left_of_error = 0.5);
+    const std::function<double(const Recording&)>& error_of, const FurtherSuspicions& more = {},
+    double left_of_error = 0.5);
 
 /// The same by how well a stored calibration explains a recording, m. `error_of` gets the model of
-/// the recording as well; where it throws InputError, nothing is explained.
+/// the recording as well; where it throws InputError, nothing is explained. None where
+/// more than 20 mm are left in the end.
 std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, std::optional<std::uint64_t> seed, const Measurements& as_recorded,
     double error, const std::function<double(const RecordedModel&, const Recording&)>& error_of);
