@@ -26,8 +26,10 @@ namespace {
 constexpr int kFewestPlaced = 8;       // of few, anything is explained
 constexpr double kLeftOfMisfit = 0.7;  // of the placed nominal robot
 constexpr double kLeftByOneOfSeveral = 0.9;
-constexpr double kLeftOfOffsets = 0.5;  // of the robot with joint offsets
-constexpr double kFarFromRobot = 3e-3;  // m: beyond what geometric errors leave
+constexpr double kLeftOfOffsets = 0.5;     // of the robot with joint offsets
+constexpr double kLeftWhereNoRobot = 0.5;  // of the placed nominal robot
+constexpr double kLeftByNoRobot = 0.98;    // of a robot with offsets that none has
+constexpr double kFarFromRobot = 0.05;     // m: beyond what a fit leaves that has not come to rest
 constexpr double kLeftOfGeometry = 0.3;
 constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated leaves more
 constexpr int kFewestBodies = 2;    // that show whether the root stands elsewhere
@@ -65,17 +67,10 @@ std::optional<CalibrationResult> Fit(const Alternative& robot, ModelKind kind,
   }
 }
 
-/// rms distance of the markers from a robot whose joint offsets are estimated, m: these may be so
-/// large that the nominal robot is better with a mistake than without.
-double OffsetsError(const Alternative& robot, const Project& project) {
-  const auto result = Fit(robot, ModelKind::kOffsetsOnly, project);
-  return result ? FitError(*result, robot.recording, project.calibration)
-                : std::numeric_limits<double>::infinity();
-}
-
-/// The same of a robot with all geometric errors, whatever they are.
-double GeometricError(const Alternative& robot, const Project& project) {
-  const auto result = Fit(robot, ModelKind::kGeometric, project);
+/// rms distance of the markers from a robot of which so much is estimated, whatever that is, m. The
+/// offsets of joints may be so large that the nominal robot is better with a mistake than without.
+double ErrorOf(const Alternative& robot, ModelKind kind, const Project& project) {
+  const auto result = Fit(robot, kind, project);
   return result ? MarkerError(*result, robot.recording, project.calibration)
                 : std::numeric_limits<double>::infinity();
 }
@@ -210,8 +205,8 @@ class PlainSearch {
     Alternative free = given_;
     free.recording.free_root = true;
     if (!(MisfitOf(free.model, free.recording) < kLeftOfMisfit * misfit_)) return {};
-    const double before = GeometricError(given_, project_);
-    const double after = GeometricError(free, project_);
+    const double before = ErrorOf(given_, ModelKind::kGeometric, project_);
+    const double after = ErrorOf(free, ModelKind::kGeometric, project_);
     const bool moved = before > kFarFromRobot && after < kLeftOfGeometry * before;
     if (!moved || after > kMostLeft) return {};
     free.what = fmt::format(
@@ -227,15 +222,20 @@ class PlainSearch {
     if (steps.empty()) return {};
     const double left = MisfitOf(steps.back().model, steps.back().recording);
     if (left > kLeftOfMisfit * misfit_) return {};
-    const double before = OffsetsError(given_, project_);
-    const double after = OffsetsError(steps.back(), project_);
-    if (!std::isfinite(after) || after > kLeftOfOffsets * before) return {};
+    const auto with = Fit(given_, ModelKind::kOffsetsOnly, project_);
+    const double after = ErrorOf(steps.back(), ModelKind::kOffsetsOnly, project_);
+    if (!with || !std::isfinite(after)) return {};
+    const double before = MarkerError(*with, given_.recording, project_.calibration);
+    // Zeros of motors explain much, with values that no robot has.
+    const bool no_robot = std::isinf(FitError(*with, given_.recording, project_.calibration)) &&
+                          left < kLeftWhereNoRobot * misfit_;
+    if (after > (no_robot ? kLeftByNoRobot : kLeftOfOffsets) * before) return {};
     for (Alternative& one : steps) {
       one.what += fmt::format(
-          "; without that, and with joint offsets estimated, markers are {:.3g} mm off, with it {}",
-          1e3 * after,
-          std::isfinite(before) ? fmt::format("{:.3g} mm", 1e3 * before)
-                                : "no errors of a robot explain them");
+          "; without that, and with joint offsets estimated, markers are {:.3g} mm off, with it "
+          "{:.3g} "
+          "mm{}",
+          1e3 * after, 1e3 * before, no_robot ? " by errors that no robot has" : "");
     }
     return steps;
   }
