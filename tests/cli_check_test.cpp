@@ -49,6 +49,28 @@ TEST_F(Program, CheckNamesTheJointThatMovedAndEndsWithFour) {
   EXPECT_LT(json["rmse_3d_mm"]["updated"], json["rmse_3d_mm"]["calibrated"]);
 }
 
+// Of four postures of one marker, no joint is certain at this level; but the calibration does not
+// hold.
+TEST_F(Program, CheckSaysChangedWhereTooFewPosturesTellTheJoint) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  Eigen::VectorXd truth = truth_;
+  truth[FindParameter(model.parameters, "elbow_joint.theta")] += 0.05;
+  Recording few = MakeSyntheticRecording(model, truth, {.postures = 4, .seed = 5});
+  const int seen = few.marker_count() - 1;  // on the hand
+  for (int m = 0; m < seen; ++m) few.markers.middleCols(3 * m, 3).setConstant(std::nan(""));
+  const std::filesystem::path table = scratch_.path() / "few.csv";
+  WritePostureTable(table, few, project.tree);
+  const std::string file = (scratch_.path() / "check.json").string();
+  const ProgramResult result =
+      RunProgram("check " + project_ + " --calibration " + out_ + " --recording " + table.string() +
+                 " --level 0.001 --json " + file);
+  EXPECT_EQ(result.exit_code, 4) << result.out << result.err;
+  EXPECT_TRUE(result.out.starts_with("Changed: the calibrated robot errs by")) << result.out;
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(file))["status"], "changed");
+}
+
 // No joint that has moved explains these: "unchanged" would be the worst of answers.
 TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);

@@ -28,8 +28,9 @@ constexpr double kLeftOfMisfit = 0.7;  // of the placed nominal robot
 constexpr double kLeftByOneOfSeveral = 0.9;
 constexpr double kLeftOfOffsets = 0.5;     // of the robot with joint offsets
 constexpr double kLeftWhereNoRobot = 0.5;  // of the placed nominal robot
-constexpr double kLeftByNoRobot = 0.98;    // of a robot with offsets that none has
-constexpr double kFarFromRobot = 0.05;     // m: beyond what a fit leaves that has not come to rest
+constexpr double kNoWorseThanNoRobot = 1.1;
+constexpr double kLeftByNoRobot = 0.98;  // of a robot with offsets that none has
+constexpr double kFarFromRobot = 0.05;   // m: beyond what a fit leaves that has not come to rest
 constexpr double kLeftOfGeometry = 0.3;
 constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated leaves more
 constexpr int kFewestBodies = 2;    // that show whether the root stands elsewhere
@@ -217,25 +218,37 @@ class PlainSearch {
     return {free};
   }
 
+  struct OffsetsFit {
+    double error = std::numeric_limits<double>::infinity();  ///< rms distance of the markers, m
+    bool robot = false;  ///< whether some robot may have the offsets
+  };
+
+  OffsetsFit FitOffsets(const Alternative& of) const {
+    const auto result = Fit(of, ModelKind::kOffsetsOnly, project_);
+    if (!result) return {};
+    return {MarkerError(*result, of.recording, project_.calibration),
+            std::isfinite(FitError(*result, of.recording, project_.calibration))};
+  }
+
   /// All of them, with the evidence, unless offsets of joints explain them.
   std::vector<Alternative> Confirmed(std::vector<Alternative> steps) const {
     if (steps.empty()) return {};
     const double left = MisfitOf(steps.back().model, steps.back().recording);
     if (left > kLeftOfMisfit * misfit_) return {};
-    const auto with = Fit(given_, ModelKind::kOffsetsOnly, project_);
-    const double after = ErrorOf(steps.back(), ModelKind::kOffsetsOnly, project_);
-    if (!with || !std::isfinite(after)) return {};
-    const double before = MarkerError(*with, given_.recording, project_.calibration);
-    // Zeros of motors explain much, with values that no robot has.
-    const bool no_robot = std::isinf(FitError(*with, given_.recording, project_.calibration)) &&
-                          left < kLeftWhereNoRobot * misfit_;
-    if (after > (no_robot ? kLeftByNoRobot : kLeftOfOffsets) * before) return {};
+    const OffsetsFit with = FitOffsets(given_), without = FitOffsets(steps.back());
+    if (!std::isfinite(with.error) || !std::isfinite(without.error)) return {};
+    // Offsets of half a turn, and zeros of motors, explain much or all, with values that no robot
+    // has.
+    const bool no_robot = !with.robot && left < kLeftWhereNoRobot * misfit_;
+    double most = no_robot ? kLeftByNoRobot : kLeftOfOffsets;
+    if (no_robot && without.robot) most = kNoWorseThanNoRobot;
+    if (without.error > most * with.error) return {};
     for (Alternative& one : steps) {
       one.what += fmt::format(
           "; without that, and with joint offsets estimated, markers are {:.3g} mm off, with it "
           "{:.3g} "
           "mm{}",
-          1e3 * after, 1e3 * before, no_robot ? " by errors that no robot has" : "");
+          1e3 * without.error, 1e3 * with.error, no_robot ? " by errors that no robot has" : "");
     }
     return steps;
   }
