@@ -98,9 +98,8 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
           Project again = given;
           const EarlierFit other = FitAfterEarlier(calibration_file, options.days, corrected,
                                                    options.seed, options.joints, again);
-          const double left = ComputeMetrics(DistancesBy(other, again.calibration),
-                                             SeenMask(other.measured.calibration))
-                                  .rmse_3d;
+          const double left =
+              as_calibrated(other.robot, other.measured.calibration).calibrated.metrics_all.rmse_3d;
           return !other.check.changed() && left <= run.most_left();
         }};
     run.alternatives = FindAlternatives(calibration, postures, measured, project);
