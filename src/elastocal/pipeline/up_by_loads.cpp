@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/prediction.hpp"
+#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
-#include "elastocal/validation/metrics.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
 
 namespace elastocal {
 namespace {
@@ -37,14 +37,29 @@ Recording Thinned(const Recording& recording) {
   return SelectPostures(recording, kept);
 }
 
+CalibrationResult FitOf(const RecordedModel& robot, const Recording& recording,
+                        const CalibrationOptions& options) {
+  return Calibrate(robot.model, recording, robot.base, ModelKinds(robot.model).back(), options);
+}
+
 /// rms distance of the markers from the robot that is calibrated from a recording, m.
 double ErrorOfFit(const RecordedModel& robot, const Recording& recording,
                   const CalibrationOptions& options) {
-  const CalibrationResult result =
-      Calibrate(robot.model, recording, robot.base, ModelKinds(robot.model).back(), options);
-  const Eigen::MatrixXd distances =
-      Predict(result.model, result.delta, recording, options).distances;
-  return ComputeMetrics(distances, SeenMask(recording)).rmse_3d;
+  return MarkerError(FitOf(robot, recording, options), recording, options);
+}
+
+/// Whether the gain of a joint, with the stated axis up, explains the recording better than
+/// `error`.
+bool GainExplains(const RecordedModel& robot, const Recording& recording,
+                  const CalibrationOptions& options, double error) {
+  for (const RecordingFault& fault :
+       FindRecordingFaults(FitOf(robot, recording, options), recording, options)) {
+    if (fault.kind != FaultKind::kJointGain || fault.trial >= 0) continue;
+    Recording corrected = recording;
+    corrected.q.col(fault.coordinate) /= 1.0 + fault.size;
+    if (ErrorOfFit(robot, corrected, options) < error) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -76,6 +91,8 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
     return std::nullopt;
   }
   if (!(found.found < kLeftOfStated * found.stated)) return std::nullopt;
+  recording.gravity = stated;
+  if (GainExplains(robot, recording, project.calibration, found.found)) return std::nullopt;
   return found;
 }
 

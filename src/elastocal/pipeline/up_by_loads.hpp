@@ -20,8 +20,9 @@ struct UpByLoads {
 /// Tries each axis of the frame of the markers as the one that points up, on a recording of a robot
 /// whose root link is held (a robot on its feet: FindWrongUp) and whose joints carry what statics
 /// say. Found is an axis with which the error of a fit falls to less than 0.6 of that with the
-/// stated one. A rigid robot shows nothing: nothing depends on gravity then. `as_recorded`: before
-/// markers were split at knocks.
+/// stated one; not where the gain of a joint, the stated one being up, leaves less. A rigid robot
+/// shows nothing: nothing depends on gravity then. `as_recorded`: before markers were split at
+/// knocks.
 std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
                                        const Measurements& as_recorded);
 
