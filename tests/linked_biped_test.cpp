@@ -70,7 +70,7 @@ TEST_F(LinkedBiped, ItsTablesHoldTheMotors) {
     degrees.q.col(joint.coordinate) *= 180.0 / M_PI;
   }
   ExpectInputError([&] { ReadBack(degrees, in_degrees); },
-                   {"'left_ankle'", "(in all postures they close with degrees read as such)"});
+                   {"'left_ankle'", "(they would close with degrees read as such)"});
   named.joints[outer].name = "left_ankle_pitch";
   ExpectInputError([&] { ReadBack(recording, named); },
                    {"table.csv: ", "'left_ankle_inner'", "none of 'left_ankle_outer'"});

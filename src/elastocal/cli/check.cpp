@@ -112,18 +112,18 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
   if (!run.mistakes.empty()) {
     return fmt::format("The recording is wrong: {}\n", fmt::join(run.mistakes, "; "));
   }
+  if (run.recording_explains()) {
+    return fmt::format(
+        "The recording seems wrong, not the robot: {}; once that is corrected, the calibration "
+        "holds\n",
+        fmt::join(run.alternatives, ", or "));
+  }
   if (!run.check.changed() && !run.plausible()) {
     return fmt::format(
         "Not explained: the calibrated robot errs by {} mm here, where one that was never "
         "calibrated should err by some {:.2g} mm, and no joint that has moved explains it. Do "
         "recording, project and calibration belong together?\n",
         Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3), 1e3 * run.expected_error);
-  }
-  if (run.recording_explains()) {
-    return fmt::format(
-        "The recording seems wrong, not the robot: {}; once that is corrected, the calibration "
-        "holds\n",
-        fmt::join(run.alternatives, ", or "));
   }
   if (!run.explained()) return Unexplained(run);
   if (run.changed_beyond_telling()) {

@@ -184,7 +184,7 @@ std::string CannotClose(const RobotTree& tree, const Linkage& linkage,
   text += ": the rods of linkage " + Quote(linkage.name) +
           " do not reach there; positions at which its loops close were expected";
   const std::string cause = WhatWouldClose(tree, linkage, motors, failed);
-  return cause.empty() ? text : text + " (in all postures they close " + cause + ")";
+  return cause.empty() ? text : text + " (they would close " + cause + ")";
 }
 
 void MotorsToJoints(const RobotTree& tree, JointLog& log) {

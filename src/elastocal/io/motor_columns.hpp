@@ -36,7 +36,7 @@ Eigen::Index MotorsToJoints(const RobotTree& tree, const Linkage& linkage,
 
 /// "motor 'a' at 3 rad and motor 'b' at 0.1 rad: the rods of linkage 'l' do not reach there ...",
 /// about the row `failed` of positions of the linkage's motors, and which sign, exchange or unit
-/// would let the loops close in all rows.
+/// would let the loops close in it and in the others (of many, a hundred evenly spread).
 std::string CannotClose(const RobotTree& tree, const Linkage& linkage,
                         const Eigen::MatrixXd& motors, Eigen::Index failed);
 

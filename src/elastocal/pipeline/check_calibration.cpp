@@ -139,8 +139,8 @@ bool CheckRun::unchanged() const {
 std::string CheckStatus(const CheckRun& run) {
   if (!run.converged()) return "not converged";
   if (!run.mistakes.empty()) return "recording wrong";
-  if (!run.check.changed() && !run.plausible()) return "implausible";
   if (run.recording_explains()) return "recording wrong";
+  if (!run.check.changed() && !run.plausible()) return "implausible";
   if (!run.explained()) return "unexplained";
   if (!run.check.moved.empty()) return "moved";
   return run.unchanged() ? "unchanged" : "changed";

@@ -23,17 +23,20 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestPlaced = 8;       // of few, anything is explained
-constexpr double kLeftOfMisfit = 0.7;  // of the placed nominal robot
-constexpr double kLeftByOneOfSeveral = 0.9;
-constexpr double kLeftOfOffsets = 0.5;     // of the robot with joint offsets
-constexpr double kLeftWhereNoRobot = 0.5;  // of the placed nominal robot
-constexpr double kNoWorseThanNoRobot = 1.1;
-constexpr double kLeftByNoRobot = 0.98;  // of a robot with offsets that none has
-constexpr double kFarFromRobot = 0.05;   // m: beyond what a fit leaves that has not come to rest
-constexpr double kLeftOfGeometry = 0.3;
+constexpr int kFewestPlaced = 8;    // of few, anything is explained
 constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated leaves more
-constexpr int kFewestBodies = 2;    // that show whether the root stands elsewhere
+// What is left at most once a mistake is undone, of the placed nominal robot:
+constexpr double kLeftOfMisfit = 0.7;
+constexpr double kLeftByOneOfSeveral = 0.9;
+constexpr double kLeftWhereNoRobot = 0.5;  // where the offsets with the mistake are no robot's
+// ... and of the robot with joint offsets:
+constexpr double kLeftOfOffsets = 0.5;
+constexpr double kLeftByNoRobot = 0.98;  // where neither the offsets with nor without it are one's
+constexpr double kNoWorseThanNoRobot = 1.1;  // where those without it are
+// A root that moved:
+constexpr double kFarFromRobot = 0.05;  // m: beyond what a fit leaves that has not come to rest
+constexpr double kLeftOfGeometry = 0.3;
+constexpr int kFewestBodies = 2;  // that show whether it stands elsewhere
 
 /// A robot and what was recorded of it, once a mistake is undone.
 struct Alternative {
@@ -236,7 +239,7 @@ class PlainSearch {
     const double left = MisfitOf(steps.back().model, steps.back().recording);
     if (left > kLeftOfMisfit * misfit_) return {};
     const OffsetsFit with = FitOffsets(given_), without = FitOffsets(steps.back());
-    if (!std::isfinite(with.error) || !std::isfinite(without.error)) return {};
+    if (!std::isfinite(with.error) || !(without.error < kMostLeft)) return {};
     // Offsets of half a turn, and zeros of motors, explain much or all, with values that no robot
     // has.
     const bool no_robot = !with.robot && left < kLeftWhereNoRobot * misfit_;
@@ -246,8 +249,7 @@ class PlainSearch {
     for (Alternative& one : steps) {
       one.what += fmt::format(
           "; without that, and with joint offsets estimated, markers are {:.3g} mm off, with it "
-          "{:.3g} "
-          "mm{}",
+          "{:.3g} mm{}",
           1e3 * without.error, 1e3 * with.error, no_robot ? " by errors that no robot has" : "");
     }
     return steps;

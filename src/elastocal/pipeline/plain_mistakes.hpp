@@ -11,11 +11,13 @@ namespace elastocal {
 
 /// Mistakes in a posture table or its project that the nominal robot shows before anything is
 /// estimated, in words with what corrects them; empty where it shows none, for trials, and for
-/// fewer than eight postures. Each is undone, and is a mistake if a tenth or less is left of the
-/// squares of PlacedMisfit. Tried are: the sign of each joint or motor, two of them exchanged,
-/// labels exchanged, rows shifted (RecordingMistake); where none of these helps, couplings and
-/// mimic joints of the opposite sign or that do not follow, and a root link that stands elsewhere
-/// in each posture.
+/// fewer than eight postures. Each is undone, and is a mistake if less than 0.7 of PlacedMisfit is
+/// left, and of the error of a robot whose joint offsets are estimated less than a half and 20 mm.
+/// (Where those offsets are such as no robot has, they explain much by themselves: then less than a
+/// half of PlacedMisfit, and of the error no more.) Tried are: the sign of each joint or motor,
+/// labels exchanged, rows shifted (RecordingMistake); then two joints or motors exchanged; then
+/// couplings and mimic joints of the opposite sign or that do not follow; then a root link that
+/// stands elsewhere in each posture, for which all geometric errors are estimated.
 std::vector<std::string> FindPlainMistakes(const Project& project, const Recording& recording);
 
 }  // namespace elastocal
