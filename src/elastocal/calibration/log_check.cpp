@@ -122,7 +122,7 @@ class SuspicionSearch {
   bool EntrySlides(int entry) const {
     if (!IsMotor(entry)) return Slides(tree_, entry);
     const auto [linkage, rod] = MotorOf(entry);
-    return tree_.linkages[Size(linkage)].rods[Size(rod)].actuator;
+    return LoggedPositionOf(tree_, linkage, rod).slides;
   }
   double LeastRange(int c) const { return EntrySlides(c) ? kLeastSlideRange : kLeastRange; }
   double LeastDiscrepancy(int c) const {
@@ -245,10 +245,7 @@ class SuspicionSearch {
 };
 
 std::string NameOfEntry(const LogSuspicion& suspicion, int entry, const RobotTree& tree) {
-  if (suspicion.linkage >= 0) {
-    return tree.linkages[Size(suspicion.linkage)].rods[Size(entry)].motor;
-  }
-  return tree.joints[Size(tree.coordinate_joint[Size(entry)])].name;
+  return LoggedPositionOf(tree, suspicion.linkage, entry).name;
 }
 
 /// A posture without the mistake, which is one of a linkage's motors.

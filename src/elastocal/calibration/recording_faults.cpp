@@ -274,20 +274,10 @@ std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
 std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
                           const Recording& recording) {
   const bool joint = fault.kind != FaultKind::kCameraScale;
-  std::string text = "camera positions";
-  bool slides = false;
-  if (fault.linkage >= 0) {
-    const Rod& rod = tree.linkages[static_cast<std::size_t>(fault.linkage)]
-                         .rods[static_cast<std::size_t>(fault.coordinate)];
-    text = rod.motor;
-    slides = rod.actuator;
-  }
-  for (const Joint& candidate : tree.joints) {
-    if (!joint || fault.linkage >= 0 || candidate.coordinate != fault.coordinate) continue;
-    text = candidate.name;
-    slides = candidate.type == JointType::kPrismatic;
-    break;
-  }
+  const LoggedPosition of = joint ? LoggedPositionOf(tree, fault.linkage, fault.coordinate)
+                                  : LoggedPosition{"camera positions"};
+  std::string text = of.name;
+  const bool slides = of.slides;
   char number[80];
   if (fault.kind == FaultKind::kJointOffset) {
     const double unit = slides ? 1e-3 : M_PI / 180.0;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,40 +20,20 @@ namespace {
 constexpr double kLeastFactor = 0.5, kLargestFactor = 2.0;
 constexpr double kLargestOffsetDeg = 60.0, kLargestOffsetMm = 200.0;
 
-/// A joint, or a motor of rods, whose positions are logged.
-struct LoggedName {
-  std::string name;
-  int coordinate = -1, linkage = -1;  ///< as in StatedCorrection
-  bool slides = false;
-
-  double unit() const { return slides ? 1e-3 : M_PI / 180.0; }  ///< of an offset in files
-};
-
-LoggedName NameOfMotor(const RobotTree& tree, int linkage, int rod) {
-  const Rod& of =
-      tree.linkages[static_cast<std::size_t>(linkage)].rods[static_cast<std::size_t>(rod)];
-  return {of.motor, rod, linkage, of.actuator};
-}
-
-std::optional<LoggedName> NameLogged(const RobotTree& tree, int linkage, int coordinate) {
-  if (linkage >= 0) return NameOfMotor(tree, linkage, coordinate);
-  for (const Joint& joint : tree.joints) {
-    if (joint.coordinate != coordinate) continue;
-    return LoggedName{joint.name, coordinate, -1, joint.type == JointType::kPrismatic};
-  }
-  return std::nullopt;
-}
+/// Of an offset in files.
+double UnitOf(const LoggedPosition& logged) { return logged.slides ? 1e-3 : M_PI / 180.0; }
 
 [[noreturn]] void Refuse(const std::string& name, const std::string& why) {
   throw InputError("--accept " + name + ": " + why);
 }
 
-LoggedName FindLogged(const std::string& name, const std::string& of, const RobotTree& tree) {
+/// Linkage and entry (LoggedPositionOf) of a joint or motor that `--accept` names.
+std::pair<int, int> FindLogged(const std::string& name, const std::string& of,
+                               const RobotTree& tree) {
   const MotorIndex motor = FindMotor(tree, of);
-  if (motor.linkage >= 0) return NameOfMotor(tree, motor.linkage, motor.rod);
+  if (motor.linkage >= 0) return {motor.linkage, motor.rod};
   for (const Joint& joint : tree.joints) {
-    if (joint.name != of || joint.coordinate < 0) continue;
-    return {joint.name, joint.coordinate, -1, joint.type == JointType::kPrismatic};
+    if (joint.name == of && joint.coordinate >= 0) return {-1, joint.coordinate};
   }
   Refuse(name, "the robot has no moving joint '" + of + "'");
 }
@@ -116,7 +98,7 @@ void ReadFirstPosture(const std::string& name, StatedCorrection& correction) {
 }
 
 /// The names that undo an offset in all trials from a posture on.
-std::string NamesFromPosture(const RecordingFault& fault, const LoggedName& logged,
+std::string NamesFromPosture(const RecordingFault& fault, const LoggedPosition& logged,
                              const Recording& recording) {
   const auto trial_of = [&](int posture) {
     return recording.trial[static_cast<std::size_t>(posture)];
@@ -130,7 +112,7 @@ std::string NamesFromPosture(const RecordingFault& fault, const LoggedName& logg
     const int from = trial_of(i) == first ? i - begin + 1 : 1;
     names += fmt::format("{}offset:{}@{}{}={:.4f}", names.empty() ? "" : " ", logged.name,
                          recording.trials[static_cast<std::size_t>(trial_of(i))].name,
-                         from > 1 ? fmt::format(":{}", from) : "", fault.size / logged.unit());
+                         from > 1 ? fmt::format(":{}", from) : "", fault.size / UnitOf(logged));
   }
   return names;
 }
@@ -144,11 +126,11 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
     return fmt::format("the positions of {}{} were divided by {:g}", correction.joint, where,
                        correction.size);
   }
-  const LoggedName logged = *NameLogged(tree, correction.linkage, correction.coordinate);
+  const LoggedPosition logged = LoggedPositionOf(tree, correction.linkage, correction.coordinate);
   const std::string from =
       correction.from > 1 ? fmt::format(" from posture {} on", correction.from) : "";
   return fmt::format("{:g} {} were taken from the positions of {}{}{}",
-                     correction.size / logged.unit(), logged.slides ? "mm" : "deg", logged.name,
+                     correction.size / UnitOf(logged), logged.slides ? "mm" : "deg", logged.name,
                      where, from);
 }
 
@@ -194,10 +176,9 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
     correction.trial = of.substr(at + 1);
     of.resize(at);
   }
-  const LoggedName logged = FindLogged(name, of, tree);
-  correction.joint = logged.name;
-  correction.coordinate = logged.coordinate;
-  correction.linkage = logged.linkage;
+  std::tie(correction.linkage, correction.coordinate) = FindLogged(name, of, tree);
+  const LoggedPosition logged = LoggedPositionOf(tree, correction.linkage, correction.coordinate);
+  correction.joint = of;
   if (correction.kind == FaultKind::kJointGain) {
     CheckSize(name, *size, kLeastFactor, kLargestFactor, "");
     correction.size = *size;
@@ -211,7 +192,7 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
   ReadFirstPosture(name, correction);
   const double largest = logged.slides ? kLargestOffsetMm : kLargestOffsetDeg;
   CheckSize(name, *size, -largest, largest, logged.slides ? " mm" : " deg");
-  correction.size = *size * logged.unit();
+  correction.size = *size * UnitOf(logged);
   return correction;
 }
 
@@ -223,17 +204,17 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
     if (trial.empty()) return std::nullopt;
     return fmt::format("scale:{}={:.5f}", trial, 1.0 + fault.size);
   }
-  const std::optional<LoggedName> logged = NameLogged(tree, fault.linkage, fault.coordinate);
-  if (!logged) return std::nullopt;
+  if (fault.coordinate < 0) return std::nullopt;
+  const LoggedPosition logged = LoggedPositionOf(tree, fault.linkage, fault.coordinate);
   const std::string where = trial.empty() ? "" : "@" + trial;
   if (fault.kind == FaultKind::kJointGain) {
-    return fmt::format("gain:{}{}={:.5f}", logged->name, where, 1.0 + fault.size);
+    return fmt::format("gain:{}{}={:.5f}", logged.name, where, 1.0 + fault.size);
   }
   if (trial.empty()) {
     if (recording.trial.empty()) return std::nullopt;
-    return NamesFromPosture(fault, *logged, recording);
+    return NamesFromPosture(fault, logged, recording);
   }
-  return fmt::format("offset:{}{}={:.4f}", logged->name, where, fault.size / logged->unit());
+  return fmt::format("offset:{}{}={:.4f}", logged.name, where, fault.size / UnitOf(logged));
 }
 
 std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree& tree,

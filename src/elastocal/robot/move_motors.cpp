@@ -19,6 +19,16 @@ bool MoveMotors(const RobotTree& tree, const Linkage& linkage,
   return true;
 }
 
+LoggedPosition LoggedPositionOf(const RobotTree& tree, int linkage, int entry) {
+  const auto at = static_cast<std::size_t>(entry);
+  if (linkage >= 0) {
+    const Rod& rod = tree.linkages[static_cast<std::size_t>(linkage)].rods[at];
+    return {rod.motor, rod.actuator};
+  }
+  const Joint& joint = tree.joints[static_cast<std::size_t>(tree.coordinate_joint[at])];
+  return {joint.name, joint.type == JointType::kPrismatic};
+}
+
 MotorIndex FindMotor(const RobotTree& tree, const std::string& name) {
   for (std::size_t k = 0; k < tree.linkages.size(); ++k) {
     for (std::size_t r = 0; r < tree.linkages[k].rods.size(); ++r) {

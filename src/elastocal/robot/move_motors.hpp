@@ -16,6 +16,13 @@ namespace elastocal {
 bool MoveMotors(const RobotTree& tree, const Linkage& linkage,
                 const std::function<void(Eigen::VectorXd& motors)>& change, Eigen::VectorXd& q);
 
+/// What a log has positions of: an entry of q or, with a linkage (else -1), a motor of it.
+struct LoggedPosition {
+  std::string name;     ///< of the joint or motor
+  bool slides = false;  ///< in m, not in rad
+};
+LoggedPosition LoggedPositionOf(const RobotTree& tree, int linkage, int entry);
+
 /// A motor of the tree's linkages by its name: index of the linkage, and of the rod. (-1, -1):
 /// none.
 struct MotorIndex {
