@@ -59,6 +59,10 @@ endfunction()
 # The layers that turn bytes into values: fuzzing is led by what it reaches in them.
 set(ELASTOCAL_FUZZED_LAYERS math tables files robot measurement readers description project io)
 
+# What computes in less time than the optimiser takes: LIGHT layers, and the tests of layers. They must not share
+# templates with the other layers (BUILD_SHARED_LIBS), or the linker may take a slow instance for all.
+set(ELASTOCAL_LIGHT_FLAGS "$<$<CONFIG:Release>:-O1>" CACHE STRING "Options of what computes little")
+
 # elastocal_layer(NAME [LIGHT] [USES layer...] [LIBS public...] [PRIVATE_LIBS private...])
 #
 # LIGHT: what it computes takes less time than the optimiser.
@@ -97,7 +101,7 @@ function(elastocal_layer name)
     target_link_options(elastocal_${name} PRIVATE LINKER:-Bsymbolic-functions)
   endif()
   if(ARG_LIGHT)
-    target_compile_options(elastocal_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_compile_options(elastocal_${name} PRIVATE ${ELASTOCAL_LIGHT_FLAGS})
   endif()
   list(TRANSFORM ARG_USES PREPEND elastocal_)
   target_link_libraries(elastocal_${name} PUBLIC ${ARG_USES} ${ARG_LIBS} PRIVATE ${ARG_PRIVATE_LIBS}
@@ -144,7 +148,7 @@ function(elastocal_test name)
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} elastocal_test_support elastocal_warnings
     GTest::gtest_main)
   if(NOT ARG_SLOW)  # what these compute takes less than the optimiser
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_compile_options(${name} PRIVATE ${ELASTOCAL_LIGHT_FLAGS})
   endif()
   if(CMAKE_BUILD_TYPE STREQUAL Debug)
     add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
