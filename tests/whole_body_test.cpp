@@ -234,6 +234,20 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   for (const ContradictoryTorque& one : all) {
     EXPECT_EQ(static_cast<int>(one.kind), static_cast<int>(TorqueContradiction::kReversed));
   }
+  // A factor that no sensor by itself would be accused of, or only some of them.
+  for (const double factor : {1.7, 2.0, 0.6}) {
+    recording = clean;
+    recording.torques *= factor;
+    const auto scaled = FindContradictoryTorques(robot_.model, recording, 1e-3);
+    EXPECT_EQ(static_cast<Eigen::Index>(scaled.size()), sensors) << factor;
+    for (const ContradictoryTorque& one : scaled) {
+      EXPECT_EQ(static_cast<int>(one.kind), static_cast<int>(TorqueContradiction::kScaled));
+      EXPECT_NEAR(one.slope, factor, 0.1 * factor);
+    }
+  }
+  recording = clean;
+  recording.torques *= 1.3;  // masses of a robot description may be off by this
+  EXPECT_TRUE(FindContradictoryTorques(robot_.model, recording, 1e-3).empty());
 }
 
 // What is not known of a leg's load: sensors that all show a quarter too much are off by a fifth of

@@ -24,7 +24,10 @@ constexpr double kLeastCorrelation = 0.5;
 constexpr std::size_t kLeastPairs = 5;
 constexpr double kLeftOfExchange = 0.25;  // of the squares
 constexpr double kLeftOfReversal = 0.25;  // of the squares of all sensors
-constexpr std::size_t kManyReversed = 3;  // sensors
+constexpr std::size_t kManySensors = 3;   // that are wrong in the same way
+constexpr double kLeastCommon = 1.5;      // factor of all sensors, or its inverse
+constexpr double kAlike = 1.25;           // factor between a sensor's slope and the common one
+constexpr double kFollows = 0.9;          // correlation of sensors whose slope counts
 
 /// Static and measured torques of one joint.
 struct Pairs {
@@ -33,25 +36,39 @@ struct Pairs {
   double weight = 0.0;  ///< the largest carried, N
 };
 
+/// Measured torques by those of statics, where these vary enough to tell.
+struct TorqueLine {
+  double slope = 0.0, correlation = 0.0;
+};
+
+std::optional<TorqueLine> FitLine(const Pairs& pairs) {
+  if (pairs.expected.size() < kLeastPairs) return std::nullopt;
+  const auto count = static_cast<Eigen::Index>(pairs.expected.size());
+  const Eigen::Map<const Eigen::ArrayXd> expected(pairs.expected.data(), count);
+  const Eigen::Map<const Eigen::ArrayXd> measured(pairs.measured.data(), count);
+  const Eigen::ArrayXd x = expected - expected.mean();
+  const Eigen::ArrayXd y = measured - measured.mean();
+  const double spread = std::sqrt(x.square().mean());
+  if (spread < std::max(kLeastSpread, kLever * pairs.weight)) return std::nullopt;
+  const double norm = std::sqrt(x.square().sum() * y.square().sum());
+  return TorqueLine{.slope = (x * y).sum() / x.square().sum(),
+                    .correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0};
+}
+
 std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs) {
   const auto count = static_cast<Eigen::Index>(pairs.expected.size());
   if (pairs.expected.size() < kLeastPairs) return std::nullopt;
   const Eigen::Map<const Eigen::ArrayXd> expected(pairs.expected.data(), count);
   const Eigen::Map<const Eigen::ArrayXd> measured(pairs.measured.data(), count);
-  const Eigen::ArrayXd x = expected - expected.mean();
-  const Eigen::ArrayXd y = measured - measured.mean();
   ContradictoryTorque found{.joint = joint, .bias = (measured - expected).mean()};
-  const double spread = std::sqrt(x.square().mean());
   const double uncertain = kLever * pairs.weight;
-  if (spread >= std::max(kLeastSpread, uncertain)) {
-    found.slope = (x * y).sum() / x.square().sum();
-    const double norm = std::sqrt(x.square().sum() * y.square().sum());
-    const double correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0;
-    if (correlation < -kLeastCorrelation) {
+  if (const auto line = FitLine(pairs)) {
+    found.slope = line->slope;
+    if (line->correlation < -kLeastCorrelation) {
       found.kind = TorqueContradiction::kReversed;
       return found;
     }
-    if (correlation < kLeastCorrelation) return found;  // unrelated
+    if (line->correlation < kLeastCorrelation) return found;  // unrelated
     if (found.slope < kLeastSlope || found.slope > kMostSlope) {
       found.kind = TorqueContradiction::kScaled;
       return found;
@@ -119,7 +136,27 @@ bool AllReversed(const std::vector<Pairs>& pairs) {
       reversed += std::pow(of.measured[i] + of.expected[i], 2);
     }
   }
-  return sensors >= kManyReversed && reversed < kLeftOfReversal * as_is;
+  return sensors >= kManySensors && reversed < kLeftOfReversal * as_is;
+}
+
+/// The factor that most sensors have in common, if it is far from one: masses of links are not off
+/// by that much.
+std::optional<double> CommonFactor(const std::vector<Pairs>& pairs) {
+  std::vector<double> slopes;
+  for (const Pairs& of : pairs) {
+    const auto line = FitLine(of);
+    if (line && line->correlation > kFollows) slopes.push_back(line->slope);
+  }
+  if (slopes.size() < kManySensors) return std::nullopt;
+  const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
+  std::nth_element(slopes.begin(), middle, slopes.end());
+  const double factor = *middle;
+  if (factor < kLeastCommon && factor * kLeastCommon > 1.0) return std::nullopt;
+  const auto alike = std::count_if(slopes.begin(), slopes.end(), [&](double slope) {
+    return slope < kAlike * factor && slope * kAlike > factor;
+  });
+  if (4 * alike < 3 * std::ssize(slopes)) return std::nullopt;
+  return factor;
 }
 
 /// Whether the joint is between the root and one of the links.
@@ -172,13 +209,16 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
       PairTorques(model, recording, RegisterPlacement(model, recording, slip_m));
   const std::size_t joints = pairs.size();
   std::vector<ContradictoryTorque> found;
-  if (AllReversed(pairs)) {
+  const auto all_are = [&](TorqueContradiction kind, double slope) {
     for (std::size_t k = 0; k < joints; ++k) {
       if (pairs[k].measured.empty()) continue;
-      found.push_back({.joint = static_cast<int>(k), .kind = TorqueContradiction::kReversed});
+      found.push_back({.joint = static_cast<int>(k), .kind = kind, .slope = slope});
     }
     return found;
-  }
+  };
+  if (AllReversed(pairs)) return all_are(TorqueContradiction::kReversed, -1.0);
+  if (const auto factor = CommonFactor(pairs))
+    return all_are(TorqueContradiction::kScaled, *factor);
   std::vector<char> exchanged(joints, 0);
   for (std::size_t a = 0; a < joints; ++a) {
     for (std::size_t b = a + 1; b < joints; ++b) {

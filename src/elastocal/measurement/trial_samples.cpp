@@ -9,6 +9,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/clock_by_positions.hpp"
+#include "elastocal/measurement/clock_mistake.hpp"
 #include "elastocal/measurement/log_mistake.hpp"
 #include "elastocal/measurement/posture_frames.hpp"
 #include "elastocal/measurement/seen_from.hpp"
@@ -201,7 +202,13 @@ class TrialSampler {
     const auto mistake = FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_,
                                         seen.speeds, trajectories_.rate_hz, options_.expected_lag_s,
                                         ClockSettings(), result_.summary.clock.peak);
-    return mistake ? "; " + Describe(*mistake, log_.names) : "";
+    if (mistake) return "; " + Describe(*mistake, log_.names);
+    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.links, smoothed_log_,
+                                              coordinates_, trajectories_.rate_hz);
+    const auto of_clock =
+        FindClockMistake(seen.speeds, trajectories_.rate_hz, logged, options_.expected_lag_s,
+                         ClockSettings(), result_.summary.clock.peak);
+    return of_clock ? "; " + Describe(*of_clock) : "";
   }
 
   double CameraTime(int frame) const { return frame / trajectories_.rate_hz; }
