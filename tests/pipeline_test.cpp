@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calibration through the library, as the header elastocal.hpp offers it.
 
+#include <fstream>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -107,6 +108,30 @@ TEST_F(Pipeline, ACalibrationIsValidatedOnAnotherRecording) {
   ExpectInputError(
       [&] { ValidateCalibration(project_, folder, table_, {.accept = {"sign:arm_2_joint"}}); },
       {"sign:arm_2_joint", "it shows none"});
+}
+
+// A file whose URDF has the geometry of the full model says no other errors for it; the URDF has no
+// springs all the same.
+TEST_F(Pipeline, TheUrdfIsValidatedWithoutSprings) {
+  project_.elasticity.torsion = {"*"};
+  const ErrorModel model = MakeProjectModel(project_, {});
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (model.parameters[i].kind == ParameterKind::kTheta) delta[i] = 0.01;
+    if (model.parameters[i].kind == ParameterKind::kTorsion) delta[i] = 1e-4;
+  }
+  Recording bent = MakeSyntheticRecording(model, delta, {.postures = 40, .marker_sd = 0.0});
+  bent.markers = PredictedPositions(model, bent, delta, {});
+  WritePostureTable(table_, bent, project_.tree);
+  const CalibrationResult result =
+      Calibrate(model, bent, FindBaseParameters(model, project_.identifiability),
+                ModelKinds(model).back(), project_.calibration);
+  std::ofstream(scratch_.path() / "calibration.yaml")
+      << MakeCalibrationYaml(result, "there.csv", ZeroOffsets::kOrigin);
+  const ValidationRun run = ValidateCalibration(project_, scratch_.path(), table_);
+  ASSERT_TRUE(run.urdf);
+  EXPECT_LT(run.transfer.calibrated.metrics.rmse_3d, 0.02e-3);
+  EXPECT_GT(run.urdf->metrics.rmse_3d, 5.0 * run.transfer.calibrated.metrics.rmse_3d);
 }
 
 // The only trial of the estimate cannot show that one of its joints is off: the fit takes that for

@@ -48,6 +48,17 @@ TransferValidation TransferTo(const Recording& recording, const RecordedModel& r
                          .uncalibrated_externals = stored.uncalibrated_externals});
 }
 
+/// What a URDF has a place for: without compliances and corrections, also where its geometry is
+/// that of the full model.
+std::map<std::string, double> GeometryInUrdf(const StoredCalibration& stored,
+                                             const ErrorModel& model) {
+  std::map<std::string, double> errors = AsInUrdf(stored).joint_errors;
+  for (const Parameter& parameter : model.parameters) {
+    if (IsElastic(parameter.kind)) errors.erase(parameter.name);
+  }
+  return errors;
+}
+
 /// More than one outlier in twenty observations is worth a warning.
 void WarnOfOutliers(ValidationRun& run) {
   const auto outliers = run.transfer.calibrated.result.outliers.size();
@@ -105,7 +116,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   }
   if (!run.frozen) {
     run.urdf = ValidateTransfer(robot.model, measured.calibration, robot.base, project.calibration,
-                                AsInUrdf(run.calibration).joint_errors)
+                                GeometryInUrdf(run.calibration, robot.model))
                    .calibrated;
   }
   run.expected_error = ExpectedError(robot.model, measured.calibration, project.calibration.prior);
