@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole body at once, standing on its feet: recovery of truths from the estimator's own model.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/leg_stiffness.hpp"
+#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/validation/model_comparison.hpp"
@@ -191,6 +193,27 @@ TEST_F(StandingTest, RigidLegsCarryTheRobotToo) {
     }
   }
   EXPECT_GT(compared, 50);
+}
+
+// An encoder that was off in the second half of its trial, and right again in the next one.
+TEST_F(StandingTest, AnOffsetThatEndsWithItsTrialIsNamed) {
+  Recording recording = Record();
+  const int joint = FindJoint(robot_.project.tree, "torso_1_joint");
+  const int coordinate = robot_.project.tree.joints[joint].coordinate;
+  const int trial = 1;  // the left arm; the next one shows the trunk as well
+  ASSERT_EQ(recording.trials[trial].name, "torso_arm_left");
+  const auto first = std::find(recording.trial.begin(), recording.trial.end(), trial);
+  const auto begin = static_cast<int>(first - recording.trial.begin());
+  const auto count = static_cast<int>(std::count(first, recording.trial.end(), trial));
+  EXPECT_TRUE(FindRecordingFaults(Estimate(recording), recording, {}).empty());
+  recording.q.col(coordinate).segment(begin + count / 2, count - count / 2).array() += 0.05;
+  const std::vector<RecordingFault> found = FindRecordingFaults(Estimate(recording), recording, {});
+  ASSERT_FALSE(found.empty());
+  EXPECT_TRUE(IsInPartOfTrial(found[0], recording));
+  EXPECT_EQ(found[0].trial, trial);
+  EXPECT_EQ(found[0].posture, begin + count / 2);
+  EXPECT_EQ(found[0].coordinate, coordinate);
+  EXPECT_NEAR(found[0].size, 0.05, 0.005);
 }
 
 // Faults of torque sensors are told from the robot's own errors by statics.

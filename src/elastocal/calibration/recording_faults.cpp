@@ -18,8 +18,9 @@ namespace {
 constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
 constexpr double kLeastExplained = 0.08;
 constexpr double kLeastSds = 8.0;
-constexpr int kLeastSide = 3;  // postures before and after it
-constexpr int kSplits = 12;    // of the recording, after which an offset of a joint may begin
+constexpr int kLeastSide = 3;    // postures before and after it
+constexpr int kSplits = 12;      // of the recording, after which an offset of a joint may begin
+constexpr int kTrialSplits = 6;  // of a trial, after which one may begin that ends with the trial
 
 /// Sizes from which a fault is none that a good robot and good cameras may have.
 double LeastSize(FaultKind kind, bool slides) {
@@ -216,26 +217,36 @@ class FaultSearch {
       if (split < kLeastSide || split > count - kLeastSide) return;
       add(-1, split, [&](int i) { return i >= split ? 1.0 : 0.0; });
     };
-    const std::size_t before = found_.size();
-    for (int split = stride; split < count; split += stride) add_split(split);
-    try_all();
-    if (found_.size() > before) {  // between the best of these and its neighbours
+    // Every so many splits, and then all between the best of them and its neighbours.
+    const auto try_splits = [&](int begin, int end, int step, const auto& add_at) {
+      const std::size_t before = found_.size();
+      for (int split = begin + step; split < end; split += step) add_at(split);
+      try_all();
+      if (found_.size() == before) return;
       const auto best = std::max_element(
           found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
           [](const RecordingFault& a, const RecordingFault& b) { return a.share < b.share; });
       const int around = best->posture;
-      for (int off = 1; off < stride; ++off) {
-        add_split(around - off);
-        add_split(around + off);
+      for (int off = 1; off < step; ++off) {
+        add_at(around - off);
+        add_at(around + off);
       }
-    }
+      try_all();
+    };
+    try_splits(0, count, stride, add_split);
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);
       if (first == recording_.trial.end()) continue;
-      const int posture = static_cast<int>(first - recording_.trial.begin());
-      add(trial, posture, [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; });
+      const int begin = static_cast<int>(first - recording_.trial.begin());
+      const int end = begin + static_cast<int>(std::count(first, recording_.trial.end(), trial));
+      add(trial, begin, [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; });
+      try_all();
+      if (end == count) continue;  // to the end of the trial is to the end of the recording
+      try_splits(begin, end, std::max(1, (end - begin) / kTrialSplits), [&](int split) {
+        if (split < begin + kLeastSide || split > end - kLeastSide) return;
+        add(trial, split, [&](int i) { return i >= split && i < end ? 1.0 : 0.0; });
+      });
     }
-    try_all();
   }
 
   /// Of one trial. A scale of all of them is what a robot with other lengths shows as well.
@@ -271,6 +282,11 @@ std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
   return FaultSearch(result, recording, options).found();
 }
 
+bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording) {
+  return fault.trial >= 0 && fault.posture > 0 &&
+         recording.trial[fault.posture - 1] == recording.trial[fault.posture];
+}
+
 std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
                           const Recording& recording) {
   const bool joint = fault.kind != FaultKind::kCameraScale;
@@ -288,6 +304,9 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
                   joint ? ": its positions are" : " are", 1.0 + fault.size, fault.sd);
   }
   text += number;
+  if (IsInPartOfTrial(fault, recording)) {
+    return text + " from " + DescribePosture(recording, fault.posture) + " to the end of the trial";
+  }
   if (fault.trial >= 0) return text + " in trial " + recording.trials[fault.trial].name;
   return fault.posture > 0 ? text + " from " + DescribePosture(recording, fault.posture) + " on"
                            : text;

@@ -31,14 +31,19 @@ struct RecordingFault {
 /// unknown beside all others (score test), so that it is not confused with what the robot's own
 /// errors explain as well. Candidates are the gain of each joint (but of those that rods
 /// move, whose levers are the robot's own errors), an offset of each joint, or motor of rods, from
-/// a posture on (twelve of them, then all near the best one) or in one trial alone, and the scale
-/// of the cameras in one of several trials (a scale of all of them looks like a robot all of whose
-/// lengths are off). Only faults that no good robot has are returned, the one that explains most
-/// first: of a size that matters (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain
-/// (eight standard deviations) and a part of what is left (8 %; of a clean ergoCub, 4 %).
+/// a posture on (twelve of them, then all near the best one), in one trial alone or from a posture
+/// to the end of its trial (six of each, then all near the best one), and the scale of the cameras
+/// in one of several trials (a scale of all of them looks like a robot all of whose lengths are
+/// off). Only faults that no good robot has are returned, the one that explains most first: of a
+/// size that matters (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain (eight standard
+/// deviations) and a part of what is left (8 %; of a clean ergoCub, 4 %).
 std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
                                                 const Recording& recording,
                                                 const CalibrationOptions& options);
+
+/// Whether the fault is from a posture to the end of its trial: an encoder that was homed anew
+/// after the trial.
+bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording);
 
 /// "arm_left_4_joint: its positions are off by 1.02 +- 0.03 deg from trial b, posture 1 on".
 std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,

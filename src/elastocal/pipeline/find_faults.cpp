@@ -133,12 +133,19 @@ bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
          });
 }
 
+/// The fault that explains most, and the recording that its postures are of.
+struct GeneralFault {
+  RecordingFault fault;
+  Recording recording;
+};
+
 /// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
 /// for without the knocks, too.
-std::vector<std::string> FindGeneralFault(const Project& project, std::optional<std::uint64_t> seed,
-                                          Measurements as_recorded, const RecordedModel& robot,
-                                          const Recording& recording,
-                                          const CalibrationResult& result) {
+std::optional<GeneralFault> FindGeneralFault(const Project& project,
+                                             std::optional<std::uint64_t> seed,
+                                             Measurements as_recorded, const RecordedModel& robot,
+                                             const Recording& recording,
+                                             const CalibrationResult& result) {
   std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
   const Recording* of = &recording;
   if (!robot.knocks.empty()) {
@@ -152,12 +159,8 @@ std::vector<std::string> FindGeneralFault(const Project& project, std::optional<
       of = &as_recorded.calibration;
     }
   }
-  if (faults.empty()) return {};
-  if (!ScaleIsKnown(as_recorded.trials)) {
-    const std::string of_slides = ScaleOfSlides({faults.front()}, result, project.calibration);
-    if (!of_slides.empty()) return {of_slides};
-  }
-  return {FaultAndRemedy(faults.front(), project.tree, *of)};
+  if (faults.empty()) return std::nullopt;
+  return GeneralFault{faults.front(), *of};
 }
 
 /// What undoes a wrong scale: `scale=1.00200` in all trials, else `scale:TRIAL=1.00200` in each.
@@ -246,19 +249,35 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
   const std::vector<RecordingFault> gears = FindImpossibleGears(comparison.largest());
   const std::string of_slides = ScaleOfSlides(gears, comparison.largest(), project.calibration);
   // Where the cameras are right, a robot whose lengths are all off is of another size.
-  if (wrong_scales.empty() && !ScaleIsKnown(as_recorded.trials)) {
-    const auto scale = FindWrongScale(comparison.largest(), project.calibration);
-    if (scale) faults.push_back(of_slides.empty() ? Describe(*scale) : of_slides);
+  const bool scale_is_known = ScaleIsKnown(as_recorded.trials);
+  const auto general = [&] {
+    return FindGeneralFault(project, seed, as_recorded, robot, recording, comparison.largest());
+  };
+  if (wrong_scales.empty() && !scale_is_known) {
+    if (const auto scale = FindWrongScale(comparison.largest(), project.calibration)) {
+      // The scale of one trial is spread over the lengths that the trial tells.
+      const auto found = general();
+      const bool of_a_trial = found && found->fault.kind == FaultKind::kCameraScale;
+      faults.push_back(of_a_trial ? FaultAndRemedy(found->fault, project.tree, found->recording)
+                       : of_slides.empty() ? Describe(*scale)
+                                           : of_slides);
+    }
   }
   // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;
   if (const auto up = FindUpByLoads(project, seed, as_recorded)) return {Describe(*up, recording)};
-  if (!of_slides.empty() && !ScaleIsKnown(as_recorded.trials)) return {of_slides};
+  if (!of_slides.empty() && !scale_is_known) return {of_slides};
   for (const RecordingFault& gear : gears) {
     faults.push_back(FaultAndRemedy(gear, project.tree, recording));
   }
   if (!faults.empty()) return faults;
-  return FindGeneralFault(project, seed, as_recorded, robot, recording, comparison.largest());
+  const auto found = general();
+  if (!found) return {};
+  const std::string of_slide =
+      scale_is_known ? ""
+                     : ScaleOfSlides({found->fault}, comparison.largest(), project.calibration);
+  if (!of_slide.empty()) return {of_slide};
+  return {FaultAndRemedy(found->fault, project.tree, found->recording)};
 }
 
 std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/stated_corrections.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -214,7 +215,12 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
     if (recording.trial.empty()) return std::nullopt;
     return NamesFromPosture(fault, logged, recording);
   }
-  return fmt::format("offset:{}{}={:.4f}", logged.name, where, fault.size / UnitOf(logged));
+  std::string from;
+  if (IsInPartOfTrial(fault, recording)) {
+    const auto first = std::find(recording.trial.begin(), recording.trial.end(), fault.trial);
+    from = fmt::format(":{}", fault.posture - (first - recording.trial.begin()) + 1);
+  }
+  return fmt::format("offset:{}{}{}={:.4f}", logged.name, where, from, fault.size / UnitOf(logged));
 }
 
 std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree& tree,

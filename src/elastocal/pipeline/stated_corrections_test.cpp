@@ -84,6 +84,10 @@ TEST_F(StatedCorrections, OfAnOffsetFromAPostureOnHaveANameForEachTrial) {
   const RecordingFault fault{FaultKind::kJointOffset, Coordinate(), -1, 1, 0.1 * M_PI};
   ASSERT_EQ(NameOfCorrection(fault, project_.tree, recording),
             "offset:turret_joint@a:2=18.0000 offset:turret_joint@b=18.0000");
+  const RecordingFault in_a{FaultKind::kJointOffset, Coordinate(), 0, 1, 0.1 * M_PI};
+  EXPECT_EQ(NameOfCorrection(in_a, project_.tree, recording), "offset:turret_joint@a:2=18.0000");
+  EXPECT_NE(DescribeFault(in_a, project_.tree, recording).find("posture 2 to the end of the trial"),
+            std::string::npos);
   EXPECT_EQ(Apply("offset:turret_joint@a:2=18"),
             "18 deg were taken from the positions of turret_joint in trial a from posture 2 on");
   Apply("offset:turret_joint@b=18");
