@@ -59,9 +59,9 @@ endfunction()
 # The layers that turn bytes into values: fuzzing is led by what it reaches in them.
 set(ELASTOCAL_FUZZED_LAYERS math tables files robot measurement readers description project io)
 
-# What computes in less time than the optimiser takes: LIGHT layers, and the tests of layers. They must not share
-# templates with the other layers (BUILD_SHARED_LIBS), or the linker may take a slow instance for all.
-set(ELASTOCAL_LIGHT_FLAGS "$<$<CONFIG:Release>:-O1>" CACHE STRING "Options of what computes little")
+# Options of the tests of layers, which compute less than the optimiser takes. With less optimisation than the layers
+# have, libraries must be shared: the linker may take a slow instance of a template for all otherwise.
+set(ELASTOCAL_TEST_FLAGS "$<$<CONFIG:Release>:-O1>" CACHE STRING "Options of the tests of layers")
 
 # elastocal_layer(NAME [LIGHT] [USES layer...] [LIBS public...] [PRIVATE_LIBS private...])
 #
@@ -101,7 +101,7 @@ function(elastocal_layer name)
     target_link_options(elastocal_${name} PRIVATE LINKER:-Bsymbolic-functions)
   endif()
   if(ARG_LIGHT)
-    target_compile_options(elastocal_${name} PRIVATE ${ELASTOCAL_LIGHT_FLAGS})
+    target_compile_options(elastocal_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   list(TRANSFORM ARG_USES PREPEND elastocal_)
   target_link_libraries(elastocal_${name} PUBLIC ${ARG_USES} ${ARG_LIBS} PRIVATE ${ARG_PRIVATE_LIBS}
@@ -148,7 +148,7 @@ function(elastocal_test name)
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} elastocal_test_support elastocal_warnings
     GTest::gtest_main)
   if(NOT ARG_SLOW)  # what these compute takes less than the optimiser
-    target_compile_options(${name} PRIVATE ${ELASTOCAL_LIGHT_FLAGS})
+    target_compile_options(${name} PRIVATE ${ELASTOCAL_TEST_FLAGS})
   endif()
   if(CMAKE_BUILD_TYPE STREQUAL Debug)
     add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
