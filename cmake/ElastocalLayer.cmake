@@ -59,10 +59,6 @@ endfunction()
 # The layers that turn bytes into values: fuzzing is led by what it reaches in them.
 set(ELASTOCAL_FUZZED_LAYERS math tables files robot measurement readers description project io)
 
-# Options of the tests of layers, which compute less than the optimiser takes. With less optimisation than the layers
-# have, libraries must be shared: the linker may take a slow instance of a template for all otherwise.
-set(ELASTOCAL_TEST_FLAGS "$<$<CONFIG:Release>:-O1>" CACHE STRING "Options of the tests of layers")
-
 # elastocal_layer(NAME [LIGHT] [USES layer...] [LIBS public...] [PRIVATE_LIBS private...])
 #
 # LIGHT: what it computes takes less time than the optimiser.
@@ -148,7 +144,7 @@ function(elastocal_test name)
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} elastocal_test_support elastocal_warnings
     GTest::gtest_main)
   if(NOT ARG_SLOW)  # what these compute takes less than the optimiser
-    target_compile_options(${name} PRIVATE ${ELASTOCAL_TEST_FLAGS})
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   if(CMAKE_BUILD_TYPE STREQUAL Debug)
     add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
