@@ -12,7 +12,7 @@ constexpr double kLeastClockPeak = 0.9;  // what is right correlates well
 constexpr double kClearlyBetter = 0.25;  // of what a correlation lacks to one is left
 constexpr double kStep_s = 0.6;          // of two rates tried, at the end of the log
 constexpr double kFarthestRate = 0.2;
-constexpr int kMostRates = 80;
+constexpr int kMostRates = 200;
 constexpr int kCuts = 16;
 constexpr double kLeastJump_s = 0.1;
 
