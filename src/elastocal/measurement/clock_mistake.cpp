@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "elastocal/measurement/clock_correlation.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -13,62 +15,84 @@ constexpr double kClearlyBetter = 0.25;  // of what a correlation lacks to one i
 constexpr double kStep_s = 0.6;          // of two rates tried, at the end of the log
 constexpr double kFarthestRate = 0.2;
 constexpr int kMostRates = 200;
-constexpr int kCuts = 16;
+constexpr int kCuts = 16;      // of the log, at which its clock may jump ...
+constexpr int kLeastPart = 3;  // ... with as many parts to either side
 constexpr double kLeastJump_s = 0.1;
+constexpr double kMostUnseen = 0.1;  // of a part: time without cameras
 
-/// The rows of the log in [begin, end).
-LoggedSpeeds Part(const LoggedSpeeds& logged, Eigen::Index begin, Eigen::Index end) {
-  return {logged.time_s.segment(begin, end - begin), logged.speeds.middleRows(begin, end - begin)};
+/// Correlation of the cameras' speeds with some of the log's, whose clock has a rate.
+CorrelationPeaks Correlation(const MeanSpeeds& speeds, double rate, Eigen::Index begin,
+                             Eigen::Index end) {
+  const double start = speeds.logged.time_s[0];
+  const PredictedSpeed part{
+      start + rate * (speeds.logged.time_s.segment(begin, end - begin).array() - start),
+      speeds.logged.values.segment(begin, end - begin)};
+  const double rate_hz = speeds.measured.rate_hz;
+  return Correlate({0.0, rate_hz, speeds.measured.values}, Resample(part, rate_hz), speeds.options);
 }
 
-}  // namespace
-
-std::optional<ClockMistake> FindClockMistake(const Eigen::MatrixXd& measured, double rate_hz,
-                                             const LoggedSpeeds& logged,
-                                             const std::optional<double>& expected_lag_s,
-                                             const ClockOptions& options, double peak) {
-  const Eigen::Index rows = logged.time_s.size();
-  if (rows < 2 * kCuts) return std::nullopt;
-  const double start = logged.time_s[0];
-  const double span = logged.time_s[rows - 1] - start;
-  const double least_peak = std::max(kLeastClockPeak, 1.0 - kClearlyBetter * (1.0 - peak));
+std::optional<ClockMistake> FindRate(const MeanSpeeds& speeds, double least_peak) {
+  const Eigen::Index rows = speeds.logged.time_s.size();
   std::optional<ClockMistake> best;
   const auto try_rate = [&](double rate) {
-    LoggedSpeeds stretched = logged;
-    stretched.time_s = start + rate * (logged.time_s.array() - start);
-    const ClockFit fit = EstimateTrialClock(measured, rate_hz, stretched, expected_lag_s, options);
-    if (fit.peak >= least_peak && (!best || fit.peak > best->peak))
-      best = ClockMistake{.rate = rate, .peak = fit.peak};
+    const CorrelationPeaks found = Correlation(speeds, rate, 0, rows);
+    if (!found.overlap || found.peak < least_peak || (best && found.peak <= best->peak)) return;
+    best = ClockMistake{.rate = rate, .peak = found.peak};
   };
+  const double span = speeds.logged.time_s[rows - 1] - speeds.logged.time_s[0];
   const double step = std::max(kStep_s / span, 2.0 * kFarthestRate / kMostRates);
   for (int k = 1; k * step <= kFarthestRate; ++k) {
     for (const double sign : {-1.0, 1.0}) try_rate(1.0 + sign * k * step);
   }
   if (best) {  // once more between its neighbours
     const double coarse = best->rate;
-    for (const double share : {-0.67, -0.33, 0.33, 0.67}) try_rate(coarse + share * step);
+    for (int k = -4; k <= 4; ++k) try_rate(coarse + 0.2 * k * step);
     return best;
   }
   for (const double rate : {0.5, 2.0}) try_rate(rate);
-  if (best) return best;
+  return best;
+}
 
-  for (int cut = 3; cut <= kCuts - 3; ++cut) {
+/// Where the cameras see a part of the log, s of their clock.
+struct CameraSpan {
+  double begin_s = 0.0, end_s = 0.0;
+};
+
+std::optional<ClockMistake> FindJump(const MeanSpeeds& speeds, double least_peak) {
+  const Eigen::VectorXd& time = speeds.logged.time_s;
+  const Eigen::Index rows = time.size();
+  const Eigen::Index around = rows / (2 * kCuts) + 1;  // a cut of the log is in some gap
+  const double camera_s =
+      static_cast<double>(speeds.measured.values.size()) / speeds.measured.rate_hz;
+  std::optional<ClockMistake> best;
+  for (int cut = kLeastPart; cut <= kCuts - kLeastPart; ++cut) {
     const Eigen::Index row = rows * cut / kCuts;
-    const auto lag_of = [&](Eigen::Index begin, Eigen::Index end) {
-      return EstimateTrialClock(measured, rate_hz, Part(logged, begin, end), expected_lag_s,
-                                options);
-    };
-    const Eigen::Index around = rows / (2 * kCuts) + 1;  // a cut of the log is in some gap
-    const ClockFit before = lag_of(0, row - around);
-    if (before.peak < least_peak) continue;
-    const ClockFit after = lag_of(row + around, rows);
+    const CorrelationPeaks before = Correlation(speeds, 1.0, 0, row - around);
+    const CorrelationPeaks after = Correlation(speeds, 1.0, row + around, rows);
+    if (!before.overlap || !after.overlap) continue;
+    // A part that the cameras hardly saw fits by chance; and time runs on.
+    const CameraSpan first{time[0] + before.lag_s, time[row - around - 1] + before.lag_s};
+    const CameraSpan second{time[row + around] + after.lag_s, time[rows - 1] + after.lag_s};
+    const bool possible = first.begin_s > -kMostUnseen * (first.end_s - first.begin_s) &&
+                          second.end_s < camera_s + kMostUnseen * (second.end_s - second.begin_s) &&
+                          first.end_s < second.begin_s;
     const double least = std::min(before.peak, after.peak);
     const double jump = before.lag_s - after.lag_s;
-    if (least < least_peak || std::abs(jump) < kLeastJump_s) continue;
-    if (!best || least > best->peak)
-      best = {.jump_s = jump, .at_s = logged.time_s[row], .peak = least};
+    if (!possible || least < least_peak || std::abs(jump) < kLeastJump_s) continue;
+    if (best && least <= best->peak) continue;
+    best = {.jump_s = jump, .at_s = time[row], .peak = least};
   }
   return best;
+}
+
+}  // namespace
+
+std::optional<ClockMistake> FindClockMistake(const MeanSpeeds& speeds, double peak) {
+  if (speeds.logged.time_s.size() < 2 * kCuts) return std::nullopt;
+  const double least_peak = std::max(kLeastClockPeak, 1.0 - kClearlyBetter * (1.0 - peak));
+  const auto rate = FindRate(speeds, least_peak), jump = FindJump(speeds, least_peak);
+  if (rate && jump) return rate->peak > jump->peak ? rate : jump;
+  return rate ? rate : jump;
 }
 
 std::string Describe(const ClockMistake& mistake) {

@@ -13,16 +13,13 @@ struct ClockMistake {
   double rate = 1.0;    ///< time that passed by time of the log: above 1 where rows are missing
   double jump_s = 0.0;  ///< the log's clock jumps forward by this; 0: it has another rate
   double at_s = 0.0;    ///< where, robot time
-  double peak = 0.0;    ///< correlation of speeds (ClockFit) once that is undone
+  double peak = 0.0;    ///< correlation of the speeds once that is undone
 };
 
 /// Of a trial whose clock cannot be told: the rate (0.5, 2, or within a fifth of 1) or the one jump
 /// of the log's clock that lets its speeds correlate, far better than `peak`, that of the log as it
-/// is. Arguments as for EstimateTrialClock. A rate comes before a jump.
-std::optional<ClockMistake> FindClockMistake(const Eigen::MatrixXd& measured, double rate_hz,
-                                             const LoggedSpeeds& logged,
-                                             const std::optional<double>& expected_lag_s,
-                                             const ClockOptions& options, double peak);
+/// is. A rate comes before a jump.
+std::optional<ClockMistake> FindClockMistake(const MeanSpeeds& speeds, double peak);
 
 /// "if the log's clock ran 5.3 % slow, the log fits (correlation 0.97): rows may be missing, or its
 /// rate is another".

@@ -82,15 +82,21 @@ MeansOfSeen TakeMeansOfSeen(const Eigen::MatrixXd& measured, const Eigen::Vector
   return means;
 }
 
-// First by the markers that are seen most of the time, then by all that are seen at each moment.
-ClockFit FitSeen(const Eigen::MatrixXd& measured, double rate_hz, const LoggedSpeeds& logged,
-                 const ClockOptions& options) {
+/// Which markers are seen most of the time.
+std::vector<bool> MostlySeen(const Eigen::MatrixXd& measured) {
   std::vector<bool> mostly_seen;
   for (const auto& speed : measured.colwise()) {
     const auto known = speed.size() - speed.array().isNaN().count();
     mostly_seen.push_back(static_cast<double>(known) >=
                           kLeastSeen * static_cast<double>(speed.size()));
   }
+  return mostly_seen;
+}
+
+// First by the markers that are seen most of the time, then by all that are seen at each moment.
+ClockFit FitSeen(const Eigen::MatrixXd& measured, double rate_hz, const LoggedSpeeds& logged,
+                 const ClockOptions& options) {
+  const std::vector<bool> mostly_seen = MostlySeen(measured);
   const auto markers =
       static_cast<double>(std::count(mostly_seen.begin(), mostly_seen.end(), true));
   if (markers == 0.0) return {};
@@ -142,6 +148,28 @@ void ChooseRange(double camera_s, const Eigen::VectorXd& log_time_s, ClockOption
   options.longest_lag_s += std::abs(half);
 }
 
+// Chooses the range of lags, and corrects the logged speeds: the length of a noisy velocity is
+// never zero. Without this the two speeds would differ at each rest, which would hide how well they
+// agree. Whether there is anything to search.
+bool Prepare(const Eigen::MatrixXd& measured, double rate_hz,
+             const std::optional<double>& expected_lag_s, LoggedSpeeds& logged,
+             ClockOptions& options) {
+  if (logged.time_s.size() < 2 || measured.rows() == 0) return false;
+  const double span_s = logged.time_s[logged.time_s.size() - 1] - logged.time_s[0];
+  if (!(span_s * rate_hz < kMostSamples)) return false;  // e.g. a log of years with one hole
+  options.expected_lag_s = expected_lag_s.value_or(0.0);
+  if (!expected_lag_s) {
+    ChooseRange(static_cast<double>(measured.rows()) / rate_hz, logged.time_s, options);
+  }
+  std::vector<int> columns(static_cast<std::size_t>(measured.cols()));
+  std::iota(columns.begin(), columns.end(), 0);
+  const double resting = EstimateRestingSpeed(measured, columns, rate_hz, kRestWindow_s);
+  if (std::isfinite(resting)) {
+    logged.speeds = (logged.speeds.array().square() + resting * resting).sqrt();
+  }
+  return true;
+}
+
 }  // namespace
 
 LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& markers,
@@ -184,23 +212,22 @@ LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& mar
   return logged;
 }
 
+std::optional<MeanSpeeds> TakeMeanSpeeds(const Eigen::MatrixXd& measured, double rate_hz,
+                                         LoggedSpeeds logged,
+                                         const std::optional<double>& expected_lag_s,
+                                         ClockOptions options) {
+  if (!Prepare(measured, rate_hz, expected_lag_s, logged, options)) return std::nullopt;
+  const std::vector<bool> seen = MostlySeen(measured);
+  const auto markers = static_cast<double>(std::count(seen.begin(), seen.end(), true));
+  if (markers == 0.0) return std::nullopt;
+  return MeanSpeeds{{rate_hz, MeanKnown(measured, seen, 0.5 * markers)},
+                    {logged.time_s, MeanKnown(logged.speeds, seen, 1.0)},
+                    options};
+}
+
 ClockFit EstimateTrialClock(const Eigen::MatrixXd& measured, double rate_hz, LoggedSpeeds logged,
                             const std::optional<double>& expected_lag_s, ClockOptions options) {
-  if (logged.time_s.size() < 2 || measured.rows() == 0) return {};
-  const double span_s = logged.time_s[logged.time_s.size() - 1] - logged.time_s[0];
-  if (!(span_s * rate_hz < kMostSamples)) return {};  // e.g. a log of years with one hole
-  options.expected_lag_s = expected_lag_s.value_or(0.0);
-  if (!expected_lag_s) {
-    ChooseRange(static_cast<double>(measured.rows()) / rate_hz, logged.time_s, options);
-  }
-  // The length of a noisy velocity is never zero. Without this correction the two speeds would
-  // differ at each rest, which would hide how well they agree.
-  std::vector<int> columns(static_cast<std::size_t>(measured.cols()));
-  std::iota(columns.begin(), columns.end(), 0);
-  const double resting = EstimateRestingSpeed(measured, columns, rate_hz, kRestWindow_s);
-  if (std::isfinite(resting)) {
-    logged.speeds = (logged.speeds.array().square() + resting * resting).sqrt();
-  }
+  if (!Prepare(measured, rate_hz, expected_lag_s, logged, options)) return {};
   const ClockFit fit = FitSeen(measured, rate_hz, logged, options);
   if (fit.state == ClockState::kReliable || fit.state == ClockState::kNoOverlap) return fit;
   const std::vector<int> unexplained = FindUnexplained(measured, rate_hz, logged, fit);

@@ -28,6 +28,19 @@ LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& mar
                            const std::vector<int>& standing, const SmoothedLog& log,
                            const std::vector<int>& coordinates, double rate_hz);
 
+/// Means over the markers that are seen for half of the trial or more, and the lags to search.
+struct MeanSpeeds {
+  MeasuredSpeed measured;
+  PredictedSpeed logged;
+  ClockOptions options;
+};
+
+/// What the first search of EstimateTrialClock compares; arguments as there. Nothing without data.
+std::optional<MeanSpeeds> TakeMeanSpeeds(const Eigen::MatrixXd& measured, double rate_hz,
+                                         LoggedSpeeds logged,
+                                         const std::optional<double>& expected_lag_s,
+                                         ClockOptions options);
+
 /// Estimates lag and drift of the robot's clock from the mean speed of all markers (section 5.1).
 /// `measured` (frames x markers, m/s, NaN where unknown; markers as in `logged`) must have passed
 /// the same filter as the log.

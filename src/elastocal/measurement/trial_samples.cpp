@@ -203,11 +203,13 @@ class TrialSampler {
                                         seen.speeds, trajectories_.rate_hz, options_.expected_lag_s,
                                         ClockSettings(), result_.summary.clock.peak);
     if (mistake) return "; " + Describe(*mistake, log_.names);
-    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.links, smoothed_log_,
-                                              coordinates_, trajectories_.rate_hz);
-    const auto of_clock =
-        FindClockMistake(seen.speeds, trajectories_.rate_hz, logged, options_.expected_lag_s,
-                         ClockSettings(), result_.summary.clock.peak);
+    const double rate_hz = trajectories_.rate_hz;
+    const auto means = TakeMeanSpeeds(
+        seen.speeds, rate_hz,
+        PredictSpeeds(robot_, markers_, seen.links, smoothed_log_, coordinates_, rate_hz),
+        options_.expected_lag_s, ClockSettings());
+    if (!means) return "";
+    const auto of_clock = FindClockMistake(*means, result_.summary.clock.peak);
     return of_clock ? "; " + Describe(*of_clock) : "";
   }
 
