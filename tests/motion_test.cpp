@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/knocks.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -242,6 +243,70 @@ TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
               OffsetsInside(legs.robot.model, legs.truth, estimate(), "leg_"));
   }
   tally.Expect(0.9, 0.8);
+}
+
+/// Only the ways of both legs. Each body but the standing foot is displaced by a model error (m)
+/// that hardly changes in a second; the cluster of the left shank also by `push`, from a moment on.
+Recording RecordWays(const SlowLegs& legs, double of_body, const Eigen::Vector3d& push,
+                     std::uint64_t seed) {
+  constexpr double kKept = 0.99;
+  constexpr int kPushed = 80;
+  StandingRobot robot = legs.robot;
+  robot.trials.erase(robot.trials.begin(), robot.trials.begin() + 5);
+  Recording recording = robot.Record(
+      legs.truth,
+      {.marker_sd = 5e-5, .torque_sensors = robot.project.torque_sensors, .seed = seed});
+  recording.time_s = Eigen::VectorXd::LinSpaced(recording.posture_count(), 0.0,
+                                                (recording.posture_count() - 1) / kRate);
+  Random random(seed);
+  const auto draw = [&](double sd) {
+    Eigen::Matrix3Xd all(3, robot.model.tree.body_count());
+    for (auto&& one : all.colwise()) one = random.NormalVector(3, sd);
+    return all;
+  };
+  Eigen::Matrix3Xd error = draw(of_body);
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    error = kKept * error + draw(of_body * std::sqrt(1.0 - kKept * kKept));
+    const int trial = recording.trial[i];
+    const int foot = robot.model.tree.links[recording.trials[trial].support.front()].body;
+    for (int m = 0; m < robot.model.marker_count(); ++m) {
+      const int body = robot.model.tree.links[robot.model.markers[m].link].body;
+      if (body == foot) continue;
+      recording.markers.block<1, 3>(i, 3 * m) += error.col(body).transpose();
+      const bool pushed = i >= kPushed && robot.model.markers[m].name.starts_with("LSHANK");
+      if (pushed) recording.markers.block<1, 3>(i, 3 * m) += push;
+    }
+  }
+  return recording;
+}
+
+// Taken for independent, moments make knocks of what the model does not know.
+TEST(Motion, ErrorsThatLastAreNoKnocks) {
+  const SlowLegs legs;
+  std::vector<LabelCluster> clusters;
+  for (const MarkerCluster& cluster : legs.robot.project.clusters) {
+    clusters.push_back({cluster.name, cluster.markers});
+  }
+  const auto find = [&](const Recording& recording) {
+    return FindKnocks(legs.robot.model, recording, legs.robot.base, clusters, {});
+  };
+  int as_motion = 0;
+  int as_postures = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Recording recording = RecordWays(legs, 0.6e-3, Eigen::Vector3d::Zero(), seed);
+    as_motion += find(recording).empty() ? 0 : 1;
+    for (Trial& trial : recording.trials) trial.moments = false;
+    as_postures += find(recording).empty() ? 0 : 1;
+  }
+  EXPECT_LE(as_motion, 1);
+  EXPECT_GE(as_postures, 5);
+
+  const Eigen::Vector3d push(0.0, 0.0, 4e-3);
+  const std::vector<Knock> knocks = find(RecordWays(legs, 0.1e-3, push, 1));
+  ASSERT_EQ(knocks.size(), 1u);
+  EXPECT_EQ(knocks[0].cluster, "LSHANK");
+  EXPECT_NEAR(knocks[0].posture, 80, 2);
+  EXPECT_NEAR(knocks[0].distance, 4e-3, 1e-3);
 }
 
 // What shares its error with a left-out moment is left out as well.

@@ -19,6 +19,9 @@ namespace {
 
 constexpr std::size_t kMaxVerdicts = 5;
 constexpr int kFewUpdates = 2;  // of the noise, for a start
+// Where only the waist and the markers are estimated: of a robot with wrong joints, which no noise
+// describes, so that it would hardly come to rest.
+constexpr int kExternalUpdates = 15;
 
 bool IsEstimated(ParameterKind parameter, ModelKind kind) {
   if (IsExternal(parameter)) return true;
@@ -229,7 +232,9 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
     verdict = JudgeOutliers(problem, selection, free, fit);
   }
   if (fixed != nullptr) {
-    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
+    const bool joints = result.kind != ModelKind::kUncalibrated;
+    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments,
+                        joints ? kMaxUpdates : kExternalUpdates);
   } else {
     verdict = SettleOutliers(problem, base, free, std::move(verdict), selection, fit);
   }

@@ -48,6 +48,33 @@ std::vector<std::vector<Transform>> LinkPoses(const FitProblem& problem, const F
   return poses;
 }
 
+/// Rows less unknowns. In a motion each moment has a pose of the waist, and its rows tell as much
+/// as a part of as many: the pose counts as that part.
+double Freedom(const BodyResiduals& body, const Selection& selection, int postures) {
+  std::vector<double> rows(postures, 0.0);
+  std::vector<double> told(postures, 0.0);
+  const int bodies = body.body_count();
+  double freedom = 0.0;
+  for (int b = 0; b < static_cast<int>(body.residual_blocks.size()); ++b) {
+    const auto& block = body.residual_blocks[b];
+    if (!block.active) continue;
+    const int tie = b - bodies;
+    if (tie >= static_cast<int>(body.tied_postures().size())) {
+      freedom += block.size;
+      continue;
+    }
+    const int posture = tie < 0 ? selection.bodies[b].posture : body.tied_postures()[tie];
+    rows[posture] += block.size;
+    told[posture] += body.Counts(b).sum();
+  }
+  for (int size : body.parameter_blocks) freedom -= size;
+  for (int block : body.nuisance_blocks) freedom += body.parameter_blocks[block];
+  for (int i = 0; i < postures; ++i) {
+    if (rows[i] > 0.0) freedom += told[i] - 6.0 * told[i] / rows[i];
+  }
+  return freedom;
+}
+
 Linearised Linearise(const FitProblem& problem, const Selection& selection,
                      const std::vector<int>& free, const Fit& fit,
                      const std::vector<LabelCluster>& clusters) {
@@ -60,14 +87,7 @@ Linearised Linearise(const FitProblem& problem, const Selection& selection,
   linear.factor.compute(equations.information());
   linear.gradient = equations.gradient();
   linear.squares = 2.0 * CostOf(residuals.body);
-  const int counted =
-      residuals.body.body_count() + static_cast<int>(residuals.body.tied_postures().size());
-  for (int b = 0; b < static_cast<int>(residuals.body.residual_blocks.size()); ++b) {
-    const auto& block = residuals.body.residual_blocks[b];
-    if (!block.active) continue;
-    linear.freedom += b < counted ? residuals.body.Counts(b).sum() : block.size;
-  }
-  for (int size : residuals.body.parameter_blocks) linear.freedom -= size;
+  linear.freedom = Freedom(residuals.body, selection, problem.recording.posture_count());
   for (int b = 0; b < residuals.body.body_count(); ++b) {
     const BodyObservation& body = selection.bodies[b];
     if (!body.used) continue;

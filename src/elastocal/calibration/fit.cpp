@@ -163,8 +163,7 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
 /// is much the same as before. (Sooner, noise and correlation would swing.)
 bool UpdateMotion(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const ExplainedRows& explained, Fit& fit) {
-  const std::vector<int> motion = MotionOfPostures(problem.recording);
-  if (std::all_of(motion.begin(), motion.end(), [](int of) { return of < 0; })) return true;
+  if (!HasMotion(problem.recording)) return true;
   FitResiduals residuals(problem, selection, free, fit);
   residuals.body.Evaluate(residuals.body.Start(), false);
   Noise noise = fit.noise;
@@ -260,6 +259,18 @@ Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen:
     fit.noise(g, NoiseSource::kWaistPosition) = fit.noise(g, NoiseSource::kWaistRotation) = sd;
   }
   return fit;
+}
+
+void CorrelateMotions(const FitProblem& problem, const Selection& selection,
+                      const std::vector<int>& free, Fit& fit) {
+  if (!HasMotion(problem.recording)) return;
+  FitResiduals residuals(problem, selection, free, fit);
+  residuals.body.Evaluate(residuals.body.Start(), true);
+  const NormalEquations equations(residuals.body);
+  const ExplainedRows explained =
+      equations.ExplainedVariances(InverseOfInformation(equations.information()));
+  fit.noise.motion =
+      FindMotionCorrelation(problem, selection, fit.noise, residuals.body, explained);
 }
 
 Fit FitParameters(const FitProblem& problem, const Selection& selection,

@@ -82,6 +82,10 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const Fit& start, Robustness robustness,
                   int updates = kMaxUpdates);
 
+/// How errors are correlated in motions, by what a fit leaves that need not have settled.
+void CorrelateMotions(const FitProblem& problem, const Selection& selection,
+                      const std::vector<int>& free, Fit& fit);
+
 /// Solves to the last digit, with noise, weights and prior as they are and loads as the solution
 /// has them.
 void Polish(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,

@@ -7,6 +7,7 @@
 
 #include "elastocal/calibration/displacement_step.hpp"
 #include "elastocal/calibration/fit.hpp"
+#include "elastocal/measurement/moments.hpp"
 
 namespace elastocal {
 namespace {
@@ -15,6 +16,7 @@ constexpr int kMaxKnocks = 4;
 constexpr int kKnockUpdates = 6;         // steps, each with the noise
 constexpr double kLeastDistance = 1e-3;  // m
 constexpr double kLeastScatters = 3.0;
+constexpr double kLeastInMotion = 2.0;  // of significance: a correlation is known roughly
 
 std::vector<int> Estimated(const ErrorModel& model, const BaseParameters& base) {
   std::vector<int> free;
@@ -25,8 +27,8 @@ std::vector<int> Estimated(const ErrorModel& model, const BaseParameters& base) 
   return free;
 }
 
-bool IsKnock(const DisplacementStep& step) {
-  return step.cluster >= 0 && step.significance > 1.0 &&
+bool IsKnock(const DisplacementStep& step, double significance) {
+  return step.cluster >= 0 && step.significance > significance &&
          step.displacement.norm() >= std::max(kLeastDistance, kLeastScatters * step.scatter);
 }
 
@@ -70,30 +72,57 @@ void SplitOne(const Knock& knock, ErrorModel& model, Recording& recording) {
   model = SelectMarkers(extended, recording.marker_names);
 }
 
-/// The fit with the markers split: each new one where its other half was before the knock.
-/// `origins`: of each new one, that which it was split from.
-void SplitFit(const ErrorModel& model, const std::vector<int>& origins, std::vector<int>& free,
-              Fit& fit) {
-  const auto first = fit.delta.size();
-  const auto old_markers = model.marker_count() - static_cast<int>(origins.size());
-  fit.delta.conservativeResize(model.parameter_count());
-  for (std::size_t n = 0; n < origins.size(); ++n) {
-    const auto at = first + 3 * static_cast<Eigen::Index>(n);
-    fit.delta.segment<3>(at) = fit.delta.segment<3>(first - 3 * (old_markers - origins[n]));
-    for (int axis = 0; axis < 3; ++axis) free.push_back(static_cast<int>(at) + axis);
-  }
+/// The experiment as far as knocks have been found in it.
+struct SplitExperiment {
+  ErrorModel model;
+  Recording recording;
+  std::vector<LabelCluster> clusters;
+  std::vector<int> free;
+  Fit fit;
+};
+
+Knock KnockAt(const DisplacementStep& step, const SplitExperiment& search) {
+  std::vector<int> markers = search.clusters[step.cluster].markers;
+  std::erase_if(markers,
+                [&](int m) { return !SeenOnBothSides(search.recording, m, step.posture); });
+  return {search.clusters[step.cluster].name, markers,          step.posture, step.last_before,
+          step.displacement.norm(),           step.significance};
 }
 
-/// The cluster is two from now on, those of `origins` and their other halves.
-void SplitCluster(const DisplacementStep& step, const std::vector<int>& origins, int first_new,
-                  std::vector<LabelCluster>& clusters) {
-  LabelCluster before = clusters[step.cluster];
+/// The markers of a cluster are two sets from now on, each new one where its other half was before.
+void Split(const Knock& knock, int cluster, SplitExperiment& search) {
+  const int first_new = search.model.marker_count();
+  SplitOne(knock, search.model, search.recording);
+  Fit& fit = search.fit;
+  const auto first = fit.delta.size();
+  fit.delta.conservativeResize(search.model.parameter_count());
+  LabelCluster before = search.clusters[cluster];
   before.name += "(before)";
   before.markers.clear();
-  for (std::size_t n = 0; n < origins.size(); ++n) {
+  for (std::size_t n = 0; n < knock.markers.size(); ++n) {
+    const auto at = first + 3 * static_cast<Eigen::Index>(n);
+    fit.delta.segment<3>(at) = fit.delta.segment<3>(first - 3 * (first_new - knock.markers[n]));
+    for (int axis = 0; axis < 3; ++axis) search.free.push_back(static_cast<int>(at) + axis);
     before.markers.push_back(first_new + static_cast<int>(n));
   }
-  clusters.push_back(std::move(before));
+  search.clusters.push_back(std::move(before));
+}
+
+/// Of a motion: the step once more, with errors as correlated as they are without the knock.
+DisplacementStep AmongCorrelated(const DisplacementStep& step, SplitExperiment search,
+                                 const CalibrationOptions& options) {
+  SplitExperiment without = search;
+  Split(KnockAt(step, search), step.cluster, without);
+  const std::vector<int> groups = NoiseGroups(search.model, search.recording);
+  const FitProblem problem{without.model, without.recording, options, groups};
+  const Selection selection = SelectAll(without.model, without.recording);
+  without.fit = FitParameters(problem, selection, without.free, without.fit, Robustness::kMoments,
+                              kKnockUpdates);
+  CorrelateMotions(problem, selection, without.free, without.fit);
+  search.fit.noise = without.fit.noise;
+  return FindLargestStep({search.model, search.recording, options, groups},
+                         SelectAll(search.model, search.recording), search.free, search.fit,
+                         search.clusters, options.outlier_probability);
 }
 
 }  // namespace
@@ -102,31 +131,26 @@ std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recordin
                               const BaseParameters& base, const std::vector<LabelCluster>& clusters,
                               const CalibrationOptions& options) {
   if (recording.trials.empty()) return {};
-  ErrorModel split_model = model;
-  Recording split = recording;
-  std::vector<LabelCluster> sets = clusters;
   CalibrationOptions quick = options;
   quick.support_form = SupportForm::kNuisance;
-  const FitProblem problem{split_model, split, quick, NoiseGroups(model, recording)};
-  std::vector<int> free = Estimated(model, base);
-  Fit fit = StartFit(problem, SelectAll(split_model, split),
-                     Eigen::VectorXd::Zero(model.parameter_count()));
+  SplitExperiment search{model, recording, clusters, Estimated(model, base), {}};
+  const FitProblem problem{search.model, search.recording, quick, NoiseGroups(model, recording)};
+  search.fit = StartFit(problem, SelectAll(model, recording),
+                        Eigen::VectorXd::Zero(model.parameter_count()));
   std::vector<Knock> knocks;
-  for (;;) {
-    const Selection selection = SelectAll(split_model, split);
-    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments, kKnockUpdates);
-    const DisplacementStep step =
-        FindLargestStep(problem, selection, free, fit, sets, options.outlier_probability);
-    if (!IsKnock(step)) break;
-    std::vector<int> origins = sets[step.cluster].markers;
-    std::erase_if(origins, [&](int m) { return !SeenOnBothSides(split, m, step.posture); });
-    knocks.push_back({sets[step.cluster].name, origins, step.posture, step.last_before,
-                      step.displacement.norm(), step.significance});
-    if (static_cast<int>(knocks.size()) == kMaxKnocks) break;
-    const int first_new = split_model.marker_count();
-    SplitOne(knocks.back(), split_model, split);
-    SplitFit(split_model, origins, free, fit);
-    SplitCluster(step, origins, first_new, sets);
+  while (static_cast<int>(knocks.size()) < kMaxKnocks) {
+    const Selection selection = SelectAll(search.model, search.recording);
+    search.fit = FitParameters(problem, selection, search.free, search.fit, Robustness::kMoments,
+                               kKnockUpdates);
+    DisplacementStep step = FindLargestStep(problem, selection, search.free, search.fit,
+                                            search.clusters, options.outlier_probability);
+    if (!IsKnock(step, 1.0)) break;
+    if (HasMotion(recording)) {
+      step = AmongCorrelated(step, search, quick);
+      if (!IsKnock(step, kLeastInMotion)) break;
+    }
+    knocks.push_back(KnockAt(step, search));
+    Split(knocks.back(), step.cluster, search);
   }
   return knocks;
 }

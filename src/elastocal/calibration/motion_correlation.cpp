@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kLeastMotionPairs = 10;
 constexpr double kLeastShare = 0.05;      // of the errors of the model in the variance of a row
+constexpr double kLeastWidening = 0.5;    // of the variance of a row, by correlation
 constexpr double kLeastLeftByPose = 0.1;  // of a row, by the poses
 constexpr double kChance = 3.0;           // standard deviations of a correlation that is none
 // Distances are looked at up to so many pairs, but in any case so many of them: long tables.
@@ -144,11 +145,13 @@ std::vector<MotionCorrelation> FindMotionCorrelation(const FitProblem& problem,
   const Tracks none(static_cast<int>(motion.size()));
   std::vector<Tracks> bodies(noise.group_count(), none);
   std::vector<Tracks> waist(noise.group_count(), none);
+  std::vector<double> share_of(noise.group_count(), 0.0);  // the largest
   for (int b = 0; b < residuals.body_count(); ++b) {
     const BodyObservation& body = selection.bodies[b];
     if (!body.used || motion[body.posture] < 0) continue;
     const int group = problem.group[body.posture];
     const double share = body.Shares(noise, group, NoiseSource::kBodyPosition)[0];
+    share_of[group] = std::max(share_of[group], share);
     if (share < kLeastShare) continue;
     bodies[group].Add(body.body, body.posture, RowsOf(residuals, explained, b, 3), share);
   }
@@ -160,8 +163,12 @@ std::vector<MotionCorrelation> FindMotionCorrelation(const FitProblem& problem,
   }
   std::vector<MotionCorrelation> found;
   for (int g = 0; g < noise.group_count(); ++g) {
-    found.push_back(
-        {.bodies = bodies[g].Correlation(motions), .waist = waist[g].Correlation(motions)});
+    // Weighted by their correlation, errors may become too small to tell it: it stays then, if it
+    // matters.
+    const double before = noise.motion.empty() ? 1.0 : noise.motion[g].bodies.samples_each;
+    const bool stays = share_of[g] < kLeastShare && share_of[g] * (before - 1.0) > kLeastWidening;
+    found.push_back({.bodies = stays ? noise.motion[g].bodies : bodies[g].Correlation(motions),
+                     .waist = waist[g].Correlation(motions)});
   }
   return found;
 }

@@ -17,7 +17,9 @@ namespace elastocal {
 ///
 /// By the residuals as last evaluated, from which is taken out what the poses and the parameters
 /// explain of them. Noise of single markers is not correlated. Empty where the recording has no
-/// motion; 1 for a group with fewer than ten pairs of moments.
+/// motion; 1 for a group with fewer than ten pairs of moments. A group in which bodies
+/// share little of the variance (5 %) keeps what `noise` says of them where that matters: weighted
+/// by their correlation, they would tell none, and weighted by none a large one again.
 std::vector<MotionCorrelation> FindMotionCorrelation(const FitProblem& problem,
                                                      const Selection& selection, const Noise& noise,
                                                      const BodyResiduals& residuals,

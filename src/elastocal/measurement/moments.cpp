@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/measurement/moments.hpp"
 
+#include <algorithm>
+
 namespace elastocal {
 namespace {
 
@@ -25,6 +27,11 @@ std::vector<int> MotionOfPostures(const Recording& recording) {
     motion[i] = last;
   }
   return motion;
+}
+
+bool HasMotion(const Recording& recording) {
+  const std::vector<int> motion = MotionOfPostures(recording);
+  return std::any_of(motion.begin(), motion.end(), [](int of) { return of >= 0; });
 }
 
 }  // namespace elastocal

@@ -13,4 +13,7 @@ namespace elastocal {
 /// does not explain hardly changes from one to the other.
 std::vector<int> MotionOfPostures(const Recording& recording);
 
+/// Whether any posture is a moment of a motion.
+bool HasMotion(const Recording& recording);
+
 }  // namespace elastocal

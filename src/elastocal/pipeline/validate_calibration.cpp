@@ -115,9 +115,8 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
     run.mistakes.push_back(DescribeMistake(mistake));
   }
   if (!run.frozen) {
-    run.urdf = ValidateTransfer(robot.model, measured.calibration, robot.base, project.calibration,
-                                GeometryInUrdf(run.calibration, robot.model))
-                   .calibrated;
+    run.urdf = RefitLike(run.transfer.calibrated, robot.model, measured.calibration, robot.base,
+                         project.calibration, GeometryInUrdf(run.calibration, robot.model));
   }
   run.expected_error = ExpectedError(robot.model, measured.calibration, project.calibration.prior);
   run.recording = std::move(measured.calibration);

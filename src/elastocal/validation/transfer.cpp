@@ -70,11 +70,16 @@ TransferValidation ValidateTransfer(const ErrorModel& model, const Recording& re
   TransferValidation validation;
   validation.calibrated =
       MakeRefit(RefitExternals(model, recording, base, options, joint_errors), recording, options);
-  const Selection used = Select(model, recording, validation.calibrated.result.used,
-                                validation.calibrated.result.tied);
-  validation.uncalibrated =
-      MakeRefit(RefitExternals(model, recording, base, options, {}, &used), recording, options);
+  validation.uncalibrated = RefitLike(validation.calibrated, model, recording, base, options, {});
   return validation;
+}
+
+Refit RefitLike(const Refit& calibrated, const ErrorModel& model, const Recording& recording,
+                const BaseParameters& base, const CalibrationOptions& options,
+                const std::map<std::string, double>& joint_errors) {
+  const Selection used = Select(model, recording, calibrated.result.used, calibrated.result.tied);
+  return MakeRefit(RefitExternals(model, recording, base, options, joint_errors, &used), recording,
+                   options);
 }
 
 }  // namespace elastocal

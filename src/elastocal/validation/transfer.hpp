@@ -30,6 +30,11 @@ TransferValidation ValidateTransfer(const ErrorModel& model, const Recording& re
                                     const BaseParameters& base, const CalibrationOptions& options,
                                     const std::map<std::string, double>& joint_errors);
 
+/// The same of other errors of the joints, on the observations that `calibrated` kept.
+Refit RefitLike(const Refit& calibrated, const ErrorModel& model, const Recording& recording,
+                const BaseParameters& base, const CalibrationOptions& options,
+                const std::map<std::string, double>& joint_errors);
+
 /// Everything of a calibration that a prediction needs, by parameter name, SI.
 struct FrozenCalibration {
   std::optional<Transform> T_ref_waist;  ///< of a table of postures
