@@ -18,6 +18,7 @@ constexpr double kAtRest = 0.005;     // m
 constexpr double kOftenMoved = 0.25;  // of the frames
 constexpr int kMostLooked = 500;      // looked at
 constexpr std::size_t kLeastLooked = 10;
+constexpr double kFurther = 3.0;  // the joints of one chain than those of another
 
 double MedianAlong(const std::vector<double>& values) {
   return Median(
@@ -110,11 +111,33 @@ bool EndsAChain(const RobotTree& tree, int body) {
                                   [&](const Joint& joint) { return joint.parent_body == body; });
 }
 
+/// How far the joints go between the root and one body that are not also between it and the other.
+double TravelOf(const RobotTree& tree, int body, int other, const Eigen::VectorXd& travel) {
+  const std::vector<int> shared = JointsToBody(tree, other);
+  double sum = 0.0;
+  for (const int joint : JointsToBody(tree, body)) {
+    if (std::find(shared.begin(), shared.end(), joint) == shared.end()) sum += travel[joint];
+  }
+  return sum;
+}
+
+/// The first cluster on the body; without one, the link's name.
+std::string ClusterOn(const MarkedRobot& robot, int link) {
+  for (const LabelCluster& cluster : robot.clusters) {
+    for (const int m : cluster.markers) {
+      const int body = robot.tree.links[robot.markers[m].link].body;
+      if (body == robot.tree.links[link].body) return cluster.name;
+    }
+  }
+  return robot.tree.links[link].name;
+}
+
 }  // namespace
 
 std::optional<MovedSupport> FindMovedSupport(const RobotTree& tree,
                                              const std::vector<Marker>& markers, const Trial& trial,
-                                             const MarkerTrajectories& trajectories) {
+                                             const MarkerTrajectories& trajectories,
+                                             const Eigen::VectorXd& travel) {
   if (trial.free_root) return std::nullopt;
   const std::vector<int> support = trial.support.empty() ? std::vector<int>{0} : trial.support;
   // Three feet and more are balls, about which the shanks turn.
@@ -139,6 +162,8 @@ std::optional<MovedSupport> FindMovedSupport(const RobotTree& tree,
       const std::vector<double> other = BodyDistances(tree, markers, body, trajectories);
       if (other.size() >= kLeastLooked && *std::max_element(other.begin(), other.end()) < kAtRest) {
         found.still = marker.link;
+        found.labels = TravelOf(tree, body, tree.links[link].body, travel) >
+                       kFurther * TravelOf(tree, tree.links[link].body, body, travel);
       }
     }
     return found;
@@ -146,11 +171,18 @@ std::optional<MovedSupport> FindMovedSupport(const RobotTree& tree,
   return std::nullopt;
 }
 
-std::string Describe(const MovedSupport& moved, const RobotTree& tree) {
+std::string Describe(const MovedSupport& moved, const MarkedRobot& robot) {
+  const RobotTree& tree = robot.tree;
   char distance[40];
   std::snprintf(distance, sizeof distance, "%.0f mm", 1e3 * moved.distance);
   const std::string what = moved.link == 0 ? "the root link, which should be held,"
                                            : "the support " + tree.links[moved.link].name;
+  if (moved.labels) {
+    return "the labels of " + ClusterOn(robot, moved.link) + " and " +
+           ClusterOn(robot, moved.still) + " are exchanged: " + what + " seems to move by " +
+           distance + ", while " + tree.links[moved.still].name +
+           " stands still, though its joints move and those of the support do not";
+  }
   return what + " moves by " + distance +
          (moved.still < 0 ? "" : ", while " + tree.links[moved.still].name + " stands still") +
          "; see `support` in experiment.yaml";

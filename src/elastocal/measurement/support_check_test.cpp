@@ -19,10 +19,17 @@ class SupportCheck : public testing::Test {
     }
   }
   std::optional<MovedSupport> Find(const Trial& trial) const {
-    return FindMovedSupport(robot_.biped.tree, robot_.model.markers, trial, swinging_);
+    return FindMovedSupport(robot_.biped.tree, robot_.model.markers, trial, swinging_, travel_);
   }
 
   const StandingBiped robot_ = {};
+  const MarkedRobot marked_ = {.tree = robot_.biped.tree,
+                               .markers = robot_.model.markers,
+                               .clusters = {},
+                               .torque_sensors = {},
+                               .q_not_logged = {}};
+  Eigen::VectorXd travel_ =
+      Eigen::VectorXd::Ones(static_cast<Eigen::Index>(robot_.biped.tree.joints.size()));
   MarkerTrajectories swinging_;
 };
 
@@ -31,11 +38,28 @@ TEST_F(SupportCheck, TheWrongFootIsNamedWithTheRightOne) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->link, robot_.left);
   EXPECT_NEAR(found->distance, 0.4, 1e-9);  // from the median, in the middle
-  EXPECT_EQ(
-      Describe(*found, robot_.biped.tree).find("the support left_sole moves by 400 mm, while "),
-      0u);
+  EXPECT_EQ(Describe(*found, marked_).find("the support left_sole moves by 400 mm, while "), 0u);
   ASSERT_GE(found->still, 0);
   EXPECT_EQ(robot_.biped.tree.links[found->still].body, robot_.biped.tree.links[robot_.right].body);
+}
+
+// The joints of the right leg move, and the markers that are called those of the left foot.
+TEST_F(SupportCheck, LabelsOfTheFeetAreNamedWhereTheJointsOfTheOtherLegMove) {
+  const RobotTree& tree = robot_.biped.tree;
+  travel_.setConstant(0.01);
+  for (const int joint : JointsToBody(tree, tree.links[robot_.right].body)) travel_[joint] = 0.5;
+  const Trial trial = {.name = "swing", .chains = {}, .support = {robot_.left}};
+  const auto found = Find(trial);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->labels);
+  MarkedRobot marked = marked_;
+  for (int m = 0; m < robot_.model.marker_count(); ++m) {
+    const int body = tree.links[marked.markers[m].link].body;
+    if (body == tree.links[robot_.left].body) marked.clusters.push_back({"LFOOT", {m}});
+  }
+  EXPECT_EQ(Describe(*found, marked).find("the labels of LFOOT and "), 0u);
+  for (const int joint : JointsToBody(tree, tree.links[robot_.left].body)) travel_[joint] = 0.5;
+  EXPECT_FALSE(Find(trial)->labels);
 }
 
 TEST_F(SupportCheck, BothFeetDeclaredAndOneSwings) {

@@ -40,8 +40,8 @@ class TrialSampler {
     ForgetEdges(trajectories_, smoothed_log_.margin_s, speeds);
     std::vector<Marker> seen;
     for (const int marker : markers_) seen.push_back(robot_.markers[marker]);
-    if (const auto moved = FindMovedSupport(robot_.tree, seen, trial_, trajectories_)) {
-      return Refuse(Describe(*moved, robot_.tree));
+    if (const auto moved = FindMovedSupport(robot_.tree, seen, trial_, trajectories_, Travel())) {
+      return Refuse(Describe(*moved, robot_));
     }
     const std::string unclear = TellClock(MotionForClock(speeds));
     if (!unclear.empty()) return Refuse(unclear);
@@ -51,6 +51,19 @@ class TrialSampler {
   }
 
  private:
+  // Of each joint of the tree, how far it goes.
+  Eigen::VectorXd Travel() const {
+    Eigen::VectorXd travel =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(robot_.tree.joints.size()));
+    for (Eigen::Index c = 0; c < log_.positions.cols(); ++c) {
+      for (Eigen::Index j = 0; j < travel.size(); ++j) {
+        if (robot_.tree.joints[j].coordinate != coordinates_[c]) continue;
+        travel[j] = log_.positions.col(c).maxCoeff() - log_.positions.col(c).minCoeff();
+      }
+    }
+    return travel;
+  }
+
   TrialSummary& summary() { return result_.summary; }
 
   void Refuse(const std::string& reason) { summary().refused = reason; }
