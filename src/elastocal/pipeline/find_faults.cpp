@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -208,19 +209,37 @@ struct Contrast {
   double ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
 };
 
+/// Whether all chains of a group (TrialGroups) are also in another one.
+bool IsWithin(const std::string& group, const std::string& other) {
+  std::istringstream chains(group);
+  for (std::string chain; std::getline(chains, chain, '+');) {
+    if (("+" + other + "+").find("+" + chain + "+") == std::string::npos) return false;
+  }
+  return true;
+}
+
+/// Over all observations of the groups within `group`: limbs that a held-out trial moves together
+/// may have been measured one after the other.
+double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind kind) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const ErrorTableRow& row : table.groups) {
+    const auto metrics = row.metrics.find(kind);
+    if (metrics == row.metrics.end() || !IsWithin(row.group, group)) continue;
+    squares += metrics->second.observations * std::pow(metrics->second.rmse_3d, 2);
+    count += metrics->second.observations;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
 Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
-  const auto rmse_of = [](const ErrorTableRow& row, ModelKind of) {
-    const auto metrics = row.metrics.find(of);
-    return metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d;
-  };
   Contrast largest{"", 1.0, 0.0, 0.0};
   for (const ErrorTableRow& row : held_out.groups) {
-    for (const ErrorTableRow& own : fitted.groups) {
-      const Contrast contrast{row.group, rmse_of(own, kind), rmse_of(own, ModelKind::kUncalibrated),
-                              rmse_of(row, kind)};
-      if (own.group != row.group || !(contrast.fitted > 0.0)) continue;
-      if (contrast.ratio() > largest.ratio()) largest = contrast;
-    }
+    const auto metrics = row.metrics.find(kind);
+    const Contrast contrast{row.group, RmseWithin(fitted, row.group, kind),
+                            RmseWithin(fitted, row.group, ModelKind::kUncalibrated),
+                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d};
+    if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
   }
   return largest;
 }
