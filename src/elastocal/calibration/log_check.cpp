@@ -26,7 +26,7 @@ constexpr double kLeastDiscrepancy = 0.06;        // rad: beyond errors of a rob
 constexpr double kLeastSlideDiscrepancy = 0.015;  // m
 constexpr double kFarBetter = 0.5;                // of the discrepancy is left at most
 constexpr double kStill = 2e-5;                   // rad or m: encoders count in steps
-constexpr int kLeastFrozen = 3;                   // postures
+constexpr int kLeastFrozen = 2;                   // postures
 constexpr int kLeastJudged = 4;                   // of a trial
 
 bool Slides(const RobotTree& tree, int coordinate) {

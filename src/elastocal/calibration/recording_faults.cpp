@@ -16,8 +16,9 @@ namespace elastocal {
 namespace {
 
 constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
-constexpr double kLeastExplained = 0.08;
-constexpr double kLeastSds = 8.0;
+constexpr double kLeastExplained = 0.06;
+constexpr double kLeastOfChains = 0.5;  // of what is left of the chains that it is in
+constexpr double kLeastSds = 6.0;
 constexpr int kLeastSide = 3;    // postures before and after it
 constexpr int kSplits = 12;      // of the recording, after which an offset of a joint may begin
 constexpr int kTrialSplits = 6;  // of a trial, after which one may begin that ends with the trial
@@ -136,6 +137,23 @@ class FaultSearch {
     return trial;
   }
 
+  /// Of the chains (CalibrationResult::group) in whose postures a trial does anything.
+  double SquaresOfChains(const Blocks& derivative, const Eigen::VectorXd& factor) const {
+    std::set<int> chains;
+    for (std::size_t b = 0; b < posture_.size(); ++b) {
+      const int i = posture_[b];
+      if (i < 0 || factor[i] == 0.0 || derivative[b].isZero(0.0)) continue;
+      chains.insert(result_.group[i]);
+    }
+    double squares = 0.0;
+    for (std::size_t b = 0; b < posture_.size(); ++b) {
+      if (posture_[b] >= 0 && chains.contains(result_.group[posture_[b]])) {
+        squares += at_[b].squaredNorm();
+      }
+    }
+    return squares;
+  }
+
   void Try(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
            const Blocks& derivative, const std::vector<Trial>& trials, bool slides) {
     Eigen::MatrixXd factors(recording_.posture_count(), static_cast<Eigen::Index>(trials.size()));
@@ -151,9 +169,12 @@ class FaultSearch {
       fault.share = additions[k].gain / squares_;
       const bool certain = std::abs(fault.size) > kLeastSds * fault.sd;
       const bool matters = std::abs(fault.size) > LeastSize(fault.kind, slides) &&
-                           std::abs(fault.size) < LargestSize(fault.kind, slides) &&
-                           fault.share > kLeastExplained;
-      if (certain && matters) found_.push_back(fault);
+                           std::abs(fault.size) < LargestSize(fault.kind, slides);
+      if (!certain || !matters) continue;
+      const bool explains =
+          fault.share > kLeastExplained ||
+          additions[k].gain > kLeastOfChains * SquaresOfChains(derivative, trials[k].factor);
+      if (explains) found_.push_back(fault);
     }
   }
 

@@ -35,8 +35,9 @@ struct RecordingFault {
 /// to the end of its trial (six of each, then all near the best one), and the scale of the cameras
 /// in one of several trials (a scale of all of them looks like a robot all of whose lengths are
 /// off). Only faults that no good robot has are returned, the one that explains most first: of a
-/// size that matters (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain (eight standard
-/// deviations) and a part of what is left (8 %; of a clean ergoCub, 4 %).
+/// size that matters (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain (six standard
+/// deviations) and a part of what is left (6 %, of a clean ergoCub 4 %; or half of what is left of
+/// the chains that it is in).
 std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
                                                 const Recording& recording,
                                                 const CalibrationOptions& options);

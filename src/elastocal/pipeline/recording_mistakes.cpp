@@ -30,8 +30,10 @@ constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
 constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
 constexpr std::size_t kManyLeftOut = 4;   // a quarter of the postures
 constexpr double kLeftByLeavingOut = 0.3;
-constexpr double kExplained = 0.02;  // m: no robot whose errors are estimated leaves more
-constexpr double kNoWorse = 1.2;     // of what is left without the postures
+// No robot whose errors are estimated leaves more, m and as a share of its size.
+constexpr double kExplained = 0.02;
+constexpr double kExplainedShare = 0.008;
+constexpr double kNoWorse = 1.2;  // of what is left without the postures
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
 
@@ -220,9 +222,15 @@ class Refitting {
   std::optional<BaseParameters> base_;
 };
 
+/// m.
+double MostLeft(const RobotTree& tree) {
+  return std::min(kExplained, kExplainedShare * RobotSize(tree));
+}
+
 /// None where too much is left in the end.
-std::vector<RecordingMistake> Explained(std::vector<RecordingMistake> mistakes) {
-  if (!mistakes.empty() && mistakes.back().after > kExplained) mistakes.clear();
+std::vector<RecordingMistake> Explained(const RobotTree& tree,
+                                        std::vector<RecordingMistake> mistakes) {
+  if (!mistakes.empty() && mistakes.back().after > MostLeft(tree)) mistakes.clear();
   return mistakes;
 }
 
@@ -254,6 +262,8 @@ std::vector<RecordingMistake> FindMistakesBy(
   std::vector<RecordingMistake> mistakes;
   if (recording.posture_count() == 0) return mistakes;
   const ErrorModel nominal = NominalModel(project, recording);
+  // Where no robot explains the recording, anything that lets one do so seems to help.
+  const double most_left = MostLeft(project.tree);
   Recording current = recording;
   while (mistakes.size() < kMostMistakes) {
     std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
@@ -271,10 +281,10 @@ std::vector<RecordingMistake> FindMistakesBy(
       if (one.only_leaves_out && left > kLeftByLeavingOut * error) return false;
       least = left;
       best = &one;
-      return left < kClearlyRight * error;
+      return left < std::min(kClearlyRight * error, most_left);
     };
     for (const TriedCorrection& one : tried) {
-      if (one.only_leaves_out && best != nullptr) break;
+      if (one.only_leaves_out && best != nullptr && least < most_left) break;
       if (try_one(one)) break;
     }
     if (best == nullptr) break;
@@ -313,7 +323,8 @@ std::vector<RecordingMistake> FindMistakesBy(
       return std::numeric_limits<double>::infinity();
     }
   };
-  return Explained(FindMistakesBy(project, as_recorded.calibration, error, error_of_corrected));
+  return Explained(project.tree,
+                   FindMistakesBy(project, as_recorded.calibration, error, error_of_corrected));
 }
 
 std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
@@ -322,10 +333,11 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result) {
   Refitting refitting(project, seed, measured);
-  return Explained(FindMistakesBy(
-      project, measured.calibration, FitError(result, fitted, project.calibration),
-      [&](const Recording& recording) { return refitting.Error(recording); },
-      [&](const Recording& recording) { return TurnedAxes(result, recording); }));
+  return Explained(project.tree,
+                   FindMistakesBy(
+                       project, measured.calibration, FitError(result, fitted, project.calibration),
+                       [&](const Recording& recording) { return refitting.Error(recording); },
+                       [&](const Recording& recording) { return TurnedAxes(result, recording); }));
 }
 
 std::vector<std::string> AcceptMistakes(const Project& project,
