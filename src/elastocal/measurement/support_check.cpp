@@ -18,7 +18,7 @@ constexpr double kAtRest = 0.005;     // m
 constexpr double kOftenMoved = 0.25;  // of the frames
 constexpr int kMostLooked = 500;      // looked at
 constexpr std::size_t kLeastLooked = 10;
-constexpr double kFurther = 3.0;  // the joints of one chain than those of another
+constexpr double kFurther = 1.5;  // the joints of one chain than those of another
 
 double MedianAlong(const std::vector<double>& values) {
   return Median(
