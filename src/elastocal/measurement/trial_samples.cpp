@@ -178,7 +178,11 @@ class TrialSampler {
     ClockFit& clock = summary().clock;
     FitClock(seen);
     if (clock.state == ClockState::kReliable) {
-      if (trial_.of_motion()) Refine(seen);  // half a millisecond matters there
+      if (trial_.of_motion()) {
+        Refine(seen);  // half a millisecond matters there
+      } else {
+        PreferLongerOverlap(seen);
+      }
       return "";
     }
     const std::string cause = CauseOfBadClock(seen);
@@ -195,6 +199,21 @@ class TrialSampler {
                                               coordinates_, trajectories_.rate_hz);
     summary().clock = EstimateTrialClock(seen.speeds, trajectories_.rate_hz, logged,
                                          options_.expected_lag_s, ClockSettings());
+  }
+
+  /// There and back, speeds may agree best one motion too late, where less of both takes part.
+  void PreferLongerOverlap(const Motion& seen) {
+    constexpr double kAsWell = 0.99, kLonger = 1.15, kNear_s = 0.3;
+    ClockFit& clock = summary().clock;
+    if (clock.second_peak < kAsWell * clock.peak) return;
+    ClockOptions near = ClockSettings();
+    near.longest_lag_s = kNear_s;
+    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.links, smoothed_log_,
+                                              coordinates_, trajectories_.rate_hz);
+    const ClockFit other =
+        EstimateTrialClock(seen.speeds, trajectories_.rate_hz, logged, clock.second_lag_s, near);
+    const bool longer = other.overlap_s > kLonger * clock.overlap_s;
+    if (other.state == ClockState::kReliable && longer) clock = other;
   }
 
   void Refine(const Motion& seen) {
