@@ -162,6 +162,29 @@ TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   EXPECT_NE(found[0].find(project_.tree.joints[2].name + ": its positions are off by"),
             std::string::npos)
       << found[0];
+
+  // Limbs that were calibrated one after the other are held out together.
+  Recording together = held_out;
+  together.trials[0].chains = {project_.chains[0].name, project_.chains[1].name};
+  EXPECT_EQ(contradictions(recording, together).size(), 1u);
+}
+
+// A correction that lets a robot explain the recording, if badly, is not taken for the right one.
+TEST_F(Pipeline, OfCorrectionsWithoutWhichNoRobotFitsTheBestIsNamed) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  Recording recording = MakeSyntheticRecording(
+      model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40});
+  recording.trials = {{"swing", TrialKind::kCalibration, {project_.chains.front().name}}};
+  recording.trial.assign(40, 0);
+  recording.q.col(2) *= -1.0;
+  recording.q.col(4).tail(15).setConstant(recording.q(25, 4));
+  const auto error_of = [](const Recording& corrected) {
+    return corrected.posture_count() < 40 ? 1e-4 : 0.05;
+  };
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project_, recording, std::numeric_limits<double>::infinity(), error_of);
+  ASSERT_FALSE(mistakes.empty());
+  EXPECT_EQ(mistakes[0].name, "frozen:" + project_.tree.joints[4].name);
 }
 
 // A mistake that was named is undone by its name, in all trials, and by no other.
