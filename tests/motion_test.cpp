@@ -292,14 +292,14 @@ TEST(Motion, ErrorsThatLastAreNoKnocks) {
   };
   int as_motion = 0;
   int as_postures = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Recording recording = RecordWays(legs, 0.6e-3, Eigen::Vector3d::Zero(), seed);
     as_motion += find(recording).empty() ? 0 : 1;
     for (Trial& trial : recording.trials) trial.moments = false;
     as_postures += find(recording).empty() ? 0 : 1;
   }
   EXPECT_LE(as_motion, 1);
-  EXPECT_GE(as_postures, 5);
+  EXPECT_GE(as_postures, 3);
 
   const Eigen::Vector3d push(0.0, 0.0, 4e-3);
   const std::vector<Knock> knocks = find(RecordWays(legs, 0.1e-3, push, 1));
