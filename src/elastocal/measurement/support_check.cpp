@@ -181,7 +181,7 @@ std::string Describe(const MovedSupport& moved, const MarkedRobot& robot) {
     return "the labels of " + ClusterOn(robot, moved.link) + " and " +
            ClusterOn(robot, moved.still) + " are exchanged: " + what + " seems to move by " +
            distance + ", while " + tree.links[moved.still].name +
-           " stands still, though its joints move and those of the support do not";
+           " stands still, though its joints move more than those of the support";
   }
   return what + " moves by " + distance +
          (moved.still < 0 ? "" : ", while " + tree.links[moved.still].name + " stands still") +

@@ -17,7 +17,7 @@ struct MovedSupport {
   int link = 0;           ///< 0: the root link, which is held
   double distance = 0.0;  ///< the furthest of its markers from where they mostly are, m
   int still = -1;         ///< another link at the end of a chain that does stand still; -1: none
-  bool labels = false;    ///< whether the joints move `still`, so that labels are exchanged
+  bool labels = false;    ///< whether joints move `still` rather than `link`: labels are exchanged
 };
 
 /// A support of the trial that is more than 20 mm from where it mostly is in more than a quarter of
