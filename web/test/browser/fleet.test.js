@@ -69,7 +69,10 @@ test('robots are rows, those that need somebody first; names are shown, not run'
   assert.match(await page.textContent('.verdict-sentence'), /^10 of 12 robots have .* deployed, 1 has one that is not, 1 has none and 1 needs a workshop\.$/);
   assert.match(await page.textContent('#family tbody tr'), /talos_7arm_3_joint\.theta2\.01 °0\.06 ± 0\.23 °< 0\.0001/);
   assert.match(await page.textContent('#drift tbody tr'), /talos_2arm_1_joint\.theta0\.0859 ± 0\.0069 °3< 0\.0001/);
-  assert.equal(await page.$$eval('#drift .plot canvas', (all) => all.filter((canvas) => canvas.width > 100).length), 1);
+  // Plots are drawn once the page is laid out.
+  const drawn = () => [...document.querySelectorAll('#drift .plot canvas')].filter((canvas) => canvas.width > 100).length;
+  await page.waitForFunction(`(${drawn})() > 0`);
+  assert.equal(await page.evaluate(drawn), 1);
   assert.match(await page.textContent('#batches'), /leg_2_joint\.r1\.20 ± 0\.20 mm/);
   assert.equal(await page.$$eval('#app script', (all) => all.length), 0);
   assert.ok((await page.textContent('#notes')).includes(EVIL));
