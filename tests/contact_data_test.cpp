@@ -92,7 +92,8 @@ TEST_F(TalosTable, ATouchInTheAirIsNamed) {
   const int elbow = FindJoint(project_.tree, "arm_right_4_joint");
   touches.q(30, project_.tree.joints[elbow].coordinate) -= 0.3;
   run.calibrated.estimate = EstimateObserved(run.model, touches, {});
-  const std::vector<std::string> texts = DescribeOutliers(run);
+  const std::vector<std::string> texts =
+      DescribeOutliers(run.model, run.observations, run.calibrated.estimate);
   ASSERT_EQ(texts.size(), 1u);
   EXPECT_NE(texts[0].find("right.csv:11: "), std::string::npos) << texts[0];
 }

@@ -25,7 +25,6 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
                                                       options.recordings.end());
   const Project project = ReadProject(options.project);
   if (project.contact) {
-    if (!options.prior.empty()) throw InputError("--prior is about markers, not touches");
     if (options.fold_by == "trial")
       throw InputError("--fold-by trial is about recordings of trials");
     return RunContactCalibration(options, project);

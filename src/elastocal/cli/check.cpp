@@ -9,11 +9,12 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/contact_check.hpp"
 #include "elastocal/cli/figures.hpp"
+#include "elastocal/cli/moved_joints_report.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
-#include "elastocal/cli/text_table.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/check_calibration.hpp"
 #include "elastocal/pipeline/measurements.hpp"
@@ -23,53 +24,15 @@
 namespace elastocal::cli {
 namespace {
 
-constexpr double kLeastShown = 0.01;  // of the probability of a joint
-constexpr std::size_t kMostShown = 5;
 constexpr int kNext = 5;  // postures of a limb that are proposed
 
 struct CheckCommand {
   CommonOptions common;
   std::string project, calibration;
   std::string output;                  ///< posture file; empty: none
-  std::vector<std::string> recording;  ///< one
+  std::vector<std::string> recording;  ///< one; of tables of observations several
   CheckOptions check;
 };
-
-std::string ChangeText(const ParameterChange& change) {
-  Parameter parameter{};
-  parameter.unit = change.unit;
-  const double factor = InUserUnits(parameter, 1.0);
-  const double sd = factor * change.sd;
-  return fmt::format("{} by {} +- {} {}", change.name, RoundedTo(factor * change.value, sd),
-                     RoundedSd(sd), UserUnit(parameter));
-}
-
-/// Changes of more than two standard deviations, or the largest one.
-std::string ChangesText(const JointSuspect& suspect) {
-  std::string text;
-  const ParameterChange* largest = nullptr;
-  double most = -1.0;
-  for (const ParameterChange& change : suspect.changes) {
-    const double ratio = std::abs(change.value) / change.sd;
-    if (ratio > most) {
-      most = ratio;
-      largest = &change;
-    }
-    if (ratio > 2.0) text += (text.empty() ? "" : ", ") + ChangeText(change);
-  }
-  return text.empty() && largest != nullptr ? ChangeText(*largest) : text;
-}
-
-std::string JointTable(const JointCheck& check) {
-  TextTable table({"joint", "p of all joints", "probability that it is the one", "its change"});
-  std::size_t shown = 0;
-  for (const JointSuspect& joint : check.joints) {
-    if (joint.probability < kLeastShown || ++shown > kMostShown) break;
-    table.Add({joint.joint, fmt::format("{:.2g}", joint.p_adjusted),
-               fmt::format("{:.2f}", joint.probability), ChangesText(joint)});
-  }
-  return table.Render();
-}
 
 std::string PlaceOf(const Recording& recording, Eigen::Index posture) {
   return recording.line.empty()
@@ -134,19 +97,7 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
         Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3),
         Millimetres(run.left_before, 3));
   }
-  if (!run.check.changed()) {
-    return fmt::format(
-        "Unchanged: the calibration explains these postures (chance of a false alarm {:.3g} %).\n",
-        100.0 * command.check.joints.level);
-  }
-  std::string text;
-  for (const JointSuspect& joint : run.check.moved) {
-    text += fmt::format("Moved: {} ({}; p {:.1g})\n", joint.joint, ChangesText(joint),
-                        joint.p_adjusted);
-  }
-  if (!run.check.suspects.empty()) {
-    text += fmt::format("Changed: one of {}.\n", fmt::join(run.check.suspects, ", "));
-  }
+  std::string text = DescribeMoved(run.check, command.check.joints.level);
   if (!run.alternatives.empty()) {
     text += fmt::format("Or {}: this explains it as well.\n", fmt::join(run.alternatives, ", or "));
   }
@@ -164,18 +115,13 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
       Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3),
       Millimetres(run.rmse_estimate, 3));
   if (!check.suspects.empty() || command.common.verbose) {
-    text += "\n" + JointTable(check);
+    text += "\n" + SuspectTable(check);
   }
   if (run.explained() && !FarPostures(run).empty()) {
     text += fmt::format("These are far off, and the others are not: {}. Look at them.\n",
                         fmt::join(FarPostures(run), ", "));
   }
-  if (!check.not_told.empty()) {
-    text +=
-        fmt::format("These postures cannot tell whether the zeros of these joints have moved: {}\n",
-                    fmt::join(check.not_told, ", "));
-  }
-  return text;
+  return text + DescribeNotTold(check);
 }
 
 /// A posture in degrees and mm, without the joints that are at rest in it.
@@ -211,7 +157,17 @@ std::string NextText(const Project& project, const NextPostures& next, const std
 
 int Check(const CheckCommand& command) {
   const Project project = ReadProject(command.project);
-  CheckHasMarkers(project);
+  if (project.contact) {
+    if (!command.output.empty()) {
+      throw InputError("check: -o proposes postures for markers, not for touches and instruments");
+    }
+    return RunContactCheck({command.common, command.calibration, command.recording, command.check},
+                           project);
+  }
+  if (command.recording.size() > 1) {
+    throw InputError(
+        "check: several recordings; one was expected, or a project with contact or instruments");
+  }
   std::vector<std::filesystem::path> inputs = InputFiles(project, {command.recording.front()});
   const CalibrationFiles files = FindCalibrationFiles(command.calibration);
   inputs.insert(inputs.end(), {files.calibration, files.covariance});
@@ -245,7 +201,7 @@ void AddCheck(CLI::App& app, Action& action) {
   auto options = std::make_shared<CheckCommand>();
   CLI::App* command = app.add_subcommand(
       "check", "Tell from a few postures whether a calibration still holds, and which joint moved");
-  AddAppliedCalibration(*command, options->project, options->calibration, options->recording);
+  AddAppliedCalibration(*command, options->project, options->calibration, options->recording, true);
   command
       ->add_option("--level", options->check.joints.level,
                    "Chance that any joint of an unchanged robot is called moved all the same")

@@ -141,7 +141,11 @@ int RunContactCalibration(const CalibrateOptions& options, const Project& projec
   const std::filesystem::path folder = options.output;
   const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
                                                       options.recordings.end());
-  const std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
+  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
+  if (!options.prior.empty()) {
+    const CalibrationFiles earlier = FindCalibrationFiles(options.prior);
+    inputs.insert(inputs.end(), {earlier.calibration, earlier.covariance});
+  }
   OutputSet outputs;
   outputs.Protect(inputs);
   DeclareResults(folder, CalibrationFileNames(project), outputs);
@@ -161,6 +165,8 @@ int RunContactCalibration(const CalibrateOptions& options, const Project& projec
                          .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
                                                                            : ZeroOffsets::kOrigin,
                          .accept = options.accept,
+                         .prior = options.prior,
+                         .days = options.days,
                          .progress = of_folds});
   const auto files = MakeContactFiles(project, run);
   const std::string no_report = SetResults(

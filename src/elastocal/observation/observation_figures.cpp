@@ -83,6 +83,15 @@ ObservationFigures MakeFigures(const ObservedRobot& model, const Observations& o
   return figures;
 }
 
+double NoiseOf(const ObservedRobot& model, const RowErrors& row, const Spread& spread) {
+  const Instrument& instrument = model.instrument(row.instrument);
+  const std::vector<RowMeaning> rows = instrument.rows();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (row.row == rows[i].name) return spread[instrument.noise[i]];
+  }
+  return 0.0;
+}
+
 ObservationCrossValidation CrossValidate(const ObservedRobot& model,
                                          const Observations& observations,
                                          const ObservationFreedom& freedom, int folds, int threads,

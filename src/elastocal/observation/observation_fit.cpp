@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "elastocal/calibration/posterior.hpp"
+#include "elastocal/math/dense.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/optim/bounded_step.hpp"
 #include "elastocal/optim/normal_equations.hpp"
@@ -18,7 +20,6 @@ constexpr double kRoughlySettled = 1e-2;  // of a fit that only looks for outlie
 constexpr double kSlightStep = 1e-9;      // of the cost
 constexpr double kLeastNoise = 1e-9;      // SI: roundings
 constexpr double kHuberShare = 0.99;      // of observations that count whole
-constexpr double kOwnWeight = 1.0;        // numbers that the first guess of a variance stands for
 constexpr double kLeastRows = 0.01;    // share of rows that is left over where it is all but zero
 constexpr double kGrossFreedom = 4.0;  // of the Student distribution of observations
 
@@ -26,6 +27,7 @@ constexpr double kGrossFreedom = 4.0;  // of the Student distribution of observa
 /// are, how much of them the fit explains, and the squares of each observation.
 struct SourceSum {
   double squares = 0.0, rows = 0.0, explained = 0.0;
+  double own = 1.0;  // Source::own_weight
   std::vector<double> of_observations;
 };
 
@@ -33,6 +35,7 @@ std::vector<SourceSum> SumBySource(const ObservationResiduals& residuals,
                                    const ObservedRobot& model, const Observations& observations,
                                    const std::vector<Eigen::VectorXd>& explained) {
   std::vector<SourceSum> sums(model.setup.sources.size());
+  for (std::size_t s = 0; s < sums.size(); ++s) sums[s].own = model.setup.sources[s].own_weight;
   for (std::size_t b = 0; b < residuals.residual_blocks.size(); ++b) {
     if (!residuals.residual_blocks[b].active) continue;
     const int block = static_cast<int>(b);
@@ -52,7 +55,7 @@ std::vector<SourceSum> SumBySource(const ObservationResiduals& residuals,
 
 /// Numbers from which a standard deviation is found.
 double FreedomOf(const SourceSum& sum) {
-  return std::max(kLeastRows * sum.rows, sum.rows - sum.explained) + kOwnWeight;
+  return std::max(kLeastRows * sum.rows, sum.rows - sum.explained) + sum.own;
 }
 
 std::vector<double> FreedomBySource(const std::vector<SourceSum>& sums,
@@ -70,11 +73,11 @@ double FirstGuess(const std::vector<SourceSum>& sums, const std::vector<Source>&
                   const Spread& spread, std::size_t source) {
   const double own = sources[source].sd * sources[source].sd;
   if (source < kLegOffset || source > kLimbOffset) return own;
-  double squares = kOwnWeight * own, freedom = kOwnWeight;
+  double squares = own, freedom = 1.0;
   for (int s = kLegOffset; s <= kLimbOffset; ++s) {
     const SourceSum& sum = sums[static_cast<std::size_t>(s)];
     squares += spread[s] * spread[s] * sum.squares;
-    freedom += FreedomOf(sum) - kOwnWeight;
+    freedom += FreedomOf(sum) - sum.own;
   }
   return squares / freedom;
 }
@@ -96,8 +99,7 @@ double UpdateSpread(const std::vector<SourceSum>& sums, const std::vector<Source
     }
     const double before = spread[static_cast<int>(s)];
     const double variance =
-        (before * before * squares + kOwnWeight * FirstGuess(sums, sources, was, s)) /
-        FreedomOf(sum);
+        (before * before * squares + sum.own * FirstGuess(sums, sources, was, s)) / FreedomOf(sum);
     spread[static_cast<int>(s)] = std::max(kLeastNoise, std::sqrt(variance));
     change = std::max(change, std::abs(std::log(spread[static_cast<int>(s)] / before)));
   }
@@ -143,8 +145,23 @@ void TakeCovariance(const ObservedRobot& model, const Observations& observations
   }
 }
 
+/// Numbers beside the data's that told of the noise before.
+double KnownOfNoise(const ObservedRobot& model, const Observations& observations) {
+  std::set<int> seen;
+  for (const Observation& of : observations.all) {
+    const std::vector<int>& noise = model.instrument(of.instrument).noise;
+    seen.insert(noise.begin(), noise.end());
+  }
+  double known = 0.0;
+  for (const int source : seen) {
+    known += model.setup.sources[static_cast<std::size_t>(source)].own_weight - 1.0;
+  }
+  return known;
+}
+
 /// Numbers of the observations that the unknowns explain, and how many are left.
-void TakeCounts(const std::vector<Eigen::VectorXd>& explained, ObservationFit& fit) {
+void TakeCounts(const ObservedRobot& model, const Observations& observations,
+                const std::vector<Eigen::VectorXd>& explained, ObservationFit& fit) {
   fit.effective_parameters = 0.0;
   double rows = 0.0;
   for (std::size_t i = 0; i < fit.weights.size(); ++i) {
@@ -152,30 +169,37 @@ void TakeCounts(const std::vector<Eigen::VectorXd>& explained, ObservationFit& f
     fit.effective_parameters += explained[i].sum();
     rows += static_cast<double>(explained[i].size());
   }
-  fit.degrees_of_freedom = std::max(1.0, rows - fit.effective_parameters);
+  fit.degrees_of_freedom =
+      std::max(1.0, rows - fit.effective_parameters) + KnownOfNoise(model, observations);
 }
 
 /// Degrees of freedom of the variance of each entry of x (Satterthwaite 1946). Each source adds a
 /// part to that variance, and is known as well as the numbers say that told of it: priors by their
-/// own rows, each of one entry; what is left comes from the noise.
+/// own rows, an earlier calibration for certain; what is left comes from the noise.
 Eigen::VectorXd FreedomOfEntries(const ObservationResiduals& residuals, int observations,
                                  const Eigen::MatrixXd& covariance, const ObservationFit& fit) {
   std::vector<Eigen::Index> first = {0};
   for (int size : residuals.parameter_blocks) first.push_back(first.back() + size);
   Eigen::MatrixXd parts = Eigen::MatrixXd::Zero(
       covariance.rows(), static_cast<Eigen::Index>(fit.spread_freedom.size()));
+  Eigen::VectorXd known = Eigen::VectorXd::Zero(covariance.rows());
   const int blocks = static_cast<int>(residuals.residual_blocks.size());
   for (int block = observations; block < blocks; ++block) {
     const std::vector<int>& sources = residuals.Sources(block);
+    const auto& J = residuals.Jacobian(block);
     const int of = residuals.residual_blocks[block].parameter_blocks.front();
+    if (sources.empty()) {
+      known += (covariance.middleCols(first[of], J.cols()) * J.transpose()).rowwise().squaredNorm();
+      continue;
+    }
     for (std::size_t row = 0; row < sources.size(); ++row) {
-      const auto r = static_cast<Eigen::Index>(row);
-      parts.col(sources[row]) +=
-          (covariance.col(first[of] + r) * residuals.Jacobian(block)(r, r)).cwiseAbs2();
+      parts.col(sources[row]) += (covariance.middleCols(first[of], J.cols()) *
+                                  J.row(static_cast<Eigen::Index>(row)).transpose())
+                                     .cwiseAbs2();
     }
   }
   const Eigen::VectorXd variances = covariance.diagonal();
-  const Eigen::VectorXd noise = (variances - parts.rowwise().sum()).cwiseMax(0.0);
+  const Eigen::VectorXd noise = (variances - parts.rowwise().sum() - known).cwiseMax(0.0);
   Eigen::VectorXd doubt = noise.cwiseAbs2() / fit.degrees_of_freedom;
   for (Eigen::Index s = 0; s < parts.cols(); ++s) {
     doubt += parts.col(s).cwiseAbs2() / fit.spread_freedom[static_cast<std::size_t>(s)];
@@ -216,7 +240,7 @@ bool UpdateFit(const ObservedRobot& model, const Observations& observations,
     residuals.Evaluate(next, false);
   }
   fit.values = residuals.ToValues(next);
-  TakeCounts(explained, fit);
+  TakeCounts(model, observations, explained, fit);
   double change = 0.0;
   if (options.estimate_spread) {
     const std::vector<SourceSum> sums = SumBySource(residuals, model, observations, explained);
@@ -279,6 +303,26 @@ ObservedEstimate EstimateObserved(const ObservedRobot& model, const Observations
   start.spread = robust.spread;
   estimate.fit = FitObservations(model, observations, start, {.freedom = freedom});
   return estimate;
+}
+
+Eigen::MatrixXd RobotInformation(const ObservedRobot& model, const Observations& observations,
+                                 const ObservationFit& fit) {
+  ObservationResiduals residuals(model, observations, fit.loads, fit.spread, fit.weights, {},
+                                 fit.values);
+  residuals.Evaluate(residuals.Start(), true);
+  const Eigen::MatrixXd all = NormalEquations(residuals).information();
+  const Eigen::Index robot = model.unknown_count, others = all.rows() - robot;
+  Eigen::MatrixXd data = all.topLeftCorner(robot, robot);
+  if (others > 0) {
+    const Eigen::MatrixXd across = all.bottomLeftCorner(others, robot);
+    const Eigen::MatrixXd own = all.bottomRightCorner(others, others);
+    data -= across.transpose() * SolvePositive(own, across);
+  }
+  data -= residuals.RobotPriorInformation();
+  std::vector<int> entries;
+  for (int u = 0; u < model.unknown_count; ++u) entries.push_back(residuals.RobotEntry(u));
+  const Eigen::VectorXd per_unit = residuals.scale()(entries).cwiseInverse();
+  return per_unit.asDiagonal() * data(entries, entries) * per_unit.asDiagonal();
 }
 
 }  // namespace elastocal

@@ -53,6 +53,11 @@ ObservationFit FitObservations(const ObservedRobot& model, const Observations& o
 /// Where every fit begins: nominal robot, all observations, nothing known of variances.
 ObservationFit StartFit(const ObservedRobot& model, const Observations& observations);
 
+/// What the observations alone tell of the unknowns of the robot, all else being unknown with its
+/// prior: their information, unknowns x unknowns, SI.
+Eigen::MatrixXd RobotInformation(const ObservedRobot& model, const Observations& observations,
+                                 const ObservationFit& fit);
+
 /// Huber's weight of an observation by how far it is off: 1 for 99 % of those that have no more
 /// than the noise of `spread`, less beyond.
 double HuberWeight(const Instrument& instrument, const Eigen::VectorXd& left, const Spread& spread);

@@ -170,37 +170,71 @@ void ObservationResiduals::AddObservations() {
   }
 }
 
+/// `sources`: by entry of the block; -1: it has no prior here.
 void ObservationResiduals::AddPrior(int block, const std::vector<int>& sources,
                                     const std::vector<double>& units) {
-  const int size = parameter_blocks[block];
-  residual_blocks.push_back({size, {block}});
-  sources_.push_back(sources);
-  residuals_.emplace_back(Eigen::VectorXd::Zero(size));
-  jacobians_.emplace_back(RowMajorMatrix::Zero(size, size));
-  std::vector<double> weights;
-  for (int row = 0; row < size; ++row) {
-    weights.push_back(scale_[first_entry_[block] + row] / (spread_[sources[row]] * units[row]));
-    jacobians_.back()(row, row) = weights.back();
+  std::vector<PriorRow> rows;
+  std::vector<int> of_rows;
+  for (int column = 0; column < parameter_blocks[block]; ++column) {
+    if (sources[column] < 0) continue;
+    of_rows.push_back(sources[column]);
+    rows.push_back({column, scale_[first_entry_[block] + column] /
+                                (spread_[sources[column]] * units[column])});
   }
-  weights_of_priors_.push_back(std::move(weights));
+  if (rows.empty()) return;
+  const auto size = static_cast<int>(rows.size());
+  residual_blocks.push_back({size, {block}});
+  sources_.push_back(std::move(of_rows));
+  residuals_.emplace_back(Eigen::VectorXd::Zero(size));
+  jacobians_.emplace_back(RowMajorMatrix::Zero(size, parameter_blocks[block]));
+  for (int row = 0; row < size; ++row) {
+    jacobians_.back()(row, rows[row].column) = rows[row].weight;
+  }
+  priors_.push_back(std::move(rows));
+}
+
+void ObservationResiduals::AddRobotPriors() {
+  const std::vector<int> parameters = ParameterOfUnknown(model_);
+  const EarlierPart earlier = PartOf(model_.earlier, model_.robot, parameters);
+  const std::vector<SourceOfParameter> of = SourcesOfParameters(model_);
+  std::vector<std::vector<int>> sources(static_cast<std::size_t>(robot_blocks_));
+  std::vector<std::vector<double>> units(sources.size());
+  for (int b = 0; b < robot_blocks_; ++b) {
+    sources[b].assign(static_cast<std::size_t>(parameter_blocks[b]), -1);
+    units[b].assign(sources[b].size(), 1.0);
+  }
+  for (int unknown = 0; unknown < model_.unknown_count; ++unknown) {
+    if (std::binary_search(earlier.positions.begin(), earlier.positions.end(), unknown)) continue;
+    const int entry = robot_entry_[unknown];
+    const int block = block_of_entry_[entry];
+    sources[block][entry - first_entry_[block]] = of[parameters[unknown]].source;
+    units[block][entry - first_entry_[block]] = of[parameters[unknown]].unit;
+  }
+  for (int b = 0; b < robot_blocks_; ++b) AddPrior(b, sources[b], units[b]);
+}
+
+/// The last block, which depends on all of the robot.
+void ObservationResiduals::AddEarlier() {
+  const EarlierPart earlier = PartOf(model_.earlier, model_.robot, ParameterOfUnknown(model_));
+  const auto count = static_cast<int>(earlier.positions.size());
+  if (count == 0) return;
+  const Eigen::MatrixXd whitening = earlier.Whitening();
+  ResidualBlock block{count, {}};
+  for (int b = 0; b < robot_blocks_; ++b) block.parameter_blocks.push_back(b);
+  RowMajorMatrix jacobian = RowMajorMatrix::Zero(count, first_entry_[robot_blocks_]);
+  for (int i = 0; i < count; ++i) {
+    const int entry = robot_entry_[earlier.positions[i]];
+    jacobian.col(entry) = scale_[entry] * whitening.col(i);
+  }
+  residual_blocks.push_back(std::move(block));
+  sources_.emplace_back();
+  residuals_.emplace_back(Eigen::VectorXd::Zero(count));
+  jacobians_.push_back(std::move(jacobian));
+  earlier_offset_ = whitening * earlier.mean;
 }
 
 void ObservationResiduals::AddPriors() {
-  if (free_.robot) {
-    const std::vector<SourceOfParameter> of = SourcesOfParameters(model_);
-    std::vector<std::vector<int>> sources(static_cast<std::size_t>(robot_blocks_));
-    std::vector<std::vector<double>> units(sources.size());
-    std::vector<char> done(robot_entry_.size(), 0);
-    for (int i = 0; i < model_.robot.parameter_count(); ++i) {
-      const int unknown = model_.unknown[i];
-      if (unknown < 0 || done[unknown] != 0) continue;
-      done[unknown] = 1;
-      const int block = block_of_entry_[robot_entry_[unknown]];
-      sources[block].push_back(of[i].source);
-      units[block].push_back(of[i].unit);
-    }
-    for (int b = 0; b < robot_blocks_; ++b) AddPrior(b, sources[b], units[b]);
-  }
+  if (free_.robot) AddRobotPriors();
   for (std::size_t i = 0; i < quantity_block_.size(); ++i) {
     const std::vector<int>& sources = model_.setup.quantities[i].sources;
     if (quantity_block_[i] >= 0) {
@@ -217,6 +251,23 @@ void ObservationResiduals::AddPriors() {
     }
     AddPrior(effect_block_[i], sources, std::vector<double>(sources.size(), 1.0));
   }
+  if (free_.robot) AddEarlier();
+}
+
+Eigen::MatrixXd ObservationResiduals::RobotPriorInformation() const {
+  const Eigen::Index robot = first_entry_[robot_blocks_];
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(robot, robot);
+  const std::size_t first_prior = observations_.all.size();
+  for (std::size_t b = first_prior; b < first_prior + priors_.size(); ++b) {
+    const int block = residual_blocks[b].parameter_blocks.front();
+    if (block >= robot_blocks_) break;
+    const Eigen::Index first = first_entry_[block], size = jacobians_[b].cols();
+    information.block(first, first, size, size) += jacobians_[b].transpose() * jacobians_[b];
+  }
+  if (earlier_offset_.size() > 0) {
+    information += jacobians_.back().transpose() * jacobians_.back();
+  }
+  return information;
 }
 
 Eigen::VectorXd ObservationResiduals::Start() const {
@@ -259,13 +310,16 @@ void ObservationResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobian
                       loads_.empty() ? JointLoads() : loads_[i]);
     for (int index : by_posture_[i]) EvaluateObservation(index, values, with_jacobians);
   }
-  for (std::size_t p = 0; p < weights_of_priors_.size(); ++p) {
+  for (std::size_t p = 0; p < priors_.size(); ++p) {
     const std::size_t block = observations_.all.size() + p;
     const int first = first_entry_[residual_blocks[block].parameter_blocks.front()];
-    for (std::size_t row = 0; row < weights_of_priors_[p].size(); ++row) {
-      const auto r = static_cast<Eigen::Index>(row);
-      residuals_[block][r] = weights_of_priors_[p][row] * x[first + r];
+    for (std::size_t row = 0; row < priors_[p].size(); ++row) {
+      const PriorRow& of = priors_[p][row];
+      residuals_[block][static_cast<Eigen::Index>(row)] = of.weight * x[first + of.column];
     }
+  }
+  if (earlier_offset_.size() > 0) {
+    residuals_.back() = jacobians_.back() * x.head(first_entry_[robot_blocks_]) - earlier_offset_;
   }
 }
 

@@ -19,7 +19,8 @@ struct ObservationFreedom {
 };
 
 /// Observations as a least-squares problem: for every observation what is left of it, for every
-/// other unknown its deviation from nominal; each over the standard deviation of its source.
+/// unknown its deviation from nominal; each over the standard deviation of its source. Unknowns of
+/// which an earlier calibration tells have its prior together instead, in the last residual block.
 ///
 /// Unknowns, in blocks: those of the robot by joint, then quantities and effects as far as they are
 /// free.
@@ -42,8 +43,11 @@ class ObservationResiduals : public LeastSquaresProblem {
   /// Value of one in each entry of x, SI.
   const Eigen::VectorXd& scale() const { return scale_; }
 
-  /// Of each row of a residual block (the first blocks are the observations), its source.
+  /// Of each row of a residual block (the first blocks are the observations), its source; none of
+  /// the block of an earlier calibration.
   const std::vector<int>& Sources(int block) const { return sources_[block]; }
+  /// What the priors say of the robot's entries of x, which are the first ones: their information.
+  Eigen::MatrixXd RobotPriorInformation() const;
   /// What is left of an observation, SI.
   const Eigen::VectorXd& Left(int observation) const { return left_[observation]; }
 
@@ -68,6 +72,8 @@ class ObservationResiduals : public LeastSquaresProblem {
   void AddRobotBlocks();
   int AddBlock(int size);
   void AddPrior(int block, const std::vector<int>& sources, const std::vector<double>& units);
+  void AddRobotPriors();
+  void AddEarlier();
   InstrumentLayout LayOut(const Instrument& instrument) const;
   std::vector<Column> ColumnsOf(int leg, const std::vector<int>& first_column) const;
   void AddObservations();
@@ -89,10 +95,16 @@ class ObservationResiduals : public LeastSquaresProblem {
   int robot_blocks_ = 0;
   std::vector<int> quantity_block_, effect_block_;  // -1: not free
   Eigen::VectorXd scale_;
-  std::vector<InstrumentLayout> layout_;                // by instrument
-  std::vector<std::vector<int>> by_posture_;            // observations
-  std::vector<std::vector<int>> sources_;               // by residual block
-  std::vector<std::vector<double>> weights_of_priors_;  // by prior block: of its rows
+  std::vector<InstrumentLayout> layout_;      // by instrument
+  std::vector<std::vector<int>> by_posture_;  // observations
+  std::vector<std::vector<int>> sources_;     // by residual block
+  /// A row of a prior: its column in the block, and by what it is weighted.
+  struct PriorRow {
+    int column;
+    double weight;
+  };
+  std::vector<std::vector<PriorRow>> priors_;  // by prior block
+  Eigen::VectorXd earlier_offset_;             // empty: nothing is known from before
   std::vector<Eigen::VectorXd> left_;
   std::vector<Eigen::VectorXd> residuals_;
   std::vector<RowMajorMatrix> jacobians_;

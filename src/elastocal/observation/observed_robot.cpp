@@ -150,6 +150,15 @@ std::vector<SourceOfParameter> SourcesOfParameters(const ObservedRobot& model) {
   return sources;
 }
 
+std::vector<int> ParameterOfUnknown(const ObservedRobot& model) {
+  std::vector<int> first(static_cast<std::size_t>(model.unknown_count), -1);
+  for (int i = 0; i < model.robot.parameter_count(); ++i) {
+    const int unknown = model.unknown[i];
+    if (unknown >= 0 && first[unknown] < 0) first[unknown] = i;
+  }
+  return first;
+}
+
 Observations SelectPostures(const Observations& observations, const std::vector<int>& postures) {
   Observations selected{
       observations.files, observations.effects, {}, observations.q(postures, Eigen::all), {}};

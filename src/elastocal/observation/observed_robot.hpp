@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "elastocal/calibration/earlier.hpp"
 #include "elastocal/observation/setup.hpp"
 #include "elastocal/robot/error_model.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -56,6 +57,9 @@ struct ObservedRobot {
   int unknown_count = 0;
   std::vector<int> leg_of_link;  ///< by link of the tree; -1: not observed, or fixed to the root
   int root_tilt = -1;            ///< quantity: of a root link that is held still; -1: on feet
+  /// What an earlier calibration says of the robot: of its parameters it is the prior, instead of
+  /// deviations from nominal by kind.
+  EarlierEstimate earlier = {};
 
   const Instrument& instrument(int index) const {
     return *setup.instruments[static_cast<std::size_t>(index)];
@@ -82,6 +86,9 @@ struct SourceOfParameter {
 
 /// One for each parameter of the robot; those of T0 have no meaning.
 std::vector<SourceOfParameter> SourcesOfParameters(const ObservedRobot& model);
+
+/// By unknown of the robot the first of its parameters.
+std::vector<int> ParameterOfUnknown(const ObservedRobot& model);
 
 /// The observations in some postures, which keep their order.
 Observations SelectPostures(const Observations& observations, const std::vector<int>& postures);

@@ -23,6 +23,7 @@ struct Source {
   SourceUnit unit = SourceUnit::kNone;
   double sd = 1.0;  ///< before any data are seen, SI
   Role role = Role::kPrior;
+  double own_weight = 1.0;  ///< numbers that `sd` stands for beside those of the data
 };
 
 /// Sources that every robot has; those of single instruments follow.

@@ -11,6 +11,7 @@
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/check_alternatives.hpp"
+#include "elastocal/pipeline/check_json.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
@@ -20,24 +21,6 @@ namespace elastocal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json SuspectJson(const JointSuspect& suspect) {
-  Json json;
-  json["joint"] = suspect.joint;
-  json["told"] = suspect.told();
-  json["F"] = suspect.told() ? Json(suspect.test.statistic) : Json(nullptr);
-  json["p"] = suspect.test.p;
-  json["p_adjusted"] = suspect.p_adjusted;
-  json["probability"] = suspect.probability;
-  json["changes"] = Json::array();
-  for (const ParameterChange& change : suspect.changes) {
-    json["changes"].push_back({{"name", change.name},
-                               {"unit", UnitName(change.unit)},
-                               {"change", change.value},
-                               {"sd", change.sd}});
-  }
-  return json;
-}
 
 /// postures x markers, m
 Eigen::MatrixXd DistancesBy(const EarlierFit& fit, const CalibrationOptions& options) {
@@ -158,12 +141,7 @@ std::string MakeCheckJson(const CheckRun& run) {
   if (run.left_before > 0.0) json["left_by_calibration_mm"] = 1e3 * run.left_before;
   json["left_by_posture_mm"] = Json::array();
   for (const double left : run.left) json["left_by_posture_mm"].push_back(1e3 * left);
-  json["moved"] = Json::array();
-  for (const JointSuspect& joint : run.check.moved) json["moved"].push_back(SuspectJson(joint));
-  json["suspects"] = run.check.suspects;
-  json["not_told"] = run.check.not_told;
-  json["joints"] = Json::array();
-  for (const JointSuspect& joint : run.check.joints) json["joints"].push_back(SuspectJson(joint));
+  AddJointCheck(run.check, json);
   json["expected_error_mm"] = 1e3 * run.expected_error;
   json["mistakes"] = run.mistakes;
   json["alternatives"] = run.alternatives;

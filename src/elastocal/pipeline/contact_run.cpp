@@ -9,9 +9,10 @@
 
 #include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/input_error.hpp"
-#include "elastocal/math/statistics.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
+#include "elastocal/pipeline/contact_result.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/pipeline/observed_corrections.hpp"
 #include "elastocal/pipeline/observed_mistakes.hpp"
@@ -23,7 +24,6 @@ namespace {
 
 constexpr int kUsualFolds = 10;
 constexpr int kFewestObservedPostures = 8;  // tables and plates alone have 5 unknowns each
-constexpr double kTiedVariance = 1e-6;      // relative, see TakePosterior
 
 std::string JoinNames(const std::vector<std::string>& names) {
   std::string text;
@@ -45,10 +45,31 @@ ContactOutcome Estimate(const ObservedRobot& model, const Observations& observat
   return outcome;
 }
 
-/// The same model without compliances; nothing where none is elastic.
+/// The robot as the project describes it.
+ObservedRobot MakeRobotOfProject(const Project& project, const ObservationTables& tables) {
+  ObservationSetup setup = tables.setup;
+  setup.hold = project.identifiability.hold;
+  setup.outlier_probability = project.calibration.outlier_probability;
+  const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
+    return patterns ? MatchingJoints(project.tree, *patterns) : std::vector<int>();
+  };
+  try {
+    ObservedRobot model =
+        MakeObservedRobot(project.tree, project.placement, setup,
+                          joints(project.elasticity.torsion), joints(project.elasticity.bending));
+    KeepObservedUnknowns(tables.observations, model);
+    return model;
+  } catch (const InputError& error) {
+    throw InputError(project.file.string() +
+                     ": contact.common or identifiability.hold: " + error.what());
+  }
+}
+
+/// The same model without compliances, and what is known of it; nothing where none is elastic.
 std::optional<ObservedRobot> WithoutCompliances(const ObservedRobot& model,
                                                 const Observations& observations,
-                                                const Project& project) {
+                                                const Project& project,
+                                                const std::optional<EarlierContacts>& earlier) {
   const auto elastic = [](const Parameter& parameter) { return IsCompliance(parameter.kind); };
   const std::vector<Parameter>& parameters = model.robot.parameters;
   if (std::none_of(parameters.begin(), parameters.end(), elastic)) return std::nullopt;
@@ -58,6 +79,14 @@ std::optional<ObservedRobot> WithoutCompliances(const ObservedRobot& model,
   ObservedRobot rigid = MakeObservedRobot(project.tree, project.placement, setup,
                                           elasticity.torsion, elasticity.bending);
   KeepObservedUnknowns(observations, rigid);
+  rigid.earlier = model.earlier;
+  if (earlier && !earlier->stored.urdf_errors.empty()) {  // springs of zero have moved the rest
+    for (std::size_t i = 0; i < rigid.earlier.names.size(); ++i) {
+      const auto found = earlier->stored.urdf_errors.find(rigid.earlier.names[i]);
+      if (found == earlier->stored.urdf_errors.end()) continue;
+      rigid.earlier.mean[static_cast<Eigen::Index>(i)] = found->second;
+    }
+  }
   return rigid;
 }
 
@@ -98,72 +127,6 @@ bool TakeElasticity(const Project& project, const ContactRunOptions& options, in
   return true;
 }
 
-/// Half width of a 95 % interval in standard deviations.
-double IntervalFactor(double degrees_of_freedom) {
-  return std::clamp(StudentQuantile(0.975, std::max(1.0, degrees_of_freedom)), 1.959964, 12.7);
-}
-
-/// Standard deviations of the priors, by parameter, as those of the posterior widened where few
-/// numbers tell of them; NaN for parameters that are not estimated.
-Eigen::VectorXd PriorSds(const ObservedRobot& model, const ObservationFit& fit) {
-  const double usual = IntervalFactor(fit.degrees_of_freedom);
-  const std::vector<SourceOfParameter> sources = SourcesOfParameters(model);
-  Eigen::VectorXd sds = Eigen::VectorXd::Constant(model.robot.parameter_count(),
-                                                  std::numeric_limits<double>::quiet_NaN());
-  for (int i = 0; i < model.robot.parameter_count(); ++i) {
-    if (model.unknown[i] < 0) continue;
-    const auto source = static_cast<std::size_t>(sources[i].source);
-    const double own =
-        fit.spread_freedom.empty() ? usual : IntervalFactor(fit.spread_freedom[source]);
-    sds[i] = fit.spread.sd[source] * sources[i].unit * std::max(1.0, own / usual);
-  }
-  return sds;
-}
-
-/// Covariance of the parameters. Those that have one value in common would make it singular, so
-/// that nothing could be tested with it: each keeps a millionth of its variance to itself.
-void TakePosterior(const ObservedRobot& model, const ObservationFit& fit,
-                   CalibrationResult& result) {
-  std::vector<int> entries;
-  for (int i = 0; i < model.robot.parameter_count(); ++i) {
-    if (model.unknown[i] < 0) continue;
-    result.posterior.parameters.push_back(i);
-    entries.push_back(fit.entry_of_unknown[model.unknown[i]]);
-  }
-  result.posterior.covariance = fit.covariance(entries, entries);
-  result.posterior.covariance.diagonal() *= 1.0 + kTiedVariance;
-  result.posterior.effective_parameters = fit.effective_parameters;
-}
-
-CalibrationResult ResultOf(const ObservedRobot& model, const ObservationFit& fit, int equations) {
-  CalibrationResult result;
-  const auto elastic = [](const Parameter& parameter) { return IsElastic(parameter.kind); };
-  result.kind = std::any_of(model.robot.parameters.begin(), model.robot.parameters.end(), elastic)
-                    ? ModelKind::kFull
-                    : ModelKind::kGeometric;
-  result.model = model.robot;
-  result.delta = fit.values.robot;
-  result.prior_sd = PriorSds(model, fit);
-  result.sd = result.prior_sd;
-  TakePosterior(model, fit, result);
-  const Eigen::VectorXd sds = result.posterior.StandardDeviations();
-  const CalibrationOptions usual;
-  result.status.assign(model.unknown.size(), ParameterStatus::kHeld);
-  for (std::size_t k = 0; k < result.posterior.parameters.size(); ++k) {
-    const int i = result.posterior.parameters[k];
-    result.sd[i] = sds[static_cast<Eigen::Index>(k)];
-    result.status[i] = result.sd[i] < usual.support_threshold * result.prior_sd[i]
-                           ? ParameterStatus::kEstimated
-                           : ParameterStatus::kUnsupported;
-  }
-  result.interval_factor = IntervalFactor(fit.degrees_of_freedom);
-  result.equations = equations;
-  result.termination = fit.termination;
-  result.settled = fit.settled;
-  result.iterations = fit.iterations;
-  return result;
-}
-
 /// What is left of an observation, for people: "position 1.2, 0.3, -4 mm".
 std::string LeftInWords(const Instrument& instrument, const Eigen::VectorXd& left) {
   std::string text;
@@ -184,25 +147,17 @@ std::string LeftInWords(const Instrument& instrument, const Eigen::VectorXd& lef
 ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options) {
-  ObservationTables tables = ReadObservationTables(recordings, project);
+  std::optional<EarlierContacts> earlier;
+  if (!options.prior.empty()) earlier = ReadEarlierContacts(options.prior, project);
+  ObservationTables tables =
+      ReadObservationTables(recordings, project, earlier ? &earlier->contacts.feet : nullptr);
   ContactRun run;
   run.warnings = std::move(tables.warnings);
-  run.observations = std::move(tables.observations);
-  run.recording = JoinNames(run.observations.files);
+  run.recording = JoinNames(tables.observations.files);
   run.zero_offsets = options.zero_offsets;
-  tables.setup.hold = project.identifiability.hold;
-  tables.setup.outlier_probability = project.calibration.outlier_probability;
-  const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
-    return patterns ? MatchingJoints(project.tree, *patterns) : std::vector<int>();
-  };
-  try {
-    run.model =
-        MakeObservedRobot(project.tree, project.placement, tables.setup,
-                          joints(project.elasticity.torsion), joints(project.elasticity.bending));
-  } catch (const InputError& error) {
-    throw InputError(project.file.string() +
-                     ": contact.common or identifiability.hold: " + error.what());
-  }
+  run.model = earlier ? MakeRobotAfterEarlier(*earlier, project, tables)
+                      : MakeRobotOfProject(project, tables);
+  run.observations = std::move(tables.observations);
   for (const std::string& what : CorrectObservations(options.accept, run.model, run.observations)) {
     run.warnings.push_back("corrected on request: " + what);
   }
@@ -211,7 +166,12 @@ ContactRun CalibrateContacts(const Project& project,
     throw InputError(run.recording + ": " + std::to_string(postures) + " postures; at least " +
                      std::to_string(kFewestObservedPostures) + " were expected");
   }
-  KeepObservedUnknowns(run.observations, run.model);
+  if (earlier) {
+    for (std::string& text :
+         StartFromEarlierContacts(*earlier, run.observations, project, options.days, run.model)) {
+      run.warnings.push_back(std::move(text));
+    }
+  }
   run.closure = CheckClosure(run.model, run.observations.q);
   int folds = options.folds.value_or(std::min(kUsualFolds, postures));
   run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
@@ -223,7 +183,7 @@ ContactRun CalibrateContacts(const Project& project,
     }
   }
   run.calibrated = Estimate(run.model, run.observations, true, options, folds);
-  const bool chosen = TakeElasticity(project, options, folds, run);
+  const bool chosen = !earlier && TakeElasticity(project, options, folds, run);
   const ObservationFit& fit = run.calibrated.estimate.fit;
   const auto left = [&](const ContactOutcome& outcome) {
     return folds > 0 ? outcome.held_out.left
@@ -235,33 +195,38 @@ ContactRun CalibrateContacts(const Project& project,
   for (const Observation& of : run.observations.all) {
     equations += run.model.instrument(of.instrument).size();
   }
-  if (!chosen) run.rigid_model = WithoutCompliances(run.model, run.observations, project);
+  if (!chosen) run.rigid_model = WithoutCompliances(run.model, run.observations, project, earlier);
   if (run.rigid_model && !run.geometric) {  // a figure beside the result: ten folds will do
     run.geometric =
         Estimate(*run.rigid_model, run.observations, true, options, std::min(kUsualFolds, folds));
   }
-  run.result = ResultOf(run.model, fit, equations);
+  run.result = ResultOfContacts(run.model, fit, equations);
   JudgeContacts(run);
   if (run.deployable()) {
     if (run.rigid_model) {
-      run.in_urdf = ResultOf(*run.rigid_model, run.geometric->estimate.fit, equations);
+      run.in_urdf = ResultOfContacts(*run.rigid_model, run.geometric->estimate.fit, equations);
     }
     run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(),
                                   run.in_urdf ? *run.in_urdf : run.result, options.zero_offsets);
     run.warnings.insert(run.warnings.end(), run.urdf->warnings.begin(), run.urdf->warnings.end());
   }
-  for (std::string& outlier : DescribeOutliers(run)) run.warnings.push_back(std::move(outlier));
+  for (std::string& outlier :
+       DescribeOutliers(run.model, run.observations, run.calibrated.estimate)) {
+    run.warnings.push_back(std::move(outlier));
+  }
   return run;
 }
 
-std::vector<std::string> DescribeOutliers(const ContactRun& run) {
+std::vector<std::string> DescribeOutliers(const ObservedRobot& model,
+                                          const Observations& observations,
+                                          const ObservedEstimate& estimate) {
   std::vector<std::string> texts;
-  for (const ObservationOutlier& outlier : run.calibrated.estimate.outliers) {
-    const Observation& observation = run.observations.all[outlier.observation];
-    const PosturePlace& place = run.observations.postures[observation.posture];
-    const Instrument& instrument = run.model.instrument(observation.instrument);
-    const bool touch = run.model.IsPlate(observation.instrument);
-    texts.push_back(Place(run.observations.files[place.file], place.line) +
+  for (const ObservationOutlier& outlier : estimate.outliers) {
+    const Observation& observation = observations.all[outlier.observation];
+    const PosturePlace& place = observations.postures[observation.posture];
+    const Instrument& instrument = model.instrument(observation.instrument);
+    const bool touch = model.IsPlate(observation.instrument);
+    texts.push_back(Place(observations.files[place.file], place.line) +
                     fmt::format("{} '{}' contradicts the others and is left out: off by {}{}",
                                 touch ? "the touch of plate" : "what is measured by",
                                 instrument.name, LeftInWords(instrument, outlier.left),

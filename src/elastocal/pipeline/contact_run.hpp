@@ -23,6 +23,8 @@ struct ContactRunOptions {
   int threads = 1;
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
   std::vector<std::string> accept = {};  ///< mistakes that are corrected (CorrectObservations)
+  std::filesystem::path prior = {};      ///< an earlier calibration; empty: none
+  double days = 1.0;                     ///< since then
   Progress progress = {};
 };
 
@@ -67,7 +69,8 @@ struct ContactRun {
 /// Calibrates a robot that touches tables or is measured by instruments while it stands on its feet
 /// or its root link is held still: see EstimateObserved. `recordings`: tables of observations. The
 /// same input gives the same bits. Throws InputError for tables that cannot be read
-/// (ReadObservationTables) and folds that they do not allow.
+/// (ReadObservationTables), folds that they do not allow, and an earlier calibration that does not
+/// apply (MakeRobotAfterEarlier).
 ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options);
@@ -77,7 +80,9 @@ std::string RunStatus(const ContactRun& run);
 
 /// What the observations that are left out, and how far they are off, are called: "left.csv:7:
 /// ...", one sentence each.
-std::vector<std::string> DescribeOutliers(const ContactRun& run);
+std::vector<std::string> DescribeOutliers(const ObservedRobot& model,
+                                          const Observations& observations,
+                                          const ObservedEstimate& estimate);
 
 /// summary.json (docs/formats.md).
 std::string MakeContactSummary(const ContactRun& run);

@@ -2,18 +2,16 @@
 #include "elastocal/pipeline/contact_validation.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/contact_file.hpp"
-#include "elastocal/io/fingerprint.hpp"
 #include "elastocal/io/observation_table.hpp"
-#include "elastocal/math/input_error.hpp"
 #include "elastocal/observation/standing_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/pipeline/observed_corrections.hpp"
@@ -22,31 +20,6 @@
 
 namespace elastocal {
 namespace {
-
-/// The joints with a stored compliance of these suffixes.
-std::vector<int> ElasticJointsOf(const StoredCalibration& stored, const RobotTree& tree,
-                                 const std::vector<std::string>& suffixes) {
-  std::set<int> joints;
-  for (const auto& [name, value] : stored.joint_errors) {
-    for (const std::string& suffix : suffixes) {
-      if (name.ends_with(suffix)) {
-        joints.insert(FindJoint(tree, name.substr(0, name.size() - suffix.size())));
-      }
-    }
-  }
-  return {joints.begin(), joints.end()};
-}
-
-/// The stored errors of the robot's parameters; those it does not have are of joints that touches
-/// do not move.
-Eigen::VectorXd StoredErrors(const StoredCalibration& stored, const ErrorModel& robot) {
-  Eigen::VectorXd errors = Eigen::VectorXd::Zero(robot.parameter_count());
-  for (int i = 0; i < robot.parameter_count(); ++i) {
-    const auto found = stored.joint_errors.find(robot.parameters[i].name);
-    if (found != stored.joint_errors.end()) errors[i] = found->second;
-  }
-  return errors;
-}
 
 std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
                                            const StoredContact& stored,
@@ -62,16 +35,6 @@ std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
   return run.surroundings_refitted
              ? LeftAfterRegistration(run.model, run.observations, values, stored.spread)
              : LeftOf(run.model, run.observations, values);
-}
-
-/// Noise of a kind of row as the calibration found it, SI.
-double NoiseOf(const ObservedRobot& model, const RowErrors& row, const Spread& spread) {
-  const Instrument& instrument = model.instrument(row.instrument);
-  const std::vector<RowMeaning> rows = instrument.rows();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (row.row == rows[i].name) return spread[instrument.noise[i]];
-  }
-  return 0.0;
 }
 
 /// A robot that is as it was calibrated errs by about the noise that the calibration left. Errors
@@ -124,19 +87,10 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   run.warnings = std::move(tables.warnings);
   // What is in common or held says nothing about values that are known.
   tables.setup.common.clear();
-  run.model =
-      MakeObservedRobot(project.tree, project.placement, tables.setup,
-                        ElasticJointsOf(stored, project.tree, {".compliance_z"}),
-                        ElasticJointsOf(stored, project.tree, {".compliance_x", ".compliance_y"}));
+  run.model = MakeStoredRobot(stored, project, tables.setup);
   for (const std::string& what : CorrectObservations(accept, run.model, run.observations)) {
     run.warnings.push_back("corrected on request: " + what);
   }
-  if (stored.nominal != NominalFingerprint(run.model.robot)) {
-    throw InputError(file.string() + ": made for robot '" + stored.robot +
-                     "' with other nominal geometry than " + project.urdf.string() +
-                     "; expected the URDF that was calibrated, not the calibrated one");
-  }
-  CheckParameters(stored, run.model.robot, {});
   const std::vector<Eigen::VectorXd> before = PredictStored(
       run, contacts.uncalibrated, Eigen::VectorXd::Zero(run.model.robot.parameter_count()));
   const std::vector<Eigen::VectorXd> after =

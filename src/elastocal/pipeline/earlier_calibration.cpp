@@ -123,6 +123,34 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
   return fit;
 }
 
+EarlierEstimate ForgetMoved(const JointCheck& check, const EarlierEstimate& earlier,
+                            const ErrorModel& model, const Prior& prior) {
+  std::vector<std::string> joints = check.suspects;
+  for (const JointSuspect& joint : check.moved) joints.push_back(joint.joint);
+  const Eigen::VectorXd sizes = SizeOfChanges(earlier, model, prior);
+  EarlierEstimate left = earlier;
+  for (std::size_t i = 0; i < earlier.names.size(); ++i) {
+    const std::string joint = OwnerName(earlier.names[i]);
+    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    left.covariance(at, at) += sizes[at] * sizes[at];
+  }
+  return left;
+}
+
+std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::string& source) {
+  std::vector<std::string> texts;
+  for (const JointSuspect& joint : check.moved) {
+    texts.push_back(joint.joint + ": has moved since " + source +
+                    ", which counts for nothing there");
+  }
+  if (!check.suspects.empty()) {
+    texts.push_back(fmt::format("one of {} has moved since {}, which counts for nothing there",
+                                fmt::join(check.suspects, ", "), source));
+  }
+  return texts;
+}
+
 std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,
                                           const Measurements& measured,
                                           std::optional<std::uint64_t> seed, Project& project) {
@@ -132,25 +160,11 @@ std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibrati
   if (fit.stored.recording == measured.calibration.source) {
     warnings.push_back(fit.stored.source + ": made from the same recording, which counts twice");
   }
-  std::vector<std::string> joints = fit.check.suspects;
-  for (const JointSuspect& joint : fit.check.moved) {
-    joints.push_back(joint.joint);
-    warnings.push_back(joint.joint + ": has moved since " + fit.stored.source +
-                       ", which counts for nothing there");
+  for (std::string& text : DescribeForgotten(fit.check, fit.stored.source)) {
+    warnings.push_back(std::move(text));
   }
-  if (!fit.check.suspects.empty()) {
-    warnings.push_back(fmt::format("one of {} has moved since {}, which counts for nothing there",
-                                   fmt::join(fit.check.suspects, ", "), fit.stored.source));
-  }
-  EarlierEstimate earlier = fit.earlier;
-  const Eigen::VectorXd sizes = SizeOfChanges(earlier, fit.robot.model, project.calibration.prior);
-  for (std::size_t i = 0; i < earlier.names.size(); ++i) {
-    const std::string joint = OwnerName(earlier.names[i]);
-    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) continue;
-    const auto at = static_cast<Eigen::Index>(i);
-    earlier.covariance(at, at) += sizes[at] * sizes[at];
-  }
-  project.calibration.earlier = std::move(earlier);
+  project.calibration.earlier =
+      ForgetMoved(fit.check, fit.earlier, fit.robot.model, project.calibration.prior);
   return warnings;
 }
 

@@ -48,6 +48,14 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
                            const Measurements& measured, std::optional<std::uint64_t> seed,
                            const JointCheckOptions& options, Project& project);
 
+/// The earlier estimate that counts, for joints that have moved or may have, as little as what is
+/// known of a new robot.
+EarlierEstimate ForgetMoved(const JointCheck& check, const EarlierEstimate& earlier,
+                            const ErrorModel& model, const Prior& prior);
+
+/// These joints, a sentence each. `source`: the earlier calibration.
+std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::string& source);
+
 /// Takes an earlier calibration as the prior of the project's estimates. What it says of joints
 /// that seem to have moved since counts as little as what is known of a new robot. Returns what a
 /// user should know of it, a sentence each. Throws InputError as FitAfterEarlier, and for a

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/cli/contact_check.hpp"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "elastocal/cli/moved_joints_report.hpp"
+#include "elastocal/cli/report_page.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/cli/text_table.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/contact_json.hpp"
+#include "elastocal/pipeline/measurements.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+std::string Conclusion(const ContactCheck& run, double level) {
+  if (!run.mistakes.empty()) {
+    return fmt::format("The recording is wrong: {}\n", fmt::join(run.mistakes, "; or "));
+  }
+  if (!run.explained()) {
+    return fmt::format(
+        "Not explained, even if every joint may have moved: {}. Is something else wrong: a joint's "
+        "gain, a mounting that was moved, one bad posture? Do recording, project and calibration "
+        "belong together?\n",
+        fmt::join(run.FarRows(run.updated), "; "));
+  }
+  if (run.changed_beyond_telling()) {
+    return fmt::format(
+        "Changed: {}. These postures are too few to tell which joint has moved. Record more, and "
+        "more different ones.\n",
+        fmt::join(run.FarRows(run.calibrated), "; "));
+  }
+  return DescribeMoved(run.check, level);
+}
+
+std::string ErrorsByInstrument(const ContactCheck& run) {
+  TextTable table({"instrument", "number", "rms", "uncalibrated", "calibrated", "joints free",
+                   "left by the calibration"});
+  for (std::size_t i = 0; i < run.calibrated.rows.size(); ++i) {
+    const RowErrors& row = run.calibrated.rows[i];
+    const ShownUnit unit = ShownUnitOf(row.unit);
+    const auto text = [&](double value) { return fmt::format("{:.3g}", unit.factor * value); };
+    table.Add({run.model.instrument(row.instrument).name, std::to_string(row.observations),
+               row.row + " " + unit.name, text(run.uncalibrated.rows[i].rms), text(row.rms),
+               text(run.updated.rows[i].rms), text(run.left_before[i])});
+  }
+  return table.Render();
+}
+
+}  // namespace
+
+int RunContactCheck(const ContactCheckCommand& command, const Project& project) {
+  const bool quiet = command.common.Silent();
+  const std::vector<std::filesystem::path> recordings(command.recording.begin(),
+                                                      command.recording.end());
+  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
+  const CalibrationFiles files = FindCalibrationFiles(command.calibration);
+  inputs.insert(inputs.end(), {files.calibration, files.covariance});
+  OutputSet outputs;
+  outputs.Protect(inputs);
+  DeclareJson(command.common.json_file, outputs);
+  outputs.Prepare();
+  const ContactCheck run = CheckContacts(project, command.calibration, recordings, command.check);
+  outputs.Set(command.common.json_file, MakeCheckJson(run));
+  outputs.Publish();
+
+  std::string text = Conclusion(run, command.check.joints.level) + "\n";
+  text += fmt::format("{}, {} postures\n", run.recording, run.observations.posture_count());
+  text += ErrorsByInstrument(run);
+  if (!run.check.suspects.empty() || command.common.verbose) text += "\n" + SuspectTable(run.check);
+  Print(quiet, text + DescribeNotTold(run.check));
+  PrintWarnings(run.warnings, command.common.verbose);
+  if (!run.converged) spdlog::error("the fit has not converged: variances did not come to rest");
+  return run.unchanged() ? kFine : kNotConverged;
+}
+
+}  // namespace elastocal::cli

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/cli/moved_joints_report.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "elastocal/cli/figures.hpp"
+#include "elastocal/cli/session.hpp"
+#include "elastocal/cli/text_table.hpp"
+
+namespace elastocal::cli {
+namespace {
+
+constexpr double kLeastShown = 0.01;  // of the probability of a joint
+constexpr std::size_t kMostShown = 5;
+
+std::string ChangeText(const ParameterChange& change) {
+  Parameter parameter{};
+  parameter.unit = change.unit;
+  const double factor = InUserUnits(parameter, 1.0);
+  const double sd = factor * change.sd;
+  return fmt::format("{} by {} +- {} {}", change.name, RoundedTo(factor * change.value, sd),
+                     RoundedSd(sd), UserUnit(parameter));
+}
+
+/// Changes of more than two standard deviations, or the largest one.
+std::string ChangesText(const JointSuspect& suspect) {
+  std::string text;
+  const ParameterChange* largest = nullptr;
+  double most = -1.0;
+  for (const ParameterChange& change : suspect.changes) {
+    const double ratio = std::abs(change.value) / change.sd;
+    if (ratio > most) {
+      most = ratio;
+      largest = &change;
+    }
+    if (ratio > 2.0) text += (text.empty() ? "" : ", ") + ChangeText(change);
+  }
+  return text.empty() && largest != nullptr ? ChangeText(*largest) : text;
+}
+
+}  // namespace
+
+std::string SuspectTable(const JointCheck& check) {
+  TextTable table({"joint", "p of all joints", "probability that it is the one", "its change"});
+  std::size_t shown = 0;
+  for (const JointSuspect& joint : check.joints) {
+    if (joint.probability < kLeastShown || ++shown > kMostShown) break;
+    table.Add({joint.joint, fmt::format("{:.2g}", joint.p_adjusted),
+               fmt::format("{:.2f}", joint.probability), ChangesText(joint)});
+  }
+  return table.Render();
+}
+
+std::string DescribeMoved(const JointCheck& check, double level) {
+  if (!check.changed()) {
+    return fmt::format(
+        "Unchanged: the calibration explains these postures (chance of a false alarm {:.3g} %).\n",
+        100.0 * level);
+  }
+  std::string text;
+  for (const JointSuspect& joint : check.moved) {
+    text += fmt::format("Moved: {} ({}; p {:.1g})\n", joint.joint, ChangesText(joint),
+                        joint.p_adjusted);
+  }
+  if (!check.suspects.empty()) {
+    text += fmt::format("Changed: one of {}.\n", fmt::join(check.suspects, ", "));
+  }
+  return text;
+}
+
+std::string DescribeNotTold(const JointCheck& check) {
+  if (check.not_told.empty()) return "";
+  return fmt::format(
+      "These postures cannot tell whether the zeros of these joints have moved: {}\n",
+      fmt::join(check.not_told, ", "));
+}
+
+}  // namespace elastocal::cli

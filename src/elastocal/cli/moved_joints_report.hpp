@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "elastocal/validation/moved_joints.hpp"
+
+namespace elastocal::cli {
+
+/// What `check` says of joints: those that have moved and by how much, or which one of several may
+/// have; "Unchanged: ..." with the chance of a false alarm (`level`) where none has.
+std::string DescribeMoved(const JointCheck& check, double level);
+
+/// The joints that may have moved, the most probable first.
+std::string SuspectTable(const JointCheck& check);
+
+/// Joints of which these postures cannot tell it; empty where there are none.
+std::string DescribeNotTold(const JointCheck& check);
+
+}  // namespace elastocal::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/check_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace elastocal {
+namespace {
+
+nlohmann::ordered_json SuspectJson(const JointSuspect& suspect) {
+  nlohmann::ordered_json json;
+  json["joint"] = suspect.joint;
+  json["told"] = suspect.told();
+  json["F"] = suspect.told() ? nlohmann::ordered_json(suspect.test.statistic)
+                             : nlohmann::ordered_json(nullptr);
+  json["p"] = suspect.test.p;
+  json["p_adjusted"] = suspect.p_adjusted;
+  json["probability"] = suspect.probability;
+  json["changes"] = nlohmann::ordered_json::array();
+  for (const ParameterChange& change : suspect.changes) {
+    json["changes"].push_back({{"name", change.name},
+                               {"unit", UnitName(change.unit)},
+                               {"change", change.value},
+                               {"sd", change.sd}});
+  }
+  return json;
+}
+
+}  // namespace
+
+void AddJointCheck(const JointCheck& check, nlohmann::ordered_json& json) {
+  json["moved"] = nlohmann::ordered_json::array();
+  for (const JointSuspect& joint : check.moved) json["moved"].push_back(SuspectJson(joint));
+  json["suspects"] = check.suspects;
+  json["not_told"] = check.not_told;
+  json["joints"] = nlohmann::ordered_json::array();
+  for (const JointSuspect& joint : check.joints) json["joints"].push_back(SuspectJson(joint));
+}
+
+}  // namespace elastocal

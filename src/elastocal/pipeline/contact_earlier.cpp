@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/contact_earlier.hpp"
+
+#include <algorithm>
+
+#include "elastocal/io/fingerprint.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/pipeline/contact_result.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kToldByEarlier = 10.0;  // numbers, of each standard deviation
+
+std::vector<int> JointsOf(const std::optional<std::vector<std::string>>& names,
+                          const RobotTree& tree) {
+  std::vector<int> joints;
+  for (const std::string& name : names.value_or(std::vector<std::string>())) {
+    joints.push_back(FindJoint(tree, name));
+  }
+  std::sort(joints.begin(), joints.end());
+  return joints;
+}
+
+void TakeSpread(const Spread& spread, std::vector<Source>& sources) {
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    if (sources[s].role == Source::Role::kFixed) continue;
+    sources[s].sd = spread.sd[s];
+    sources[s].own_weight = kToldByEarlier;
+  }
+}
+
+}  // namespace
+
+ObservedRobot MakeStoredRobot(const StoredCalibration& stored, const Project& project,
+                              const ObservationSetup& setup) {
+  const ElasticityChoice elasticity = ElasticityOf(stored, project);
+  ObservationSetup alone = setup;
+  alone.common.clear();
+  ObservedRobot model = MakeObservedRobot(project.tree, project.placement, alone,
+                                          JointsOf(elasticity.torsion, project.tree),
+                                          JointsOf(elasticity.bending, project.tree));
+  if (stored.nominal != NominalFingerprint(model.robot)) {
+    throw InputError(stored.source + ": made for robot '" + stored.robot +
+                     "' with other nominal geometry than " + project.urdf.string() +
+                     "; expected the URDF that was calibrated, not the calibrated one");
+  }
+  CheckParameters(stored, model.robot, {});
+  return model;
+}
+
+Eigen::VectorXd StoredErrors(const StoredCalibration& stored, const ErrorModel& robot) {
+  Eigen::VectorXd errors = Eigen::VectorXd::Zero(robot.parameter_count());
+  for (int i = 0; i < robot.parameter_count(); ++i) {
+    const auto found = stored.joint_errors.find(robot.parameters[i].name);
+    if (found != stored.joint_errors.end()) errors[i] = found->second;
+  }
+  return errors;
+}
+
+EarlierContacts ReadEarlierContacts(const std::filesystem::path& calibration,
+                                    const Project& project) {
+  const CalibrationFiles files = FindCalibrationFiles(calibration);
+  return {ReadCalibration(files.calibration), ReadContacts(files.calibration, project),
+          ReadCalibrationFiles(files)};
+}
+
+ObservedRobot MakeRobotAfterEarlier(const EarlierContacts& earlier, const Project& project,
+                                    const ObservationTables& tables) {
+  ObservationSetup setup = tables.setup;
+  setup.outlier_probability = project.calibration.outlier_probability;
+  TakeSpread(earlier.contacts.calibrated.spread, setup.sources);
+  ObservedRobot model = MakeStoredRobot(earlier.stored, project, setup);
+  for (const std::string& pattern : project.identifiability.hold) {
+    if (!MatchParameters(model.robot.parameters, {pattern}).empty()) setup.hold.push_back(pattern);
+  }
+  if (!setup.hold.empty()) model = MakeStoredRobot(earlier.stored, project, setup);
+  KeepObservedUnknowns(tables.observations, model);
+  return model;
+}
+
+EarlierEstimate MakeEarlierOfContacts(const EarlierContacts& earlier, const ObservedRobot& model,
+                                      const Project& project, double days) {
+  return MakeEarlierEstimate(earlier.estimate, model.robot, project.calibration, days);
+}
+
+OpenedRobot OpenJoints(const ObservedRobot& model, const EarlierEstimate& earlier,
+                       const Observations& observations, const Project& project,
+                       const JointCheckOptions& options) {
+  const Eigen::VectorXd sizes = SizeOfChanges(earlier, model.robot, project.calibration.prior);
+  OpenedRobot opened{model, {}, {}};
+  opened.model.earlier = earlier;
+  opened.model.earlier.covariance.diagonal() += sizes.cwiseAbs2();
+  opened.estimate = EstimateObserved(opened.model, observations, {});
+  opened.check =
+      FindMovedJoints(InformationOfContacts(opened.model, observations, opened.estimate.fit),
+                      earlier, sizes, options);
+  return opened;
+}
+
+std::vector<std::string> StartFromEarlierContacts(const EarlierContacts& earlier,
+                                                  const Observations& observations,
+                                                  const Project& project, double days,
+                                                  ObservedRobot& model) {
+  const EarlierEstimate known = MakeEarlierOfContacts(earlier, model, project, days);
+  const JointCheck check = OpenJoints(model, known, observations, project).check;
+  model.earlier = ForgetMoved(check, known, model.robot, project.calibration.prior);
+  return DescribeForgotten(check, earlier.stored.source);
+}
+
+}  // namespace elastocal
