@@ -2,6 +2,7 @@
 #include "bindings.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/contact_check.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/planning/next_postures.hpp"
@@ -71,11 +72,12 @@ PyCalibration CalibrateMarkers(const Project& project, const Paths& files,
 PyCalibration CalibrateInstruments(const Project& project, const Paths& files,
                                    const CalibrateArguments& given) {
   Expect(given.fold_by == "posture", "fold_by", "a fold leaves out postures");
-  Expect(given.prior.empty(), "prior", "an earlier calibration is used with markers only");
   ContactRunOptions options{.folds = given.folds,
                             .threads = given.threads,
                             .zero_offsets = given.zero_offsets,
-                            .accept = given.accept};
+                            .accept = given.accept,
+                            .prior = given.prior,
+                            .days = given.days};
   if (given.progress) {
     options.progress = [&](int done, int total) {
       given.progress("cross-validation", done, total);
@@ -133,6 +135,13 @@ Names ParameterNames(const PyCalibration& calibration) {
   return names;
 }
 
+void ExpectOneRecording(const Paths& files) {
+  if (files.size() == 1) return;
+  throw InputError("recording: " + std::to_string(files.size()) +
+                   " files; one was expected, because the project has neither contact nor "
+                   "instruments");
+}
+
 py::object Validate(const Project& project, const Path& calibration, const py::object& recording,
                     bool frozen, const std::optional<std::string>& refit,
                     std::optional<std::uint64_t> seed, const Names& accept) {
@@ -146,30 +155,28 @@ py::object Validate(const Project& project, const Path& calibration, const py::o
     }));
   }
   if (refit_table) throw InputError("refit: 'table' is about touches of a table");
-  if (files.size() != 1) {
-    throw InputError("recording: " + std::to_string(files.size()) +
-                     " files; one was expected, because the project has neither contact nor "
-                     "instruments");
-  }
+  ExpectOneRecording(files);
   return FromJson(Unlocked([&] {
     return MakeValidationJson(ValidateCalibration(
         project, calibration, files.front(), {.frozen = frozen, .seed = seed, .accept = accept}));
   }));
 }
 
-py::object Check(const Project& project, const Path& calibration, const Path& recording,
+py::object Check(const Project& project, const Path& calibration, const py::object& recording,
                  double level, double days, std::optional<std::uint64_t> seed,
                  const Names& accept) {
-  if (project.contact) {
-    throw InputError(project.file.string() +
-                     ": check is about markers, and the project has contact or instruments");
-  }
+  const Paths files = PathsOf(recording);
   ExpectBounded("check --level", level);
   ExpectBounded("check --days", days);
   const CheckOptions options{
       .joints = {.level = level}, .days = days, .seed = seed, .accept = accept};
+  if (project.contact) {
+    return FromJson(Unlocked(
+        [&] { return MakeCheckJson(CheckContacts(project, calibration, files, options)); }));
+  }
+  ExpectOneRecording(files);
   return FromJson(Unlocked([&] {
-    const CheckRun run = CheckCalibration(project, calibration, recording, options);
+    const CheckRun run = CheckCalibration(project, calibration, files.front(), options);
     return MakeCheckJson(project, run, DesignNextPostures(project, calibration, run, options));
   }));
 }
@@ -255,8 +262,9 @@ void AddCalibrating(py::module_& module) {
   module.def(
       "check", Check, "project"_a, "calibration"_a, "recording"_a, py::kw_only(), "level"_a = 0.05,
       "days"_a = 1.0, "seed"_a = std::nullopt, "accept"_a = Names(),
-      "Tells from a few postures whether a saved calibration still holds: the dict of `elastocal "
-      "check --json`, with the 'next_postures' to record where several joints may have changed. "
+      "Tells from a few postures (with contact or instruments, tables of observations) whether a "
+      "saved calibration still holds: the dict of `elastocal check --json`, of markers with the "
+      "'next_postures' to record where several joints may have changed. "
       "level: chance of a false alarm. days: since the calibration.");
   module.def("compare", Compare, "a"_a, "b"_a, py::kw_only(), "level"_a = 0.05,
              "Tells which joints moved between two saved calibrations: a dict with 'changed', "

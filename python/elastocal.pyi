@@ -228,16 +228,16 @@ def validate(
 def check(
     project: Project,
     calibration: _Path,
-    recording: _Path,
+    recording: Union[_Path, Sequence[_Path]],
     *,
     level: float = 0.05,
     days: float = 1.0,
     seed: Optional[int] = None,
     accept: Sequence[str] = ...,
 ) -> dict[str, Any]:
-    """Tells from a few postures whether a saved calibration still holds: the dict of `elastocal check --json`, with
-    the 'next_postures' to record where several joints may have changed. level: chance of a false alarm. days: since
-    the calibration."""
+    """Tells from a few postures (with contact or instruments, tables of observations) whether a saved calibration
+    still holds: the dict of `elastocal check --json`, of markers with the 'next_postures' to record where several
+    joints may have changed. level: chance of a false alarm. days: since the calibration."""
 def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]:
     """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'suspects',
     'warnings' and 'parameters' (values in SI units)."""

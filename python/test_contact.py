@@ -64,6 +64,24 @@ class SameAsTheProgram:
             self.assertEqual(here["contact"]["table"], "refitted" if refit else "as calibrated")
             self.assertEqual(here["status"], "better")
 
+    def test_check_is_that_of_the_program(self):
+        self.found.save(self.folder / "saved")
+        there = self.folder / "check.json"
+        code = program("check", self.project.file, "--calibration", self.folder / "saved", "--recording", *self.other,
+                       "--json", there)
+        here = elastocal.check(self.project, self.folder / "saved", self.other)
+        self.assertEqual(here, json.loads(there.read_text()))
+        self.assertEqual((here["status"], code), ("unchanged", 0))
+
+    def test_update_has_the_bytes_of_the_program(self):
+        self.found.save(self.folder / "saved")
+        written = self.folder / "updated"
+        self.assertEqual(program("calibrate", self.project.file, "--recording", *self.other, "--kfold", 0, "--prior",
+                                 self.folder / "saved", "--days", 30, "-o", written), 0)
+        updated = elastocal.calibrate(self.project, self.other, folds=0, prior=self.folder / "saved", days=30)
+        self.assertEqual(updated.files["calibration.yaml"], (written / "calibration.yaml").read_text())
+        self.assertNotEqual(updated.files["calibration.yaml"], self.found.files["calibration.yaml"])
+
     def test_arrays_and_names(self):
         found = self.found
         self.assertTrue(found.deployable, found.objections)
@@ -139,9 +157,10 @@ class Instruments(SameAsTheProgram, unittest.TestCase):
             elastocal.calibrate(self.project, self.recordings, folds=3, progress=stop)
 
     def test_errors(self):
-        for argument, value in (("prior", self.folder), ("fold_by", "trial")):
-            with self.assertRaisesRegex(elastocal.InputError, f"^{argument}: not with contact or instruments"):
-                elastocal.calibrate(self.project, self.recordings, **{argument: value})
+        with self.assertRaisesRegex(elastocal.InputError, "^fold_by: not with contact or instruments"):
+            elastocal.calibrate(self.project, self.recordings, fold_by="trial")
+        with self.assertRaisesRegex(elastocal.InputError, "calibration.yaml"):
+            elastocal.calibrate(self.project, self.recordings, prior=self.folder / "none")
         with self.assertRaisesRegex(elastocal.InputError, "accept lag: sign:JOINT, .* was expected"):
             elastocal.calibrate(self.project, self.recordings, accept=["lag"])
         with self.assertRaisesRegex(elastocal.InputError, "folds"):
@@ -150,14 +169,12 @@ class Instruments(SameAsTheProgram, unittest.TestCase):
             elastocal.validate(self.project, self.folder, self.other, frozen=True)
         with self.assertRaisesRegex(elastocal.InputError, "refit: 'wall'; one of 'table' was expected"):
             elastocal.validate(self.project, self.folder, self.other, refit="wall")
-        with self.assertRaisesRegex(elastocal.InputError, "check is about markers"):
-            elastocal.check(self.project, self.folder, self.other[0])
         markers = elastocal.Project(SOURCE / "models/talos/project.yaml")
         with self.assertRaisesRegex(elastocal.InputError, "refit: 'table' is about touches"):
             elastocal.validate(markers, self.folder, self.other[0], refit="table")
         with self.assertRaisesRegex(elastocal.InputError, "recording: 2 files; one was expected"):
             elastocal.validate(markers, self.folder, [self.other[0]] * 2)
-        for words in (["--prior", self.folder], ["--accept", "lag"], ["--fold-by", "trial"]):
+        for words in (["--prior", self.folder / "none"], ["--accept", "lag"], ["--fold-by", "trial"]):
             self.assertEqual(program("calibrate", self.project.file, "--recording", *self.recordings, *words, "-o",
                                      self.folder / "no"), 3)
         self.assertFalse((self.folder / "no").exists())

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "elastocal/io/observation_table.hpp"
+#include "elastocal/pipeline/contact_check.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -84,6 +91,48 @@ TEST_F(TalosTable, EachSideAloneFindsTheComplianceOfTheHips) {
     EXPECT_LT(value - 2.0 * sd, 2.3) << file;
     EXPECT_LT(sd, 0.2) << file;
   }
+}
+
+// Every fourth touch is one of another day.
+TEST_F(TalosTable, AFewTouchesTellTheJointThatMoved) {
+  const ScratchFolder folder;
+  const auto write = [&](bool other, double elbow) {
+    std::vector<std::filesystem::path> tables;
+    for (const std::filesystem::path& file : files_) {
+      std::istringstream all(ReadFile(file));
+      std::string text, line;
+      int column = 0;
+      for (int number = 0; std::getline(all, line); ++number) {
+        std::istringstream row(line);
+        std::vector<std::string> cells;
+        for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+        if (number == 0) {
+          column = static_cast<int>(std::find(cells.begin(), cells.end(), "arm_right_4_joint") -
+                                    cells.begin());
+        } else if ((number % 4 == 0) != other) {
+          continue;
+        } else {
+          cells[column] = fmt::format("{:.12g}", std::stod(cells[column]) + elbow);
+        }
+        text += fmt::format("{}\n", fmt::join(cells, ","));
+      }
+      tables.push_back(folder.path() / ((other ? "then_" : "") + file.filename().string()));
+      std::ofstream(tables.back()) << text;
+    }
+    return tables;
+  };
+  ContactRun run = CalibrateContacts(project_, write(false, 0.0), {.folds = 0});
+  const std::filesystem::path out = folder.path() / "out";
+  std::filesystem::create_directory(out);
+  for (const auto& [name, text] : MakeContactFiles(project_, run)) {
+    std::ofstream(out / name) << text;
+  }
+  EXPECT_EQ(CheckStatus(CheckContacts(project_, out, write(true, 0.0))), "unchanged");
+  const ContactCheck moved = CheckContacts(project_, out, write(true, 2.0 * kDegree));
+  EXPECT_EQ(CheckStatus(moved), "moved");
+  ASSERT_EQ(moved.check.moved.size(), 1u);
+  EXPECT_EQ(moved.check.moved[0].joint, "arm_right_4_joint");
+  EXPECT_NEAR(moved.check.moved[0].changes[0].value, -2.0 * kDegree, 0.5 * kDegree);
 }
 
 TEST_F(TalosTable, ATouchInTheAirIsNamed) {

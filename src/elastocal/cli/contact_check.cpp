@@ -21,6 +21,12 @@ std::string Conclusion(const ContactCheck& run, double level) {
   if (!run.mistakes.empty()) {
     return fmt::format("The recording is wrong: {}\n", fmt::join(run.mistakes, "; or "));
   }
+  if (run.recording_explains()) {
+    return fmt::format(
+        "The recording seems wrong, not the robot: {}; once that is corrected, the calibration "
+        "holds\n",
+        fmt::join(run.alternatives, ", or "));
+  }
   if (!run.explained()) {
     return fmt::format(
         "Not explained, even if every joint may have moved: {}. Is something else wrong: a joint's "
@@ -34,7 +40,11 @@ std::string Conclusion(const ContactCheck& run, double level) {
         "more different ones.\n",
         fmt::join(run.FarRows(run.calibrated), "; "));
   }
-  return DescribeMoved(run.check, level);
+  std::string text = DescribeMoved(run.check, level);
+  if (!run.alternatives.empty()) {
+    text += fmt::format("Or {}: this explains it as well.\n", fmt::join(run.alternatives, ", or "));
+  }
+  return text;
 }
 
 std::string ErrorsByInstrument(const ContactCheck& run) {

@@ -60,7 +60,7 @@ class ObservationFaultSearch {
     for (int k = 0; k < static_cast<int>(model_.setup.quantities.size()); ++k) {
       if (k != model_.root_tilt) TryMove(equations, covariance, k);
     }
-    if (observations_.files.size() > 1) TryScales(equations, covariance);
+    TryScales(equations, covariance);
     TryFrozen();
     return Best();
   }
@@ -254,12 +254,14 @@ class ObservationFaultSearch {
     Keep(TryFromSomewhereOn(equations, covariance, derivative, fault, slides));
   }
 
-  /// Of single files.
+  /// Of single files; of all only where an earlier calibration tells the lengths of the robot.
   void TryScales(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
     const std::vector<Eigen::VectorXd> derivative = DerivativeBy(Scaled(), fit_.values);
     ObservationFault fault;
     fault.kind = ObservationFaultKind::kScale;
-    for (fault.file = 0; fault.file < std::ssize(observations_.files); ++fault.file) {
+    const auto files = static_cast<int>(observations_.files.size());
+    for (fault.file = -1; fault.file < files; ++fault.file) {
+      if (fault.file < 0 ? model_.earlier.empty() : files < 2) continue;
       Keep(Try(equations, covariance, derivative, {{fault, FactorOf(fault)}}, false));
     }
   }

@@ -7,8 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/observation/observation_faults.hpp"
 #include "elastocal/pipeline/check_json.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
+#include "elastocal/pipeline/contact_faults.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
@@ -32,6 +35,66 @@ ObservationFigures FiguresOf(const ContactCheck& run, const Eigen::VectorXd& err
   return MakeFigures(run.model, run.observations, LeftOf(run.model, run.observations, fit.values));
 }
 
+/// Whether the robot is as it was calibrated in other observations of the same day.
+bool Holds(const ContactCheck& run, const EarlierContacts& earlier, const EarlierEstimate& known,
+           const Observations& observations, const Project& project,
+           const JointCheckOptions& options) {
+  ContactCheck other = run;
+  other.observations = observations;
+  other.calibrated = FiguresOf(other, StoredErrors(earlier.stored, run.model.robot));
+  other.check = OpenJoints(run.model, known, observations, project, options).check;
+  return !other.check.changed() && other.FarRows(other.calibrated).empty();
+}
+
+/// Without the postures in which something contradicts the others.
+Observations WithoutOutliers(const Observations& observations,
+                             const std::vector<ObservationOutlier>& outliers) {
+  std::vector<char> bad(Size(observations.posture_count()), 0);
+  for (const ObservationOutlier& outlier : outliers) {
+    bad[Size(observations.all[Size(outlier.observation)].posture)] = 1;
+  }
+  std::vector<int> good;
+  for (int i = 0; i < observations.posture_count(); ++i) {
+    if (bad[Size(i)] == 0) good.push_back(i);
+  }
+  return SelectPostures(observations, good);
+}
+
+/// Single observations and faults beside a robot that is as it was calibrated, without each of
+/// which it holds.
+std::vector<std::string> FindAlternatives(const ContactCheck& run, const EarlierContacts& earlier,
+                                          const EarlierEstimate& known, const Project& project,
+                                          const JointCheckOptions& options) {
+  constexpr std::size_t kMostTried = 8;
+  constexpr double kMostOthers = 0.75;  // of the postures
+  ObservedRobot calibrated = run.model;
+  calibrated.earlier = known;
+  const ObservedEstimate estimate = EstimateObserved(calibrated, run.observations, {});
+  std::vector<ObservationFault> faults =
+      FindObservationFaults(calibrated, run.observations, estimate.fit);
+  if (faults.size() > kMostTried) faults.resize(kMostTried);
+  std::vector<std::string> alternatives;
+  const Observations others = WithoutOutliers(run.observations, estimate.outliers);
+  if (!estimate.outliers.empty() && others.posture_count() >= kFewestChecked &&
+      others.posture_count() >= kMostOthers * run.observations.posture_count() &&
+      Holds(run, earlier, known, others, project, options)) {
+    alternatives.push_back(fmt::format(
+        "{}", fmt::join(DescribeOutliers(calibrated, run.observations, estimate), ", and ")));
+  }
+  for (const ObservationFault& found : faults) {
+    // From the first posture on, that is a joint or a mounting that has moved.
+    const bool from = found.kind == ObservationFaultKind::kJointOffset ||
+                      found.kind == ObservationFaultKind::kMoved;
+    if (from && found.posture == 0) continue;
+    const ObservationFault fault = Refined(found, calibrated, run.observations);
+    const Observations without = WithoutFault(fault, calibrated, run.observations);
+    if (without.posture_count() < kFewestChecked) continue;
+    if (!Holds(run, earlier, known, without, project, options)) continue;
+    alternatives.push_back(DescribeWithRemedy(fault, calibrated, run.observations));
+  }
+  return alternatives;
+}
+
 }  // namespace
 
 std::vector<std::string> ContactCheck::FarRows(const ObservationFigures& figures) const {
@@ -48,6 +111,11 @@ std::vector<std::string> ContactCheck::FarRows(const ObservationFigures& figures
                               unit.name, unit.factor * left_before[i]));
   }
   return far;
+}
+
+bool ContactCheck::recording_explains() const {
+  const bool by_one_joint = check.moved.size() == 1 && check.suspects.empty() && explained();
+  return !alternatives.empty() && !by_one_joint;
 }
 
 bool ContactCheck::unchanged() const {
@@ -85,11 +153,13 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
 
   const EarlierEstimate known = MakeEarlierOfContacts(earlier, run.model, project, options.days);
   OpenedRobot opened = OpenJoints(run.model, known, run.observations, project, options.joints);
-  run.model = std::move(opened.model);
   run.check = std::move(opened.check);
   run.converged = opened.estimate.fit.termination == Termination::kConverged;
   run.updated = MakeFigures(run.model, run.observations,
                             LeftOf(run.model, run.observations, opened.estimate.fit.values));
+  if (run.mistakes.empty() && !run.unchanged()) {
+    run.alternatives = FindAlternatives(run, earlier, known, project, options.joints);
+  }
   for (std::string& text : DescribeOutliers(run.model, run.observations, opened.estimate)) {
     run.warnings.push_back(std::move(text));
   }
@@ -97,7 +167,7 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
 }
 
 std::string CheckStatus(const ContactCheck& run) {
-  if (!run.mistakes.empty()) return "recording wrong";
+  if (!run.mistakes.empty() || run.recording_explains()) return "recording wrong";
   if (!run.converged) return "not converged";
   if (!run.explained()) return "unexplained";
   if (!run.check.moved.empty()) return "moved";
@@ -115,6 +185,7 @@ std::string MakeCheckJson(const ContactCheck& run) {
   json["contact"]["updated"] = FiguresJson(run.model, run.updated);
   AddJointCheck(run.check, json);
   json["mistakes"] = run.mistakes;
+  json["alternatives"] = run.alternatives;
   json["warnings"] = run.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -23,12 +23,17 @@ struct ContactCheck {
   JointCheck check;
   bool converged = false;
   std::vector<std::string> mistakes;  ///< in the tables, which say nothing of the robot
+  /// Faults of the tables without each of which the calibration holds: they explain it as well as
+  /// joints that have moved.
+  std::vector<std::string> alternatives;
   std::vector<std::string> warnings;  ///< what is left out among them
 
   /// Rows of the figures that leave more than four times what the calibration left, and more than a
   /// fiftieth of what robots leave at most (LargestError).
   std::vector<std::string> FarRows(const ObservationFigures& figures) const;
   bool explained() const { return FarRows(updated).empty(); }
+  /// Whether an alternative explains what otherwise takes several joints, or none does.
+  bool recording_explains() const;
   /// Whether the robot as calibrated leaves too much, and no joint is accused of it.
   bool changed_beyond_telling() const { return !check.changed() && !FarRows(calibrated).empty(); }
   bool unchanged() const;
@@ -44,8 +49,9 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
                            const std::vector<std::filesystem::path>& recordings,
                            const CheckOptions& options = {});
 
-/// "unchanged", "moved", "changed" (no single joint can be named), "recording wrong",
-/// "unexplained" (moved joints do not explain it) or "not converged".
+/// "unchanged", "moved", "changed" (no single joint can be named), "recording wrong"
+/// (`mistakes`, or `alternatives` where these explain it and no single joint does), "unexplained"
+/// (moved joints do not explain it) or "not converged".
 std::string CheckStatus(const ContactCheck& run);
 
 /// The figures for programs (docs/formats.md).

@@ -110,6 +110,12 @@ std::optional<CommonScale> ScaleBesideRails(const ContactRun& run,
 
 }  // namespace
 
+std::string DescribeWithRemedy(const ObservationFault& fault, const ObservedRobot& model,
+                               const Observations& observations) {
+  return fmt::format("{} ({})", DescribeFault(fault, model, observations),
+                     RemedyOf(fault, model, observations));
+}
+
 std::string FindContactFault(const ContactRun& run) {
   const ObservationFit& fit = run.calibrated.estimate.fit;
   std::vector<ObservationFault> faults = FindObservationFaults(run.model, run.observations, fit);
@@ -125,9 +131,8 @@ std::string FindContactFault(const ContactRun& run) {
   }
   if (best != nullptr) {
     const ObservationFault fault = Refined(*best, run.model, run.observations);
-    return fmt::format("{} ({}); without that, the calibrated robot leaves {:.2g} times as much",
-                       DescribeFault(fault, run.model, run.observations),
-                       RemedyOf(fault, run.model, run.observations),
+    return fmt::format("{}; without that, the calibrated robot leaves {:.2g} times as much",
+                       DescribeWithRemedy(fault, run.model, run.observations),
                        std::min(least, LeftWithout(run, fault)));
   }
   const auto scale = FindObservedScale(run.model, run.observations, fit);

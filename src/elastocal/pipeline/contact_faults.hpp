@@ -3,9 +3,14 @@
 
 #include <string>
 
+#include "elastocal/observation/observation_fault.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 
 namespace elastocal {
+
+/// A fault in words, with what undoes it.
+std::string DescribeWithRemedy(const ObservationFault& fault, const ObservedRobot& model,
+                               const Observations& observations);
 
 /// A fault of the tables that the estimate nearly explains (FindObservationFaults,
 /// FindObservedScale), in a sentence with what undoes it; empty where there is none. Of the faults

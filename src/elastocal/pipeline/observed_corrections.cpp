@@ -204,7 +204,7 @@ std::optional<std::string> NameOfFault(const ObservationFault& fault, const Obse
   }
   const std::string in = fault.file < 0 ? "" : NameInAccept(observations.files[Size(fault.file)]);
   if (fault.kind == ObservationFaultKind::kScale) {
-    return fmt::format("scale:{}={:.5f}", in, 1.0 + fault.size);
+    return fmt::format("scale{}{}={:.5f}", in.empty() ? "" : ":", in, 1.0 + fault.size);
   }
   const RobotTree& tree = model.robot.tree;
   const std::string joint = JointName(tree, fault.coordinate);

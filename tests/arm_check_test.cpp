@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// An arm that a laser tracker sees again on another day: has a joint moved?
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/io/observation_table.hpp"
+#include "elastocal/pipeline/contact_check.hpp"
+#include "tests/arm_with_tracker.hpp"
+#include "tests/expect_input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+class CheckedArm : public ArmWithTracker {
+ protected:
+  CheckedArm() {
+    ContactRun run = Calibrate(q_);
+    EXPECT_TRUE(run.deployable()) << First(run);
+    calibration_ = folder_.path() / "out";
+    std::filesystem::create_directory(calibration_);
+    for (const auto& [name, text] : MakeContactFiles(project_, run)) {
+      std::ofstream(calibration_ / name) << text;
+    }
+    // Another day: the tracker stands elsewhere.
+    for (std::size_t i = 0; i < model_.setup.quantities.size(); ++i) {
+      if (model_.setup.quantities[i].of_surroundings) truth_.quantities[i].x.array() += 0.05;
+    }
+  }
+
+  /// Eight postures of that day.
+  ContactCheck Check(const Eigen::MatrixXd& q, std::size_t first = 0) const {
+    return CheckContacts(project_, calibration_, {Table(q, "today.csv", first)});
+  }
+
+  ContactCheck CheckMoved(const std::string& parameter, double by) {
+    truth_.robot[FindParameter(model_.robot.parameters, parameter)] += by;
+    Measure(model_, truth_);
+    return Check(q_.topRows(8));
+  }
+
+  std::filesystem::path calibration_;
+};
+
+TEST_F(CheckedArm, IsUnchangedWhereverTheTrackerStands) {
+  Measure(model_, truth_);
+  const ContactCheck run = Check(q_.topRows(8));
+  EXPECT_EQ(CheckStatus(run), "unchanged");
+  EXPECT_TRUE(run.alternatives.empty());
+  // A coordinate was measured to 0.1 mm, and 1 mm was the guess of it.
+  EXPECT_GT(run.left_before[0], 5e-5);
+  EXPECT_LT(run.left_before[0], 2.5e-4);
+  EXPECT_LT(run.calibrated.rows[0].rms, 2e-4);
+  EXPECT_GT(run.uncalibrated.rows[0].rms, 1e-3);
+}
+
+TEST_F(CheckedArm, TheJointThatMovedIsNamedWithItsSize) {
+  const ContactCheck run = CheckMoved("elbow_joint.theta", 4e-3);
+  EXPECT_EQ(CheckStatus(run), "moved");
+  ASSERT_EQ(run.check.moved.size(), 1u);
+  EXPECT_EQ(run.check.moved[0].joint, "elbow_joint");
+  ASSERT_FALSE(run.check.moved[0].changes.empty());
+  const ParameterChange& change = run.check.moved[0].changes[0];
+  EXPECT_NEAR(change.value, 4e-3, 4.0 * change.sd);
+  EXPECT_LT(change.sd, 1e-3);
+  EXPECT_LT(run.updated.rows[0].rms, run.calibrated.rows[0].rms);
+}
+
+TEST_F(CheckedArm, AWrongGainOrScaleOrRowIsNoRobotThatChanged) {
+  Measure(model_, truth_);
+  Eigen::MatrixXd q = q_.topRows(8);
+  q.col(Coordinate("elbow_joint")) *= 1.03;
+  const ContactCheck gain = Check(q);
+  EXPECT_EQ(CheckStatus(gain), "recording wrong");
+  ASSERT_EQ(gain.alternatives.size(), 1u);
+  EXPECT_NE(gain.alternatives[0].find("--accept gain:elbow_joint=1.0"), std::string::npos)
+      << gain.alternatives[0];
+
+  const std::vector<Eigen::VectorXd> sound = poses_;
+  for (Eigen::VectorXd& pose : poses_) pose.head<3>() *= 1.01;
+  const ContactCheck scale = Check(q_.topRows(8));
+  EXPECT_EQ(CheckStatus(scale), "recording wrong");
+  ASSERT_EQ(scale.alternatives.size(), 1u);
+  EXPECT_NE(scale.alternatives[0].find("--accept scale=1.0"), std::string::npos)
+      << scale.alternatives[0];
+
+  poses_ = sound;
+  poses_[3][0] += 0.01;
+  const ContactCheck row = Check(q_.topRows(8));
+  EXPECT_EQ(CheckStatus(row), "recording wrong");
+  ASSERT_EQ(row.alternatives.size(), 1u);
+  EXPECT_NE(row.alternatives[0].find("today.csv:5: "), std::string::npos) << row.alternatives[0];
+}
+
+TEST_F(CheckedArm, AnotherRobotIsNotExplained) {
+  Random random(99);
+  for (Eigen::VectorXd& pose : poses_) pose.head<3>() += random.NormalVector(3, 0.05);
+  const ContactCheck run = Check(q_.topRows(8));
+  EXPECT_EQ(CheckStatus(run), "unexplained");
+  EXPECT_FALSE(run.FarRows(run.updated).empty());
+}
+
+// Ten postures with what thirty told before are better than ten alone; what is known of a joint
+// that has moved is forgotten.
+TEST_F(CheckedArm, AFewPosturesUpdateACalibration) {
+  truth_.robot[FindParameter(model_.robot.parameters, "elbow_joint.theta")] += 0.02;
+  Measure(model_, truth_);
+  const auto calibrate = [&](const std::filesystem::path& prior) {
+    return CalibrateContacts(project_, {Table(q_.topRows(10), "ten.csv")},
+                             {.folds = 0, .prior = prior, .days = 0.0});
+  };
+  const ContactRun updated = calibrate(calibration_);
+  const ContactRun alone = calibrate({});
+  const auto left = [&](const ContactRun& run) {
+    const ObservedValues& values = run.calibrated.estimate.fit.values;
+    ObservationTables tables =
+        ReadObservationTables({Table(q_.bottomRows(15), "others.csv", 15)}, project_);
+    return MakeFigures(run.model, tables.observations,
+                       LeftAfterRegistration(run.model, tables.observations, values,
+                                             run.calibrated.estimate.fit.spread))
+        .rows[0]
+        .rms;
+  };
+  EXPECT_LT(left(updated), 2e-4);
+  EXPECT_LT(left(updated), 0.7 * left(alone));
+  const bool told =
+      std::any_of(updated.warnings.begin(), updated.warnings.end(), [](const std::string& text) {
+        return text.find("elbow_joint: has moved since") != std::string::npos;
+      });
+  EXPECT_TRUE(told);
+}
+
+TEST_F(CheckedArm, RefusesWhatDoesNotBelongTogether) {
+  ExpectInputError([&] { Check(q_.topRows(3)); }, {"today.csv", "3 postures", "at least 4"});
+  std::filesystem::remove(calibration_ / "covariance.csv");
+  ExpectInputError([&] { Check(q_.topRows(8)); }, {"covariance.csv"});
+}
+
+}  // namespace
+}  // namespace elastocal
