@@ -159,7 +159,7 @@ class Instruments(SameAsTheProgram, unittest.TestCase):
     def test_errors(self):
         with self.assertRaisesRegex(elastocal.InputError, "^fold_by: not with contact or instruments"):
             elastocal.calibrate(self.project, self.recordings, fold_by="trial")
-        with self.assertRaisesRegex(elastocal.InputError, "calibration.yaml"):
+        with self.assertRaisesRegex(elastocal.InputError, "there is no such file"):
             elastocal.calibrate(self.project, self.recordings, prior=self.folder / "none")
         with self.assertRaisesRegex(elastocal.InputError, "accept lag: sign:JOINT, .* was expected"):
             elastocal.calibrate(self.project, self.recordings, accept=["lag"])

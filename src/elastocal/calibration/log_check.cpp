@@ -216,6 +216,7 @@ class SuspicionSearch {
       if (run.size() > longest.size()) longest = run;
     }
     if (static_cast<int>(longest.size()) < kLeastFrozen) return;
+    TakeHalfFrozen(c, postures, longest);
     std::vector<int> others;
     std::set_difference(postures.begin(), postures.end(), longest.begin(), longest.end(),
                         std::back_inserter(others));
@@ -227,6 +228,18 @@ class SuspicionSearch {
     const double after = Typical(Shown(c, others) - Logged(c, others));
     if (before < LeastDiscrepancy(c) || after > kFarBetter * before) return;
     Add(LogContradiction::kFrozen, c, -1, longest, before, after);
+  }
+
+  /// A joint may have frozen, or come back, while a posture was held: its mean is neither the place
+  /// that was logged nor the true one.
+  void TakeHalfFrozen(int c, const std::vector<int>& postures, std::vector<int>& frozen) const {
+    const auto wrong = [&](int i) {
+      return std::abs(shown_(i, c) - logged_(i, c)) >= LeastDiscrepancy(c);
+    };
+    const auto first = std::find(postures.begin(), postures.end(), frozen.front());
+    const auto last = std::find(postures.begin(), postures.end(), frozen.back());
+    if (last + 1 != postures.end() && wrong(last[1])) frozen.push_back(last[1]);
+    if (first != postures.begin() && wrong(first[-1])) frozen.insert(frozen.begin(), first[-1]);
   }
 
   /// A joint that is logged in one place in all of a trial, while the markers show it moving.
