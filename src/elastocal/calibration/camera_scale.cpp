@@ -147,6 +147,25 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
   return scale;
 }
 
+bool IsDoubtful(const CommonScale& scale) {
+  constexpr double kOneInFifty = 0.02;
+  return std::abs(scale.size) > kLeastScale &&
+         StudentTwoSidedTail(scale.size / scale.sd, scale.degrees_of_freedom) < kOneInFifty;
+}
+
+std::string DescribeDoubt(const CommonScale& scale) {
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "the cameras' positions may be %.4f +- %.4f times the true ones in all trials: all lengths "
+      "of "
+      "the robot are off by as much, which is not certain enough to object to (one robot in fifty "
+      "is of such a size); a bar of known length beside the robot tells "
+      "(recording.reference_lengths)",
+      1.0 + scale.size, scale.sd);
+  return text;
+}
+
 std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
                                           const CalibrationOptions& options) {
   const auto scale = EstimateCommonScale(result, options);

@@ -27,6 +27,13 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
 std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
                                           const CalibrationOptions& options);
 
+/// Whether it is more than 0.3 %, and more than one clean recording in fifty has: too little to
+/// object to, too much to say nothing.
+bool IsDoubtful(const CommonScale& scale);
+
+/// "the cameras' positions may be 1.0039 +- 0.0014 times the true ones in all trials, ..."
+std::string DescribeDoubt(const CommonScale& scale);
+
 /// "the cameras' positions seem 1.0050 +- 0.0003 times the true ones in all trials, ..."
 std::string Describe(const CommonScale& scale);
 

@@ -153,6 +153,17 @@ TEST_F(LogCheckTest, AFrozenJointIsTold) {
             2 * kPlayed - 6);
 }
 
+// The log comes back while a posture is held: the mean of that one is nearly the frozen place.
+TEST_F(LogCheckTest, ThePostureInWhichAFrozenJointComesBackIsLeftOutAsWell) {
+  Recording changed = recording_;
+  auto right_4 = changed.q.col(Coordinate("right_4")).segment(kPlayed + 5, 7);
+  ASSERT_GT(std::abs(right_4[6] - right_4[0]), 0.1);
+  right_4.setConstant(right_4[0]);
+  right_4[6] += 1e-4;
+  EXPECT_EQ(First(changed),
+            "right_4: its positions are frozen, while it moved, in 7 postures in trial b");
+}
+
 TEST_F(LogCheckTest, AJointThatIsLoggedInOnePlaceThroughoutIsTold) {
   Recording changed = recording_;
   changed.q.col(Coordinate("right_4")).setConstant(0.2);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/gauge.hpp"
+#include "elastocal/calibration/prediction.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
@@ -187,6 +188,10 @@ CalibrationRun CalibrateExperiment(const Project& given,
   }
 
   run.common_scale = EstimateCommonScale(run.comparison.largest(), settings);
+  if (run.faults.empty() && run.common_scale && IsDoubtful(*run.common_scale) &&
+      !ScaleIsKnown(as_recorded.trials)) {
+    run.warnings.push_back(DescribeDoubt(*run.common_scale));
+  }
 
   // Eq. 12: how well the recorded postures tell the parameters apart.
   run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording, settings.earlier);
@@ -225,8 +230,13 @@ CalibrationRun CalibrateExperiment(const Project& given,
   run.deployment = ChooseDeployment(run.comparison, run.cross_validation,
                                     run.held_out ? &run.held_out->table : nullptr);
   run.verdict = Judge(run.comparison, run.cross_validation, run.excitation, recording, settings);
-  JudgeDeployment(run.deployment, ExpectedError(robot.model, recording, settings.prior),
-                  run.verdict);
+  const double expected_error = ExpectedError(robot.model, recording, settings.prior);
+  JudgeDeployment(run.deployment, expected_error, run.verdict);
+  if (run.faults.empty()) {  // else these say why
+    const CalibrationResult& fit = run.comparison.largest();
+    JudgePostures(Predict(fit.model, fit.delta, recording, settings).distances, fit.used, recording,
+                  expected_error, run.verdict);
+  }
   if (run.held_out) {
     JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
                  run.verdict);

@@ -126,14 +126,6 @@ std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result)
   return faults;
 }
 
-/// Whether reference lengths say of every trial that its scale is right.
-bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
-  return !trials.empty() &&
-         std::all_of(trials.begin(), trials.end(), [](const TrialSummary& trial) {
-           return !trial.refused.empty() || (trial.scale && !IsWrong(*trial.scale));
-         });
-}
-
 /// The fault that explains most, and the recording that its postures are of.
 struct GeneralFault {
   RecordingFault fault;
@@ -253,6 +245,13 @@ Recording EvenlyThinned(const Recording& recording, int count) {
 }
 
 }  // namespace
+
+bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
+  return !trials.empty() &&
+         std::all_of(trials.begin(), trials.end(), [](const TrialSummary& trial) {
+           return !trial.refused.empty() || (trial.scale && !IsWrong(*trial.scale));
+         });
+}
 
 std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
                                     const Measurements& as_recorded, const RecordedModel& robot,

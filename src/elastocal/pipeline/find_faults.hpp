@@ -12,6 +12,9 @@
 
 namespace elastocal {
 
+/// Whether reference lengths say of every trial that its scale is right.
+bool ScaleIsKnown(const std::vector<TrialSummary>& trials);
+
 /// What is wrong with a recording as a whole, in words: a wrong axis up, mistakes that a second fit
 /// proves (FindRecordingMistakes) and, where there are none of these, the fault that explains most
 /// of what the fit leaves (FindRecordingFaults). `as_recorded`: before markers were split at

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/validation/verdict.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -147,6 +148,39 @@ void JudgeDeployment(const Deployment& deployment, double expected_error, Verdic
                  (worse ? "worse" : "no better") +
                  " than the uncalibrated one: " + Number(1e3 * deployment.urdf, "mm") +
                  " against " + Number(1e3 * deployment.uncalibrated, "mm"));
+}
+
+void JudgePostures(const Eigen::MatrixXd& distances, const ObservationMask& used,
+                   const Recording& recording, double expected_error, Verdict& verdict) {
+  constexpr double kGross = 5.0;  // times the expected error
+  constexpr double kMany = 0.2;   // of the postures
+  const int trials = std::max<int>(1, static_cast<int>(recording.trials.size()));
+  for (int trial = 0; trial < trials; ++trial) {
+    int count = 0, gross = 0;
+    double worst = 0.0;
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (!recording.trials.empty() && recording.trial[i] != trial) continue;
+      ++count;
+      double squares = 0.0, seen = 0.0;
+      for (Eigen::Index m = 0; m < distances.cols(); ++m) {
+        if (!used(i, m) || !std::isfinite(distances(i, m))) continue;
+        squares += distances(i, m) * distances(i, m);
+        ++seen;
+      }
+      const double left = seen > 0.0 ? std::sqrt(squares / seen) : 0.0;
+      if (left > kGross * expected_error) ++gross;
+      worst = std::max(worst, left);
+    }
+    if (gross == 0) continue;
+    const bool many = gross > 1 && gross >= kMany * count;
+    (many ? verdict.objections : verdict.remarks)
+        .push_back(
+            (recording.trials.empty() ? "" : "trial " + recording.trials[trial].name + ": ") +
+            std::to_string(gross) + " of " + std::to_string(count) + " postures are off by up to " +
+            Number(1e3 * worst, "mm") +
+            " in the fit, which is no error of a robot: was a joint's log or a label wrong "
+            "there, or did the support move?");
+  }
 }
 
 void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verdict& verdict) {

@@ -34,6 +34,13 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
 /// calibrated (ExpectedError, m): better than a worse one is not good.
 void JudgeDeployment(const Deployment& deployment, double expected_error, Verdict& verdict);
 
+/// Adds an objection where a fifth of the postures of a trial, or of a table, and two at least, are
+/// further off in the fit than any robot is (five times `expected_error`, ExpectedError, m), and a
+/// warning as a remark where it is fewer: a fit in which single postures count little looks good
+/// beside them. `distances` of the fit as Predict has them, over the observations `used`.
+void JudgePostures(const Eigen::MatrixXd& distances, const ObservationMask& used,
+                   const Recording& recording, double expected_error, Verdict& verdict);
+
 /// Adds the judgement by held-out trials on the calibrated model `model`: an objection for each
 /// group of chains whose markers it predicts worse than the uncalibrated robot does (by 5 %), and a
 /// remark for each group that it predicts worse than a simpler model does, or where the URDF alone

@@ -128,6 +128,34 @@ ErrorTable HeldOutTable(const std::map<ModelKind, double>& rmse) {
   return table;
 }
 
+// Two markers in postures of 30 and 40 mm (35.4 mm rms) among good ones; a robot errs by 7 mm.
+TEST(JudgePostures, ObjectsWhereManyPosturesAreNoRobots) {
+  Recording recording;
+  recording.trials.resize(2);
+  recording.trials[0].name = "a";
+  recording.trials[1].name = "b";
+  recording.q.setZero(20, 1);
+  recording.trial.assign(20, 0);
+  std::fill(recording.trial.begin() + 10, recording.trial.end(), 1);
+  Eigen::MatrixXd distances = Eigen::MatrixXd::Constant(20, 2, 1e-3);
+  const ObservationMask used = ObservationMask::Constant(20, 2, true);
+  const auto judge = [&] {
+    Verdict verdict;
+    JudgePostures(distances, used, recording, 7e-3, verdict);
+    return verdict;
+  };
+  EXPECT_TRUE(judge().objections.empty() && judge().remarks.empty());
+  distances.row(12) << 0.03, 0.04;
+  EXPECT_TRUE(judge().objections.empty());  // one may be a slip
+  ASSERT_EQ(judge().remarks.size(), 1u);
+  distances.row(15) << 0.03, 0.04;
+  ASSERT_EQ(judge().objections.size(), 1u);
+  const std::string text = judge().objections[0];
+  EXPECT_TRUE(text.starts_with("trial b: 2 of 10 postures are off by up to 35.4 mm")) << text;
+  distances.row(15) << 0.03, 0.03;  // less than five times 7 mm
+  EXPECT_TRUE(judge().objections.empty());
+}
+
 TEST(JudgeHeldOut, ObjectsToWhatErrsNoLessThanTheUncalibratedRobot) {
   using enum ModelKind;
   Verdict verdict;
