@@ -171,8 +171,10 @@ py::object Check(const Project& project, const Path& calibration, const py::obje
   const CheckOptions options{
       .joints = {.level = level}, .days = days, .seed = seed, .accept = accept};
   if (project.contact) {
-    return FromJson(Unlocked(
-        [&] { return MakeCheckJson(CheckContacts(project, calibration, files, options)); }));
+    return FromJson(Unlocked([&] {
+      const ContactCheck run = CheckContacts(project, calibration, files, options);
+      return MakeCheckJson(project, run, DesignNextPostures(project, calibration, run, options));
+    }));
   }
   ExpectOneRecording(files);
   return FromJson(Unlocked([&] {

@@ -121,6 +121,20 @@ PyDesign DesignAfter(const Project& project, const Path& calibration, bool check
                                 .chains = chains,
                                 .joints = joints,
                                 .seed = seed};
+  if (project.contact) {
+    return Unlocked([&] {
+      const ObservationDesign found = DesignObservations(project,
+                                                         {.count = count,
+                                                          .seed = seed,
+                                                          .after = calibration,
+                                                          .days = days,
+                                                          .changes = check,
+                                                          .joints = joints},
+                                                         progress);
+      ExpectFeasible(found.infeasible);
+      return PyDesign{project, found.postures, FormatObservationDesign(found)};
+    });
+  }
   return Unlocked([&] {
     const FollowUpDesign found = DesignFollowUp(project, calibration, options, progress);
     ExpectFeasible(found.infeasible);
@@ -214,8 +228,8 @@ void AddDesigning(py::module_& module) {
       "progress"_a = Progress(),
       "Chooses, like `elastocal design --after`, `count` postures of each chain that add most to a "
       "saved calibration or, with check=True, that tell best whether a joint (of `joints`, or any) "
-      "has moved since. days: since the calibration. marker_noise_mm: of a coordinate, errors of "
-      "the model included.");
+      "has moved since (with contact or instruments, `count` in all). days: since the calibration. "
+      "marker_noise_mm: of a coordinate, errors of the model included.");
 }
 
 }  // namespace elastocal::python

@@ -296,8 +296,9 @@ def design_after(
     progress: _Progress = None,
 ) -> Design:
     """Chooses, like `elastocal design --after`, `count` postures of each chain that add most to a saved calibration
-    or, with check=True, that tell best whether a joint (of `joints`, or any) has moved since. days: since the
-    calibration. marker_noise_mm: of a coordinate, errors of the model included."""
+    or, with check=True, that tell best whether a joint (of `joints`, or any) has moved since (with contact or
+    instruments, `count` in all). days: since the calibration. marker_noise_mm: of a coordinate, errors of the model
+    included."""
 def plan(
     project: Project,
     postures: Optional[_Postures] = None,

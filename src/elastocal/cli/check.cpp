@@ -12,6 +12,7 @@
 #include "elastocal/cli/contact_check.hpp"
 #include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/moved_joints_report.hpp"
+#include "elastocal/cli/next_postures_report.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
@@ -23,8 +24,6 @@
 
 namespace elastocal::cli {
 namespace {
-
-constexpr int kNext = 5;  // postures of a limb that are proposed
 
 struct CheckCommand {
   CommonOptions common;
@@ -124,45 +123,12 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
   return text + DescribeNotTold(check);
 }
 
-/// A posture in degrees and mm, without the joints that are at rest in it.
-std::string PostureText(const Project& project, const Eigen::VectorXd& q) {
-  constexpr double kShown = 1e-3;  // rad or m
-  std::string text;
-  for (int i = 0; i < project.tree.coordinate_count(); ++i) {
-    if (std::abs(q[i] - project.motion.rest[i]) < kShown) continue;
-    const Joint& joint = project.tree.joints[project.tree.coordinate_joint[i]];
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", joint.name,
-                        joint.type == JointType::kPrismatic
-                            ? fmt::format("{:.0f} mm", 1e3 * q[i])
-                            : fmt::format("{:.1f}", 180.0 / M_PI * q[i]));
-  }
-  return text;
-}
-
-/// Which postures to record next; empty where nothing is open.
-std::string NextText(const Project& project, const NextPostures& next, const std::string& file) {
-  if (!next.why_none.empty()) {
-    return "\nNo postures that tell which: " + next.why_none + "\n";
-  }
-  if (next.postures.empty()) return "";
-  std::string text = "\nPostures that tell which (degrees; the other joints at rest)\n";
-  for (const ChainPostures& chain : next.postures) {
-    for (const Eigen::VectorXd& q : chain.q) {
-      text += fmt::format("  {}: {}\n", chain.chain, PostureText(project, q));
-    }
-  }
-  return text + (file.empty() ? "-o FILE writes them as a posture file, for plan\n"
-                              : fmt::format("Wrote {}\n", file));
-}
-
 int Check(const CheckCommand& command) {
   const Project project = ReadProject(command.project);
   if (project.contact) {
-    if (!command.output.empty()) {
-      throw InputError("check: -o proposes postures for markers, not for touches and instruments");
-    }
-    return RunContactCheck({command.common, command.calibration, command.recording, command.check},
-                           project);
+    return RunContactCheck(
+        {command.common, command.calibration, command.output, command.recording, command.check},
+        project);
   }
   if (command.recording.size() > 1) {
     throw InputError(
@@ -181,15 +147,16 @@ int Check(const CheckCommand& command) {
   const CheckRun run =
       CheckCalibration(project, command.calibration, command.recording.front(), options);
   const bool quiet = command.common.Silent();
-  const NextPostures next = DesignNextPostures(project, command.calibration, run, options, kNext,
-                                               TerminalProgress("designed chain", quiet));
+  const NextPostures next =
+      DesignNextPostures(project, command.calibration, run, options, kNextPostures,
+                         TerminalProgress("designed chain", quiet));
   if (!next.postures.empty()) {
     outputs.Set(command.output, FormatPostureFile(project.tree, next.postures));
   }
   outputs.Set(command.common.json_file, MakeCheckJson(project, run, next));
   outputs.Publish();
 
-  Print(quiet, DescribeCheck(run, command) + NextText(project, next, command.output));
+  Print(quiet, DescribeCheck(run, command) + DescribeNext(project, next, command.output));
   PrintWarnings(run.warnings, command.common.verbose);
   if (!run.converged()) spdlog::error("the fit has not converged: {}", run.estimate.message);
   return run.unchanged() ? kFine : kNotConverged;

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/moved_joints_report.hpp"
+#include "elastocal/cli/next_postures_report.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
@@ -72,17 +73,24 @@ int RunContactCheck(const ContactCheckCommand& command, const Project& project) 
   inputs.insert(inputs.end(), {files.calibration, files.covariance});
   OutputSet outputs;
   outputs.Protect(inputs);
+  outputs.Declare(command.output, "robot: ");
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
   const ContactCheck run = CheckContacts(project, command.calibration, recordings, command.check);
-  outputs.Set(command.common.json_file, MakeCheckJson(run));
+  const NextPostures next =
+      DesignNextPostures(project, command.calibration, run, command.check, kNextPostures,
+                         TerminalProgress("drew posture", quiet));
+  if (!next.postures.empty()) {
+    outputs.Set(command.output, FormatPostureFile(project.tree, next.postures));
+  }
+  outputs.Set(command.common.json_file, MakeCheckJson(project, run, next));
   outputs.Publish();
 
   std::string text = Conclusion(run, command.check.joints.level) + "\n";
   text += fmt::format("{}, {} postures\n", run.recording, run.observations.posture_count());
   text += ErrorsByInstrument(run);
   if (!run.check.suspects.empty() || command.common.verbose) text += "\n" + SuspectTable(run.check);
-  Print(quiet, text + DescribeNotTold(run.check));
+  Print(quiet, text + DescribeNotTold(run.check) + DescribeNext(project, next, command.output));
   PrintWarnings(run.warnings, command.common.verbose);
   if (!run.converged) spdlog::error("the fit has not converged: variances did not come to rest");
   return run.unchanged() ? kFine : kNotConverged;

@@ -12,6 +12,7 @@ namespace elastocal::cli {
 struct ContactCheckCommand {
   CommonOptions common;
   std::string calibration;
+  std::string output;                  ///< posture file; empty: none
   std::vector<std::string> recording;  ///< tables of observations and of corners
   CheckOptions check;
 };

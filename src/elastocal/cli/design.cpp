@@ -10,6 +10,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/design_report.hpp"
+#include "elastocal/cli/next_postures_report.hpp"
 #include "elastocal/cli/observation_commands.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
@@ -60,14 +61,6 @@ PostureDesignOptions MakeOptions(const DesignCommand& command) {
   return options;
 }
 
-/// In units of people: what is seen nine times in ten, at a level of 5 %.
-std::string SmallestChange(const ZeroSensitivity& zero) {
-  constexpr double kSeen = 1.96 + 1.28;
-  if (!std::isfinite(zero.sd)) return "not told";
-  return zero.prismatic ? fmt::format("{:.2f} mm", 1e3 * kSeen * zero.sd)
-                        : fmt::format("{:.2f} deg", 180.0 / M_PI * kSeen * zero.sd);
-}
-
 std::string FollowUpTable(const FollowUpDesign& design) {
   TextTable chains({"chain", "postures", "information nats"});
   TextTable zeros({"zero of", "smallest change that is seen"});
@@ -82,8 +75,7 @@ std::string FollowUpTable(const FollowUpDesign& design) {
 }
 
 /// Postures that follow a calibration: a posture file alone.
-int FollowUp(const DesignCommand& command) {
-  const Project project = ReadProject(command.project);
+int FollowUp(const DesignCommand& command, const Project& project) {
   CheckHasMarkers(project);
   const CalibrationFiles files = FindCalibrationFiles(command.after);
   OutputSet outputs;
@@ -114,11 +106,13 @@ int FollowUp(const DesignCommand& command) {
 }
 
 int Design(const DesignCommand& command) {
-  if (!command.after.empty()) return FollowUp(command);
   const Project project = ReadProject(command.project);
   if (project.contact) {
-    return RunObservationDesign({command.common, command.output, command.count}, project);
+    return RunObservationDesign({command.common, command.output, command.count, command.after,
+                                 command.days, command.check, command.joints},
+                                project);
   }
+  if (!command.after.empty()) return FollowUp(command, project);
   const DesignFiles files(command.output);
   OutputSet outputs;
   outputs.Protect({command.project, project.urdf});

@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "elastocal/cli/next_postures_report.hpp"
 #include "elastocal/cli/progress.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/design_observations.hpp"
 #include "elastocal/planning/simulate_observations.hpp"
@@ -27,9 +29,12 @@ std::string DesignText(const ObservationDesign& design) {
   for (const ChainPostures& of : design.postures) {
     table.Add({of.chain, std::to_string(of.q.size())});
   }
+  TextTable zeros({"zero of", "smallest change that is seen"});
+  for (const ZeroSensitivity& zero : design.zeros) zeros.Add({zero.joint, SmallestChange(zero)});
   return "Postures for touches and instruments\n" + table.Render() +
          fmt::format("\nInformation {:.1f} nats, as many of the {} candidates at random: {:.1f}\n",
-                     design.information, design.candidates, design.information_at_random);
+                     design.information, design.candidates, design.information_at_random) +
+         (design.zeros.empty() ? "" : "\n" + zeros.Render());
 }
 
 std::vector<ChainPostures> PosturesToPlay(const SimulateObservationsCommand& command,
@@ -62,6 +67,10 @@ std::string RecordingText(const ObservedRecording& recording) {
 int RunObservationDesign(const DesignObservationsCommand& command, const Project& project) {
   OutputSet outputs;
   outputs.Protect({project.file, project.urdf});
+  if (!command.after.empty()) {
+    const CalibrationFiles files = FindCalibrationFiles(command.after);
+    outputs.Protect({files.calibration, files.covariance});
+  }
   outputs.Declare(command.output, "robot: ");
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
@@ -69,6 +78,10 @@ int RunObservationDesign(const DesignObservationsCommand& command, const Project
   ObservationDesignOptions options;
   options.count = CountOr(command.count);
   options.seed = command.common.seed.value_or(1);
+  options.after = command.after;
+  options.days = command.days;
+  options.changes = command.changes;
+  options.joints = command.joints;
   const ObservationDesign design =
       DesignObservations(project, options, TerminalProgress("drew posture", quiet));
   if (!design.infeasible.empty()) {

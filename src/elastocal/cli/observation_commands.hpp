@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/project/project.hpp"
@@ -12,8 +13,12 @@ namespace elastocal::cli {
 /// `design` for a project with contact or instruments.
 struct DesignObservationsCommand {
   CommonOptions common;
-  std::string output;  ///< posture file
-  int count = 0;       ///< postures in all; 0: the usual number
+  std::string output;      ///< posture file
+  int count = 0;           ///< postures in all; 0: the usual number
+  std::string after = {};  ///< an earlier calibration; empty: none
+  double days = 1.0;
+  bool changes = false;
+  std::vector<std::string> joints = {};
 };
 int RunObservationDesign(const DesignObservationsCommand& command, const Project& project);
 

@@ -153,6 +153,17 @@ FollowUpDesign DesignFollowUp(const Project& project, const std::filesystem::pat
   return design;
 }
 
+nlohmann::ordered_json ZerosJson(const std::vector<ZeroSensitivity>& zeros) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const ZeroSensitivity& zero : zeros) {
+    json.push_back({{"joint", zero.joint},
+                    {"unit", zero.prismatic ? "m" : "rad"},
+                    {"sd", std::isfinite(zero.sd) ? nlohmann::ordered_json(zero.sd)
+                                                  : nlohmann::ordered_json(nullptr)}});
+  }
+  return json;
+}
+
 std::string MakeFollowUpJson(const FollowUpDesign& design, const FollowUpOptions& options) {
   nlohmann::ordered_json json;
   json["aim"] = options.aim == SequentialAim::kChanges ? "changes" : "parameters";
@@ -163,13 +174,7 @@ std::string MakeFollowUpJson(const FollowUpDesign& design, const FollowUpOptions
     one["chain"] = chain.postures.chain;
     one["postures"] = chain.postures.q.size();
     one["information_nats"] = chain.information;
-    one["zeros"] = nlohmann::ordered_json::array();
-    for (const ZeroSensitivity& zero : chain.zeros) {
-      one["zeros"].push_back({{"joint", zero.joint},
-                              {"unit", zero.prismatic ? "m" : "rad"},
-                              {"sd", std::isfinite(zero.sd) ? nlohmann::ordered_json(zero.sd)
-                                                            : nlohmann::ordered_json(nullptr)}});
-    }
+    one["zeros"] = ZerosJson(chain.zeros);
     json["chains"].push_back(std::move(one));
   }
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "elastocal/io/posture_file.hpp"
 #include "elastocal/math/progress.hpp"
 #include "elastocal/posture/sequential.hpp"
@@ -32,6 +34,9 @@ struct ZeroSensitivity {
   bool prismatic = false;
   double sd = 0.0;  ///< rad or m; infinite: they cannot tell one of the size that is expected
 };
+
+/// `zeros` of the figures for programs (docs/formats.md).
+nlohmann::ordered_json ZerosJson(const std::vector<ZeroSensitivity>& zeros);
 
 struct FollowUpChain {
   ChainPostures postures;

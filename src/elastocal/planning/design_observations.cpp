@@ -3,12 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/observation/observation_fit.hpp"
+#include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/planning/posture_information.hpp"
+#include "elastocal/validation/common_parameters.hpp"
 
 namespace elastocal {
 namespace {
@@ -65,24 +71,93 @@ Observations NominalObservations(const Project& project, const ObservationSetup&
   return all;
 }
 
-PostureInformation InformationOf(const Project& project, const ObservationSetup& setup,
-                                 const std::vector<Candidate>& candidates) {
-  const RobotTree& tree = project.tree;
+/// The robot as the project describes it, and what it shows nominally.
+ObservedRobot RobotOfProject(const Project& project, const ObservationSetup& setup,
+                             const std::vector<Candidate>& candidates, Observations& observations) {
   const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
-    return patterns ? MatchingJoints(tree, *patterns) : std::vector<int>();
+    return patterns ? MatchingJoints(project.tree, *patterns) : std::vector<int>();
   };
   ObservedRobot model =
-      MakeObservedRobot(tree, project.placement, setup, joints(project.elasticity.torsion),
+      MakeObservedRobot(project.tree, project.placement, setup, joints(project.elasticity.torsion),
                         joints(project.elasticity.bending));
-  const Observations observations = NominalObservations(project, setup, model, candidates);
+  observations = NominalObservations(project, setup, model, candidates);
   KeepObservedUnknowns(observations, model);
-  const ObservationFit fit = StartFit(model, observations);
-  ObservationResiduals residuals(model, observations, fit.loads, fit.spread, fit.weights, {},
-                                 fit.values);
-  residuals.Evaluate(residuals.Start(), true);
-  std::vector<int> posture;
-  for (const Observation& of : observations.all) posture.push_back(of.posture);
-  return {residuals, posture, static_cast<int>(candidates.size())};
+  return model;
+}
+
+/// By how much the joints' parameters may have changed; 0 for those of other joints.
+Eigen::VectorXd SizesOf(const std::vector<std::string>& joints, const EarlierEstimate& earlier,
+                        const ObservedRobot& model, const Project& project) {
+  Eigen::VectorXd sizes = SizeOfChanges(earlier, model.robot, project.calibration.prior);
+  if (joints.empty()) return sizes;
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < earlier.names.size(); ++i) {
+    const std::string joint = OwnerName(earlier.names[i]);
+    known.insert(joint);
+    const bool wanted = std::find(joints.begin(), joints.end(), joint) != joints.end();
+    if (!wanted) sizes[static_cast<Eigen::Index>(i)] = 0.0;
+  }
+  for (const std::string& joint : joints) {
+    if (known.contains(joint)) continue;
+    throw InputError(fmt::format("joint '{}': the calibration does not know it; it knows {}", joint,
+                                 fmt::join(known, ", ")));
+  }
+  return sizes;
+}
+
+/// The robot of an earlier calibration, and what it shows nominally.
+ObservedRobot RobotAfterEarlier(const Project& project, const ObservationSetup& setup,
+                                const std::vector<Candidate>& candidates,
+                                const ObservationDesignOptions& options,
+                                Observations& observations) {
+  const EarlierContacts earlier = ReadEarlierContacts(options.after, project);
+  observations = NominalObservations(project, setup,
+                                     MakeStoredRobot(earlier.stored, project, setup), candidates);
+  ObservedRobot model = MakeRobotAfterEarlier(earlier, project, {observations, setup, {}});
+  model.earlier = MakeEarlierOfContacts(earlier, model, project, options.days);
+  return model;
+}
+
+/// What candidates show, as residuals of the nominal robot.
+class CandidateResiduals {
+ public:
+  CandidateResiduals(const ObservedRobot& model, const Observations& observations, int candidates)
+      : fit_(StartFit(model, observations)),
+        residuals_(model, observations, fit_.loads, fit_.spread, fit_.weights, {}, fit_.values),
+        candidates_(candidates) {
+    residuals_.Evaluate(residuals_.Start(), true);
+    for (const Observation& of : observations.all) posture_.push_back(of.posture);
+  }
+
+  PostureInformation Information() const { return {residuals_, posture_, candidates_}; }
+  const ObservationResiduals& residuals() const { return residuals_; }
+
+ private:
+  ObservationFit fit_;
+  ObservationResiduals residuals_;
+  std::vector<int> posture_;
+  int candidates_;
+};
+
+/// How well postures tell changes of zeros since an earlier calibration.
+std::vector<ZeroSensitivity> ZerosTold(const ObservedRobot& model,
+                                       const CandidateResiduals& candidates,
+                                       const std::vector<int>& chosen,
+                                       const Eigen::VectorXd& sizes) {
+  const Eigen::VectorXd told = candidates.Information().OfChanges(chosen);
+  std::vector<ZeroSensitivity> zeros;
+  for (std::size_t k = 0; k < model.earlier.names.size(); ++k) {
+    const int i = FindParameter(model.robot.parameters, model.earlier.names[k]);
+    const Parameter& parameter = model.robot.parameters[Size(i)];
+    const double size = sizes[static_cast<Eigen::Index>(k)];
+    const int unknown = model.unknown[Size(i)];
+    if (!IsZeroOffset(parameter, model.robot.tree) || size <= 0.0 || unknown < 0) continue;
+    const int entry = candidates.residuals().RobotEntry(unknown);
+    const double sd = candidates.residuals().scale()[entry] / std::sqrt(std::max(0.0, told[entry]));
+    zeros.push_back({OwnerName(parameter.name), parameter.unit == ParameterUnit::kMetre,
+                     sd <= size ? sd : std::numeric_limits<double>::infinity()});
+  }
+  return zeros;
 }
 
 double MeanOfRandomSets(const PostureInformation& information, int count, std::uint64_t seed) {
@@ -143,10 +218,28 @@ ObservationDesign DesignObservations(const Project& project,
   const ObservedPostureSampler sampler(project, options.seed);
   const std::vector<Candidate> candidates =
       ListCandidates(design, static_cast<int>(sampler.setup().plates.size()));
-  const PostureInformation information = InformationOf(project, sampler.setup(), candidates);
-  const std::vector<int> chosen = information.Choose(options.count);
-  design.information = information.Of(chosen);
-  design.information_at_random = MeanOfRandomSets(information, options.count, options.seed);
+  const ObservationSetup& setup = sampler.setup();
+  const int drawn = static_cast<int>(candidates.size());
+  Observations observations;
+  std::vector<int> chosen;
+  const auto choose = [&](const ObservedRobot& model) {
+    const PostureInformation information =
+        CandidateResiduals(model, observations, drawn).Information();
+    chosen = information.Choose(options.count);
+    design.information = information.Of(chosen);
+    design.information_at_random = MeanOfRandomSets(information, options.count, options.seed);
+  };
+  if (options.after.empty()) {
+    choose(RobotOfProject(project, setup, candidates, observations));
+  } else {
+    const ObservedRobot model =
+        RobotAfterEarlier(project, setup, candidates, options, observations);
+    const Eigen::VectorXd sizes = SizesOf(options.joints, model.earlier, model, project);
+    ObservedRobot changed = model;
+    if (options.changes) changed.earlier.covariance.diagonal() += sizes.cwiseAbs2();
+    choose(changed);
+    design.zeros = ZerosTold(model, CandidateResiduals(model, observations, drawn), chosen, sizes);
+  }
   for (ChainPostures& of : design.postures) of.q.clear();
   for (int index : chosen) {
     const Candidate& of = candidates[Size(index)];
@@ -164,6 +257,7 @@ std::string FormatObservationDesign(const ObservationDesign& design) {
   json["candidates"] = design.candidates;
   json["information_nats"] = design.information;
   json["information_at_random_nats"] = design.information_at_random;
+  if (!design.zeros.empty()) json["zeros"] = ZerosJson(design.zeros);
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/design_follow_up.hpp"
+#include "elastocal/planning/design_observations.hpp"
 
 namespace elastocal {
 
@@ -28,8 +30,35 @@ NextPostures DesignNextPostures(const Project& project, const std::filesystem::p
   return next;
 }
 
-std::string MakeCheckJson(const Project& project, const CheckRun& run, const NextPostures& next) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::parse(MakeCheckJson(run));
+NextPostures DesignNextPostures(const Project& project, const std::filesystem::path& calibration,
+                                const ContactCheck& run, const CheckOptions& options, int count,
+                                const Progress& progress) {
+  NextPostures next;
+  if (run.check.suspects.empty()) return next;
+  ObservationDesign design;
+  try {
+    design = DesignObservations(project,
+                                {.count = count,
+                                 .candidates = 40,
+                                 .seed = options.seed.value_or(1),
+                                 .after = calibration,
+                                 .days = options.days,
+                                 .changes = true,
+                                 .joints = run.check.suspects},
+                                progress);
+  } catch (const InputError& error) {  // a project that says nothing of what postures may be
+    next.why_none = error.what();
+    return next;
+  }
+  next.why_none = design.infeasible;
+  if (design.infeasible.empty()) next.postures = std::move(design.postures);
+  return next;
+}
+
+namespace {
+
+std::string WithNext(const std::string& check, const Project& project, const NextPostures& next) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(check);
   json["next_postures"] = nlohmann::ordered_json::array();
   for (const ChainPostures& chain : next.postures) {
     auto postures = nlohmann::ordered_json::array();
@@ -43,6 +72,17 @@ std::string MakeCheckJson(const Project& project, const CheckRun& run, const Nex
     json["next_postures"].push_back({{"chain", chain.chain}, {"postures", std::move(postures)}});
   }
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string MakeCheckJson(const Project& project, const CheckRun& run, const NextPostures& next) {
+  return WithNext(MakeCheckJson(run), project, next);
+}
+
+std::string MakeCheckJson(const Project& project, const ContactCheck& run,
+                          const NextPostures& next) {
+  return WithNext(MakeCheckJson(run), project, next);
 }
 
 }  // namespace elastocal

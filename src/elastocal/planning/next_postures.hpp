@@ -8,9 +8,12 @@
 #include "elastocal/io/posture_file.hpp"
 #include "elastocal/math/progress.hpp"
 #include "elastocal/pipeline/check_calibration.hpp"
+#include "elastocal/pipeline/contact_check.hpp"
 #include "elastocal/project/project.hpp"
 
 namespace elastocal {
+
+inline constexpr int kNextPostures = 5;  ///< that are usually proposed
 
 /// Postures to be recorded after a check that could not name the joint that has changed.
 struct NextPostures {
@@ -23,10 +26,18 @@ struct NextPostures {
 /// best which of them has changed (DesignFollowUp). The seed is that of the check, or 1. Throws
 /// what DesignFollowUp throws.
 NextPostures DesignNextPostures(const Project& project, const std::filesystem::path& calibration,
-                                const CheckRun& run, const CheckOptions& options, int count = 5,
-                                const Progress& progress = {});
+                                const CheckRun& run, const CheckOptions& options,
+                                int count = kNextPostures, const Progress& progress = {});
+
+/// The same after a check by tables of observations: `count` postures in all, touches and looks
+/// (DesignObservations). Throws what DesignObservations throws.
+NextPostures DesignNextPostures(const Project& project, const std::filesystem::path& calibration,
+                                const ContactCheck& run, const CheckOptions& options,
+                                int count = kNextPostures, const Progress& progress = {});
 
 /// MakeCheckJson with these postures (docs/formats.md).
 std::string MakeCheckJson(const Project& project, const CheckRun& run, const NextPostures& next);
+std::string MakeCheckJson(const Project& project, const ContactCheck& run,
+                          const NextPostures& next);
 
 }  // namespace elastocal

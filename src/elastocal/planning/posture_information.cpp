@@ -70,6 +70,17 @@ double PostureInformation::Of(const std::vector<int>& postures) const {
   return gain;
 }
 
+Eigen::VectorXd PostureInformation::OfChanges(const std::vector<int>& postures) const {
+  Eigen::MatrixXd covariance = prior_;
+  Eigen::MatrixXd data = Eigen::MatrixXd::Zero(prior_.rows(), prior_.cols());
+  for (int posture : postures) {
+    Update(posture, 1.0, covariance);
+    const Eigen::MatrixXd& J = rows_[Size(posture)];
+    data += J.transpose() * J;
+  }
+  return (data - data * covariance * data).diagonal();
+}
+
 int PostureInformation::Best(const Eigen::MatrixXd& covariance,
                              const std::vector<char>& taken) const {
   int best = -1;

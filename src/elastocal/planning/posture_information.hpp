@@ -23,6 +23,10 @@ class PostureInformation {
   /// det(prior).
   double Of(const std::vector<int>& postures) const;
 
+  /// By unknown, what these postures say of a change of it alone that the prior does not know of:
+  /// the diagonal of A - A (A + P^-1)^-1 A, with A the sum of J^T J and P the prior's covariance.
+  Eigen::VectorXd OfChanges(const std::vector<int>& postures) const;
+
   /// The best of the postures, `count` of them, each once: greedily, and then each of them
   /// exchanged once for what is best beside the others.
   std::vector<int> Choose(int count) const;
