@@ -15,36 +15,17 @@ namespace {
 
 class CheckedArm : public ArmWithTracker {
  protected:
-  CheckedArm() {
-    ContactRun run = Calibrate(q_);
-    EXPECT_TRUE(run.deployable()) << First(run);
-    calibration_ = folder_.path() / "out";
-    std::filesystem::create_directory(calibration_);
-    for (const auto& [name, text] : MakeContactFiles(project_, run)) {
-      std::ofstream(calibration_ / name) << text;
-    }
-    // Another day: the tracker stands elsewhere.
-    for (std::size_t i = 0; i < model_.setup.quantities.size(); ++i) {
-      if (model_.setup.quantities[i].of_surroundings) truth_.quantities[i].x.array() += 0.05;
-    }
-  }
+  CheckedArm() : calibration_(WriteCalibration()) { MoveTracker(); }
 
   /// Eight postures of that day.
   ContactCheck Check(const Eigen::MatrixXd& q, std::size_t first = 0) const {
     return CheckContacts(project_, calibration_, {Table(q, "today.csv", first)});
   }
 
-  ContactCheck CheckMoved(const std::string& parameter, double by) {
-    truth_.robot[FindParameter(model_.robot.parameters, parameter)] += by;
-    Measure(model_, truth_);
-    return Check(q_.topRows(8));
-  }
-
   std::filesystem::path calibration_;
 };
 
 TEST_F(CheckedArm, IsUnchangedWhereverTheTrackerStands) {
-  Measure(model_, truth_);
   const ContactCheck run = Check(q_.topRows(8));
   EXPECT_EQ(CheckStatus(run), "unchanged");
   EXPECT_TRUE(run.alternatives.empty());
@@ -56,7 +37,8 @@ TEST_F(CheckedArm, IsUnchangedWhereverTheTrackerStands) {
 }
 
 TEST_F(CheckedArm, TheJointThatMovedIsNamedWithItsSize) {
-  const ContactCheck run = CheckMoved("elbow_joint.theta", 4e-3);
+  Change("elbow_joint.theta", 4e-3);
+  const ContactCheck run = Check(q_.topRows(8));
   EXPECT_EQ(CheckStatus(run), "moved");
   ASSERT_EQ(run.check.moved.size(), 1u);
   EXPECT_EQ(run.check.moved[0].joint, "elbow_joint");
@@ -68,7 +50,6 @@ TEST_F(CheckedArm, TheJointThatMovedIsNamedWithItsSize) {
 }
 
 TEST_F(CheckedArm, AWrongGainOrScaleOrRowIsNoRobotThatChanged) {
-  Measure(model_, truth_);
   Eigen::MatrixXd q = q_.topRows(8);
   q.col(Coordinate("elbow_joint")) *= 1.03;
   const ContactCheck gain = Check(q);
@@ -104,8 +85,7 @@ TEST_F(CheckedArm, AnotherRobotIsNotExplained) {
 // Ten postures with what thirty told before are better than ten alone; what is known of a joint
 // that has moved is forgotten.
 TEST_F(CheckedArm, AFewPosturesUpdateACalibration) {
-  truth_.robot[FindParameter(model_.robot.parameters, "elbow_joint.theta")] += 0.02;
-  Measure(model_, truth_);
+  Change("elbow_joint.theta", 0.02);
   const auto calibrate = [&](const std::filesystem::path& prior) {
     return CalibrateContacts(project_, {Table(q_.topRows(10), "ten.csv")},
                              {.folds = 0, .prior = prior, .days = 0.0});

@@ -82,6 +82,32 @@ class ArmWithTracker : public testing::Test {
     return CalibrateContacts(project_, {Table(q)}, {.folds = 5, .accept = accept});
   }
 
+  /// The folder of a calibration from all postures.
+  std::filesystem::path WriteCalibration() const {
+    ContactRun run = Calibrate(q_);
+    EXPECT_TRUE(run.deployable()) << First(run);
+    const std::filesystem::path out = folder_.path() / "out";
+    std::filesystem::create_directory(out);
+    for (const auto& [name, text] : MakeContactFiles(project_, run)) {
+      std::ofstream(out / name) << text;
+    }
+    return out;
+  }
+
+  /// On another day the tracker stands elsewhere.
+  void MoveTracker() {
+    for (std::size_t i = 0; i < model_.setup.quantities.size(); ++i) {
+      if (model_.setup.quantities[i].of_surroundings) truth_.quantities[i].x.array() += 0.05;
+    }
+    Measure(model_, truth_);
+  }
+
+  /// A joint is turned (or a link changed) on that day.
+  void Change(const std::string& parameter, double by) {
+    truth_.robot[FindParameter(model_.robot.parameters, parameter)] += by;
+    Measure(model_, truth_);
+  }
+
   /// `first`: of the poses, that of the first row.
   std::filesystem::path Table(const Eigen::MatrixXd& q, const std::string& file_name = "table.csv",
                               std::size_t first = 0) const {

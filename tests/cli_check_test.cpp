@@ -8,6 +8,7 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "tests/arm_with_tracker.hpp"
 #include "tests/program_fixture.hpp"
 
 namespace elastocal {
@@ -163,6 +164,43 @@ TEST_F(Program, CheckNamesAGainAndAScale) {
   };
   expect(gain, "elbow_joint: its positions are 1.0", 1.03);
   expect(scale, "the cameras' positions are 1.00", 1.002);
+}
+
+class ArmProgram : public ArmWithTracker {};
+
+TEST_F(ArmProgram, ChecksTablesOfATrackerInSeveralFiles) {
+  const std::string words = "check " + (folder_.path() / "project.yaml").string() +
+                            " --calibration " + WriteCalibration().string() + " --recording ";
+  MoveTracker();
+  const auto tables = [&] {
+    return Table(q_.topRows(5), "a.csv").string() + " " +
+           Table(q_.middleRows(5, 5), "b.csv", 5).string();
+  };
+  const ProgramResult fine = RunProgram(words + tables());
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_TRUE(fine.out.starts_with("Unchanged")) << fine.out;
+  EXPECT_NE(fine.out.find("position mm"), std::string::npos) << fine.out;
+
+  Change("elbow_joint.theta", 4e-3);
+  const std::string file = (folder_.path() / "check.json").string();
+  const ProgramResult found = RunProgram(words + tables() + " --json " + file);
+  EXPECT_EQ(found.exit_code, 4) << found.err;
+  EXPECT_TRUE(found.out.starts_with("Moved: elbow_joint (elbow_joint.theta by 0.2")) << found.out;
+  const nlohmann::json json = nlohmann::json::parse(ReadFile(file));
+  EXPECT_EQ(json["status"], "moved");
+  EXPECT_EQ(json["moved"][0]["joint"], "elbow_joint");
+  EXPECT_TRUE(json["next_postures"].empty());
+
+  const ProgramResult own = RunProgram(words + tables() + " -o " + file);
+  EXPECT_EQ(own.exit_code, 3) << "the file is no posture file";
+}
+
+TEST_F(Program, CheckTakesOneRecordingOfMarkers) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const ProgramResult two = RunProgram("check " + project_ + " --calibration " + out_ +
+                                       " --recording " + recording_ + " " + recording_);
+  EXPECT_EQ(two.exit_code, 3);
+  EXPECT_NE(two.err.find("one was expected"), std::string::npos) << two.err;
 }
 
 TEST_F(Program, APriorMakesAFewPosturesEnough) {

@@ -5,10 +5,13 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/observation/observed_posture.hpp"
+#include "elastocal/pipeline/contact_check.hpp"
 #include "elastocal/planning/design_observations.hpp"
 #include "elastocal/planning/plan_motion.hpp"
 #include "elastocal/planning/simulate_observations.hpp"
 #include "elastocal/simulation/level_feet.hpp"
+#include "tests/arm_with_tracker.hpp"
+#include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
@@ -193,6 +196,44 @@ TEST(DesignObservations, ARootLinkThatIsHeldNeedsNoFeet) {
   std::size_t count = 0;
   for (const ChainPostures& of : design.postures) count += of.q.size();
   EXPECT_EQ(count, 6u);
+}
+
+class DesignForArm : public ArmWithTracker {};
+
+// What the design says of a change is what a check of those postures makes of it.
+TEST_F(DesignForArm, SaysHowWellACheckWillTellAChange) {
+  const std::filesystem::path calibration = WriteCalibration();
+  const ObservationDesign design = DesignObservations(project_, {.count = 6,
+                                                                 .candidates = 10,
+                                                                 .after = calibration,
+                                                                 .changes = true,
+                                                                 .joints = {"elbow_joint"}});
+  ASSERT_TRUE(design.infeasible.empty()) << design.infeasible;
+  ASSERT_EQ(design.zeros.size(), 1u);
+  EXPECT_EQ(design.zeros[0].joint, "elbow_joint");
+  q_.topRows(6) = Eigen::MatrixXd::Zero(6, q_.cols());
+  int row = 0;
+  for (const ChainPostures& of : design.postures) {
+    for (const Eigen::VectorXd& q : of.q) q_.row(row++) = q.transpose();
+  }
+  ASSERT_EQ(row, 6);
+  Change("elbow_joint.theta", 0.01);
+  const ContactCheck check =
+      CheckContacts(project_, calibration, {Table(q_.topRows(6), "today.csv")});
+  ASSERT_EQ(check.check.moved.size(), 1u) << CheckStatus(check);
+  EXPECT_EQ(check.check.moved[0].joint, "elbow_joint");
+  ASSERT_TRUE(check.check.moved[0].zero_alone);
+  EXPECT_NEAR(check.check.moved[0].changes[0].sd / design.zeros[0].sd, 1.0, 0.3);
+
+  const ObservationDesign all =
+      DesignObservations(project_, {.count = 6, .candidates = 10, .after = calibration});
+  EXPECT_GT(all.zeros.size(), 4u);
+  ExpectInputError(
+      [&] {
+        DesignObservations(project_,
+                           {.count = 6, .after = calibration, .changes = true, .joints = {"knee"}});
+      },
+      {"'knee'", "elbow_joint"});
 }
 
 TEST(DesignObservations, ChosenPosturesTellMoreThanRandomOnes) {
