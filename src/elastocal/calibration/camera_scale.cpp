@@ -13,7 +13,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastScale = 3e-3;
-constexpr double kFalseAlarm = 1e-3;  // probability that a clean recording is accused
+constexpr double kFalseAlarm = 1e-3;     // probability that a clean recording is accused
+constexpr double kNarrowestPrior = 0.6;  // times that of lengths
 constexpr int kRounds = 10;
 constexpr int kFewestLengths = 4;
 constexpr double kLeastLength = 0.02;  // m: shorter ones tell nothing of a scale
@@ -123,9 +124,11 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
   const Eigen::MatrixXd own_weight =
       InverseOfPositive(Eigen::MatrixXd::Identity(own_count, own_count) +
                         ShiftsOfNormals(model, parameters, result.prior_sd));
-  // The prior was widened with the pattern in it; how wide it has to be beside the pattern:
-  const double narrowest = 1.0 / result.prior_scale[PriorGroup::kLengths];
-  double width = narrowest;
+  // The prior was widened with the pattern in it; how wide it has to be beside the pattern. Small
+  // robots are made more exactly than the prior expects.
+  const double first = 1.0 / result.prior_scale[PriorGroup::kLengths];
+  const double narrowest = kNarrowestPrior * first;
+  double width = first;
   CommonScale scale;
   for (int round = 0; round < kRounds; ++round) {
     const double weight = 1.0 / (width * width);
