@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "elastocal/math/dense.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/math/statistics.hpp"
@@ -86,10 +87,16 @@ ObservationFigures MakeFigures(const ObservedRobot& model, const Observations& o
 double NoiseOf(const ObservedRobot& model, const RowErrors& row, const Spread& spread) {
   const Instrument& instrument = model.instrument(row.instrument);
   const std::vector<RowMeaning> rows = instrument.rows();
+  const Eigen::MatrixXd weights = instrument.Weights(spread);
+  const Eigen::VectorXd variances =
+      InverseOfPositive(Eigen::MatrixXd(weights.transpose() * weights)).diagonal();
+  double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (row.row == rows[i].name) return spread[instrument.noise[i]];
+    if (row.row != rows[i].name) continue;
+    sum += variances[static_cast<Eigen::Index>(i)];
+    ++count;
   }
-  return 0.0;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
 ObservationCrossValidation CrossValidate(const ObservedRobot& model,

@@ -44,7 +44,7 @@ struct ObservationFigures {
 ObservationFigures MakeFigures(const ObservedRobot& model, const Observations& observations,
                                const std::vector<Eigen::VectorXd>& left);
 
-/// Standard deviation of the noise of such rows, SI.
+/// Standard deviation of the noise of such rows, root mean square over them, SI.
 double NoiseOf(const ObservedRobot& model, const RowErrors& row, const Spread& spread);
 
 /// Observations that were predicted by an estimate from the others.

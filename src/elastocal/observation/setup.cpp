@@ -192,6 +192,7 @@ MountedCamera AddCamera(ObservationSetup& setup, const CameraSetup& of) {
   numbers.sources.resize(Camera::kNumbers, source(".distortion", of.distortion_sd));
   camera.numbers = AddQuantity(setup, std::move(numbers));
   camera.noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kPixel, of.noise_sd);
+  camera.shared = NoiseSource(setup, of.name + ".shared", SourceUnit::kPixel, of.noise_sd);
   return camera;
 }
 
@@ -200,13 +201,36 @@ MountedTag AddTag(ObservationSetup& setup, const TagSetup& of) {
                               of.link < 0)};
 }
 
+namespace {
+
+/// Orthonormal combinations of the corners' u, v (8 x 8): twice their means, then what they differ
+/// by.
+Eigen::MatrixXd MeanAndRest() {
+  Eigen::Matrix4d of_corners;
+  of_corners << 1, 1, 1, 1,  //
+      1, -1, 1, -1,          //
+      1, 1, -1, -1,          //
+      1, -1, -1, 1;
+  Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(8, 8);
+  for (int i = 0; i < 4; ++i) {
+    for (int corner = 0; corner < 4; ++corner) {
+      Q(2 * i, 2 * corner) = Q(2 * i + 1, 2 * corner + 1) = 0.5 * of_corners(i, corner);
+    }
+  }
+  return Q;
+}
+
+}  // namespace
+
 void AddSeenTag(ObservationSetup& setup, const MountedCamera& camera, const MountedTag& tag) {
   std::vector<int> links;
   if (camera.of.link >= 0) links.push_back(camera.of.link);
   if (tag.of.link >= 0) links.push_back(tag.of.link);
+  std::vector<int> noise(8, camera.noise);
+  noise[0] = noise[1] = camera.shared;
   auto seen = MakeInstrument<SeenTag>(camera.of.name + "/" + tag.of.name, links,
-                                      {camera.pose, tag.pose, camera.numbers},
-                                      std::vector<int>(8, camera.noise));
+                                      {camera.pose, tag.pose, camera.numbers}, noise);
+  seen->whitening = MeanAndRest();
   seen->camera = camera.of.camera;
   seen->camera_carried = camera.of.link >= 0;
   seen->tag_carried = tag.of.link >= 0;

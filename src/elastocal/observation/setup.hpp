@@ -136,7 +136,10 @@ struct CameraSetup {
 };
 struct MountedCamera {
   CameraSetup of;
-  int pose = 0, numbers = 0, noise = 0;  ///< quantities, source
+  int pose = 0, numbers = 0;  ///< quantities
+  /// Sources: of a corner beside the others of its tag, and of what the corners of a tag have in
+  /// common in one image, where errors of the robot show that nothing models.
+  int noise = 0, shared = 0;
 };
 MountedCamera AddCamera(ObservationSetup& setup, const CameraSetup& of);
 
