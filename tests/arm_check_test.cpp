@@ -109,6 +109,14 @@ TEST_F(CheckedArm, AFewPosturesUpdateACalibration) {
         return text.find("elbow_joint: has moved since") != std::string::npos;
       });
   EXPECT_TRUE(told);
+  const auto warns = [](const ContactRun& run) {
+    return std::any_of(run.warnings.begin(), run.warnings.end(), [](const std::string& text) {
+      return text.find("counts twice") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(warns(updated));
+  EXPECT_TRUE(warns(CalibrateContacts(project_, {folder_.path() / "table.csv"},
+                                      {.folds = 0, .prior = calibration_})));
 }
 
 TEST_F(CheckedArm, RefusesWhatDoesNotBelongTogether) {

@@ -107,7 +107,13 @@ std::vector<std::string> StartFromEarlierContacts(const EarlierContacts& earlier
   const EarlierEstimate known = MakeEarlierOfContacts(earlier, model, project, days);
   const JointCheck check = OpenJoints(model, known, observations, project).check;
   model.earlier = ForgetMoved(check, known, model.robot, project.calibration.prior);
-  return DescribeForgotten(check, earlier.stored.source);
+  std::vector<std::string> texts = DescribeForgotten(check, earlier.stored.source);
+  for (const std::string& file : observations.files) {
+    if (earlier.stored.recording.find(file) == std::string::npos) continue;
+    texts.push_back(earlier.stored.source + ": made from " + file +
+                    " as well, which counts twice: left-out postures are not new to it");
+  }
+  return texts;
 }
 
 }  // namespace elastocal
