@@ -2,6 +2,7 @@
 #include "elastocal/pipeline/contact_check.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/pipeline/observed_corrections.hpp"
 #include "elastocal/pipeline/observed_mistakes.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -35,67 +37,111 @@ ObservationFigures FiguresOf(const ContactCheck& run, const Eigen::VectorXd& err
   return MakeFigures(run.model, run.observations, LeftOf(run.model, run.observations, fit.values));
 }
 
-/// Whether the robot is as it was calibrated in other observations of the same day.
-bool Holds(const ContactCheck& run, const EarlierContacts& earlier, const EarlierEstimate& known,
-           const Observations& observations, const Project& project,
-           const JointCheckOptions& options) {
-  ContactCheck other = run;
-  other.observations = observations;
-  other.calibrated = FiguresOf(other, StoredErrors(earlier.stored, run.model.robot));
-  other.check = OpenJoints(run.model, known, observations, project, options).check;
-  return !other.check.changed() && other.FarRows(other.calibrated).empty();
-}
-
-/// Without the postures in which something contradicts the others.
-Observations WithoutOutliers(const Observations& observations,
-                             const std::vector<ObservationOutlier>& outliers) {
-  std::vector<char> bad(Size(observations.posture_count()), 0);
-  for (const ObservationOutlier& outlier : outliers) {
-    bad[Size(observations.all[Size(outlier.observation)].posture)] = 1;
-  }
-  std::vector<int> good;
+Observations WithoutPostures(const Observations& observations, const std::set<int>& postures) {
+  std::vector<int> others;
   for (int i = 0; i < observations.posture_count(); ++i) {
-    if (bad[Size(i)] == 0) good.push_back(i);
+    if (!postures.contains(i)) others.push_back(i);
   }
-  return SelectPostures(observations, good);
+  return SelectPostures(observations, others);
 }
 
-/// Single observations and faults beside a robot that is as it was calibrated, without each of
-/// which it holds.
-std::vector<std::string> FindAlternatives(const ContactCheck& run, const EarlierContacts& earlier,
-                                          const EarlierEstimate& known, const Project& project,
-                                          const JointCheckOptions& options) {
-  constexpr std::size_t kMostTried = 8;
-  constexpr double kMostOthers = 0.75;  // of the postures
-  ObservedRobot calibrated = run.model;
-  calibrated.earlier = known;
-  const ObservedEstimate estimate = EstimateObserved(calibrated, run.observations, {});
-  std::vector<ObservationFault> faults =
-      FindObservationFaults(calibrated, run.observations, estimate.fit);
-  if (faults.size() > kMostTried) faults.resize(kMostTried);
-  std::vector<std::string> alternatives;
-  const Observations others = WithoutOutliers(run.observations, estimate.outliers);
-  if (!estimate.outliers.empty() && others.posture_count() >= kFewestChecked &&
-      others.posture_count() >= kMostOthers * run.observations.posture_count() &&
-      Holds(run, earlier, known, others, project, options)) {
-    alternatives.push_back(fmt::format(
-        "{}", fmt::join(DescribeOutliers(calibrated, run.observations, estimate), ", and ")));
+/// The posture that is furthest from what the fit expects there.
+int WorstPosture(const ObservedRobot& model, const Observations& observations,
+                 const ObservationFit& fit) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(observations.posture_count());
+  const std::vector<Eigen::VectorXd> left = LeftOf(model, observations, fit.values);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const Observation& of = observations.all[i];
+    squares[of.posture] +=
+        (model.instrument(of.instrument).Weights(fit.spread) * left[i]).squaredNorm();
   }
-  for (const ObservationFault& found : faults) {
-    // Beside errors as small as a moved joint's, some split of the rows explains them by chance;
-    // from the first row on, that is a joint or a mounting that has moved.
-    const bool from = found.kind == ObservationFaultKind::kJointOffset ||
-                      found.kind == ObservationFaultKind::kJointDrift ||
-                      found.kind == ObservationFaultKind::kMoved;
-    if (from && (found.posture == 0 || run.explained())) continue;
-    const ObservationFault fault = Refined(found, calibrated, run.observations);
-    const Observations without = WithoutFault(fault, calibrated, run.observations);
-    if (without.posture_count() < kFewestChecked) continue;
-    if (!Holds(run, earlier, known, without, project, options)) continue;
-    alternatives.push_back(DescribeWithRemedy(fault, calibrated, run.observations));
-  }
-  return alternatives;
+  Eigen::Index worst = 0;
+  squares.maxCoeff(&worst);
+  return static_cast<int>(worst);
 }
+
+/// What explains a change as well as moved joints, beside a robot that is as it was calibrated.
+class AlternativeSearch {
+ public:
+  AlternativeSearch(const ContactCheck& run, const EarlierContacts& earlier,
+                    const EarlierEstimate& known, const Project& project,
+                    const JointCheckOptions& options)
+      : run_(run),
+        earlier_(earlier),
+        known_(known),
+        project_(project),
+        options_(options),
+        calibrated_(run.model) {
+    calibrated_.earlier = known;
+    estimate_ = EstimateObserved(calibrated_, run.observations, {});
+  }
+
+  /// What contradicts the others, or the worst posture, if the rest says that nothing has changed;
+  /// empty where it does not.
+  std::string FewPostures() const {
+    constexpr double kMostOthers = 0.75;  // of the postures
+    std::set<int> bad;
+    for (const ObservationOutlier& outlier : estimate_.outliers) {
+      bad.insert(run_.observations.all[Size(outlier.observation)].posture);
+    }
+    const int count = run_.observations.posture_count();
+    const auto rest_holds = [&] {
+      const int left = count - static_cast<int>(bad.size());
+      return left >= kFewestChecked && left >= kMostOthers * count &&
+             Holds(WithoutPostures(run_.observations, bad));
+    };
+    if (!bad.empty()) {
+      if (!rest_holds()) return "";
+      return fmt::format(
+          "{}", fmt::join(DescribeOutliers(calibrated_, run_.observations, estimate_), ", and "));
+    }
+    bad = {WorstPosture(calibrated_, run_.observations, estimate_.fit)};
+    if (!rest_holds()) return "";
+    const PosturePlace& place = run_.observations.postures[Size(*bad.begin())];
+    return Place(run_.observations.files[Size(place.file)], place.line) +
+           "this posture alone speaks of a change, and the others of none";
+  }
+
+  /// Faults of the tables.
+  std::vector<std::string> Faults() const {
+    constexpr std::size_t kMostTried = 8;
+    std::vector<ObservationFault> faults =
+        FindObservationFaults(calibrated_, run_.observations, estimate_.fit);
+    if (faults.size() > kMostTried) faults.resize(kMostTried);
+    std::vector<std::string> found;
+    for (const ObservationFault& fault : faults) {
+      // Beside errors as small as a moved joint's, some split of the rows explains them by chance;
+      // from the first row on, that is a joint or a mounting that has moved.
+      const bool from = fault.kind == ObservationFaultKind::kJointOffset ||
+                        fault.kind == ObservationFaultKind::kJointDrift ||
+                        fault.kind == ObservationFaultKind::kMoved;
+      if (from && (fault.posture == 0 || run_.explained())) continue;
+      const ObservationFault refined = Refined(fault, calibrated_, run_.observations);
+      const Observations without = WithoutFault(refined, calibrated_, run_.observations);
+      if (without.posture_count() < kFewestChecked || !Holds(without)) continue;
+      found.push_back(DescribeWithRemedy(refined, calibrated_, run_.observations));
+    }
+    return found;
+  }
+
+ private:
+  /// Whether the robot is as it was calibrated in other observations of the same day.
+  bool Holds(const Observations& observations) const {
+    ContactCheck other = run_;
+    other.observations = observations;
+    other.calibrated = FiguresOf(other, StoredErrors(earlier_.stored, run_.model.robot));
+    other.check = OpenJoints(run_.model, known_, observations, project_, options_).check;
+    return !other.check.changed() && other.FarRows(other.calibrated).empty();
+  }
+
+  const ContactCheck& run_;
+  const EarlierContacts& earlier_;
+  const EarlierEstimate& known_;
+  const Project& project_;
+  const JointCheckOptions& options_;
+  ObservedRobot calibrated_;  ///< by the earlier calibration as the prior
+  ObservedEstimate estimate_;
+};
 
 }  // namespace
 
@@ -117,7 +163,7 @@ std::vector<std::string> ContactCheck::FarRows(const ObservationFigures& figures
 
 bool ContactCheck::recording_explains() const {
   const bool by_one_joint = check.moved.size() == 1 && check.suspects.empty() && explained();
-  return !alternatives.empty() && !by_one_joint;
+  return few_postures || (!alternatives.empty() && !by_one_joint);
 }
 
 bool ContactCheck::unchanged() const {
@@ -160,7 +206,11 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
   run.updated = MakeFigures(run.model, run.observations,
                             LeftOf(run.model, run.observations, opened.estimate.fit.values));
   if (run.mistakes.empty() && !run.unchanged()) {
-    run.alternatives = FindAlternatives(run, earlier, known, project, options.joints);
+    const AlternativeSearch search(run, earlier, known, project, options.joints);
+    const std::string few = search.FewPostures();
+    run.alternatives = search.Faults();
+    run.few_postures = !few.empty();
+    if (run.few_postures) run.alternatives.insert(run.alternatives.begin(), few);
   }
   for (std::string& text : DescribeOutliers(run.model, run.observations, opened.estimate)) {
     run.warnings.push_back(std::move(text));

@@ -26,13 +26,16 @@ struct ContactCheck {
   /// Faults of the tables without each of which the calibration holds: they explain it as well as
   /// joints that have moved.
   std::vector<std::string> alternatives;
+  /// Whether single postures are the first of them: a change that the others do not see is none.
+  bool few_postures = false;
   std::vector<std::string> warnings;  ///< what is left out among them
 
   /// Rows of the figures that leave more than four times what the calibration left, and more than a
   /// fiftieth of what robots leave at most (LargestError).
   std::vector<std::string> FarRows(const ObservationFigures& figures) const;
   bool explained() const { return FarRows(updated).empty(); }
-  /// Whether an alternative explains what otherwise takes several joints, or none does.
+  /// Whether an alternative explains what otherwise takes several joints, or none does, or what a
+  /// single posture alone shows.
   bool recording_explains() const;
   /// Whether the robot as calibrated leaves too much, and no joint is accused of it.
   bool changed_beyond_telling() const { return !check.changed() && !FarRows(calibrated).empty(); }
