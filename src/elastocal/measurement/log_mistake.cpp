@@ -2,8 +2,10 @@
 #include "elastocal/measurement/log_mistake.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 namespace elastocal {
 namespace {
@@ -11,6 +13,8 @@ namespace {
 constexpr double kLeastMotion = 0.05;  // rad or m: range of a joint that can be wrong
 constexpr double kLeastPeak = 0.9;     // what is right correlates well
 constexpr double kFarBetter = 0.25;    // of what a correlation lacks to one is left
+constexpr double kLeastFrozen_s = 2.0;
+constexpr double kJumpSpreads_s = 1.2;  // the filter spreads the jump at either end
 
 /// Joints that move and are between the standing link and a marker.
 std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>& markers,
@@ -33,6 +37,56 @@ std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>&
     if (highest - lowest > kLeastMotion) moving.push_back(c);
   }
   return moving;
+}
+
+/// Robot time from and to which a joint is logged in one place while others move by half a radian
+/// in all, the longest such part; twice the same where there is none.
+std::pair<double, double> LongestStill(const SmoothedLog& log, const std::vector<int>& columns,
+                                       int column) {
+  constexpr double kStill = 2e-5;       // rad or m
+  constexpr double kOthersMoved = 0.5;  // rad or m, the sum over others of their ways
+  std::pair<double, double> longest{0.0, 0.0};
+  for (const LogPiece& piece : log.pieces) {
+    Eigen::Index begin = 0;
+    double way = 0.0;
+    for (Eigen::Index i = 1; i < piece.values.rows(); ++i) {
+      if (std::abs(piece.values(i, column) - piece.values(begin, column)) > kStill) {
+        begin = i;
+        way = 0.0;
+        continue;
+      }
+      for (const int other : columns) {
+        way += std::abs(piece.values(i, other) - piece.values(i - 1, other));
+      }
+      const double length = static_cast<double>(i - begin) / piece.rate_hz;
+      if (way < kOthersMoved || length <= longest.second - longest.first) continue;
+      const double from = piece.start_s + static_cast<double>(begin) / piece.rate_hz;
+      longest = {from, from + length};
+    }
+  }
+  return longest;
+}
+
+/// The log with a hole.
+SmoothedLog WithoutSpan(const SmoothedLog& log, double begin_s, double end_s) {
+  SmoothedLog left = log;
+  left.pieces.clear();
+  const auto add = [&](const LogPiece& piece, Eigen::Index first, Eigen::Index count) {
+    if (static_cast<double>(count) < 4.0 * log.margin_s * piece.rate_hz + 4.0) return;
+    left.pieces.push_back({piece.start_s + static_cast<double>(first) / piece.rate_hz,
+                           piece.rate_hz, piece.values.middleRows(first, count)});
+  };
+  for (const LogPiece& piece : log.pieces) {
+    const Eigen::Index rows = piece.values.rows();
+    const auto row = [&](double time_s) {
+      const double at = (time_s - piece.start_s) * piece.rate_hz;
+      return static_cast<Eigen::Index>(std::clamp(at, 0.0, static_cast<double>(rows)));
+    };
+    const Eigen::Index first = row(begin_s), last = row(end_s);
+    add(piece, 0, first);
+    add(piece, last, rows - last);
+  }
+  return left;
 }
 
 }  // namespace
@@ -60,8 +114,20 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
           speeds, rate_hz, PredictSpeeds(robot, markers, standing, changed, coordinates, rate_hz),
           expected_lag_s, options);
       if (fit.state != ClockState::kReliable || fit.peak < least_peak) continue;
-      if (!best || fit.peak > best->peak) best = {columns[a], columns[b], fit.peak};
+      if (!best || fit.peak > best->peak) best = {columns[a], columns[b], fit.peak, 0.0, 0.0};
     }
+  }
+  for (const int column : columns) {
+    const auto [begin, end] = LongestStill(log, columns, column);
+    if (end - begin < kLeastFrozen_s) continue;
+    const ClockFit fit = EstimateTrialClock(
+        speeds, rate_hz,
+        PredictSpeeds(robot, markers, standing,
+                      WithoutSpan(log, begin - kJumpSpreads_s, end + kJumpSpreads_s), coordinates,
+                      rate_hz),
+        expected_lag_s, options);
+    if (fit.state != ClockState::kReliable || fit.peak < least_peak) continue;
+    if (!best || fit.peak > best->peak) best = {column, column, fit.peak, begin, end};
   }
   return best;
 }
@@ -69,6 +135,15 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
 std::string Describe(const LogMistake& mistake, const std::vector<std::string>& names) {
   char peak[40];
   std::snprintf(peak, sizeof peak, "(correlation %.4f)", mistake.peak);
+  if (mistake.frozen_to_s > mistake.frozen_from_s) {
+    char text[300];
+    std::snprintf(
+        text, sizeof text,
+        "the positions of %s are frozen from %.2f to %.2f s of its log, while others move; "
+        "without that part the log fits %s",
+        names[mistake.column].c_str(), mistake.frozen_from_s, mistake.frozen_to_s, peak);
+    return text;
+  }
   const std::string what =
       mistake.exchanged == mistake.column
           ? "the sign of " + names[mistake.column] + " reversed"

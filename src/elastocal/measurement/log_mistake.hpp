@@ -12,15 +12,17 @@ namespace elastocal {
 /// What is wrong with the columns of a joint log.
 struct LogMistake {
   int column = 0;     ///< of the log's joints
-  int exchanged = 0;  ///< with this one; `column` itself: its sign is reversed
+  int exchanged = 0;  ///< with this one; `column` itself: its sign is reversed, or it is frozen
   double peak = 0.0;  ///< correlation of speeds (ClockFit) once that is undone
+  double frozen_from_s = 0.0, frozen_to_s = 0.0;  ///< of the robot's time; equal: it is not
 };
 
 /// Of a trial whose clock cannot be told: the reversed sign of one joint, or exchange of two, that
 /// lets it be told when undone, with the best correlation: one that is far better than `peak`, that
-/// of the log as it is (a quarter of what it lacks to 1). `speeds` and `logged` as for
-/// EstimateTrialClock, `markers` to `rate_hz` as for PredictSpeeds. Joints that hardly move are
-/// passed over.
+/// of the log as it is (a quarter of what it lacks to 1). Or a joint that is logged in exactly
+/// the same place for two seconds or more, in which others move by half a radian, while the rest of
+/// the log tells the clock as well. `speeds` and `logged` as for EstimateTrialClock, `markers` to
+/// `rate_hz` as for PredictSpeeds. Joints that hardly move are passed over.
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
                                          const std::vector<int>& standing, const SmoothedLog& log,
                                          const std::vector<int>& coordinates,

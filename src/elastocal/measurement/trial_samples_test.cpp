@@ -217,6 +217,29 @@ TEST(SampleTrial, NamesTheSignAndTheExchangeThatSpoilTheClock) {
   EXPECT_EQ(named, refused);
 }
 
+// A log that comes back with a jump looks like fast motion, which the cameras do not see.
+TEST(SampleTrial, NamesTheJointWhoseFrozenLogSpoilsTheClock) {
+  int refused = 0, named = 0;
+  for (const std::uint64_t seed : {1, 2}) {
+    const ScriptedTrial clean =
+        PlayStanding({.postures = 30, .range = 0.3, .move_s = 1.5, .seed = seed});
+    const Eigen::Index rows = clean.log.positions.rows();
+    for (Eigen::Index c = 0; c < clean.log.positions.cols(); ++c) {
+      ScriptedTrial played = clean;
+      auto frozen = played.log.positions.col(c).segment(rows / 4, rows / 3);
+      frozen.setConstant(frozen[0] + 1.0);
+      const std::string reason = Sample(played).summary.refused;
+      if (reason.empty()) continue;
+      ++refused;
+      const std::string part = "the positions of " + clean.log.names[c] + " are frozen from ";
+      named += reason.find(part) != std::string::npos ? 1 : 0;
+    }
+  }
+  std::printf("%d of %d frozen joints that spoil the clock are named\n", named, refused);
+  EXPECT_GT(refused, 0);
+  EXPECT_GE(named, 0.9 * refused);
+}
+
 TEST(SampleTrial, FindsLagAndDriftOfTheClock) {
   for (const auto& [lag, drift] : {std::pair{4.0, 20.0}, std::pair{-4.0, -20.0}}) {
     PlayOptions options{.postures = 60, .lag_s = lag, .drift_ppm = drift};
