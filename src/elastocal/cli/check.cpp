@@ -74,12 +74,7 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
   if (!run.mistakes.empty()) {
     return fmt::format("The recording is wrong: {}\n", fmt::join(run.mistakes, "; "));
   }
-  if (run.recording_explains()) {
-    return fmt::format(
-        "The recording seems wrong, not the robot: {}; once that is corrected, the calibration "
-        "holds\n",
-        fmt::join(run.alternatives, ", or "));
-  }
+  if (run.recording_explains()) return DescribeWrongRecording(run.alternatives);
   if (!run.check.changed() && !run.plausible()) {
     return fmt::format(
         "Not explained: the calibrated robot errs by {} mm here, where one that was never "
@@ -96,11 +91,7 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
         Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3),
         Millimetres(run.left_before, 3));
   }
-  std::string text = DescribeMoved(run.check, command.check.joints.level);
-  if (!run.alternatives.empty()) {
-    text += fmt::format("Or {}: this explains it as well.\n", fmt::join(run.alternatives, ", or "));
-  }
-  return text;
+  return DescribeMoved(run.check, run.alternatives, command.check.joints.level);
 }
 
 std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {

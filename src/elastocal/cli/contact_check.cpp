@@ -22,12 +22,7 @@ std::string Conclusion(const ContactCheck& run, double level) {
   if (!run.mistakes.empty()) {
     return fmt::format("The recording is wrong: {}\n", fmt::join(run.mistakes, "; or "));
   }
-  if (run.recording_explains()) {
-    return fmt::format(
-        "The recording seems wrong, not the robot: {}; once that is corrected, the calibration "
-        "holds\n",
-        fmt::join(run.alternatives, ", or "));
-  }
+  if (run.recording_explains()) return DescribeWrongRecording(run.alternatives);
   if (!run.explained()) {
     return fmt::format(
         "Not explained, even if every joint may have moved: {}. Is something else wrong: a joint's "
@@ -41,11 +36,7 @@ std::string Conclusion(const ContactCheck& run, double level) {
         "more different ones.\n",
         fmt::join(run.FarRows(run.calibrated), "; "));
   }
-  std::string text = DescribeMoved(run.check, level);
-  if (!run.alternatives.empty()) {
-    text += fmt::format("Or {}: this explains it as well.\n", fmt::join(run.alternatives, ", or "));
-  }
-  return text;
+  return DescribeMoved(run.check, run.alternatives, level);
 }
 
 std::string ErrorsByInstrument(const ContactCheck& run) {

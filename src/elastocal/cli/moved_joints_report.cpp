@@ -53,7 +53,8 @@ std::string SuspectTable(const JointCheck& check) {
   return table.Render();
 }
 
-std::string DescribeMoved(const JointCheck& check, double level) {
+std::string DescribeMoved(const JointCheck& check, const std::vector<std::string>& alternatives,
+                          double level) {
   if (!check.changed()) {
     return fmt::format(
         "Unchanged: the calibration explains these postures (chance of a false alarm {:.3g} %).\n",
@@ -67,7 +68,17 @@ std::string DescribeMoved(const JointCheck& check, double level) {
   if (!check.suspects.empty()) {
     text += fmt::format("Changed: one of {}.\n", fmt::join(check.suspects, ", "));
   }
+  if (!alternatives.empty()) {
+    text += fmt::format("Or {}: this explains it as well.\n", fmt::join(alternatives, ", or "));
+  }
   return text;
+}
+
+std::string DescribeWrongRecording(const std::vector<std::string>& alternatives) {
+  return fmt::format(
+      "The recording seems wrong, not the robot: {}; once that is corrected, the calibration "
+      "holds\n",
+      fmt::join(alternatives, ", or "));
 }
 
 std::string DescribeNotTold(const JointCheck& check) {

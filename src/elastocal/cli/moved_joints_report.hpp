@@ -2,14 +2,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "elastocal/validation/moved_joints.hpp"
 
 namespace elastocal::cli {
 
 /// What `check` says of joints: those that have moved and by how much, or which one of several may
-/// have; "Unchanged: ..." with the chance of a false alarm (`level`) where none has.
-std::string DescribeMoved(const JointCheck& check, double level);
+/// have, and the `alternatives` that explain it as well; "Unchanged: ..." with the chance of a
+/// false alarm (`level`) where none has.
+std::string DescribeMoved(const JointCheck& check, const std::vector<std::string>& alternatives,
+                          double level);
+
+/// What is said instead where the alternatives explain it better.
+std::string DescribeWrongRecording(const std::vector<std::string>& alternatives);
 
 /// The joints that may have moved, the most probable first.
 std::string SuspectTable(const JointCheck& check);
