@@ -15,6 +15,7 @@ namespace {
 constexpr double kLeastScale = 3e-3;
 constexpr double kFalseAlarm = 1e-3;     // probability that a clean recording is accused
 constexpr double kNarrowestPrior = 0.6;  // times that of lengths
+constexpr Eigen::Index kManyLengths = 20;
 constexpr int kRounds = 10;
 constexpr int kFewestLengths = 4;
 constexpr double kLeastLength = 0.02;  // m: shorter ones tell nothing of a scale
@@ -125,9 +126,9 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
       InverseOfPositive(Eigen::MatrixXd::Identity(own_count, own_count) +
                         ShiftsOfNormals(model, parameters, result.prior_sd));
   // The prior was widened with the pattern in it; how wide it has to be beside the pattern. Small
-  // robots are made more exactly than the prior expects.
+  // robots are made more exactly than the prior expects, which many lengths tell.
   const double first = 1.0 / result.prior_scale[PriorGroup::kLengths];
-  const double narrowest = kNarrowestPrior * first;
+  const double narrowest = own_count >= kManyLengths ? kNarrowestPrior * first : first;
   double width = first;
   CommonScale scale;
   for (int round = 0; round < kRounds; ++round) {
