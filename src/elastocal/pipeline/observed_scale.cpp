@@ -22,7 +22,8 @@ std::optional<CommonScale> FindObservedScale(const ObservedRobot& model,
   const bool told = std::any_of(
       observations.all.begin(), observations.all.end(),
       [&](const Observation& of) { return MeasuresLengths(model.instrument(of.instrument)); });
-  if (!told) return std::nullopt;
+  // Where an earlier calibration tells the lengths, a scale is sought like other faults.
+  if (!told || !model.earlier.empty()) return std::nullopt;
   CalibrationResult result = InformationOfContacts(model, observations, fit);
   const std::vector<Source> common = CommonSources();
   result.prior_scale[PriorGroup::kLengths] = fit.spread[kLength] / common[kLength].sd;
