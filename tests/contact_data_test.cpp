@@ -96,23 +96,26 @@ TEST_F(TalosTable, EachSideAloneFindsTheComplianceOfTheHips) {
 // Every fourth touch is one of another day.
 TEST_F(TalosTable, AFewTouchesTellTheJointThatMoved) {
   const ScratchFolder folder;
-  const auto write = [&](bool other, double elbow) {
+  const std::string kElbow = "arm_right_4_joint";
+  // `only`: the one row of the right hand whose joint is off; -1: all.
+  const auto write = [&](bool other, const std::string& joint, double by, int only = -1) {
     std::vector<std::filesystem::path> tables;
     for (const std::filesystem::path& file : files_) {
       std::istringstream all(ReadFile(file));
       std::string text, line;
-      int column = 0;
+      int column = 0, touches = 0;
       for (int number = 0; std::getline(all, line); ++number) {
         std::istringstream row(line);
         std::vector<std::string> cells;
         for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
         if (number == 0) {
-          column = static_cast<int>(std::find(cells.begin(), cells.end(), "arm_right_4_joint") -
-                                    cells.begin());
+          column = static_cast<int>(std::find(cells.begin(), cells.end(), joint) - cells.begin());
         } else if ((number % 4 == 0) != other) {
           continue;
         } else {
-          cells[column] = fmt::format("{:.12g}", std::stod(cells[column]) + elbow);
+          const bool off = only < 0 || (touches == only && file == files_[1]);
+          cells[column] = fmt::format("{:.12g}", std::stod(cells[column]) + (off ? by : 0.0));
+          ++touches;
         }
         text += fmt::format("{}\n", fmt::join(cells, ","));
       }
@@ -121,18 +124,26 @@ TEST_F(TalosTable, AFewTouchesTellTheJointThatMoved) {
     }
     return tables;
   };
-  ContactRun run = CalibrateContacts(project_, write(false, 0.0), {.folds = 0});
+  ContactRun run = CalibrateContacts(project_, write(false, kElbow, 0.0), {.folds = 0});
   const std::filesystem::path out = folder.path() / "out";
   std::filesystem::create_directory(out);
   for (const auto& [name, text] : MakeContactFiles(project_, run)) {
     std::ofstream(out / name) << text;
   }
-  EXPECT_EQ(CheckStatus(CheckContacts(project_, out, write(true, 0.0))), "unchanged");
-  const ContactCheck moved = CheckContacts(project_, out, write(true, 2.0 * kDegree));
+  EXPECT_EQ(CheckStatus(CheckContacts(project_, out, write(true, kElbow, 0.0))), "unchanged");
+  const ContactCheck moved = CheckContacts(project_, out, write(true, kElbow, 2.0 * kDegree));
   EXPECT_EQ(CheckStatus(moved), "moved");
   ASSERT_EQ(moved.check.moved.size(), 1u);
   EXPECT_EQ(moved.check.moved[0].joint, "arm_right_4_joint");
   EXPECT_NEAR(moved.check.moved[0].changes[0].value, -2.0 * kDegree, 0.5 * kDegree);
+  // A wrist that was off in one touch alone.
+  const ContactCheck one =
+      CheckContacts(project_, out, write(true, "arm_right_6_joint", 3.0 * kDegree, 1));
+  EXPECT_TRUE(one.check.changed());
+  EXPECT_EQ(CheckStatus(one), "recording wrong");
+  ASSERT_FALSE(one.alternatives.empty());
+  EXPECT_NE(one.alternatives[0].find("right.csv:3: this posture alone"), std::string::npos)
+      << one.alternatives[0];
 }
 
 TEST_F(TalosTable, ATouchInTheAirIsNamed) {
