@@ -74,6 +74,18 @@ TEST_F(CheckedArm, AWrongGainOrScaleOrRowIsNoRobotThatChanged) {
   EXPECT_NE(row.alternatives[0].find("today.csv:5: "), std::string::npos) << row.alternatives[0];
 }
 
+// Of which nothing else follows.
+TEST_F(CheckedArm, ARowThatIsFarOffIsAWarning) {
+  EXPECT_TRUE(Check(q_.topRows(8)).warnings.empty());
+  poses_[3][0] += 3e-3;
+  const ContactCheck run = Check(q_.topRows(8));
+  EXPECT_EQ(CheckStatus(run), "unchanged");
+  ASSERT_EQ(run.warnings.size(), 1u);
+  EXPECT_NE(run.warnings[0].find("today.csv:5: 'tool' is further off"), std::string::npos)
+      << run.warnings[0];
+  EXPECT_NE(run.warnings[0].find("(position -"), std::string::npos) << run.warnings[0];
+}
+
 TEST_F(CheckedArm, AnotherRobotIsNotExplained) {
   Random random(99);
   for (Eigen::VectorXd& pose : poses_) pose.head<3>() += random.NormalVector(3, 0.05);

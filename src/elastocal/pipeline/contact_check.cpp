@@ -27,14 +27,38 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kFewestChecked = 4;
 
-/// What a robot with these errors leaves once all beside it is fitted.
-ObservationFigures FiguresOf(const ContactCheck& run, const Eigen::VectorXd& errors) {
+/// What a robot with these errors leaves of each observation once all beside it is fitted.
+std::vector<Eigen::VectorXd> LeftBy(const ContactCheck& run, const Eigen::VectorXd& errors) {
   ObservationFit start = StartFit(run.model, run.observations);
   start.values.robot = errors;
   start.loads = ObservedLoads(run.model, run.observations, errors);
   const ObservationFit fit = FitObservations(run.model, run.observations, start,
                                              {.freedom = {.robot = false}, .robust = true});
-  return MakeFigures(run.model, run.observations, LeftOf(run.model, run.observations, fit.values));
+  return LeftOf(run.model, run.observations, fit.values);
+}
+
+ObservationFigures FiguresOf(const ContactCheck& run, const Eigen::VectorXd& errors) {
+  return MakeFigures(run.model, run.observations, LeftBy(run, errors));
+}
+
+/// Observations that are further off than four times the noise, a sentence each.
+std::vector<std::string> FarObservations(const ContactCheck& run, const Spread& noise,
+                                         const std::vector<Eigen::VectorXd>& left) {
+  constexpr double kFar = 4.0;
+  std::vector<std::string> far;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const Observation& of = run.observations.all[i];
+    const Instrument& instrument = run.model.instrument(of.instrument);
+    const double square = (instrument.Weights(noise) * left[i]).squaredNorm();
+    if (square <= kFar * kFar * instrument.size()) continue;
+    const PosturePlace& place = run.observations.postures[Size(of.posture)];
+    far.push_back(
+        Place(run.observations.files[Size(place.file)], place.line) +
+        fmt::format("'{}' is further off than four times what the calibration left ({}), and the "
+                    "others are not: look at it",
+                    instrument.name, LeftInWords(instrument, left[i])));
+  }
+  return far;
 }
 
 Observations WithoutPostures(const Observations& observations, const std::set<int>& postures) {
@@ -191,7 +215,9 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
   }
   const Eigen::VectorXd nominal = Eigen::VectorXd::Zero(run.model.robot.parameter_count());
   run.uncalibrated = FiguresOf(run, nominal);
-  run.calibrated = FiguresOf(run, StoredErrors(earlier.stored, run.model.robot));
+  const std::vector<Eigen::VectorXd> left =
+      LeftBy(run, StoredErrors(earlier.stored, run.model.robot));
+  run.calibrated = MakeFigures(run.model, run.observations, left);
   for (const RowErrors& row : run.calibrated.rows) {
     run.left_before.push_back(NoiseOf(run.model, row, earlier.contacts.calibrated.spread));
   }
@@ -205,7 +231,11 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
   run.converged = opened.estimate.fit.termination == Termination::kConverged;
   run.updated = MakeFigures(run.model, run.observations,
                             LeftOf(run.model, run.observations, opened.estimate.fit.values));
-  if (run.mistakes.empty() && !run.unchanged()) {
+  if (run.unchanged()) {
+    for (std::string& text : FarObservations(run, earlier.contacts.calibrated.spread, left)) {
+      run.warnings.push_back(std::move(text));
+    }
+  } else if (run.mistakes.empty()) {
     const AlternativeSearch search(run, earlier, known, project, options.joints);
     const std::string few = search.FewPostures();
     run.alternatives = search.Faults();

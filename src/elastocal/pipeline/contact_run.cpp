@@ -127,21 +127,6 @@ bool TakeElasticity(const Project& project, const ContactRunOptions& options, in
   return true;
 }
 
-/// What is left of an observation, for people: "position 1.2, 0.3, -4 mm".
-std::string LeftInWords(const Instrument& instrument, const Eigen::VectorXd& left) {
-  std::string text;
-  std::string name;
-  const std::vector<RowMeaning> rows = instrument.rows();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const ShownUnit unit = ShownUnitOf(rows[i].unit);
-    if (rows[i].name != name) text += (text.empty() ? "" : "; ") + std::string(rows[i].name);
-    name = rows[i].name;
-    text += fmt::format(" {:.3g}", unit.factor * left[static_cast<Eigen::Index>(i)]);
-    if (i + 1 == rows.size() || rows[i + 1].name != name) text += std::string(" ") + unit.name;
-  }
-  return text;
-}
-
 }  // namespace
 
 ContactRun CalibrateContacts(const Project& project,
@@ -215,6 +200,20 @@ ContactRun CalibrateContacts(const Project& project,
     run.warnings.push_back(std::move(outlier));
   }
   return run;
+}
+
+std::string LeftInWords(const Instrument& instrument, const Eigen::VectorXd& left) {
+  std::string text;
+  std::string name;
+  const std::vector<RowMeaning> rows = instrument.rows();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ShownUnit unit = ShownUnitOf(rows[i].unit);
+    if (rows[i].name != name) text += (text.empty() ? "" : "; ") + std::string(rows[i].name);
+    name = rows[i].name;
+    text += fmt::format(" {:.3g}", unit.factor * left[static_cast<Eigen::Index>(i)]);
+    if (i + 1 == rows.size() || rows[i + 1].name != name) text += std::string(" ") + unit.name;
+  }
+  return text;
 }
 
 std::vector<std::string> DescribeOutliers(const ObservedRobot& model,

@@ -78,6 +78,9 @@ ContactRun CalibrateContacts(const Project& project,
 /// "converged", "not converged", or "implausible" where it settled on what cannot be trusted.
 std::string RunStatus(const ContactRun& run);
 
+/// What is left of an observation, SI, for people: "position 1.2 0.3 -4 mm".
+std::string LeftInWords(const Instrument& instrument, const Eigen::VectorXd& left);
+
 /// What the observations that are left out, and how far they are off, are called: "left.csv:7:
 /// ...", one sentence each.
 std::vector<std::string> DescribeOutliers(const ObservedRobot& model,
