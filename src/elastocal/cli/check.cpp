@@ -16,6 +16,7 @@
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/check_calibration.hpp"
 #include "elastocal/pipeline/measurements.hpp"
