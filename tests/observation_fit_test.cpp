@@ -154,6 +154,28 @@ void AddNoise(const ObservedRobot& model, Observations& observations, Random& ra
   }
 }
 
+// Each corner is measured to half a pixel, and each tag as a whole is off by 2 px in an image.
+TEST(ObservationFit, WhatTheCornersOfATagShareIsTold) {
+  const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kImages, {"*.compliance_*"});
+  const ObservedRobot& model = biped.model;
+  Random random(19);
+  const ObservedValues truth = RandomTruth(model, 0, random);
+  Observations seen = biped.Observe(truth, 0, 80, random);
+  AddNoise(model, seen, random);
+  for (Observation& of : seen.all) {
+    const Eigen::VectorXd shift = random.NormalVector(2, 2.0);
+    of.measured += shift.replicate(4, 1);
+  }
+  const ObservationFit fit = EstimateObserved(model, seen, {}).fit;
+  for (std::size_t s = 0; s < model.setup.sources.size(); ++s) {
+    const Source& source = model.setup.sources[s];
+    if (source.unit != SourceUnit::kPixel) continue;
+    const bool shared = source.name.ends_with(".shared");
+    // Of the mean, twice the shift.
+    EXPECT_NEAR(fit.spread.sd[s], shared ? 4.0 : 0.5, shared ? 0.8 : 0.1) << source.name;
+  }
+}
+
 /// What a fit says of the robot, for another one.
 EarlierEstimate EarlierOf(const ObservedRobot& model, const ObservationFit& fit) {
   EarlierEstimate earlier;
