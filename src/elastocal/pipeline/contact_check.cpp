@@ -2,14 +2,19 @@
 #include "elastocal/pipeline/contact_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
+#include <Eigen/Cholesky>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/calibration/posterior.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/observation/observation_faults.hpp"
+#include "elastocal/observation/observation_residuals.hpp"
+#include "elastocal/optim/normal_equations.hpp"
 #include "elastocal/pipeline/check_json.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/pipeline/contact_faults.hpp"
@@ -84,6 +89,13 @@ int WorstPosture(const ObservedRobot& model, const Observations& observations,
   return static_cast<int>(worst);
 }
 
+/// Logarithm of the normal density of x about zero, but for what depends on its size alone.
+double LogNormal(const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  const Eigen::MatrixXd L = factor.matrixL();
+  return -0.5 * x.dot(factor.solve(x)) - L.diagonal().array().log().sum();
+}
+
 /// What explains a change as well as moved joints, beside a robot that is as it was calibrated.
 class AlternativeSearch {
  public:
@@ -100,30 +112,32 @@ class AlternativeSearch {
     estimate_ = EstimateObserved(calibrated_, run.observations, {});
   }
 
-  /// What contradicts the others, or the worst posture, if the rest says that nothing has changed;
-  /// empty where it does not.
-  std::string FewPostures() const {
+  /// What contradicts the others, or the worst posture, if the rest says that nothing has changed.
+  struct FewPostures {
+    std::string text;       ///< empty: there are none
+    bool likelier = false;  ///< to be wrong than joints to have moved
+  };
+  FewPostures FindFewPostures() const {
     constexpr double kMostOthers = 0.75;  // of the postures
+    const Observations& all = run_.observations;
     std::set<int> bad;
     for (const ObservationOutlier& outlier : estimate_.outliers) {
-      bad.insert(run_.observations.all[Size(outlier.observation)].posture);
+      bad.insert(all.all[Size(outlier.observation)].posture);
     }
-    const int count = run_.observations.posture_count();
-    const auto rest_holds = [&] {
-      const int left = count - static_cast<int>(bad.size());
-      return left >= kFewestChecked && left >= kMostOthers * count &&
-             Holds(WithoutPostures(run_.observations, bad));
-    };
-    if (!bad.empty()) {
-      if (!rest_holds()) return "";
-      return fmt::format(
-          "{}", fmt::join(DescribeOutliers(calibrated_, run_.observations, estimate_), ", and "));
+    std::string text =
+        fmt::format("{}", fmt::join(DescribeOutliers(calibrated_, all, estimate_), ", and "));
+    if (bad.empty()) {
+      const int worst = WorstPosture(calibrated_, all, estimate_.fit);
+      const PosturePlace& place = all.postures[Size(worst)];
+      text = Place(all.files[Size(place.file)], place.line) +
+             "this posture alone speaks of a change, and the others of none";
+      bad = {worst};
     }
-    bad = {WorstPosture(calibrated_, run_.observations, estimate_.fit)};
-    if (!rest_holds()) return "";
-    const PosturePlace& place = run_.observations.postures[Size(*bad.begin())];
-    return Place(run_.observations.files[Size(place.file)], place.line) +
-           "this posture alone speaks of a change, and the others of none";
+    const int left = all.posture_count() - static_cast<int>(bad.size());
+    const bool rest_holds = left >= kFewestChecked && left >= kMostOthers * all.posture_count() &&
+                            Holds(WithoutPostures(all, bad));
+    if (!rest_holds) return {};
+    return {text, EvidenceOfWrong(bad) > EvidenceOfMoves()};
   }
 
   /// Faults of the tables.
@@ -149,6 +163,49 @@ class AlternativeSearch {
   }
 
  private:
+  /// Natural logarithm of p(all | these postures are wrong) / p(all | nothing has changed), each
+  /// posture being as likely to be wrong. What is wrong is off by as much as no calibrated robot
+  /// is (LargestError); what is not, by its noise and by what the others leave open.
+  double EvidenceOfWrong(const std::set<int>& postures) const {
+    const Observations& all = run_.observations;
+    ObservationFit fit = StartFit(calibrated_, all);
+    fit.spread = earlier_.contacts.calibrated.spread;
+    for (std::size_t i = 0; i < all.all.size(); ++i) {
+      if (postures.contains(all.all[i].posture)) fit.weights[i] = 0.0;
+    }
+    fit = FitObservations(calibrated_, all, fit, {.estimate_spread = false});
+    ObservationResiduals residuals(calibrated_, all, fit.loads, fit.spread, fit.weights, {},
+                                   fit.values);
+    residuals.Evaluate(residuals.Start(), true);
+    const NormalEquations equations(residuals);
+    const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
+    double evidence = -static_cast<double>(postures.size()) * std::log(all.posture_count());
+    for (int i = 0; i < all.count(); ++i) {
+      if (fit.weights[Size(i)] > 0.0) continue;
+      const Instrument& instrument = calibrated_.instrument(all.all[Size(i)].instrument);
+      Eigen::VectorXd wrong(instrument.size());
+      for (int row = 0; row < instrument.size(); ++row) {
+        wrong[row] = LargestError(calibrated_, instrument.rows()[Size(row)].unit);
+      }
+      const Eigen::MatrixXd wide = instrument.Weights(fit.spread) * wrong.asDiagonal();
+      Eigen::MatrixXd right = equations.Explained(i, covariance);
+      right.diagonal().array() += 1.0;
+      evidence += LogNormal(residuals.Residual(i), wide * wide.transpose()) -
+                  LogNormal(residuals.Residual(i), right);
+    }
+    return evidence;
+  }
+
+  /// The same of the joints that were found to have moved.
+  double EvidenceOfMoves() const {
+    const JointCheck& check = run_.check;
+    const double choice = std::log(static_cast<double>(check.moved.size() + check.joints.size()));
+    double evidence = 0.0;
+    for (const JointSuspect& joint : check.moved) evidence += joint.log_evidence - choice;
+    if (!check.suspects.empty()) evidence += check.joints.front().log_evidence - choice;
+    return evidence;
+  }
+
   /// Whether the robot is as it was calibrated in other observations of the same day.
   bool Holds(const Observations& observations) const {
     ContactCheck other = run_;
@@ -237,10 +294,14 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
     }
   } else if (run.mistakes.empty()) {
     const AlternativeSearch search(run, earlier, known, project, options.joints);
-    const std::string few = search.FewPostures();
+    const AlternativeSearch::FewPostures few = search.FindFewPostures();
     run.alternatives = search.Faults();
-    run.few_postures = !few.empty();
-    if (run.few_postures) run.alternatives.insert(run.alternatives.begin(), few);
+    run.few_postures = few.likelier;
+    if (few.likelier) {
+      run.alternatives.insert(run.alternatives.begin(), few.text);
+    } else if (!few.text.empty()) {
+      run.warnings.push_back(few.text + ": measure it again");
+    }
   }
   for (std::string& text : DescribeOutliers(run.model, run.observations, opened.estimate)) {
     run.warnings.push_back(std::move(text));

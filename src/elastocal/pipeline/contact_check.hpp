@@ -26,7 +26,8 @@ struct ContactCheck {
   /// Faults of the tables without each of which the calibration holds: they explain it as well as
   /// joints that have moved.
   std::vector<std::string> alternatives;
-  /// Whether single postures are the first of them: a change that the others do not see is none.
+  /// Whether single postures are the first of them: they are likelier to be wrong than joints to
+  /// have moved.
   bool few_postures = false;
   std::vector<std::string> warnings;  ///< what is left out among them
 

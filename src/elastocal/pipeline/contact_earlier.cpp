@@ -108,8 +108,10 @@ std::vector<std::string> StartFromEarlierContacts(const EarlierContacts& earlier
   const JointCheck check = OpenJoints(model, known, observations, project).check;
   model.earlier = ForgetMoved(check, known, model.robot, project.calibration.prior);
   std::vector<std::string> texts = DescribeForgotten(check, earlier.stored.source);
+  const std::string before =
+      ", " + earlier.stored.recording + ", ";  // files, as ContactRun has them
   for (const std::string& file : observations.files) {
-    if (earlier.stored.recording.find(file) == std::string::npos) continue;
+    if (before.find(", " + file + ", ") == std::string::npos) continue;
     texts.push_back(earlier.stored.source + ": made from " + file +
                     " as well, which counts twice: left-out postures are not new to it");
   }

@@ -85,8 +85,6 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   run.surroundings_refitted = refit_table;
   run.observations = std::move(tables.observations);
   run.warnings = std::move(tables.warnings);
-  // What is in common or held says nothing about values that are known.
-  tables.setup.common.clear();
   run.model = MakeStoredRobot(stored, project, tables.setup);
   for (const std::string& what : CorrectObservations(accept, run.model, run.observations)) {
     run.warnings.push_back("corrected on request: " + what);
