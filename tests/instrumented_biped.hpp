@@ -123,4 +123,25 @@ struct InstrumentedBiped {
   ObservedRobot model;
 };
 
+/// Adds normal noise of the sizes that the sources have to all measurements.
+inline void AddNoise(const ObservedRobot& model, Observations& observations, Random& random) {
+  for (Observation& of : observations.all) {
+    const Instrument& instrument = model.instrument(of.instrument);
+    if (of.measured.size() == 0) continue;
+    const Eigen::MatrixXd factor = instrument.Weights(FirstSpread(model.setup.sources)).inverse();
+    const Eigen::VectorXd noise = factor * random.NormalVector(instrument.size(), 1.0);
+    if (of.measured.size() != 7) {
+      of.measured += noise;
+      continue;
+    }
+    of.measured.head<3>() += noise.head<3>();
+    const Eigen::Quaterniond attitude(of.measured[6], of.measured[3], of.measured[4],
+                                      of.measured[5]);
+    const Eigen::Vector3d turn = noise.tail<3>();
+    const Eigen::Quaterniond turned =
+        attitude * Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    of.measured.tail<4>() = turned.coeffs();
+  }
+}
+
 }  // namespace elastocal

@@ -133,27 +133,6 @@ TEST(ObservationFit, TouchesAndInertialUnitsDetermineMoreThanEither) {
   EXPECT_GT(both, units) << touches << " " << units << " " << both;
 }
 
-/// Adds normal noise of the sizes that the sources have to all measurements.
-void AddNoise(const ObservedRobot& model, Observations& observations, Random& random) {
-  for (Observation& of : observations.all) {
-    const Instrument& instrument = model.instrument(of.instrument);
-    if (of.measured.size() == 0) continue;
-    const Eigen::MatrixXd factor = instrument.Weights(FirstSpread(model.setup.sources)).inverse();
-    const Eigen::VectorXd noise = factor * random.NormalVector(instrument.size(), 1.0);
-    if (of.measured.size() != 7) {
-      of.measured += noise;
-      continue;
-    }
-    of.measured.head<3>() += noise.head<3>();
-    const Eigen::Quaterniond attitude(of.measured[6], of.measured[3], of.measured[4],
-                                      of.measured[5]);
-    const Eigen::Vector3d turn = noise.tail<3>();
-    const Eigen::Quaterniond turned =
-        attitude * Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
-    of.measured.tail<4>() = turned.coeffs();
-  }
-}
-
 // Each corner is measured to half a pixel, and each tag as a whole is off by 2 px in an image.
 TEST(ObservationFit, WhatTheCornersOfATagShareIsTold) {
   const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kImages, {"*.compliance_*"});
@@ -174,71 +153,6 @@ TEST(ObservationFit, WhatTheCornersOfATagShareIsTold) {
     // Of the mean, twice the shift.
     EXPECT_NEAR(fit.spread.sd[s], shared ? 4.0 : 0.5, shared ? 0.8 : 0.1) << source.name;
   }
-}
-
-/// What a fit says of the robot, for another one.
-EarlierEstimate EarlierOf(const ObservedRobot& model, const ObservationFit& fit) {
-  EarlierEstimate earlier;
-  const std::vector<int> parameters = ParameterOfUnknown(model);
-  for (int i : parameters) earlier.names.push_back(model.robot.parameters[i].name);
-  earlier.mean = fit.values.robot(parameters);
-  earlier.covariance = fit.covariance(fit.entry_of_unknown, fit.entry_of_unknown);
-  return earlier;
-}
-
-TEST(ObservationFit, AnEarlierFitAsThePriorIsAsGoodAsItsObservations) {
-  const ObservedRobot model = MakeTouchingBiped({"*.compliance_*"});
-  Random random(17);
-  const ObservedValues truth = RandomTruth(model, 1, random);
-  Observations all = SimulateTouches(model, truth, 50, 1, Eigen::Vector3d::Zero(), random);
-  AddNoise(model, all, random);
-  std::vector<int> first, then;
-  for (int i = 0; i < all.posture_count(); ++i) (i < 40 ? first : then).push_back(i);
-  // All but the robot is known: a fit hands on nothing else.
-  const ObservationFitOptions options{
-      .freedom = {.mountings = false, .surroundings = false, .effects = false},
-      .estimate_spread = false};
-  const auto fit = [&](const ObservedRobot& robot, const Observations& observations) {
-    ObservationFit start = StartFit(robot, observations);
-    start.values.quantities = truth.quantities;
-    start.values.effects = truth.effects;
-    return FitObservations(robot, observations, start, options);
-  };
-  ObservedRobot again = model;
-  again.earlier = EarlierOf(model, fit(model, SelectPostures(all, first)));
-  const ObservationFit updated = fit(again, SelectPostures(all, then));
-  const ObservationFit together = fit(model, all);
-  EXPECT_TRUE(updated.settled);
-  const Eigen::VectorXd sds = together.covariance.diagonal().cwiseSqrt();
-  const Eigen::VectorXd sds_updated = updated.covariance.diagonal().cwiseSqrt();
-  for (const int i : ParameterOfUnknown(model)) {
-    const int entry = together.entry_of_unknown[model.unknown[i]];
-    EXPECT_NEAR(updated.values.robot[i], together.values.robot[i], 0.05 * sds[entry])
-        << model.robot.parameters[i].name;
-    EXPECT_NEAR(sds_updated[entry], sds[entry], 0.01 * sds[entry]);
-  }
-}
-
-TEST(ObservationFit, WhatTheDataSayOfTheRobotDoesNotDependOnThePrior) {
-  const ObservedRobot model = MakeTouchingBiped({"*.compliance_*"});
-  Random random(18);
-  const ObservedValues truth = RandomTruth(model, 1, random);
-  Observations seen = SimulateTouches(model, truth, 40, 1, Eigen::Vector3d::Zero(), random);
-  AddNoise(model, seen, random);
-  const ObservationFit fit = EstimateObserved(model, seen, {}).fit;
-  ObservedRobot again = model;
-  again.earlier = EarlierOf(model, fit);
-  again.earlier.names.resize(20);  // of the others, priors by kind
-  again.earlier.mean.conservativeResize(20);
-  again.earlier.covariance.conservativeResize(20, 20);
-  const Eigen::MatrixXd information = RobotInformation(model, seen, fit);
-  const Eigen::VectorXd unit = information.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  EXPECT_GT(information.norm(), 0.0);
-  EXPECT_LT(
-      (unit.asDiagonal() * (RobotInformation(again, seen, fit) - information) * unit.asDiagonal())
-          .cwiseAbs()
-          .maxCoeff(),
-      1e-4);
 }
 
 TEST(ObservationFit, TheMountingOfAnInertialUnitIsFoundWithItsUncertainty) {
