@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -13,8 +11,7 @@
 #include "elastocal/math/smooth_step.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
 #include "tests/expect_input_error.hpp"
-#include "tests/test_robots.hpp"
-#include "tests/trial_player.hpp"
+#include "tests/standing_leg_trial.hpp"
 
 namespace elastocal {
 namespace {
@@ -23,45 +20,6 @@ namespace {
 // passes, leave 0.063 mm a frame. 0.3 mm is five times that; means do better.
 constexpr double kMarkerTolerance = 0.3e-3;
 constexpr double kTorqueTolerance = 0.2;  // N.m, of noise of 0.1 before filter and mean
-
-// The leg of TALOS with its nine markers and a cluster on the waist.
-MarkedRobot WaistAndLeg() {
-  MarkedRobot robot;
-  robot.tree = TalosLeg();
-  robot.markers = {{"WAIST_1", 0, {-0.16, 0.07, -0.02}},
-                   {"WAIST_2", 0, {-0.16, -0.065, -0.035}},
-                   {"WAIST_3", 0, {-0.16, 0.01, -0.11}}};
-  const std::vector<Marker> leg = TalosLegModel().markers;
-  robot.markers.insert(robot.markers.end(), leg.begin(), leg.end());
-  robot.clusters = {
-      {"WAIST", {0, 1, 2}}, {"THIGH", {3, 4, 5}}, {"SHANK", {6, 7, 8}}, {"FOOT", {9, 10, 11}}};
-  robot.torque_sensors = {0, 1, 2, 3, 4, 5};
-  robot.q_not_logged.setZero(6);
-  return robot;
-}
-
-constexpr int kFoot = 6;  // link
-
-std::vector<int> AllMarkers(const MarkedRobot& robot) {
-  std::vector<int> markers(robot.markers.size());
-  std::iota(markers.begin(), markers.end(), 0);
-  return markers;
-}
-
-Trial Standing(TrialKind kind = TrialKind::kCalibration) {
-  return {.name = "stand", .kind = kind, .chains = {"leg"}, .support = {kFoot}};
-}
-
-TrialSamples Sample(const ScriptedTrial& played, const MeasurementOptions& options = {},
-                    const Trial& trial = Standing()) {
-  const MarkedRobot robot = WaistAndLeg();
-  return SampleTrial(robot, trial, AllMarkers(robot), played.markers, played.log, options);
-}
-
-ScriptedTrial PlayStanding(PlayOptions options = {}) {
-  options.standing = kFoot;
-  return Play(WaistAndLeg(), options);
-}
 
 // The posture that is held at a time, or nearly so.
 Eigen::Index PostureAt(const ScriptedTrial& played, double time_s) {
@@ -182,62 +140,6 @@ TEST(SampleTrial, PositionsTellTheClockWhereSpeedsDoNot) {
   EXPECT_LT(told.clock.sd_s, sd / 3.0);
   options.largest_rest_lag_sd_s = 1e-7;
   EXPECT_NE(Sample(played, options).summary.refused.find("too little motion"), std::string::npos);
-}
-
-// The speeds of a leg one of whose joints has the wrong sign are others; where they do not fit any
-// more, the log that would fit tells why.
-TEST(SampleTrial, NamesTheSignAndTheExchangeThatSpoilTheClock) {
-  const ScriptedTrial clean = PlayStanding();
-  const auto joints = clean.log.positions.cols();
-  int refused = 0;
-  int named = 0;
-  for (Eigen::Index c = 0; c < joints; ++c) {
-    ScriptedTrial played = clean;
-    played.log.positions.col(c) *= -1.0;
-    const std::string reason = Sample(played).summary.refused;
-    if (reason.empty()) continue;
-    ++refused;
-    named += reason.find("with the sign of " + clean.log.names[c] + " reversed the log fits") !=
-                     std::string::npos
-                 ? 1
-                 : 0;
-  }
-  ScriptedTrial played = clean;
-  played.log.positions.col(2).swap(played.log.positions.col(3));
-  const std::string reason = Sample(played).summary.refused;
-  if (!reason.empty()) {
-    ++refused;
-    named += reason.find(clean.log.names[2] + " and " + clean.log.names[3] + " exchanged") !=
-                     std::string::npos
-                 ? 1
-                 : 0;
-  }
-  std::printf("%d of %d faults that spoil the clock are named\n", named, refused);
-  EXPECT_GT(refused, 0);
-  EXPECT_EQ(named, refused);
-}
-
-// A log that comes back with a jump looks like fast motion, which the cameras do not see.
-TEST(SampleTrial, NamesTheJointWhoseFrozenLogSpoilsTheClock) {
-  int refused = 0, named = 0;
-  for (const std::uint64_t seed : {1, 2}) {
-    const ScriptedTrial clean =
-        PlayStanding({.postures = 30, .range = 0.3, .move_s = 1.5, .seed = seed});
-    const Eigen::Index rows = clean.log.positions.rows();
-    for (Eigen::Index c = 0; c < clean.log.positions.cols(); ++c) {
-      ScriptedTrial played = clean;
-      auto frozen = played.log.positions.col(c).segment(rows / 4, rows / 3);
-      frozen.setConstant(frozen[0] + 1.0);
-      const std::string reason = Sample(played).summary.refused;
-      if (reason.empty()) continue;
-      ++refused;
-      const std::string part = "the positions of " + clean.log.names[c] + " are frozen from ";
-      named += reason.find(part) != std::string::npos ? 1 : 0;
-    }
-  }
-  std::printf("%d of %d frozen joints that spoil the clock are named\n", named, refused);
-  EXPECT_GT(refused, 0);
-  EXPECT_GE(named, 0.9 * refused);
 }
 
 TEST(SampleTrial, FindsLagAndDriftOfTheClock) {
