@@ -136,6 +136,11 @@ TEST_F(TalosTable, AFewTouchesTellTheJointThatMoved) {
   ASSERT_EQ(moved.check.moved.size(), 1u);
   EXPECT_EQ(moved.check.moved[0].joint, "arm_right_4_joint");
   EXPECT_NEAR(moved.check.moved[0].changes[0].value, -2.0 * kDegree, 0.5 * kDegree);
+  // One touch speaks of it more than the others; that it is wrong is less likely all the same.
+  const ContactCheck shoulder =
+      CheckContacts(project_, out, write(true, "arm_left_1_joint", 2.0 * kDegree));
+  EXPECT_EQ(CheckStatus(shoulder), "moved");
+  EXPECT_EQ(shoulder.check.moved.front().joint, "arm_left_1_joint");
   // A wrist that was off in one touch alone.
   const ContactCheck one =
       CheckContacts(project_, out, write(true, "arm_right_6_joint", 3.0 * kDegree, 1));
