@@ -43,18 +43,20 @@ struct CalibrateArguments {
 
 PyCalibration CalibrateMarkers(const Project& project, const Paths& files,
                                const CalibrateArguments& given) {
-  CalibrationRun run = CalibrateExperiment(
-      project, files,
-      {.folds = given.folds,
-       .fold_unit = Named<FoldUnit>("fold_by", given.fold_by,
-                                    {{"posture", FoldUnit::kPosture}, {"trial", FoldUnit::kTrial}}),
-       .threads = given.threads,
-       .zero_offsets = given.zero_offsets,
-       .seed = given.seed,
-       .accept = given.accept,
-       .prior = given.prior,
-       .days = given.days,
-       .progress = given.progress});
+  CalibrationRun run =
+      CalibrateExperiment(project, files,
+                          {.folds = given.folds,
+                           .fold_unit = Named<FoldUnit>("fold_by", given.fold_by,
+                                                        {{"posture", FoldUnit::kPosture},
+                                                         {"trial", FoldUnit::kTrial},
+                                                         {"session", FoldUnit::kSession}}),
+                           .threads = given.threads,
+                           .zero_offsets = given.zero_offsets,
+                           .seed = given.seed,
+                           .accept = given.accept,
+                           .prior = given.prior,
+                           .days = given.days,
+                           .progress = given.progress});
   auto texts = MakeCalibrationFiles(project, run);
   const bool judged_on_fit = run.deployment.judged_on == "the fit";
   const int in_urdf = static_cast<int>(run.deployment.urdf_kind);

@@ -133,6 +133,29 @@ TEST(Knock, IsNotSeenWhereThereWasNone) {
   }
 }
 
+// A rigid robot has no other explanation for a foot that sinks when it bears the robot alone.
+TEST(Knock, IsNoLegThatGivesWayWhereARigidRobotIsEstimated) {
+  for (const std::uint64_t seed : {15, 17}) {  // of 11 to 18, those that a rigid search accuses
+    const KnockExperiment experiment(seed);
+    Project project = experiment.robot.project;
+    project.elasticity = {.torsion = std::vector<std::string>(),
+                          .bending = std::vector<std::string>(),
+                          .base = false};
+    Measurements measured;
+    measured.calibration = experiment.Clean();
+    const ErrorModel rigid = MakeProjectModel(project, measured.calibration.trials);
+    const BaseParameters base = FindBaseParameters(rigid, project.identifiability);
+    EXPECT_EQ(FindKnocks(rigid, measured.calibration, base, experiment.clusters, {}).size(), 1u);
+    const RecordedModel robot = MakeRecordedModel(project, {}, measured);
+    EXPECT_FALSE(robot.model.elasticity.base);
+    EXPECT_TRUE(robot.knocks.empty()) << robot.knocks[0].cluster;
+    measured.calibration = experiment.Clean();
+    const int middle = kPostures + kPostures / 2;
+    experiment.Push("LHAND", middle, measured.calibration);
+    ExpectOneKnock(MakeRecordedModel(project, {}, measured).knocks, "LHAND", middle - 1, middle);
+  }
+}
+
 // With the cluster taken as two the estimates are those of the clean recording; the noise is the
 // same, so that they differ by less than their uncertainty.
 TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {

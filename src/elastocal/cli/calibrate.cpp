@@ -17,6 +17,14 @@
 #include "elastocal/pipeline/result_folder.hpp"
 
 namespace elastocal::cli {
+namespace {
+
+FoldUnit UnitOf(const std::string& word) {
+  if (word == "trial") return FoldUnit::kTrial;
+  return word == "session" ? FoldUnit::kSession : FoldUnit::kPosture;
+}
+
+}  // namespace
 
 int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const bool quiet = options.common.Silent();
@@ -25,8 +33,8 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
                                                       options.recordings.end());
   const Project project = ReadProject(options.project);
   if (project.contact) {
-    if (options.fold_by == "trial")
-      throw InputError("--fold-by trial is about recordings of trials");
+    if (options.fold_by != "posture")
+      throw InputError("--fold-by " + options.fold_by + " is about recordings of trials");
     return RunContactCalibration(options, project);
   }
   std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
@@ -43,18 +51,18 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
 
   // Large recordings take a while: their checksums are made on another thread.
   auto inputs_read = std::async(std::launch::async, RecordInputs, inputs);
-  CalibrationRun run = CalibrateExperiment(
-      project, recordings,
-      {.folds = options.folds,
-       .fold_unit = options.fold_by == "trial" ? FoldUnit::kTrial : FoldUnit::kPosture,
-       .threads = options.threads,
-       .zero_offsets =
-           options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder : ZeroOffsets::kOrigin,
-       .seed = options.common.seed,
-       .accept = options.accept,
-       .prior = options.prior,
-       .days = options.days,
-       .progress = TerminalSteps("reading and fitting", options.common.quiet)});
+  CalibrationRun run =
+      CalibrateExperiment(project, recordings,
+                          {.folds = options.folds,
+                           .fold_unit = UnitOf(options.fold_by),
+                           .threads = options.threads,
+                           .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
+                                                                             : ZeroOffsets::kOrigin,
+                           .seed = options.common.seed,
+                           .accept = options.accept,
+                           .prior = options.prior,
+                           .days = options.days,
+                           .progress = TerminalSteps("reading and fitting", options.common.quiet)});
   const auto files = MakeCalibrationFiles(project, run);
   const std::string no_report = SetResults(
       folder, files, MakeRunRecord("calibrate", options.common, inputs_read.get()), outputs);
@@ -94,9 +102,11 @@ void AddCalibrate(CLI::App& app, Action& action) {
           "each for fewer, 0 for trials)")
       ->check(CLI::Range(0, 100000));
   command
-      ->add_option("--fold-by", options->fold_by,
-                   "What a fold leaves out: postures (nearly equal ones together), or whole trials")
-      ->transform(CLI::IsMember({"posture", "trial"}, CLI::ignore_case))
+      ->add_option(
+          "--fold-by", options->fold_by,
+          "What a fold leaves out: postures (nearly equal ones together), whole trials, or "
+          "sessions, which are all trials of a recording folder")
+      ->transform(CLI::IsMember({"posture", "trial", "session"}, CLI::ignore_case))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Folds estimated at a time")
       ->check(CLI::Range(1, 64))

@@ -32,6 +32,7 @@ struct TrialFiles {
   /// Camera time less robot time at the beginning, s, where it is known.
   std::optional<double> expected_lag_s = {};
   std::filesystem::path truth = {};  ///< of a simulated trial, see ReadWaistTruth; empty: unknown
+  int session = 0;                   ///< which of several folders it is from
 };
 
 /// The contents of a recording folder.

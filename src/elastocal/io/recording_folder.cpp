@@ -50,7 +50,8 @@ Trial TrialOf(const TrialFiles& files, const Project& project) {
               .chains = {},
               .support = files.support,
               .free_root = files.free_root,
-              .moments = files.moments};
+              .moments = files.moments,
+              .session = files.session};
   for (int chain : files.chains) trial.chains.push_back(project.chains[chain].name);
   return trial;
 }
@@ -162,6 +163,7 @@ Experiment ReadExperiments(const std::vector<fs::path>& folders, const Project& 
     all.up_given = all.up_given || one.up_given;
     for (TrialFiles& trial : one.trials) {
       if (folders.size() > 1) trial.name = NameOf(folders[i]) + "/" + trial.name;
+      trial.session = static_cast<int>(i);
       all.trials.push_back(std::move(trial));
     }
   }

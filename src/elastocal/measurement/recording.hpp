@@ -22,6 +22,7 @@ struct Trial {
   std::vector<int> support = {};
   bool free_root = false;  ///< nothing ties the robot to the floor
   bool moments = false;  ///< its samples are moments of a motion, as those of a sine are, not rests
+  int session = 0;       ///< which of the folders given it is from
 
   bool of_motion() const { return moments || kind == TrialKind::kSine; }
 };

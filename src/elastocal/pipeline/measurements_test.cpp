@@ -10,6 +10,7 @@
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_folder.hpp"
+#include "elastocal/validation/model_comparison.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -98,6 +99,29 @@ TEST_F(MeasurementsTest, MarkersAreMatchedByName) {
         });
     EXPECT_EQ(said, more_in_validation);
   }
+}
+
+// Folds leave out what was recorded on one day.
+TEST_F(MeasurementsTest, EachFolderIsASession) {
+  WriteExperiment("calibration");
+  const ScratchFolder other;
+  std::filesystem::copy(folder_.path(), other.path(), std::filesystem::copy_options::recursive);
+  other.Write(
+      "experiment.yaml",
+      "trials: [{name: one, chain: left_leg, support: [right_sole], markers: a.tsv, joints: "
+      "a.csv}, {name: two, chain: left_leg, support: [right_sole], markers: b.tsv, joints: "
+      "b.csv}]");
+  for (const char* name : {"tsv", "csv"}) {
+    const std::string file = std::string(".") + name;
+    std::filesystem::copy_file(other.path() / ("a" + file), other.path() / ("b" + file));
+  }
+  const Recording both = ReadMeasurements(project_, {folder_.path(), other.path()}).calibration;
+  ASSERT_EQ(both.posture_count(), 24);
+  const std::vector<int> fold = DealFolds(both, {.folds = 2, .unit = FoldUnit::kSession});
+  for (int i = 0; i < 24; ++i) EXPECT_EQ(fold[i] == fold[0], i < 8) << i;
+  ExpectInputError([&] { DealFolds(both, {.folds = 3, .unit = FoldUnit::kSession}); },
+                   {"2 to 2 folds", "recording folders", "not 3"});
+  EXPECT_NO_THROW(DealFolds(both, {.folds = 3, .unit = FoldUnit::kTrial}));
 }
 
 TEST_F(MeasurementsTest, ListsEveryFileThatIsRead) {

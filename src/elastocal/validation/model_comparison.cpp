@@ -37,9 +37,28 @@ void UniteMoments(const Recording& recording, std::vector<int>& units) {
   }
 }
 
+/// None of a table of postures.
+std::vector<int> SessionOfPosture(const Recording& recording) {
+  std::vector<int> sessions;
+  for (const int trial : recording.trial) sessions.push_back(recording.trials[trial].session);
+  return sessions;
+}
+
+const char* NameOfUnits(FoldUnit unit) {
+  switch (unit) {
+    case FoldUnit::kTrial:
+      return "trials";
+    case FoldUnit::kSession:
+      return "recording folders";
+    default:
+      return "different postures";
+  }
+}
+
 /// The unit of each posture: those that are left out together.
 std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
   if (unit == FoldUnit::kTrial) return recording.trial;
+  if (unit == FoldUnit::kSession) return SessionOfPosture(recording);
   const int postures = recording.posture_count();
   // Nearly equal ones, looked for among neighbours in the order of the sum of their joints.
   std::vector<int> order(postures), units(postures);
@@ -149,15 +168,13 @@ std::vector<int> DealFolds(const Recording& recording, const FoldOptions& option
   std::vector<int> units = DistinctUnits(unit_of);
   const int count = static_cast<int>(units.size());
   if (count == 0) {
-    throw InputError(recording.source +
-                     ": cross-validation by trials needs a recording of trials; "
-                     "this is a table of postures");
+    throw InputError(recording.source + ": cross-validation by " + NameOfUnits(options.unit) +
+                     " needs a recording of trials; this is a table of postures");
   }
   if (options.folds < 2 || options.folds > count) {
     throw InputError("cross-validation needs 2 to " + std::to_string(count) +
-                     " folds for as many " +
-                     (options.unit == FoldUnit::kTrial ? "trials" : "different postures") +
-                     ", not " + std::to_string(options.folds));
+                     " folds for as many " + NameOfUnits(options.unit) + ", not " +
+                     std::to_string(options.folds));
   }
   Random random(options.seed);
   for (int i = count - 1; i > 0; --i) std::swap(units[i], units[random.Index(i + 1)]);

@@ -45,6 +45,7 @@ ModelComparison CompareModels(const ErrorModel& model, const Recording& recordin
 enum class FoldUnit {
   kPosture,  ///< postures, nearly equal ones and neighbours in a motion together
   kTrial,    ///< whole trials
+  kSession,  ///< all trials of a recording folder
 };
 
 struct FoldOptions {
