@@ -254,9 +254,9 @@ void AddCalibrating(py::module_& module) {
       "progress"_a = StepProgress(),
       "Calibrates from a posture table or from recording folders (a path or several), like the "
       "command of that name; with contact or instruments, from tables of observations. folds: of "
-      "the cross-validation, 0 for none; None: ten for a table. "
-      "prior: the folder of an earlier calibration, `days` ago. accept: mistakes of the recording "
-      "to undo. progress: called with (step, done, total).");
+      "the cross-validation, 0 for none; None: ten for a table. fold_by: what a fold leaves out, "
+      "'posture', 'trial' or 'session'. prior: the folder of an earlier calibration, `days` ago. "
+      "accept: mistakes of the recording to undo. progress: called with (step, done, total).");
   module.def(
       "validate", Validate, "project"_a, "calibration"_a, "recording"_a, py::kw_only(),
       "frozen"_a = false, "refit"_a = std::nullopt, "seed"_a = std::nullopt, "accept"_a = Names(),

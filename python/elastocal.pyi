@@ -210,8 +210,8 @@ def calibrate(
 ) -> Calibration:
     """Calibrates from a posture table or from recording folders (a path or several), like the command of that name;
     with contact or instruments, from tables of observations. folds: of the cross-validation, 0 for none; None: ten
-    for a table. prior: the folder of an earlier calibration, `days` ago. accept: mistakes of the recording to undo.
-    progress: called with (step, done, total)."""
+    for a table. fold_by: what a fold leaves out, 'posture', 'trial' or 'session'. prior: the folder of an earlier
+    calibration, `days` ago. accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
 def validate(
     project: Project,
     calibration: _Path,
