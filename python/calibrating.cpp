@@ -185,13 +185,21 @@ py::object Check(const Project& project, const Path& calibration, const py::obje
   }));
 }
 
-py::dict Compare(const Path& a, const Path& b, double level) {
+py::dict Compare(const Path& a, const Path& b, double level, bool new_markers) {
   ExpectBounded("compare --level", level);
-  const ComparisonRun run = Unlocked([&] { return CompareCalibrations(a, b, {.level = level}); });
+  const ComparisonRun run = Unlocked(
+      [&] { return CompareCalibrations(a, b, {.level = level, .new_markers = new_markers}); });
   const CalibrationComparison& found = run.comparison;
-  py::list moved, parameters;
+  py::list moved, parameters, markers;
+  py::dict or_markers;
   for (const JointDifference& joint : found.joints) {
-    if (joint.moved) moved.append(joint.joint);
+    if (!joint.moved) continue;
+    moved.append(joint.joint);
+    or_markers[py::str(joint.joint)] = joint.or_markers;
+  }
+  for (const LinkMarkers& link : found.markers) {
+    markers.append(py::dict("link"_a = link.link, "markers"_a = link.markers, "same"_a = link.same,
+                            "p"_a = link.p));
   }
   for (const ParameterDifference& one : found.parameters) {
     parameters.append(py::dict("name"_a = one.name, "joint"_a = one.joint, "unit"_a = one.unit,
@@ -201,6 +209,8 @@ py::dict Compare(const Path& a, const Path& b, double level) {
   py::dict result;
   result["changed"] = found.changed;
   result["moved"] = moved;
+  result["or_markers"] = or_markers;
+  result["markers"] = markers;
   result["suspects"] = found.suspects;
   result["parameters"] = parameters;
   result["warnings"] = found.warnings;
@@ -271,8 +281,12 @@ void AddCalibrating(py::module_& module) {
       "'next_postures' to record where several joints may have changed. "
       "level: chance of a false alarm. days: since the calibration.");
   module.def("compare", Compare, "a"_a, "b"_a, py::kw_only(), "level"_a = 0.05,
+             "new_markers"_a = false,
              "Tells which joints moved between two saved calibrations: a dict with 'changed', "
-             "'moved', 'suspects', 'warnings' and 'parameters' (values in SI units).");
+             "'moved', 'or_markers' (by moved joint, links whose markers may have moved as one "
+             "piece instead), 'suspects', 'markers' (by link, whether they are 'same'), 'warnings' "
+             "and 'parameters' (values in SI units). new_markers: markers were taken off in "
+             "between.");
 }
 
 }  // namespace elastocal::python

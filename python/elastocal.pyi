@@ -238,9 +238,11 @@ def check(
     """Tells from a few postures (with contact or instruments, tables of observations) whether a saved calibration
     still holds: the dict of `elastocal check --json`, of markers with the 'next_postures' to record where several
     joints may have changed. level: chance of a false alarm. days: since the calibration."""
-def compare(a: _Path, b: _Path, *, level: float = 0.05) -> dict[str, Any]:
-    """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'suspects',
-    'warnings' and 'parameters' (values in SI units)."""
+def compare(a: _Path, b: _Path, *, level: float = 0.05, new_markers: bool = False) -> dict[str, Any]:
+    """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'or_markers' (by
+    moved joint, links whose markers may have moved as one piece instead), 'suspects', 'markers' (by link, whether
+    they are 'same'), 'warnings' and 'parameters' (values in SI units). new_markers: markers were taken off in
+    between."""
 def read(
     file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...
 ) -> _Recording:

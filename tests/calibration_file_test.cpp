@@ -188,6 +188,20 @@ TEST_F(CalibrationFile, ACovarianceThatDoesNotBelongIsNamedByLine) {
   refused(header + "a.theta,4,1\na.d,1,9\na.d,1,9\n", {"covariance.csv:4", "too many"});
 }
 
+TEST_F(CalibrationFile, MarkersHaveTheirLinksAndNominalPlaces) {
+  const std::string text = MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin);
+  const CalibrationEstimate estimate = ParseEstimate(text, "there.yaml");
+  ASSERT_EQ(estimate.markers.size(), 2u);
+  EXPECT_EQ(estimate.markers[1].name, "B");
+  EXPECT_EQ(estimate.markers[1].link, "tool");
+  EXPECT_EQ(estimate.markers[1].nominal, Eigen::Vector3d(-0.04, 0.05, 0.06));
+  std::string twice = text;
+  twice.replace(twice.find("name: B"), 7, "name: A");
+  ExpectInputError([&] { ParseEstimate(twice, "there.yaml"); },
+                   {"there.yaml:", "every marker once"});
+  EXPECT_TRUE(ParseEstimate(MakeCalibrationYaml(estimate), "prior.yaml").markers.empty());
+}
+
 TEST_F(CalibrationFile, EveryParameterHasAUnitAndAStatus) {
   const std::string text = MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin);
   for (const Parameter& parameter : result_.model.parameters) {

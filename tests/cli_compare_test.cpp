@@ -29,6 +29,15 @@ TEST_F(Program, CompareNamesTheJointThatMoved) {
   EXPECT_EQ(json["moved"], nlohmann::json({"elbow_joint"}));
   EXPECT_EQ(json["with_covariance"], true);
   EXPECT_EQ(json["joints"][0]["joint"], "elbow_joint");
+  EXPECT_TRUE(json["joints"][0]["or_markers"].empty());
+  // The one on the wrist is alone, which tells nothing; the others stayed.
+  ASSERT_EQ(json["markers"].size(), 3u);
+  for (const nlohmann::json& link : json["markers"]) EXPECT_EQ(link["same"], true) << link;
+  EXPECT_NE(result.out.find("Markers: on 3 of 3 links all are where they were"), std::string::npos);
+  const ProgramResult anew =
+      RunProgram("compare " + out_ + " " + later + " --new-markers --json " + json_file);
+  EXPECT_TRUE(nlohmann::json::parse(ReadFile(json_file))["markers"].empty());
+  EXPECT_EQ(anew.out.find("Markers:"), std::string::npos);
   const nlohmann::json& theta = json["parameters"][0];
   EXPECT_EQ(theta["name"], "elbow_joint.theta");
   EXPECT_EQ(theta["unit"], "rad");

@@ -9,7 +9,11 @@ random postures, places, clocks and noise, the same robot. Both are calibrated w
 settings and compared: no joint should be said to have moved. Then one joint of the second recording
 is turned (its logged positions are off by that much in all trials, as after its motor was remounted),
 and it should be named, and alone. The joint is drawn with the seed of the pair among all joints that
-the calibration tells. Prints a line for each pair and the counts. Everything follows from the seeds.
+the calibration tells. The unchanged robot is also compared with markers of one link, drawn with the seed too, where
+they were not: each of them fixed anew (1 mm), and all as one piece on a plate that moved (1 mm and 10 mrad). This is done to
+the second calibration's estimates and nominal places of these markers, which follow their places exactly. No joint
+should be said to have moved; where the plate moved as a joint would have moved it, this link should be named as the other
+explanation. Prints a line for each pair and the counts. Everything follows from the seeds.
 """
 
 import argparse
@@ -18,6 +22,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import shutil
 import subprocess
 import tempfile
@@ -50,6 +55,39 @@ def turn(folder, joint, angle):
             csv.writer(file).writerows(rows)
 
 
+def displaced(entries, link, draw, rigid):
+    """Lines of a calibration.yaml in which the markers of a link are elsewhere."""
+    normal = lambda sd: [draw.gauss(0, sd) for _ in range(3)]
+    shift, turn = normal(1e-3), normal(10e-3)
+    steps = {}
+    for name, (on, p) in entries.items():
+        if on != link:
+            continue
+        turned = [turn[(i + 1) % 3] * p[(i + 2) % 3] - turn[(i + 2) % 3] * p[(i + 1) % 3] for i in range(3)]
+        own = [s + t for s, t in zip(shift, turned)] if rigid else normal(1e-3)
+        steps.update({f"marker.{name}.{axis}": step for axis, step in zip("xyz", own)})
+    return steps
+
+
+def move_markers(source, target, draw, rigid):
+    """The calibration of `source`, as it would be with the markers of a link elsewhere. Returns the link."""
+    target.mkdir(exist_ok=True)
+    shutil.copy(source / "covariance.csv", target)
+    text = (source / "calibration.yaml").read_text()
+    entries = {}
+    for name, link, places in re.findall(r"- {name: (\S+), link: (\S+), xyz_m: \[(.*)\]}", text):
+        entries[name] = (link, [float(number) for number in places.split(",")])
+    link = draw.choice(sorted({link for link, _ in entries.values()}))
+    steps = displaced(entries, link, draw, rigid)
+
+    def moved(found):
+        return f"{found[1]}{float(found[3]) + steps[found[2]]!r}" if found[2] in steps else found[0]
+
+    text = re.sub(r"(- {name: (marker\.\S+), unit: m, value: )([^,]+)", moved, text)
+    (target / "calibration.yaml").write_text(text)
+    return link
+
+
 def pair(arguments, seed, scratch):
     """Joints said to have moved without a change; the joint turned, and those named then."""
     program, project = arguments.program, arguments.project
@@ -60,13 +98,18 @@ def pair(arguments, seed, scratch):
         run(program, "calibrate", project, "--recording", folder, "-o", scratch / f"{folder.name}_out",
             may_fail=True)
     compared = compare(program, scratch, "b_out")
+    draw = random.Random(seed)
+    elsewhere = {}
+    for way, rigid in (("anew", False), ("plate", True)):
+        link = move_markers(scratch / "b_out", scratch / "moved_out", draw, rigid)
+        elsewhere[way] = (link, compare(program, scratch, "moved_out"))
     joints = sorted({entry["joint"] for entry in compared["joints"]
                      if entry["joint"] + ".theta" in {p["name"] for p in compared["parameters"]}})
     joint = random.Random(seed).choice(joints)
     turn(b, joint, math.radians(arguments.turn_deg))
     run(program, "calibrate", project, "--recording", b, "-o", scratch / "c_out", may_fail=True)
     changed = compare(program, scratch, "c_out")
-    return compared, joint, changed
+    return compared, joint, changed, elsewhere
 
 
 def compare(program, scratch, other):
@@ -86,16 +129,22 @@ def main():
     parser.add_argument("--work", help="keep the files here")
     arguments = parser.parse_args()
     false_alarms = named = alone = 0
+    seen = {"anew": 0, "plate": 0}
+    wrong = {"anew": 0, "plate": 0}
     for seed in range(arguments.first, arguments.first + arguments.pairs):
         scratch = pathlib.Path(tempfile.mkdtemp(prefix=f"pair_{seed}_", dir=arguments.work))
-        same, joint, changed = pair(arguments, seed, scratch)
+        same, joint, changed, elsewhere = pair(arguments, seed, scratch)
         false_alarms += bool(same["moved"])
         named += joint in changed["moved"]
         alone += changed["moved"] == [joint]
         least = same["joints"][0]
         print(f"{seed}: unchanged: moved {same['moved']} (least p {least['joint']} {least['p']:.2g}, "
-              f"overall {same['overall']['p']:.2g}); {joint} turned: moved {changed['moved']}",
-              flush=True)
+              f"overall {same['overall']['p']:.2g}); {joint} turned: moved {changed['moved']}")
+        for way, (link, found) in elsewhere.items():
+            seen[way] += not next(one["same"] for one in found["markers"] if one["link"] == link)
+            others = {one["joint"]: one["or_markers"] for one in found["joints"] if one["moved"]}
+            wrong[way] += any(link not in links for links in others.values())
+            print(f"    markers of {link} {way}: moved {others}", flush=True)
         if arguments.work is None:
             shutil.rmtree(scratch)
         else:
@@ -104,6 +153,9 @@ def main():
     pairs = arguments.pairs
     print(f"{pairs} pairs: a false alarm in {false_alarms}; the turned joint is named in {named}, "
           f"alone in {alone}")
+    for way, title in (("anew", "fixed anew"), ("plate", "moved as one piece")):
+        print(f"markers of a link {title}: seen in {seen[way]}; a joint accused without naming that link "
+              f"in {wrong[way]}")
 
 
 if __name__ == "__main__":

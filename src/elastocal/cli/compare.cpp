@@ -55,6 +55,8 @@ void AddCompare(CLI::App& app, Action& action) {
                    "Chance that any joint of an unchanged robot is called moved all the same")
       ->check(InBounds("compare --level"))
       ->capture_default_str();
+  command->add_flag("--new-markers", options->comparison.new_markers,
+                    "Markers were taken off in between: conclude nothing from their places");
   AddOutputOptions(*command, options->common);
   command->footer(
       "Ends with 0 whether joints moved or not; the JSON's status tells.\n"

@@ -95,9 +95,37 @@ std::vector<std::string> MovedJoints(const CalibrationComparison& comparison) {
   return names;
 }
 
+/// Where markers stayed, and where not.
+std::string MarkerText(const std::vector<LinkMarkers>& links) {
+  std::vector<std::string> moved;
+  for (const LinkMarkers& link : links) {
+    if (!link.same) moved.push_back(fmt::format("{} (p {})", link.link, Probability(link.p)));
+  }
+  if (links.empty()) return "";
+  std::string text = fmt::format("\nMarkers: on {} of {} links all are where they were",
+                                 links.size() - moved.size(), links.size());
+  if (!moved.empty()) text += "; elsewhere on " + Joined(moved);
+  return text + "\n";
+}
+
+/// What else would explain that joints seem to have moved.
+std::string OtherExplanations(const CalibrationComparison& comparison) {
+  std::string text;
+  for (const JointDifference& joint : comparison.joints) {
+    if (joint.or_markers.empty()) continue;
+    text += fmt::format("  {}: or all markers on {} moved as one piece{}\n", joint.joint,
+                        fmt::join(joint.or_markers, ", or on "),
+                        joint.or_markers.size() > 1 ? " (one of these links)" : "");
+  }
+  return text;
+}
+
 std::string Conclusion(const CalibrationComparison& comparison, double level) {
   const std::vector<std::string> moved = MovedJoints(comparison);
-  if (!moved.empty()) return "Moved by more than their uncertainty: " + Joined(moved) + "\n";
+  if (!moved.empty()) {
+    return "Moved by more than their uncertainty: " + Joined(moved) + "\n" +
+           OtherExplanations(comparison);
+  }
   if (!comparison.changed) {
     return fmt::format(
         "No joint moved by more than its uncertainty (chance of a false alarm {:.3g} %).\n",
@@ -162,6 +190,7 @@ std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEs
   text += ParameterTable(comparison);
   text += "  * differs at 95 %, looked at alone; one in twenty does so by chance\n";
   text += NotComparedText(comparison);
+  text += MarkerText(comparison.markers);
   return text + "\n" + Conclusion(comparison, options.level);
 }
 
@@ -187,10 +216,16 @@ Json MakeComparisonJson(const CalibrationEstimate& a, const CalibrationEstimate&
     item.update(TestJson(joint.test));
     item["p_adjusted"] = joint.p_adjusted;
     item["moved"] = joint.moved;
+    item["or_markers"] = joint.or_markers;
     json["joints"].push_back(item);
     for (const int i : joint.parameters) {
       json["parameters"].push_back(ParameterJson(comparison.parameters[i]));
     }
+  }
+  json["markers"] = Json::array();
+  for (const LinkMarkers& link : comparison.markers) {
+    json["markers"].push_back(
+        {{"link", link.link}, {"markers", link.markers}, {"same", link.same}, {"p", link.p}});
   }
   json["not_compared"] = Json::array();
   for (const NotCompared& one : comparison.not_compared) {

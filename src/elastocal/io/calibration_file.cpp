@@ -86,6 +86,22 @@ void EmitWaist(const Transform& T_ref_waist, const Eigen::Vector3d& gravity, YAM
        << YAML::Comment("in the frame of the recording; waist.T0 deviates from there");
 }
 
+void EmitMarkers(const ErrorModel& model, YAML::Emitter& yaml) {
+  if (model.markers.empty()) return;
+  yaml << YAML::Key << "markers" << YAML::Value
+       << YAML::Comment("where the project has them on their links; marker.* deviates from there");
+  yaml << YAML::BeginSeq;
+  for (const Marker& marker : model.markers) {
+    yaml << YAML::Flow << YAML::BeginMap;
+    yaml << YAML::Key << "name" << YAML::Value << marker.name;
+    yaml << YAML::Key << "link" << YAML::Value << model.tree.links[Size(marker.link)].name;
+    yaml << YAML::Key << "xyz_m" << YAML::Value;
+    EmitNumbers(marker.p_link_marker, yaml);
+    yaml << YAML::EndMap;
+  }
+  yaml << YAML::EndSeq;
+}
+
 /// Waist and markers alone, fitted to the same recording.
 void EmitUncalibrated(const CalibrationResult& result, YAML::Emitter& yaml) {
   yaml << YAML::Key << "uncalibrated" << YAML::Value << YAML::BeginMap;
@@ -195,6 +211,7 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   yaml << YAML::EndMap;
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(result.interval_factor);
   if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, gravity, yaml);
+  EmitMarkers(result.model, yaml);
   if (uncalibrated != nullptr) EmitUncalibrated(*uncalibrated, yaml);
   if (in_urdf != nullptr) EmitInUrdf(*in_urdf, yaml);
   yaml << YAML::Key << "parameter_count" << YAML::Value << result.model.parameter_count()
@@ -261,6 +278,14 @@ CalibrationEstimate ParseEstimate(const std::string& text, const std::string& so
   }
   estimate.model = root.Get("model").Text();
   if (const auto gauge = root.Find("gauge")) estimate.gauge = gauge->Text();
+  if (const auto markers = root.Find("markers")) {
+    std::set<std::string> seen;
+    for (const YamlValue& item : markers->Items()) {
+      item.Get("name").Expect(seen.insert(item.Get("name").Text()).second, "every marker once");
+      estimate.markers.push_back(
+          {item.Get("name").Text(), item.Get("link").Text(), ReadNumbers(item.Get("xyz_m"))});
+    }
+  }
   const YamlValue factor = root.Get("interval_95_in_sd");
   estimate.interval_factor = factor.Number();
   factor.Expect(estimate.interval_factor >= 1.95 && estimate.interval_factor <= 12.8,

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/validation/conditioned_estimate.hpp"
 
@@ -45,11 +46,65 @@ Eigen::MatrixXd CovarianceOf(const CalibrationEstimate& estimate, bool from_file
   return estimate.covariance(rows, rows);
 }
 
-ParameterDifference MakeDifference(const CommonParameter& common, const CalibrationEstimate& a,
-                                   const CalibrationEstimate& b, const Differences& all, int i) {
-  ParameterDifference one{.name = common.name, .joint = common.joint, .unit = common.unit};
-  one.a = a.parameters[common.in_a].value;
-  one.b = b.parameters[common.in_b].value;
+/// All differences, and which of their rows are the robot's and which the markers' by link.
+struct Comparable {
+  Differences all;
+  std::vector<int> robot;
+  std::vector<std::vector<int>> markers;
+};
+
+/// Those of the robot's parameters first. `comparison` takes the parameters and the links.
+Comparable MakeComparable(const CalibrationEstimate& a, const CalibrationEstimate& b,
+                          const std::vector<CommonParameter>& common,
+                          const ComparisonOptions& options, CalibrationComparison& comparison) {
+  std::vector<int> in_a, in_b;
+  std::vector<double> values;
+  const auto add = [&](int at_a, int at_b, double nominal_difference) {
+    in_a.push_back(at_a);
+    in_b.push_back(at_b);
+    values.push_back(b.parameters[Size(at_b)].value - a.parameters[Size(at_a)].value +
+                     nominal_difference);
+    return static_cast<int>(values.size()) - 1;
+  };
+  Comparable made;
+  for (const CommonParameter& one : common) {
+    made.robot.push_back(add(one.in_a, one.in_b, 0.0));
+    comparison.parameters.push_back({.name = one.name,
+                                     .joint = one.joint,
+                                     .unit = one.unit,
+                                     .a = a.parameters[Size(one.in_a)].value,
+                                     .b = b.parameters[Size(one.in_b)].value});
+  }
+  if (comparison.with_covariance && !options.new_markers) {
+    comparison.markers = FindCommonMarkers(a, b);
+  }
+  for (const LinkMarkers& link : comparison.markers) {
+    made.markers.emplace_back();
+    for (const MarkerCoordinate& one : CoordinatesOf(link, a, b)) {
+      made.markers.back().push_back(add(one.in_a, one.in_b, one.nominal_difference));
+    }
+  }
+  made.all = {.values = Eigen::VectorXd::Map(values.data(), std::ssize(values)),
+              .covariance_a = CovarianceOf(a, comparison.with_covariance, in_a),
+              .covariance_b = CovarianceOf(b, comparison.with_covariance, in_b),
+              .freedom_a = DegreesOfFreedom(a),
+              .freedom_b = DegreesOfFreedom(b)};
+  constexpr double kReturns = kMarkerReturns * kMarkerReturns;
+  for (const std::vector<int>& link : made.markers) {
+    for (const int row : link) {
+      made.all.covariance_a(row, row) += 0.5 * kReturns;
+      made.all.covariance_b(row, row) += 0.5 * kReturns;
+    }
+  }
+  return made;
+}
+
+/// The robot's differences, if the markers on links where they are the same have not moved.
+Differences OfRobot(const Comparable& comparable, const std::vector<LinkMarkers>& links) {
+  return GivenNone(comparable.all, comparable.robot, RowsOfUnmoved(comparable.markers, links));
+}
+
+void SetDifference(const Differences& all, int i, ParameterDifference& one) {
   one.difference = all.values[i];
   const double variance_a = all.covariance_a(i, i);
   const double variance = variance_a + all.covariance_b(i, i);
@@ -57,7 +112,6 @@ ParameterDifference MakeDifference(const CommonParameter& common, const Calibrat
   one.degrees_of_freedom = PooledFreedom(all, variance_a / variance);
   one.half_width = one.sd * StudentQuantile(0.975, one.degrees_of_freedom);
   one.p = StudentTwoSidedTail(one.difference / one.sd, one.degrees_of_freedom);
-  return one;
 }
 
 /// A joint's test without correlations, which holds whatever they are.
@@ -87,7 +141,8 @@ std::vector<JointDifference> GroupByJoint(const std::vector<ParameterDifference>
       return known.joint == parameters[i].joint;
     });
     if (joint == joints.end()) {
-      joints.push_back({.joint = parameters[i].joint, .parameters = {}, .test = {}});
+      joints.push_back(
+          {.joint = parameters[i].joint, .parameters = {}, .test = {}, .or_markers = {}});
       joint = std::prev(joints.end());
     }
     joint->parameters.push_back(static_cast<int>(i));
@@ -129,16 +184,61 @@ std::vector<std::string> FindSuspects(const Differences& all,
   return suspects;
 }
 
-/// Fills in the tests of joints and of everything together.
-void Judge(const Differences& all, double level, CalibrationComparison& comparison) {
-  const auto test = [&](const std::vector<int>& which) {
-    return comparison.with_covariance ? TestDifferences(all, which)
-                                      : TestBySmallest(comparison.parameters, which);
-  };
-  comparison.joints = GroupByJoint(comparison.parameters);
-  for (JointDifference& joint : comparison.joints) joint.test = test(joint.parameters);
-  JudgeJoints(level, comparison.joints);
-  comparison.overall = test(AllOf(comparison.parameters.size()));
+/// The joints with their tests, the most significant first.
+std::vector<JointDifference> TestJoints(const Differences& all, double level,
+                                        const CalibrationComparison& comparison) {
+  std::vector<JointDifference> joints = GroupByJoint(comparison.parameters);
+  for (JointDifference& joint : joints) {
+    joint.test = comparison.with_covariance
+                     ? TestDifferences(all, joint.parameters)
+                     : TestBySmallest(comparison.parameters, joint.parameters);
+  }
+  JudgeJoints(level, joints);
+  return joints;
+}
+
+/// What the differences of the robot say.
+struct Findings {
+  std::vector<JointDifference> joints;
+  DifferenceTest overall;
+};
+
+Findings TestAll(const Differences& all, double level, const CalibrationComparison& comparison) {
+  const std::vector<int> everything = AllOf(comparison.parameters.size());
+  return {.joints = TestJoints(all, level, comparison),
+          .overall = comparison.with_covariance
+                         ? TestDifferences(all, everything)
+                         : TestBySmallest(comparison.parameters, everything)};
+}
+
+/// Leaves the markers of one link after another open, which may have moved as one piece. Where a
+/// joint is then no longer accused, it names the link beside it. Of the tests of everything it
+/// keeps the one that accuses least.
+void LeaveLinksOpen(const Comparable& comparable, double level, CalibrationComparison& comparison) {
+  for (std::size_t k = 0; k < comparison.markers.size(); ++k) {
+    if (!comparison.markers[k].same) continue;
+    std::vector<LinkMarkers> links = comparison.markers;
+    links[k].same = false;
+    const Findings open = TestAll(OfRobot(comparable, links), level, comparison);
+    if (open.overall.p > comparison.overall.p) comparison.overall = open.overall;
+    for (JointDifference& joint : comparison.joints) {
+      const auto there = std::ranges::find(open.joints, joint.joint, &JointDifference::joint);
+      if (joint.moved && !there->moved) joint.or_markers.push_back(links[k].link);
+    }
+  }
+}
+
+/// Fills in the tests of markers, joints and everything together.
+void Judge(const Comparable& comparable, double level, CalibrationComparison& comparison) {
+  FindUnmovedMarkers(comparable.all, comparable.markers, level, comparison.markers);
+  const Differences all = OfRobot(comparable, comparison.markers);
+  for (std::size_t i = 0; i < comparison.parameters.size(); ++i) {
+    SetDifference(all, static_cast<int>(i), comparison.parameters[i]);
+  }
+  Findings found = TestAll(all, level, comparison);
+  comparison.joints = std::move(found.joints);
+  comparison.overall = found.overall;
+  LeaveLinksOpen(comparable, level, comparison);
   const bool some_moved = comparison.joints.front().moved;
   comparison.changed = some_moved || comparison.overall.p <= level;
   if (comparison.changed && !some_moved && comparison.with_covariance) {
@@ -246,26 +346,9 @@ CalibrationComparison CompareCalibrations(const CalibrationEstimate& given_a,
   }
   comparison.not_compared = std::move(common.not_compared);
 
-  std::vector<int> in_a, in_b;
-  Differences all{.values = Eigen::VectorXd(static_cast<Eigen::Index>(common.common.size())),
-                  .covariance_a = {},
-                  .covariance_b = {}};
-  for (const CommonParameter& one : common.common) {
-    all.values[static_cast<Eigen::Index>(in_a.size())] =
-        b.parameters[one.in_b].value - a.parameters[one.in_a].value;
-    in_a.push_back(one.in_a);
-    in_b.push_back(one.in_b);
-  }
-  all.covariance_a = CovarianceOf(a, full, in_a);
-  all.covariance_b = CovarianceOf(b, full, in_b);
-  all.freedom_a = DegreesOfFreedom(a);
-  all.freedom_b = DegreesOfFreedom(b);
-  for (std::size_t i = 0; i < common.common.size(); ++i) {
-    comparison.parameters.push_back(
-        MakeDifference(common.common[i], a, b, all, static_cast<int>(i)));
-  }
+  const Comparable comparable = MakeComparable(a, b, common.common, options, comparison);
   try {
-    Judge(all, options.level, comparison);
+    Judge(comparable, options.level, comparison);
   } catch (const std::invalid_argument&) {
     throw InputError(a.source + ", " + b.source + ": the covariances are not positive definite");
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastocal/validation/common_parameters.hpp"
+#include "elastocal/validation/shared_markers.hpp"
 #include "elastocal/validation/significance.hpp"
 
 namespace elastocal {
@@ -12,14 +13,18 @@ namespace elastocal {
 struct ComparisonOptions {
   /// Probability that any joint of an unchanged robot is reported as moved.
   double level = 0.05;
+  /// Whether markers were taken off and fixed anew in between, all of them, so that their places
+  /// tell nothing of the robot.
+  bool new_markers = false;
 };
 
 /// A parameter that both calibrations tell, in rad, m or its other SI unit.
 struct ParameterDifference {
   std::string name, joint, unit;
   double a = 0.0, b = 0.0;
-  double difference = 0.0;  ///< b - a
-  double sd = 0.0;          ///< of the difference
+  /// b - a, and what is then left of it with the markers that have not moved where they were.
+  double difference = 0.0;
+  double sd = 0.0;  ///< of the difference
 
   double degrees_of_freedom = 0.0;  ///< of its Student's t; infinite for the normal distribution
   double half_width = 0.0;          ///< half width of its 95 % interval, for this parameter alone
@@ -34,17 +39,23 @@ struct JointDifference {
   DifferenceTest test;
   double p_adjusted = 1.0;  ///< by Holm: the joint has moved if it is at or below the level
   bool moved = false;
+  /// Links whose markers, if all on one of them had moved together, would make it insignificant:
+  /// either that happened or the joint has moved.
+  std::vector<std::string> or_markers;
 };
 
 struct CalibrationComparison {
   std::vector<JointDifference> joints;          ///< the most significant first
   std::vector<ParameterDifference> parameters;  ///< in the order of B
-  DifferenceTest overall;                       ///< of all parameters together
+  /// Of all parameters together; of these tests with the markers of one link or none left open, the
+  /// one that accuses least.
+  DifferenceTest overall;
   bool changed = false;  ///< whether a joint has moved, or overall.p is at or below the level
   /// Joints of which any one alone, if it moved, would explain all differences. Only if something
   /// changed and no joint could be singled out.
   std::vector<std::string> suspects;
-  bool with_covariance = false;  ///< whether both covariances were known
+  bool with_covariance = false;      ///< whether both covariances were known
+  std::vector<LinkMarkers> markers;  ///< empty without covariance, or if all markers are new
   std::vector<NotCompared> not_compared;
   std::vector<std::string> warnings;
 };
@@ -65,6 +76,14 @@ struct CalibrationComparison {
 ///   determine, both covariances agree.
 /// The price is power: a change in a badly excited direction is estimated too small, and its
 /// interval says so. Errors of the two recordings must be independent.
+///
+/// **Markers that stayed.** A turned last joint and markers that were turned with its link look the
+/// same, and so do a hip and the markers on the root link together with all other branches. The
+/// places of markers are therefore not left open where both calibrations find them the same
+/// (FindUnmovedMarkers): differences and covariances are those that are left if these markers have
+/// not moved by more than kMarkerReturns. A cluster that moved as one piece may hide in this way,
+/// and a joint be accused in its place: `or_markers` names it, and `overall` does not rest on the
+/// markers of one link.
 ///
 /// **A joint** is tested by all its common quantities together (marginally, whatever else may have
 /// moved), by Fisher's F with their number and the degrees of freedom of the noise (Welch and

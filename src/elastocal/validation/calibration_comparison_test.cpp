@@ -174,6 +174,122 @@ TEST_F(CalibrationComparisonTest, SpringsOnlyUnderTheSameLoads) {
   EXPECT_NE(comparison.not_compared[1].reason.find("loads"), std::string::npos);
 }
 
+/// Adds `count` markers on j3's link. j3.theta and they as one piece are told apart to 20 mrad
+/// only: a marker's y is known to 0.05 mm beside its lever of 100 mm times j3.theta.
+void AddCluster(CalibrationEstimate& estimate, int count) {
+  constexpr double kLever = 0.1, kTold = 5e-5, kTheta = 2e-2;
+  const Eigen::Index at = estimate.covariance.rows();
+  const int theta = 4;
+  estimate.covariance.conservativeResize(at + 3 * count, at + 3 * count);
+  estimate.covariance.rightCols(3 * count).setZero();
+  estimate.covariance.bottomRows(3 * count).setZero();
+  estimate.covariance(theta, theta) = kTheta * kTheta;
+  estimate.parameters[theta].sd = kTheta;
+  Eigen::VectorXd turned = Eigen::VectorXd::Zero(at + 3 * count);  // by j3.theta
+  turned[theta] = 1.0;
+  for (int m = 0; m < count; ++m) {
+    const std::string name = "M" + std::to_string(m);
+    estimate.markers.push_back({name, "link3", Eigen::Vector3d(0.0, 0.0, 0.01 * m)});
+    for (const char* axis : {"x", "y", "z"}) {
+      estimate.parameters.push_back({.name = "marker." + name + "." + axis,
+                                     .unit = "m",
+                                     .external = true,
+                                     .value = 0.01,
+                                     .sd = kTold});
+      estimate.covariance_names.push_back(estimate.parameters.back().name);
+    }
+    turned[at + 3 * m + 1] = -kLever;
+  }
+  estimate.covariance.bottomRightCorner(3 * count, 3 * count).diagonal().array() += kTold * kTold;
+  estimate.covariance(theta, theta) = 0.0;
+  estimate.covariance += kTheta * kTheta * turned * turned.transpose();
+}
+
+class MarkersOfTwoDays : public CalibrationComparisonTest {
+ protected:
+  void AddClusters(int count) {
+    for (CalibrationEstimate* side : {&a_, &b_}) AddCluster(*side, count);
+  }
+  double& MarkerInB(int marker, int axis) {
+    return b_.parameters[static_cast<std::size_t>(7 + 3 * marker + axis)].value;
+  }
+  /// j3 by 5 mrad: each estimate is the most probable one, so half of it is in the markers' places.
+  void TurnJoint() {
+    b_.parameters[4].value += 2.5e-3;
+    for (int m = 0; 7 + 3 * m < std::ssize(b_.parameters); ++m) MarkerInB(m, 1) += 2.5e-4;
+  }
+};
+
+// All differences lie within their intervals; but the markers are where they were, if j3 turned.
+TEST_F(MarkersOfTwoDays, ThatStayedTellOfATurnedJoint) {
+  AddClusters(3);
+  TurnJoint();
+  const CalibrationComparison comparison = Compared();
+  ASSERT_EQ(comparison.markers.size(), 1u);
+  EXPECT_EQ(comparison.markers[0].link, "link3");
+  EXPECT_EQ(comparison.markers[0].markers, (std::vector<std::string>{"M0", "M1", "M2"}));
+  EXPECT_TRUE(comparison.markers[0].same);
+  EXPECT_EQ(comparison.joints[0].joint, "j3");
+  EXPECT_TRUE(comparison.joints[0].moved);
+  EXPECT_FALSE(comparison.joints[1].moved);
+  EXPECT_EQ(comparison.joints[0].or_markers, std::vector<std::string>{"link3"});
+  EXPECT_GT(comparison.overall.p, 0.9);  // with the markers open
+  EXPECT_NEAR(comparison.parameters[4].b - comparison.parameters[4].a, 2.5e-3, 1e-12);
+  EXPECT_NEAR(comparison.parameters[4].difference, 5e-3, 5e-6);
+  EXPECT_NEAR(comparison.parameters[4].sd, std::sqrt((2.0 * 2.5e-9 + 1e-8) / 3.0) / 0.1, 1e-6);
+  // Whoever took them off says so, and then nothing is known of j3.
+  const CalibrationComparison anew = CompareCalibrations(a_, b_, {.new_markers = true});
+  EXPECT_TRUE(anew.markers.empty());
+  EXPECT_FALSE(anew.changed);
+  EXPECT_NEAR(anew.parameters[4].difference, 2.5e-3, 1e-12);
+}
+
+TEST_F(MarkersOfTwoDays, GluedAnewTellNothing) {
+  AddClusters(3);
+  TurnJoint();
+  MarkerInB(1, 0) += 1.2e-3;  // ten standard deviations
+  const CalibrationComparison comparison = Compared();
+  ASSERT_EQ(comparison.markers.size(), 1u);
+  EXPECT_FALSE(comparison.markers[0].same);
+  EXPECT_LT(comparison.markers[0].p, 1e-6);
+  EXPECT_FALSE(comparison.joints[0].moved);
+  EXPECT_NEAR(comparison.parameters[4].difference, 2.5e-3, 1e-12);
+}
+
+TEST_F(MarkersOfTwoDays, ThreeOnALinkAreNeeded) {
+  AddClusters(2);
+  TurnJoint();
+  EXPECT_TRUE(Compared().markers.empty());
+  EXPECT_FALSE(Compared().changed);
+}
+
+// The second project has a marker elsewhere, and its estimate deviates from there.
+TEST_F(MarkersOfTwoDays, AreComparedWhereTheyAre) {
+  AddClusters(3);
+  TurnJoint();
+  b_.markers[2].nominal.z() += 0.02;
+  MarkerInB(2, 2) -= 0.02;
+  EXPECT_TRUE(Compared().markers[0].same);
+  EXPECT_TRUE(Compared().joints[0].moved);
+  b_.markers[2].link = "link2";
+  EXPECT_TRUE(Compared().markers.empty());
+}
+
+// A gauge that puts markers where they are leaves nothing uncertain of some combinations.
+TEST_F(MarkersOfTwoDays, MayDefineTheFrame) {
+  AddClusters(3);
+  for (CalibrationEstimate* side : {&a_, &b_}) {
+    side->covariance.row(7) = side->covariance.row(6);
+    side->covariance.col(7) = side->covariance.col(6);
+    side->covariance(6, 7) = side->covariance(7, 6) = side->covariance(7, 7) =
+        side->covariance(6, 6);
+  }
+  const CalibrationComparison comparison = Compared();
+  ASSERT_EQ(comparison.markers.size(), 1u);
+  EXPECT_TRUE(comparison.markers[0].same);
+  EXPECT_FALSE(comparison.changed);
+}
+
 TEST_F(CalibrationComparisonTest, WhatCannotBeCompared) {
   const auto compare = [&] { Compared(); };
   b_.robot = "other robot";

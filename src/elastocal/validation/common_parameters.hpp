@@ -21,6 +21,14 @@ struct ParameterEstimate {
   double sd = 0.0;     ///< NaN where none applies
 };
 
+/// A marker of a calibration, whose parameters are `marker.<name>.x`, `.y` and `.z`.
+struct MarkerPlace {
+  std::string name, link;
+  /// Where the project has it in the frame of its link, m: its parameters deviate from there, along
+  /// the axes of that frame.
+  Eigen::Vector3d nominal = Eigen::Vector3d::Zero();
+};
+
 /// A calibration as read back from its files.
 struct CalibrationEstimate {
   std::string source;  ///< the file, for messages
@@ -35,6 +43,7 @@ struct CalibrationEstimate {
   /// covariance is unknown.
   std::vector<std::string> covariance_names;
   Eigen::MatrixXd covariance;
+  std::vector<MarkerPlace> markers;  ///< empty if the file does not have them
 
   bool has_covariance() const { return !covariance_names.empty(); }
 };

@@ -19,7 +19,7 @@ Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& covariance) {
   const Eigen::LLT<Eigen::MatrixXd> correlation(scale.asDiagonal() * covariance *
                                                 scale.asDiagonal());
   if (!scale.allFinite() || correlation.info() != Eigen::Success) {
-    throw std::invalid_argument("TestDifferences: covariance not positive definite");
+    throw std::invalid_argument("significance: covariance of differences not positive definite");
   }
   const auto size = scale.size();
   return scale.asDiagonal() * correlation.solve(Eigen::MatrixXd::Identity(size, size)) *
@@ -32,6 +32,23 @@ double PooledFreedom(const Differences& differences, double share_a) {
   const double share_b = 1.0 - share_a;
   return 1.0 /
          (share_a * share_a / differences.freedom_a + share_b * share_b / differences.freedom_b);
+}
+
+Differences GivenNone(const Differences& differences, const std::vector<int>& which,
+                      const std::vector<int>& same) {
+  const Eigen::MatrixXd &A = differences.covariance_a, &B = differences.covariance_b;
+  const Eigen::MatrixXd across = A(which, same) + B(which, same);
+  const Eigen::MatrixXd gain = across * InverseOf(A(same, same) + B(same, same));
+  const auto left = [&](const Eigen::MatrixXd& covariance) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd explained = gain * covariance(same, which);
+    return covariance(which, which) - explained - explained.transpose() +
+           gain * covariance(same, same) * gain.transpose();
+  };
+  Differences result = differences;
+  result.values = differences.values(which) - gain * differences.values(same);
+  result.covariance_a = left(A);
+  result.covariance_b = left(B);
+  return result;
 }
 
 DifferenceTest TestDifferences(const Differences& differences, const std::vector<int>& which,

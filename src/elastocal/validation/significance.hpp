@@ -20,6 +20,12 @@ struct Differences {
 /// A has the given share.
 double PooledFreedom(const Differences& differences, double share_a);
 
+/// The differences `which` as they are if there is none at `same`: values and each estimate's
+/// contribution to their covariance under that condition of the normal distribution.
+/// Throws std::invalid_argument if the covariance of `same` is not positive definite.
+Differences GivenNone(const Differences& differences, const std::vector<int>& which,
+                      const std::vector<int>& same);
+
 /// A test of several differences at once. The statistic is their squared Mahalanobis distance over
 /// their number; without a change it follows Fisher's F (each covariance is known up to one
 /// factor).

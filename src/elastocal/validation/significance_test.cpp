@@ -43,6 +43,18 @@ TEST(TestDifferences, FreeOnesExplainWhatTheyCan) {
   EXPECT_NEAR(TestDifferences(TwoCorrelated(kInfinity), {0, 1}, {1}).statistic, 4.0, 1e-12);
 }
 
+// Unit variances, correlation 0.6: where the first is known to be 0, -1.2 of its 2 are taken from
+// the second, and its variance is 1 - 0.36.
+TEST(GivenNone, ConditionalNormalByHand) {
+  const Differences given = GivenNone(TwoCorrelated(kInfinity), {1}, {0});
+  EXPECT_NEAR(given.values[0], -1.2, 1e-12);
+  EXPECT_NEAR(given.covariance_a(0, 0) + given.covariance_b(0, 0), 0.64, 1e-12);
+  EXPECT_NEAR(given.covariance_a(0, 0), 0.25 * (1.0 + 0.36), 1e-12);  // of A, uncorrelated
+  const Differences all = GivenNone(TwoCorrelated(kInfinity), {1, 0}, {});
+  EXPECT_EQ(all.values, Eigen::Vector2d(0.0, 2.0));
+  EXPECT_NEAR(all.covariance_b(0, 1), 0.6, 1e-15);
+}
+
 TEST(TestDifferences, UnitsDoNotMatter) {
   Differences d = TwoCorrelated(8.0);
   const double p = TestDifferences(d, {0, 1}).p;
