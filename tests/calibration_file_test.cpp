@@ -46,6 +46,7 @@ TEST_F(CalibrationFile, ReadsBackWhatWasWrittenToTheLastBit) {
   EXPECT_EQ(stored.robot, result_.model.tree.name);
   EXPECT_EQ(stored.nominal, NominalFingerprint(result_.model));
   EXPECT_EQ(stored.recording, "there.csv");
+  EXPECT_EQ(stored.rmse_3d, 0.0);
   int joint_parameters = 0;
   for (int i = 0; i < result_.model.parameter_count(); ++i) {
     const Parameter& parameter = result_.model.parameters[i];
@@ -71,7 +72,8 @@ TEST_F(CalibrationFile, AnEstimateKeepsItsGauge) {
 TEST_F(CalibrationFile, ReadsBackWaistAndMarkers) {
   CalibrationResult uncalibrated = result_;
   uncalibrated.delta *= 0.5;
-  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin, &uncalibrated));
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin,
+                            {.uncalibrated = &uncalibrated}));
   const StoredCalibration stored = ReadCalibration(file_);
   ASSERT_TRUE(stored.T_ref_waist.has_value());
   EXPECT_LT((stored.T_ref_waist->matrix() - result_.model.T_ref_waist.matrix()).norm(), 1e-14);
@@ -87,7 +89,9 @@ TEST_F(CalibrationFile, ReadsBackWhatPointsUp) {
   Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
   EXPECT_EQ(ReadCalibration(file_).gravity, kGravity);
   const Eigen::Vector3d gravity(0.0, -9.81, 0.0);  // y upwards
-  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin, nullptr, nullptr, gravity));
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin,
+                            {.gravity = gravity, .rmse_3d = 2.5e-4}));
+  EXPECT_EQ(ReadCalibration(file_).rmse_3d, 2.5e-4);
   EXPECT_LT((ReadCalibration(file_).gravity - gravity).norm(), 1e-14);
   std::string text = ReadFile(file_);
   text.replace(text.find("up: [0, 1, 0]"), 13, "up: [0, 0, 0]");
@@ -100,7 +104,7 @@ TEST_F(CalibrationFile, ReadsBackWhatTheUrdfHasOfAnotherModel) {
   EXPECT_EQ(AsInUrdf(ReadCalibration(file_)).joint_errors, ReadCalibration(file_).joint_errors);
   CalibrationResult in_urdf = result_;
   in_urdf.delta *= 0.5;
-  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin, nullptr, &in_urdf));
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin, {.in_urdf = &in_urdf}));
   const StoredCalibration stored = ReadCalibration(file_);
   const StoredCalibration rigid = AsInUrdf(stored);
   for (int i = 0; i < result_.model.parameter_count(); ++i) {

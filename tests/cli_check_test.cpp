@@ -50,6 +50,46 @@ TEST_F(Program, CheckNamesTheJointThatMovedAndEndsWithFour) {
   EXPECT_LT(json["rmse_3d_mm"]["updated"], json["rmse_3d_mm"]["calibrated"]);
 }
 
+// The last joint's zero is where its markers are; three that were glued anew look otherwise.
+TEST_F(Program, CheckTellsTheLastJointByMarkersThatStayed) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const std::string file = (scratch_.path() / "check.json").string();
+  const auto check = [&](const std::string& day, const Eigen::VectorXd& truth) {
+    const std::string table =
+        AnotherDay(scratch_.path() / (day + ".csv"), project_, truth, "flange_joint.theta", 5e-3);
+    const ProgramResult result = RunProgram("check " + project_ + " --calibration " + out_ +
+                                            " --recording " + table + " --json " + file);
+    EXPECT_EQ(result.exit_code, day == "stayed" ? 4 : 0) << result.out << result.err;
+    return result.out;
+  };
+  const auto tool = [](const nlohmann::json& json) {
+    for (const nlohmann::json& link : json["markers"]) {
+      if (link["link"] == "tool") return link;
+    }
+    return nlohmann::json();
+  };
+  const std::string stayed = check("stayed", truth_);
+  EXPECT_TRUE(stayed.starts_with("Moved: flange_joint (flange_joint.theta by ")) << stayed;
+  EXPECT_NE(stayed.find("Or all markers on tool moved as one piece."), std::string::npos);
+  nlohmann::json json = nlohmann::json::parse(ReadFile(file));
+  EXPECT_EQ(json["or_markers"], nlohmann::json({"tool"}));
+  const nlohmann::json& change = json["moved"][0]["changes"][0];
+  EXPECT_NEAR(change["change"].get<double>(), 5e-3, 3.0 * change["sd"].get<double>());
+  EXPECT_LT(change["sd"], 1.5e-3);
+  EXPECT_EQ(tool(json)["same"], true);
+  EXPECT_TRUE(json["not_told"].empty()) << json["not_told"];
+
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  Eigen::VectorXd anew = truth_;
+  anew[FindParameter(model.parameters, "marker.TOOL_1.x")] += 2e-3;
+  anew[FindParameter(model.parameters, "marker.TOOL_2.y")] -= 2e-3;
+  EXPECT_TRUE(check("anew", anew).starts_with("Unchanged"));
+  json = nlohmann::json::parse(ReadFile(file));
+  EXPECT_EQ(tool(json)["same"], false);
+  EXPECT_EQ(json["not_told"], nlohmann::json({"flange_joint"}));
+}
+
 // Of four postures of one marker, no joint is certain at this level; but the calibration does not
 // hold.
 TEST_F(Program, CheckSaysChangedWhereTooFewPosturesTellTheJoint) {

@@ -48,7 +48,7 @@ class KnownArm : public InventedArm {
     CalibrationOptions options;
     options.earlier = earlier;
     options.earlier.covariance.diagonal() += sizes.cwiseAbs2();
-    return FindMovedJoints(Fit(recording, options), earlier, sizes);
+    return FindMovedJoints(Fit(recording, options), options.earlier, earlier, sizes);
   }
 
   double RobotError(const CalibrationResult& result, const Eigen::VectorXd& truth) const {

@@ -87,7 +87,8 @@ def main():
         alone += moved == [joint]
         seen += changed["status"] != "unchanged"
         print(f"{seed}: unchanged: {same['status']} {[one['joint'] for one in same['moved']]} "
-              f"{same['suspects']}; {joint} turned: moved {moved}, suspects {changed['suspects']}; "
+              f"{same['suspects']} (not told: {same['not_told']}); {joint} turned: moved {moved}, suspects "
+              f"{changed['suspects']}, or markers on {changed['or_markers']}; "
               "third day, mm: " + ", ".join(f"{name} {mm:.3f}" for name, mm in errors.items()),
               flush=True)
         if arguments.work is None:

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/cli/figures.hpp"
+#include "elastocal/cli/moved_joints_report.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/robot/parameter_names.hpp"
@@ -28,11 +29,6 @@ UserScale ScaleOf(const std::string& unit) {
   if (unit == "rad/(N.m)") return {1e6, "urad/(N.m)"};
   if (unit == "m/N") return {1e6, "um/N"};
   return {1.0, unit};
-}
-
-std::string Probability(double p) {
-  if (p < 1e-16) return "<1e-16";
-  return p < 1e-4 ? fmt::format("{:.0e}", p) : fmt::format("{:.4f}", p);
 }
 
 std::string JointTable(const CalibrationComparison& comparison) {
@@ -93,19 +89,6 @@ std::vector<std::string> MovedJoints(const CalibrationComparison& comparison) {
     if (joint.moved) names.push_back(joint.joint);
   }
   return names;
-}
-
-/// Where markers stayed, and where not.
-std::string MarkerText(const std::vector<LinkMarkers>& links) {
-  std::vector<std::string> moved;
-  for (const LinkMarkers& link : links) {
-    if (!link.same) moved.push_back(fmt::format("{} (p {})", link.link, Probability(link.p)));
-  }
-  if (links.empty()) return "";
-  std::string text = fmt::format("\nMarkers: on {} of {} links all are where they were",
-                                 links.size() - moved.size(), links.size());
-  if (!moved.empty()) text += "; elsewhere on " + Joined(moved);
-  return text + "\n";
 }
 
 /// What else would explain that joints seem to have moved.
@@ -190,7 +173,7 @@ std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEs
   text += ParameterTable(comparison);
   text += "  * differs at 95 %, looked at alone; one in twenty does so by chance\n";
   text += NotComparedText(comparison);
-  text += MarkerText(comparison.markers);
+  if (!comparison.markers.empty()) text += "\n" + DescribeMarkers(comparison.markers);
   return text + "\n" + Conclusion(comparison, options.level);
 }
 

@@ -42,6 +42,23 @@ std::string ChangesText(const JointSuspect& suspect) {
 
 }  // namespace
 
+std::string Probability(double p) {
+  if (p < 1e-16) return "<1e-16";
+  return p < 1e-4 ? fmt::format("{:.0e}", p) : fmt::format("{:.4f}", p);
+}
+
+std::string DescribeMarkers(const std::vector<LinkMarkers>& links) {
+  if (links.empty()) return "";
+  std::vector<std::string> moved;
+  for (const LinkMarkers& link : links) {
+    if (!link.same) moved.push_back(fmt::format("{} (p {})", link.link, Probability(link.p)));
+  }
+  std::string text = fmt::format("Markers: on {} of {} links all are where they were",
+                                 links.size() - moved.size(), links.size());
+  if (!moved.empty()) text += fmt::format("; elsewhere on {}", fmt::join(moved, ", "));
+  return text + "\n";
+}
+
 std::string SuspectTable(const JointCheck& check) {
   TextTable table({"joint", "p of all joints", "probability that it is the one", "its change"});
   std::size_t shown = 0;
@@ -67,6 +84,10 @@ std::string DescribeMoved(const JointCheck& check, const std::vector<std::string
   }
   if (!check.suspects.empty()) {
     text += fmt::format("Changed: one of {}.\n", fmt::join(check.suspects, ", "));
+  }
+  if (!check.or_markers.empty()) {
+    text += fmt::format("Or all markers on {} moved as one piece.\n",
+                        fmt::join(check.or_markers, ", or on "));
   }
   if (!alternatives.empty()) {
     text += fmt::format("Or {}: this explains it as well.\n", fmt::join(alternatives, ", or "));

@@ -20,6 +20,12 @@ std::string DescribeWrongRecording(const std::vector<std::string>& alternatives)
 /// The joints that may have moved, the most probable first.
 std::string SuspectTable(const JointCheck& check);
 
+/// A probability as tables have it.
+std::string Probability(double p);
+
+/// On how many links the markers stayed, and on which they did not.
+std::string DescribeMarkers(const std::vector<LinkMarkers>& links);
+
 /// Joints of which these postures cannot tell it; empty where there are none.
 std::string DescribeNotTold(const JointCheck& check);
 

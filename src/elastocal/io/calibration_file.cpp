@@ -182,8 +182,7 @@ Eigen::Vector3d ReadNumbers(const YamlValue& value) {
 }  // namespace
 
 std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
-                                ZeroOffsets zero_offsets, const CalibrationResult* uncalibrated,
-                                const CalibrationResult* in_urdf, const Eigen::Vector3d& gravity) {
+                                ZeroOffsets zero_offsets, const BesideCalibration& beside) {
   YAML::Emitter yaml;
   yaml << YAML::Comment("Written by elastocal: deviations from the nominal URDF, in SI units.");
   yaml << YAML::BeginMap;
@@ -201,6 +200,10 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
        << YAML::Comment("who says where the root link's frame is");
   yaml << YAML::Key << "termination" << YAML::Value << TerminationName(result.termination);
   yaml << YAML::Key << "marker_sd_mm" << YAML::Value << FormatNumber(1e3 * result.marker_sd);
+  if (beside.rmse_3d > 0.0) {
+    yaml << YAML::Key << "rmse_3d_mm" << YAML::Value << FormatNumber(1e3 * beside.rmse_3d)
+         << YAML::Comment("what is left of its own markers");
+  }
   yaml << YAML::Key << "prior_scale" << YAML::Value << YAML::Flow << YAML::BeginMap;
   for (int g = 0; g < kPriorGroupCount; ++g) {
     const bool corrections = g == static_cast<int>(PriorGroup::kCorrections);
@@ -210,10 +213,10 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   }
   yaml << YAML::EndMap;
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(result.interval_factor);
-  if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, gravity, yaml);
+  if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, beside.gravity, yaml);
   EmitMarkers(result.model, yaml);
-  if (uncalibrated != nullptr) EmitUncalibrated(*uncalibrated, yaml);
-  if (in_urdf != nullptr) EmitInUrdf(*in_urdf, yaml);
+  if (beside.uncalibrated != nullptr) EmitUncalibrated(*beside.uncalibrated, yaml);
+  if (beside.in_urdf != nullptr) EmitInUrdf(*beside.in_urdf, yaml);
   yaml << YAML::Key << "parameter_count" << YAML::Value << result.model.parameter_count()
        << YAML::Comment("a file that was cut has fewer");
   yaml << YAML::Key << "parameters" << YAML::Value << YAML::BeginSeq;
@@ -306,9 +309,9 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   stored.robot = estimate.robot;
   stored.nominal = estimate.nominal;
   stored.recording = estimate.recording;
-  if (const auto sd = root.Find("marker_sd_mm")) {
-    stored.marker_sd = 1e-3 * sd->Number();
-    sd->Expect(stored.marker_sd >= 0.0, "a standard deviation");
+  if (const auto left = root.Find("rmse_3d_mm")) {
+    stored.rmse_3d = 1e-3 * left->Number();
+    left->Expect(stored.rmse_3d >= 0.0, "a length");
   }
   for (const ParameterEstimate& parameter : estimate.parameters) {
     (parameter.external ? stored.externals : stored.joint_errors)[parameter.name] = parameter.value;

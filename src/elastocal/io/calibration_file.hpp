@@ -14,18 +14,23 @@
 
 namespace elastocal {
 
+/// What a calibration.yaml has beside its result.
+struct BesideCalibration {
+  /// The result that has only waist and markers fitted to the same recording, for a comparison on
+  /// other recordings.
+  const CalibrationResult* uncalibrated = nullptr;
+  /// The result whose geometry the calibrated URDF has, where that is another (a rigid model that
+  /// predicts better by itself than without the other's elasticity).
+  const CalibrationResult* in_urdf = nullptr;
+  Eigen::Vector3d gravity = kGravity;  ///< in the frame of the recording, a table of postures
+  /// What the result leaves of its own markers, outliers included, m; 0: not known.
+  double rmse_3d = 0.0;
+};
+
 /// calibration.yaml: every parameter with unit, value, standard deviation and status, and what is
 /// needed to judge them (docs/formats.md).
-/// `uncalibrated`, where given: the result that has only waist and markers fitted to the same
-/// recording, for a comparison on other recordings. `in_urdf`, where given: the result whose
-/// geometry the calibrated URDF has, where that is another than `result` (a rigid model that
-/// predicts better by itself than without the other's elasticity). `gravity`: in the frame of the
-/// recording, a table of postures.
 std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
-                                ZeroOffsets zero_offsets,
-                                const CalibrationResult* uncalibrated = nullptr,
-                                const CalibrationResult* in_urdf = nullptr,
-                                const Eigen::Vector3d& gravity = kGravity);
+                                ZeroOffsets zero_offsets, const BesideCalibration& beside = {});
 
 /// The same of what is known of a robot without a recording of its own, such as a fleet's prior.
 std::string MakeCalibrationYaml(const CalibrationEstimate& estimate);
@@ -45,7 +50,7 @@ struct StoredCalibration {
   std::string robot;
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
-  double marker_sd = 0.0;  ///< what it left of a coordinate of a marker, m; 0: the file is silent
+  double rmse_3d = 0.0;  ///< what it left of its own markers, m; 0: the file is silent
   std::map<std::string, double> joint_errors;  ///< by parameter name, SI
   /// The errors that the calibrated URDF has, where they are others; else empty.
   std::map<std::string, double> urdf_errors;

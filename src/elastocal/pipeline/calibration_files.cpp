@@ -50,8 +50,10 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
     files[UrdfName(project)] = run.urdf->text;
     files["calibration.yaml"] = MakeCalibrationYaml(
         result, run.recording.source, run.zero_offsets,
-        &results[static_cast<int>(ModelKind::kUncalibrated)],
-        same ? nullptr : &results[static_cast<int>(in_urdf)], run.recording.gravity);
+        {.uncalibrated = &results[static_cast<int>(ModelKind::kUncalibrated)],
+         .in_urdf = same ? nullptr : &results[static_cast<int>(in_urdf)],
+         .gravity = run.recording.gravity,
+         .rmse_3d = run.comparison.metrics_all[static_cast<int>(result.kind)].rmse_3d});
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
     if (!project.tree.linkages.empty()) files["linkages.yaml"] = MakeLinkagesYaml(result);

@@ -49,7 +49,7 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   const auto seen = SeenMask(postures);
   const Eigen::MatrixXd distances = DistancesBy(fit, project.calibration);
   run.rmse_estimate = ComputeMetrics(distances, seen).rmse_3d;
-  run.left_before = std::sqrt(3.0) * fit.stored.marker_sd;
+  run.left_before = fit.stored.rmse_3d;
   run.left.setZero(postures.posture_count());
   for (Eigen::Index i = 0; i < run.left.size(); ++i) {
     const Eigen::ArrayXd counts = seen.row(i).cast<double>().transpose();

@@ -28,7 +28,7 @@ struct CheckRun {
   /// What explains it as well as joints that have moved (FindAlternatives).
   std::vector<std::string> alternatives;
   double expected_error = 0.0;  ///< of a robot that was never calibrated (ExpectedError), m
-  double left_before = 0.0;     ///< by the calibration, rms over its own markers, m; 0: unknown
+  double left_before = 0.0;     ///< by the calibration, of its own markers, rms, m; 0: unknown
   Eigen::VectorXd left;         ///< by `estimate`, rms over the markers of each posture, m
   std::vector<std::string> warnings;
 

@@ -96,7 +96,7 @@ OpenedRobot OpenJoints(const ObservedRobot& model, const EarlierEstimate& earlie
   opened.estimate = EstimateObserved(opened.model, observations, {});
   opened.check =
       FindMovedJoints(InformationOfContacts(opened.model, observations, opened.estimate.fit),
-                      earlier, sizes, options);
+                      opened.model.earlier, earlier, sizes, options);
   return opened;
 }
 

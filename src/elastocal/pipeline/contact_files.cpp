@@ -63,8 +63,8 @@ std::map<std::string, std::string> MakeContactFiles(const Project& project, Cont
   if (run.urdf) {
     files[project.urdf.stem().string() + "_calibrated.urdf"] = run.urdf->text;
     files["calibration.yaml"] =
-        MakeCalibrationYaml(run.result, run.recording, run.zero_offsets, nullptr,
-                            run.in_urdf ? &*run.in_urdf : nullptr) +
+        MakeCalibrationYaml(run.result, run.recording, run.zero_offsets,
+                            {.in_urdf = run.in_urdf ? &*run.in_urdf : nullptr}) +
         MakeContactYaml(run.model, run.calibrated.estimate.fit, run.uncalibrated.estimate.fit);
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(run.result);

@@ -2,7 +2,7 @@
 #include "elastocal/pipeline/earlier_calibration.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -12,6 +12,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
+#include "elastocal/validation/earlier_markers.hpp"
 
 namespace elastocal {
 namespace {
@@ -27,6 +28,57 @@ void CheckGauge(const std::filesystem::path& calibration, const Project& project
   throw InputError(earlier.source + ": has the gauge '" + earlier.gauge +
                    "', and calibration.gauge of the project is '" + wanted +
                    "'; the gauge of the earlier calibration was expected");
+}
+
+/// By how much the project has markers elsewhere than that of the calibration had them, m, by the
+/// names of their parameters: of links where they are the same.
+std::map<std::string, double> NominalShifts(const CalibrationEstimate& calibration,
+                                            const ErrorModel& model,
+                                            const std::vector<LinkMarkers>& markers) {
+  std::map<std::string, double> shifts;
+  for (const LinkMarkers& link : markers) {
+    if (!link.same) continue;
+    for (const std::string& name : link.markers) {
+      const auto before = std::ranges::find(calibration.markers, name, &MarkerPlace::name);
+      const auto now = std::ranges::find(model.markers, name, &Marker::name);
+      for (int axis = 0; axis < 3; ++axis) {
+        shifts["marker." + name + "." + "xyz"[axis]] =
+            now->p_link_marker[axis] - before->nominal[axis];
+      }
+    }
+  }
+  return shifts;
+}
+
+/// The same, with nothing concluded from the markers on some of the links.
+std::vector<LinkMarkers> LeftOpen(std::vector<LinkMarkers> markers,
+                                  const std::vector<std::string>& links) {
+  for (LinkMarkers& one : markers) one.same = one.same && !std::ranges::count(links, one.link);
+  return markers;
+}
+
+/// The joints that have moved (`find`), if the markers have not on links where they are the same.
+/// These are left open on one link after another, because they may have moved as one piece: where
+/// nothing has changed then, the link is named beside the joints that are accused; and where no
+/// single joint is, nothing has changed.
+JointCheck CheckBesideMarkers(
+    const std::vector<LinkMarkers>& markers,
+    const std::function<JointCheck(const std::vector<LinkMarkers>&)>& find) {
+  JointCheck check = find(markers);
+  check.markers = markers;
+  for (std::size_t k = 0; k < markers.size() && check.changed(); ++k) {
+    if (!markers[k].same) continue;
+    std::vector<LinkMarkers> links = LeftOpen(markers, {markers[k].link});
+    JointCheck open = find(links);
+    if (open.changed()) continue;
+    if (!check.moved.empty()) {
+      check.or_markers.push_back(links[k].link);
+      continue;
+    }
+    open.markers = std::move(links);
+    return open;
+  }
+  return check;
 }
 
 }  // namespace
@@ -62,7 +114,8 @@ void CheckApplies(const StoredCalibration& calibration, const Project& project,
 }
 
 EarlierEstimate MakeEarlierEstimate(const CalibrationEstimate& calibration, const ErrorModel& model,
-                                    const CalibrationOptions& options, double days) {
+                                    const CalibrationOptions& options, double days,
+                                    const std::vector<LinkMarkers>& markers) {
   if (!calibration.has_covariance()) {
     throw InputError(calibration.source +
                      ": no covariance.csv beside it, which says how certain it is");
@@ -71,27 +124,35 @@ EarlierEstimate MakeEarlierEstimate(const CalibrationEstimate& calibration, cons
   for (const Parameter& parameter : model.parameters) of_model[parameter.name] = &parameter;
   std::map<std::string, const ParameterEstimate*> estimates;
   for (const ParameterEstimate& one : calibration.parameters) estimates[one.name] = &one;
+  const std::map<std::string, double> stayed = NominalShifts(calibration, model, markers);
   EarlierEstimate earlier;
   std::vector<int> rows;
-  std::vector<double> mean, drift;
+  std::vector<double> mean, added;
   for (std::size_t row = 0; row < calibration.covariance_names.size(); ++row) {
     const std::string& name = calibration.covariance_names[row];
     const auto estimate = estimates.find(name);
-    const auto parameter = of_model.find(name);
-    if (estimate == estimates.end() || parameter == of_model.end()) continue;
-    const ParameterKind kind = parameter->second->kind;
-    if (IsExternal(kind) || kind == ParameterKind::kTorqueBias) continue;
+    const auto found = of_model.find(name);
+    if (estimate == estimates.end() || found == of_model.end()) continue;
+    const Parameter& parameter = *found->second;
+    const auto marker = stayed.find(name);
+    if (marker != stayed.end()) {
+      mean.push_back(estimate->second->value - marker->second);
+      added.push_back(kMarkerReturns * kMarkerReturns);
+    } else if (IsExternal(parameter.kind) || parameter.kind == ParameterKind::kTorqueBias) {
+      continue;
+    } else {
+      const double part = IsZeroOffset(parameter, model.tree) ? 1.0 : kDriftOfOthers;
+      const double drift = part * options.drift * options.prior.Of(model.tree, parameter);
+      mean.push_back(estimate->second->value);
+      added.push_back(days * drift * drift);
+    }
     earlier.names.push_back(name);
     rows.push_back(static_cast<int>(row));
-    mean.push_back(estimate->second->value);
-    const double part = IsZeroOffset(*parameter->second, model.tree) ? 1.0 : kDriftOfOthers;
-    drift.push_back(part * options.drift * options.prior.Of(model.tree, *parameter->second));
   }
   const auto count = static_cast<Eigen::Index>(rows.size());
   earlier.mean = Eigen::Map<const Eigen::VectorXd>(mean.data(), count);
   earlier.covariance = calibration.covariance(rows, rows);
-  earlier.covariance.diagonal() +=
-      days * Eigen::Map<const Eigen::VectorXd>(drift.data(), count).cwiseAbs2();
+  earlier.covariance.diagonal() += Eigen::Map<const Eigen::VectorXd>(added.data(), count);
   return earlier;
 }
 
@@ -110,16 +171,28 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
   project.calibration.extra = {.automatic = false, .names = project.elasticity.extra};
   const ErrorModel model = MakeProjectModel(project, measured.calibration.trials);
   CheckApplies(fit.stored, project, model);
-  fit.earlier = MakeEarlierEstimate(estimate, model, project.calibration, days);
 
-  const Eigen::VectorXd sizes = SizeOfChanges(fit.earlier, model, project.calibration.prior);
   Project open = project;
-  open.calibration.earlier = fit.earlier;
-  open.calibration.earlier.covariance.diagonal() += sizes.cwiseAbs2();
+  EarlierEstimate& fitted_with = open.calibration.earlier;
+  fitted_with = MakeEarlierEstimate(estimate, model, project.calibration, days);
+  fitted_with.covariance.diagonal() +=
+      SizeOfChanges(fitted_with, model, project.calibration.prior).cwiseAbs2();
   fit.robot = MakeRecordedModel(open, seed, fit.measured);
   fit.estimate = Calibrate(fit.robot.model, fit.measured.calibration, fit.robot.base,
                            ModelKinds(fit.robot.model).back(), open.calibration);
-  fit.check = FindMovedJoints(fit.estimate, fit.earlier, sizes, options);
+
+  const auto known = [&](const std::vector<LinkMarkers>& markers) {
+    return MakeEarlierEstimate(estimate, fit.robot.model, project.calibration, days, markers);
+  };
+  fit.check = CheckBesideMarkers(
+      FindMarkersThatStayed(estimate, fit.estimate, fitted_with, options.level),
+      [&](const std::vector<LinkMarkers>& markers) {
+        const EarlierEstimate earlier = known(markers);
+        return FindMovedJoints(fit.estimate, fitted_with, earlier,
+                               SizeOfChanges(earlier, fit.robot.model, project.calibration.prior),
+                               options);
+      });
+  fit.earlier = known(LeftOpen(fit.check.markers, fit.check.or_markers));
   return fit;
 }
 

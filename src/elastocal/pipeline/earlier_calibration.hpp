@@ -26,14 +26,17 @@ void CheckApplies(const StoredCalibration& calibration, const Project& project,
 /// What a stored calibration says of the robot `days` later: its estimates, and their covariance
 /// with the drift of each parameter since then added to it (a random walk: project key
 /// calibration.drift, a part of the prior's standard deviation in a day). Biases of torque sensors
-/// are of a day and not among them. Throws InputError for a calibration without covariance.csv.
+/// are of a day and not among them. Markers are those on links where they are the same in
+/// `markers`, with by how little they are found again. Throws InputError for a calibration without
+/// covariance.csv.
 EarlierEstimate MakeEarlierEstimate(const CalibrationEstimate& calibration, const ErrorModel& model,
-                                    const CalibrationOptions& options, double days);
+                                    const CalibrationOptions& options, double days,
+                                    const std::vector<LinkMarkers>& markers = {});
 
 /// A recording fitted with an earlier calibration as the prior.
 struct EarlierFit {
   StoredCalibration stored;
-  EarlierEstimate earlier;
+  EarlierEstimate earlier;  ///< also of markers that stayed; not of those of `or_markers`
   RecordedModel robot;
   CalibrationResult estimate;  ///< every joint free to have moved
   JointCheck check;

@@ -12,96 +12,14 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/validation/conditioned_estimate.hpp"
+#include "elastocal/validation/paired_estimates.hpp"
 
 namespace elastocal {
 namespace {
 
-double DegreesOfFreedom(const CalibrationEstimate& estimate) {
-  return StudentDegreesOfFreedom(0.975, estimate.interval_factor);
-}
-
-/// Covariance of some parameters of an estimate; without a file of it, of their variances alone.
-Eigen::MatrixXd CovarianceOf(const CalibrationEstimate& estimate, bool from_file,
-                             const std::vector<int>& parameters) {
-  if (!from_file) {
-    Eigen::VectorXd variances(static_cast<Eigen::Index>(parameters.size()));
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      variances[static_cast<Eigen::Index>(i)] = std::pow(estimate.parameters[parameters[i]].sd, 2);
-    }
-    return variances.asDiagonal();
-  }
-  std::map<std::string, int> row;
-  for (const std::string& name : estimate.covariance_names) {
-    row.emplace(name, static_cast<int>(row.size()));
-  }
-  std::vector<int> rows;
-  for (int parameter : parameters) {
-    const auto at = row.find(estimate.parameters[parameter].name);
-    if (at == row.end()) {
-      throw InputError(estimate.source + ": its covariance has no parameter '" +
-                       estimate.parameters[parameter].name + "'");
-    }
-    rows.push_back(at->second);
-  }
-  return estimate.covariance(rows, rows);
-}
-
-/// All differences, and which of their rows are the robot's and which the markers' by link.
-struct Comparable {
-  Differences all;
-  std::vector<int> robot;
-  std::vector<std::vector<int>> markers;
-};
-
-/// Those of the robot's parameters first. `comparison` takes the parameters and the links.
-Comparable MakeComparable(const CalibrationEstimate& a, const CalibrationEstimate& b,
-                          const std::vector<CommonParameter>& common,
-                          const ComparisonOptions& options, CalibrationComparison& comparison) {
-  std::vector<int> in_a, in_b;
-  std::vector<double> values;
-  const auto add = [&](int at_a, int at_b, double nominal_difference) {
-    in_a.push_back(at_a);
-    in_b.push_back(at_b);
-    values.push_back(b.parameters[Size(at_b)].value - a.parameters[Size(at_a)].value +
-                     nominal_difference);
-    return static_cast<int>(values.size()) - 1;
-  };
-  Comparable made;
-  for (const CommonParameter& one : common) {
-    made.robot.push_back(add(one.in_a, one.in_b, 0.0));
-    comparison.parameters.push_back({.name = one.name,
-                                     .joint = one.joint,
-                                     .unit = one.unit,
-                                     .a = a.parameters[Size(one.in_a)].value,
-                                     .b = b.parameters[Size(one.in_b)].value});
-  }
-  if (comparison.with_covariance && !options.new_markers) {
-    comparison.markers = FindCommonMarkers(a, b);
-  }
-  for (const LinkMarkers& link : comparison.markers) {
-    made.markers.emplace_back();
-    for (const MarkerCoordinate& one : CoordinatesOf(link, a, b)) {
-      made.markers.back().push_back(add(one.in_a, one.in_b, one.nominal_difference));
-    }
-  }
-  made.all = {.values = Eigen::VectorXd::Map(values.data(), std::ssize(values)),
-              .covariance_a = CovarianceOf(a, comparison.with_covariance, in_a),
-              .covariance_b = CovarianceOf(b, comparison.with_covariance, in_b),
-              .freedom_a = DegreesOfFreedom(a),
-              .freedom_b = DegreesOfFreedom(b)};
-  constexpr double kReturns = kMarkerReturns * kMarkerReturns;
-  for (const std::vector<int>& link : made.markers) {
-    for (const int row : link) {
-      made.all.covariance_a(row, row) += 0.5 * kReturns;
-      made.all.covariance_b(row, row) += 0.5 * kReturns;
-    }
-  }
-  return made;
-}
-
 /// The robot's differences, if the markers on links where they are the same have not moved.
-Differences OfRobot(const Comparable& comparable, const std::vector<LinkMarkers>& links) {
-  return GivenNone(comparable.all, comparable.robot, RowsOfUnmoved(comparable.markers, links));
+Differences OfRobot(const PairedEstimates& pair, const std::vector<LinkMarkers>& links) {
+  return GivenNone(pair.differences, pair.robot, RowsOfUnmoved(pair.markers, links));
 }
 
 void SetDifference(const Differences& all, int i, ParameterDifference& one) {
@@ -214,12 +132,12 @@ Findings TestAll(const Differences& all, double level, const CalibrationComparis
 /// Leaves the markers of one link after another open, which may have moved as one piece. Where a
 /// joint is then no longer accused, it names the link beside it. Of the tests of everything it
 /// keeps the one that accuses least.
-void LeaveLinksOpen(const Comparable& comparable, double level, CalibrationComparison& comparison) {
+void LeaveLinksOpen(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
   for (std::size_t k = 0; k < comparison.markers.size(); ++k) {
     if (!comparison.markers[k].same) continue;
     std::vector<LinkMarkers> links = comparison.markers;
     links[k].same = false;
-    const Findings open = TestAll(OfRobot(comparable, links), level, comparison);
+    const Findings open = TestAll(OfRobot(pair, links), level, comparison);
     if (open.overall.p > comparison.overall.p) comparison.overall = open.overall;
     for (JointDifference& joint : comparison.joints) {
       const auto there = std::ranges::find(open.joints, joint.joint, &JointDifference::joint);
@@ -229,16 +147,16 @@ void LeaveLinksOpen(const Comparable& comparable, double level, CalibrationCompa
 }
 
 /// Fills in the tests of markers, joints and everything together.
-void Judge(const Comparable& comparable, double level, CalibrationComparison& comparison) {
-  FindUnmovedMarkers(comparable.all, comparable.markers, level, comparison.markers);
-  const Differences all = OfRobot(comparable, comparison.markers);
+void Judge(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
+  FindUnmovedMarkers(pair.differences, pair.markers, level, comparison.markers);
+  const Differences all = OfRobot(pair, comparison.markers);
   for (std::size_t i = 0; i < comparison.parameters.size(); ++i) {
     SetDifference(all, static_cast<int>(i), comparison.parameters[i]);
   }
   Findings found = TestAll(all, level, comparison);
   comparison.joints = std::move(found.joints);
   comparison.overall = found.overall;
-  LeaveLinksOpen(comparable, level, comparison);
+  LeaveLinksOpen(pair, level, comparison);
   const bool some_moved = comparison.joints.front().moved;
   comparison.changed = some_moved || comparison.overall.p <= level;
   if (comparison.changed && !some_moved && comparison.with_covariance) {
@@ -346,9 +264,17 @@ CalibrationComparison CompareCalibrations(const CalibrationEstimate& given_a,
   }
   comparison.not_compared = std::move(common.not_compared);
 
-  const Comparable comparable = MakeComparable(a, b, common.common, options, comparison);
+  PairedEstimates pair = PairEstimates(a, b, common.common, full, full && !options.new_markers);
+  comparison.markers = std::move(pair.links);
+  for (const CommonParameter& one : common.common) {
+    comparison.parameters.push_back({.name = one.name,
+                                     .joint = one.joint,
+                                     .unit = one.unit,
+                                     .a = a.parameters[Size(one.in_a)].value,
+                                     .b = b.parameters[Size(one.in_b)].value});
+  }
   try {
-    Judge(comparable, options.level, comparison);
+    Judge(pair, options.level, comparison);
   } catch (const std::invalid_argument&) {
     throw InputError(a.source + ", " + b.source + ": the covariances are not positive definite");
   }

@@ -9,6 +9,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/validation/common_parameters.hpp"
+#include "elastocal/validation/data_information.hpp"
 
 namespace elastocal {
 namespace {
@@ -44,41 +45,15 @@ struct Explanation {
 /// What the data say of the unknowns, all in units of `unit_`.
 class Evidence {
  public:
-  Evidence(const CalibrationResult& estimate, const EarlierEstimate& earlier,
-           const Eigen::VectorXd& size_of_changes) {
-    const ErrorModel& model = estimate.model;
-    std::vector<int> at;  // of the posterior's parameters, those that count
-    for (std::size_t i = 0; i < estimate.posterior.parameters.size(); ++i) {
-      const int index = estimate.posterior.parameters[i];
-      // What lies at its bound stays there.
-      const bool bound = IsCompliance(model.parameters[index].kind) && estimate.delta[index] <= 0.0;
-      if (bound) continue;
-      at.push_back(static_cast<int>(i));
-      parameters_.push_back(index);
-    }
-    const auto count = static_cast<Eigen::Index>(parameters_.size());
-    unit_.resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      unit_[i] = ParameterScale(model.parameters[parameters_[i]]);
-    }
-    const Eigen::VectorXd per_unit = unit_.cwiseInverse();
-    const double widening = std::max(1.0, estimate.posterior.cluster_factor);
-    information_ =
-        unit_.asDiagonal() * estimate.posterior.data_information(at, at) * unit_.asDiagonal();
-    prior_ =
-        estimate.prior_sd(parameters_).cwiseQuotient(unit_).array().square().matrix().asDiagonal();
-    const EarlierPart known = PartOf(earlier, model, parameters_);
-    const Eigen::VectorXd known_unit = per_unit(known.positions);
-    prior_(known.positions, known.positions) =
-        known_unit.asDiagonal() * known.covariance * known_unit.asDiagonal();
-    Eigen::VectorXd step = estimate.delta(parameters_).cwiseProduct(per_unit);
-    step(known.positions) -= known.mean.cwiseProduct(known_unit);
-    FindCandidates(model, earlier, size_of_changes);
-
-    Eigen::MatrixXd wide = prior_;
-    for (const Candidate& candidate : candidates_) Widen(candidate, wide);
-    score_ = (information_ * step + InverseOfInformation(wide) * step) / widening;
-    information_ /= widening;
+  Evidence(const CalibrationResult& estimate, const EarlierEstimate& fitted_with,
+           const EarlierEstimate& earlier, const Eigen::VectorXd& size_of_changes) {
+    DataInformation data = InformationOfData(estimate, fitted_with);
+    prior_ = CovarianceBefore(estimate, data, earlier);
+    score_ = data.vector - data.information * MeanBefore(estimate, data, earlier);
+    parameters_ = std::move(data.parameters);
+    unit_ = std::move(data.unit);
+    information_ = std::move(data.information);
+    FindCandidates(estimate.model, earlier, size_of_changes);
     Update();
   }
 
@@ -272,12 +247,12 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
   return result;
 }
 
-JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& earlier,
-                           const Eigen::VectorXd& size_of_changes,
+JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& fitted_with,
+                           const EarlierEstimate& earlier, const Eigen::VectorXd& size_of_changes,
                            const JointCheckOptions& options) {
   const double t = std::max(1.96, estimate.interval_factor);
   const double freedom = t < 1.9600001 ? kKnownFreedom : StudentDegreesOfFreedom(0.975, t);
-  Evidence evidence(estimate, earlier, size_of_changes);
+  Evidence evidence(estimate, fitted_with, earlier, size_of_changes);
   JointCheck check;
   check.joints = JudgeAll(evidence, check.moved, freedom);
   for (const JointSuspect& joint : check.joints) {

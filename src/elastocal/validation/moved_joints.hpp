@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/validation/shared_markers.hpp"
 #include "elastocal/validation/significance.hpp"
 
 namespace elastocal {
@@ -41,6 +42,9 @@ struct JointCheck {
   /// Where something has changed and no single joint can be named: those of which one may be it.
   std::vector<std::string> suspects;
   std::vector<std::string> not_told;  ///< joints of which a change of the zero cannot be seen
+  std::vector<LinkMarkers> markers;   ///< whether they are where the earlier calibration has them
+  /// Links whose markers, all on one of them moved as one piece, would explain what has changed.
+  std::vector<std::string> or_markers;
 
   bool changed() const { return !moved.empty() || !suspects.empty(); }
 };
@@ -63,11 +67,13 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
 /// Finds joints that have moved since an earlier calibration, from a recording too small to
 /// calibrate by.
 ///
-/// `estimate` is fitted to that recording with the prior N(earlier.mean, earlier.covariance +
-/// diag(size^2)), so that a change does not end in its noise. Its linearisation gives what the data
-/// say whatever the prior: their information A and their score s = (A + prior^-1) (estimate -
-/// mean). Under the hypothesis that some joints moved, s ~ N(0, A + A P A) with P that of the
-/// earlier calibration, widened in the parameters of these joints.
+/// `estimate` is fitted to that recording with the prior `fitted_with`, wide enough that a change
+/// does not end in its noise: N(earlier.mean, earlier.covariance + diag(size^2)) of the robot. Its
+/// linearisation gives what the data say whatever the prior (InformationOfData): their information
+/// A and vector h, and at the earlier estimate the score s = h - A mean. Under the hypothesis that
+/// some joints moved, s ~ N(0, A + A P A) with P that of the earlier calibration, widened in the
+/// parameters of these joints. `earlier` may know more than `fitted_with`, such as where markers
+/// are.
 /// - A joint is **tested** by what its parameters would explain of s beside all that the earlier
 ///   calibration leaves open (score test; Fisher's F with the degrees of freedom of the noise),
 ///   adjusted for the number of joints by Holm.
@@ -75,8 +81,8 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
 ///   its parameters.
 /// The most probable joint is accepted, and the search goes on beside it, until no joint is
 /// significant with an evidence that speaks for its move.
-JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& earlier,
-                           const Eigen::VectorXd& size_of_changes,
+JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& fitted_with,
+                           const EarlierEstimate& earlier, const Eigen::VectorXd& size_of_changes,
                            const JointCheckOptions& options = {});
 
 }  // namespace elastocal

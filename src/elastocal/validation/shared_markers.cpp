@@ -83,7 +83,7 @@ std::vector<MarkerCoordinate> CoordinatesOf(const LinkMarkers& link, const Calib
 
 void FindUnmovedMarkers(const Differences& differences, const std::vector<std::vector<int>>& rows,
                         double level, std::vector<LinkMarkers>& links) {
-  for (std::size_t k = 0; k < links.size(); ++k) links[k].same = !rows[k].empty();
+  for (LinkMarkers& link : links) link.same = true;
   while (true) {
     LinkMarkers* worst = nullptr;
     int count = 0;

@@ -51,9 +51,8 @@ std::vector<int> RowsOfUnmoved(const std::vector<std::vector<int>>& rows,
 /// none does at the level (adjusted by Bonferroni for the number of links). Any joint may have
 /// moved meanwhile: only what both calibrations tell of the markers whatever the robot is counts.
 ///
-/// `differences`: all, of the robot and of markers. `rows`: by link, those of its markers, none of
-/// a link that is not to be relied on. Throws std::invalid_argument if the covariance is not
-/// positive definite.
+/// `differences`: all, of the robot and of markers. `rows`: by link, those of its markers. Throws
+/// std::invalid_argument if the covariance is not positive definite.
 void FindUnmovedMarkers(const Differences& differences, const std::vector<std::vector<int>>& rows,
                         double level, std::vector<LinkMarkers>& links);
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/validation/earlier_markers.hpp"
+
+#include "elastocal/calibration/posterior.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/validation/data_information.hpp"
+#include "elastocal/validation/paired_estimates.hpp"
+
+namespace elastocal {
+namespace {
+
+/// The estimate of a robot that was never calibrated, from the data alone.
+CalibrationEstimate EstimateOfData(const CalibrationResult& estimate,
+                                   const EarlierEstimate& fitted_with) {
+  const ErrorModel& model = estimate.model;
+  const DataInformation data = InformationOfData(estimate, fitted_with);
+  const Eigen::VectorXd precision =
+      data.unit.cwiseQuotient(estimate.prior_sd(data.parameters)).cwiseAbs2();
+  const Eigen::MatrixXd covariance =
+      InverseOfInformation(data.information + Eigen::MatrixXd(precision.asDiagonal()));
+  const Eigen::VectorXd value = data.unit.cwiseProduct(covariance * data.vector);
+  CalibrationEstimate alone;
+  alone.interval_factor = estimate.interval_factor;
+  for (std::size_t i = 0; i < data.parameters.size(); ++i) {
+    const Parameter& parameter = model.parameters[Size(data.parameters[i])];
+    alone.parameters.push_back({.name = parameter.name,
+                                .unit = UnitName(parameter.unit),
+                                .external = IsExternal(parameter.kind),
+                                .value = value[static_cast<Eigen::Index>(i)]});
+    alone.covariance_names.push_back(parameter.name);
+  }
+  alone.covariance = data.unit.asDiagonal() * covariance * data.unit.asDiagonal();
+  for (const Marker& marker : model.markers) {
+    alone.markers.push_back(
+        {marker.name, model.tree.links[Size(marker.link)].name, marker.p_link_marker});
+  }
+  return alone;
+}
+
+}  // namespace
+
+std::vector<LinkMarkers> FindMarkersThatStayed(const CalibrationEstimate& earlier,
+                                               const CalibrationResult& estimate,
+                                               const EarlierEstimate& fitted_with, double level) {
+  if (!earlier.has_covariance()) return {};
+  PairedEstimates pair =
+      PairEstimates(earlier, EstimateOfData(estimate, fitted_with), {}, true, true);
+  FindUnmovedMarkers(pair.differences, pair.markers, level, pair.links);
+  return pair.links;
+}
+
+}  // namespace elastocal
