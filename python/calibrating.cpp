@@ -165,13 +165,15 @@ py::object Validate(const Project& project, const Path& calibration, const py::o
 }
 
 py::object Check(const Project& project, const Path& calibration, const py::object& recording,
-                 double level, double days, std::optional<std::uint64_t> seed,
-                 const Names& accept) {
+                 double level, double days, std::optional<std::uint64_t> seed, const Names& accept,
+                 bool new_markers) {
   const Paths files = PathsOf(recording);
   ExpectBounded("check --level", level);
   ExpectBounded("check --days", days);
-  const CheckOptions options{
-      .joints = {.level = level}, .days = days, .seed = seed, .accept = accept};
+  const CheckOptions options{.joints = {.level = level, .new_markers = new_markers},
+                             .days = days,
+                             .seed = seed,
+                             .accept = accept};
   if (project.contact) {
     return FromJson(Unlocked([&] {
       const ContactCheck run = CheckContacts(project, calibration, files, options);
@@ -275,11 +277,13 @@ void AddCalibrating(py::module_& module) {
       "refit: 'table' registers tables and trackers anew, for each posture by the others.");
   module.def(
       "check", Check, "project"_a, "calibration"_a, "recording"_a, py::kw_only(), "level"_a = 0.05,
-      "days"_a = 1.0, "seed"_a = std::nullopt, "accept"_a = Names(),
+      "days"_a = 1.0, "seed"_a = std::nullopt, "accept"_a = Names(), "new_markers"_a = false,
       "Tells from a few postures (with contact or instruments, tables of observations) whether a "
       "saved calibration still holds: the dict of `elastocal check --json`, of markers with the "
       "'next_postures' to record where several joints may have changed. "
-      "level: chance of a false alarm. days: since the calibration.");
+      "level: chance of a false alarm. days: since the calibration. new_markers: markers were "
+      "taken "
+      "off since.");
   module.def("compare", Compare, "a"_a, "b"_a, py::kw_only(), "level"_a = 0.05,
              "new_markers"_a = false,
              "Tells which joints moved between two saved calibrations: a dict with 'changed', "

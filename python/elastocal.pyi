@@ -234,10 +234,12 @@ def check(
     days: float = 1.0,
     seed: Optional[int] = None,
     accept: Sequence[str] = ...,
+    new_markers: bool = False,
 ) -> dict[str, Any]:
     """Tells from a few postures (with contact or instruments, tables of observations) whether a saved calibration
     still holds: the dict of `elastocal check --json`, of markers with the 'next_postures' to record where several
-    joints may have changed. level: chance of a false alarm. days: since the calibration."""
+    joints may have changed. level: chance of a false alarm. days: since the calibration. new_markers: markers were
+    taken off since."""
 def compare(a: _Path, b: _Path, *, level: float = 0.05, new_markers: bool = False) -> dict[str, Any]:
     """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'or_markers' (by
     moved joint, links whose markers may have moved as one piece instead), 'suspects', 'markers' (by link, whether

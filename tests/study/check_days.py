@@ -7,7 +7,9 @@
 A robot with errors that the estimator does not model (`simulate`) is calibrated with the default
 settings. Another day, each of its chains takes a few other postures (on another place, by another
 clock, with other noise): nothing should be said to have moved. Then one joint is turned, as after its
-motor was remounted, and it should be named. The joint is drawn with the seed of the robot among those
+motor was remounted, and it should be named. Besides, the calibration's markers of one link, drawn with the seed, are put
+elsewhere, as if they had been fixed anew since (1 mm each) or moved as one piece (1 mm and 10 mrad): no joint should be
+said to have moved. The joint is drawn with the seed of the robot among those
 whose zero the postures tell. At last both days together and the second one updating the first
 (`calibrate --prior`) are compared on a third one. Everything follows from the seeds.
 """
@@ -20,7 +22,7 @@ import random
 import shutil
 import tempfile
 
-from compare_pairs import DESIGN, run, turn
+from compare_pairs import DESIGN, move_markers, run, turn
 
 
 def few(postures):
@@ -31,10 +33,10 @@ def few(postures):
     return words
 
 
-def check(arguments, scratch, day):
+def check(arguments, scratch, day, calibration="a_out"):
     file = scratch / "check.json"
     file.unlink(missing_ok=True)
-    run(arguments.program, "check", arguments.project, "--calibration", scratch / "a_out",
+    run(arguments.program, "check", arguments.project, "--calibration", scratch / calibration,
         "--recording", day, "--json", file, "--quiet", may_fail=True)
     return json.loads(file.read_text())
 
@@ -61,10 +63,17 @@ def robot(arguments, seed, scratch):
     errors = {name: error(arguments, scratch, name, scratch / "c")
               for name in ("a_out", "updated", "together")}
     same = check(arguments, scratch, scratch / "b")
-    joint = random.Random(seed).choice(
+    draw = random.Random(seed)
+    elsewhere = []
+    for rigid in (False, True):
+        link = move_markers(scratch / "a_out", scratch / "moved_out", draw, rigid)
+        found = check(arguments, scratch, scratch / "b", "moved_out")
+        seen = not next(one["same"] for one in found["markers"] if one["link"] == link)
+        elsewhere.append((link, seen, found["status"]))
+    joint = draw.choice(
         sorted(j["joint"] for j in same["joints"] if j["joint"] not in same["not_told"]))
     turn(scratch / "b", joint, math.radians(arguments.turn_deg))
-    return same, joint, check(arguments, scratch, scratch / "b"), errors
+    return same, joint, check(arguments, scratch, scratch / "b"), errors, elsewhere
 
 
 def main():
@@ -77,10 +86,10 @@ def main():
     parser.add_argument("--postures", type=int, default=8, help="of each arm and leg")
     parser.add_argument("--work", help="keep the files here")
     arguments = parser.parse_args()
-    false_alarms = named = alone = seen = 0
+    false_alarms = named = alone = seen = markers_seen = accused = 0
     for seed in range(arguments.first, arguments.first + arguments.robots):
         scratch = pathlib.Path(tempfile.mkdtemp(prefix=f"robot_{seed}_", dir=arguments.work))
-        same, joint, changed, errors = robot(arguments, seed, scratch)
+        same, joint, changed, errors, elsewhere = robot(arguments, seed, scratch)
         moved = [one["joint"] for one in changed["moved"]]
         false_alarms += same["status"] != "unchanged"
         named += joint in moved
@@ -91,10 +100,15 @@ def main():
               f"{changed['suspects']}, or markers on {changed['or_markers']}; "
               "third day, mm: " + ", ".join(f"{name} {mm:.3f}" for name, mm in errors.items()),
               flush=True)
+        for link, was_seen, status in elsewhere:
+            markers_seen += was_seen
+            accused += status != "unchanged"
+            print(f"    markers of {link} elsewhere: {'seen' if was_seen else 'not seen'}, {status}", flush=True)
         if arguments.work is None:
             shutil.rmtree(scratch)
     print(f"{arguments.robots} robots: a false alarm in {false_alarms}; a change is seen in {seen}, "
           f"the turned joint is named in {named}, alone in {alone}")
+    print(f"{2 * arguments.robots} times markers of a link elsewhere: seen in {markers_seen}, not unchanged in {accused}")
 
 
 if __name__ == "__main__":

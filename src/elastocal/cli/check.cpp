@@ -118,6 +118,10 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
 int Check(const CheckCommand& command) {
   const Project project = ReadProject(command.project);
   if (project.contact) {
+    if (command.check.joints.new_markers) {
+      throw InputError("check --new-markers: " + project.file.string() +
+                       " has contact or instruments; a project with markers was expected");
+    }
     return RunContactCheck(
         {command.common, command.calibration, command.output, command.recording, command.check},
         project);
@@ -176,6 +180,8 @@ void AddCheck(CLI::App& app, Action& action) {
                    "Where a joint has changed and several may be it: five postures of each limb "
                    "that tell which, as a posture file (YAML)")
       ->type_name("FILE");
+  command->add_flag("--new-markers", options->check.joints.new_markers,
+                    "Markers were taken off since: conclude nothing from their places");
   AddAcceptOption(*command, options->check.accept);
   AddCommonOptions(*command, options->common);
   command->footer(

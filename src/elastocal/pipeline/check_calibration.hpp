@@ -57,7 +57,8 @@ struct CheckOptions {
 };
 
 /// Tells whether a stored calibration still explains a robot, from far fewer postures than it takes
-/// to calibrate (FindMovedJoints). Markers and cameras may have been set up anew.
+/// to calibrate (FindMovedJoints). Markers and cameras may have been set up anew; markers that
+/// stayed are found (FindMarkersThatStayed).
 ///
 /// `calibration`: the folder that calibrate wrote to, or its calibration.yaml, with its covariance.
 /// `recording`: a posture table or a recording folder. Throws InputError: files that cannot be

@@ -184,14 +184,16 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
   const auto known = [&](const std::vector<LinkMarkers>& markers) {
     return MakeEarlierEstimate(estimate, fit.robot.model, project.calibration, days, markers);
   };
-  fit.check = CheckBesideMarkers(
-      FindMarkersThatStayed(estimate, fit.estimate, fitted_with, options.level),
-      [&](const std::vector<LinkMarkers>& markers) {
-        const EarlierEstimate earlier = known(markers);
-        return FindMovedJoints(fit.estimate, fitted_with, earlier,
-                               SizeOfChanges(earlier, fit.robot.model, project.calibration.prior),
-                               options);
-      });
+  std::vector<LinkMarkers> links;
+  if (!options.new_markers) {
+    links = FindMarkersThatStayed(estimate, fit.estimate, fitted_with, options.level);
+  }
+  fit.check = CheckBesideMarkers(links, [&](const std::vector<LinkMarkers>& markers) {
+    const EarlierEstimate earlier = known(markers);
+    return FindMovedJoints(fit.estimate, fitted_with, earlier,
+                           SizeOfChanges(earlier, fit.robot.model, project.calibration.prior),
+                           options);
+  });
   fit.earlier = known(LeftOpen(fit.check.markers, fit.check.or_markers));
   return fit;
 }

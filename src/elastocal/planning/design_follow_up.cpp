@@ -11,6 +11,7 @@
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/planning/chain_setups.hpp"
+#include "elastocal/validation/earlier_markers.hpp"
 
 namespace elastocal {
 namespace {
@@ -48,8 +49,11 @@ PriorKnowledge KnowledgeOf(const DesignedChain& chain, const std::vector<int>& c
     sd[static_cast<Eigen::Index>(i)] = prior.Of(model.tree, model.parameters[columns[i]]);
   }
   knowledge.covariance = sd.cwiseAbs2().asDiagonal();
+  std::vector<LinkMarkers> links =
+      FindCommonMarkers(known.estimate.markers, PlacesOfMarkers(model));
+  for (LinkMarkers& link : links) link.same = true;
   const EarlierEstimate earlier =
-      MakeEarlierEstimate(known.estimate, model, project.calibration, options.days);
+      MakeEarlierEstimate(known.estimate, model, project.calibration, options.days, links);
   const EarlierPart part = PartOf(earlier, model, columns);
   knowledge.covariance(part.positions, part.positions) = part.covariance;
   const Eigen::VectorXd sizes = SizeOfChanges(earlier, model, prior);

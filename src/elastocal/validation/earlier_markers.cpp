@@ -30,14 +30,19 @@ CalibrationEstimate EstimateOfData(const CalibrationResult& estimate,
     alone.covariance_names.push_back(parameter.name);
   }
   alone.covariance = data.unit.asDiagonal() * covariance * data.unit.asDiagonal();
-  for (const Marker& marker : model.markers) {
-    alone.markers.push_back(
-        {marker.name, model.tree.links[Size(marker.link)].name, marker.p_link_marker});
-  }
+  alone.markers = PlacesOfMarkers(model);
   return alone;
 }
 
 }  // namespace
+
+std::vector<MarkerPlace> PlacesOfMarkers(const ErrorModel& model) {
+  std::vector<MarkerPlace> places;
+  for (const Marker& marker : model.markers) {
+    places.push_back({marker.name, model.tree.links[Size(marker.link)].name, marker.p_link_marker});
+  }
+  return places;
+}
 
 std::vector<LinkMarkers> FindMarkersThatStayed(const CalibrationEstimate& earlier,
                                                const CalibrationResult& estimate,

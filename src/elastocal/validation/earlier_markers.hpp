@@ -8,6 +8,9 @@
 
 namespace elastocal {
 
+/// The markers of a model, where its project has them.
+std::vector<MarkerPlace> PlacesOfMarkers(const ErrorModel& model);
+
 /// Decides on which links a recording finds all markers where an earlier calibration has them
 /// (FindUnmovedMarkers).
 ///

@@ -52,6 +52,9 @@ struct JointCheck {
 struct JointCheckOptions {
   double level = 0.05;      ///< chance that any joint of an unchanged robot is accused
   double certainty = 0.95;  ///< probability from which on a single joint is named
+  /// Whether markers were taken off and fixed anew since, all of them, so that their places tell
+  /// nothing of the robot.
+  bool new_markers = false;
 };
 
 /// Whether a parameter is what a turned encoder changes: theta, of a prismatic joint r; of a motor

@@ -59,7 +59,7 @@ PairedEstimates PairEstimates(const CalibrationEstimate& a, const CalibrationEst
   };
   for (const CommonParameter& one : common) pair.robot.push_back(add(one.in_a, one.in_b, 0.0));
   for (const LinkMarkers& link :
-       with_markers ? FindCommonMarkers(a, b) : std::vector<LinkMarkers>()) {
+       with_markers ? FindCommonMarkers(a.markers, b.markers) : std::vector<LinkMarkers>()) {
     const std::vector<MarkerCoordinate> coordinates = CoordinatesOf(link, a, b);
     if (coordinates.empty()) continue;
     pair.links.push_back(link);

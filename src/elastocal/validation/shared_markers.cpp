@@ -42,12 +42,12 @@ std::vector<int> RowsOfUnmoved(const std::vector<std::vector<int>>& rows,
   return unmoved;
 }
 
-std::vector<LinkMarkers> FindCommonMarkers(const CalibrationEstimate& a,
-                                           const CalibrationEstimate& b) {
+std::vector<LinkMarkers> FindCommonMarkers(const std::vector<MarkerPlace>& a,
+                                           const std::vector<MarkerPlace>& b) {
   std::map<std::string, std::string> link_in_a;
-  for (const MarkerPlace& marker : a.markers) link_in_a.emplace(marker.name, marker.link);
+  for (const MarkerPlace& marker : a) link_in_a.emplace(marker.name, marker.link);
   std::vector<LinkMarkers> links;
-  for (const MarkerPlace& marker : b.markers) {
+  for (const MarkerPlace& marker : b) {
     const auto in_a = link_in_a.find(marker.name);
     if (in_a == link_in_a.end() || in_a->second != marker.link) continue;
     auto link = std::find_if(links.begin(), links.end(),

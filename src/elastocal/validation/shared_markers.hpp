@@ -25,8 +25,8 @@ inline constexpr double kMarkerReturns = 1e-4;  // m
 
 /// Links with three common markers or more, whose places can therefore tell whether they were fixed
 /// anew. In the order of B.
-std::vector<LinkMarkers> FindCommonMarkers(const CalibrationEstimate& a,
-                                           const CalibrationEstimate& b);
+std::vector<LinkMarkers> FindCommonMarkers(const std::vector<MarkerPlace>& a,
+                                           const std::vector<MarkerPlace>& b);
 
 /// A coordinate of a common marker: its row in the parameters of A and B, and by how much its
 /// nominal place is elsewhere in B than in A, m.
