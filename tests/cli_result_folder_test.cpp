@@ -46,7 +46,8 @@ TEST_F(Program, ADamagedCalibrationIsRefusedByAllWhoReadIt) {
   std::string missing = good;
   missing.erase(elbow, good.find('\n', elbow + 1) - elbow);
   refused(missing, {"calibration.yaml:", "parameters", "cut"});
-  refused(good.substr(0, good.find("\n  - {name")) + "\n", {"calibration.yaml:", "no parameter"});
+  const std::size_t first = good.find("\n  - {name", good.find("\nparameters:"));
+  refused(good.substr(0, first) + "\n", {"calibration.yaml:", "no parameter"});
   refused("", {"calibration.yaml"});
   const std::string theta = "elbow_joint.theta, unit: ";
   refused(Replaced(good, theta + "rad", theta + "m"), {"calibration.yaml:", "unit", "'m'", "rad"});
