@@ -201,7 +201,7 @@ py::dict Compare(const Path& a, const Path& b, double level, bool new_markers) {
   }
   for (const LinkMarkers& link : found.markers) {
     markers.append(py::dict("link"_a = link.link, "markers"_a = link.markers, "same"_a = link.same,
-                            "p"_a = link.p));
+                            "p"_a = link.p, "as_one_piece"_a = link.as_one_piece));
   }
   for (const ParameterDifference& one : found.parameters) {
     parameters.append(py::dict("name"_a = one.name, "joint"_a = one.joint, "unit"_a = one.unit,

@@ -207,8 +207,11 @@ Json MakeComparisonJson(const CalibrationEstimate& a, const CalibrationEstimate&
   }
   json["markers"] = Json::array();
   for (const LinkMarkers& link : comparison.markers) {
-    json["markers"].push_back(
-        {{"link", link.link}, {"markers", link.markers}, {"same", link.same}, {"p", link.p}});
+    json["markers"].push_back({{"link", link.link},
+                               {"markers", link.markers},
+                               {"same", link.same},
+                               {"p", link.p},
+                               {"as_one_piece", link.as_one_piece}});
   }
   json["not_compared"] = Json::array();
   for (const NotCompared& one : comparison.not_compared) {

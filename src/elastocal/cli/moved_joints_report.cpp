@@ -51,7 +51,9 @@ std::string DescribeMarkers(const std::vector<LinkMarkers>& links) {
   if (links.empty()) return "";
   std::vector<std::string> moved;
   for (const LinkMarkers& link : links) {
-    if (!link.same) moved.push_back(fmt::format("{} (p {})", link.link, Probability(link.p)));
+    if (link.same) continue;
+    moved.push_back(link.as_one_piece ? link.link + " (as one piece)"
+                                      : fmt::format("{} (p {})", link.link, Probability(link.p)));
   }
   std::string text = fmt::format("Markers: on {} of {} links all are where they were",
                                  links.size() - moved.size(), links.size());

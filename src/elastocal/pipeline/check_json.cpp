@@ -34,8 +34,11 @@ void AddJointCheck(const JointCheck& check, nlohmann::ordered_json& json) {
   json["or_markers"] = check.or_markers;
   json["markers"] = nlohmann::ordered_json::array();
   for (const LinkMarkers& link : check.markers) {
-    json["markers"].push_back(
-        {{"link", link.link}, {"markers", link.markers}, {"same", link.same}, {"p", link.p}});
+    json["markers"].push_back({{"link", link.link},
+                               {"markers", link.markers},
+                               {"same", link.same},
+                               {"p", link.p},
+                               {"as_one_piece", link.as_one_piece}});
   }
   json["not_told"] = check.not_told;
   json["joints"] = nlohmann::ordered_json::array();

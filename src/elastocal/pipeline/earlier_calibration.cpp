@@ -59,8 +59,8 @@ std::vector<LinkMarkers> LeftOpen(std::vector<LinkMarkers> markers,
 
 /// The joints that have moved (`find`), if the markers have not on links where they are the same.
 /// These are left open on one link after another, because they may have moved as one piece: where
-/// nothing has changed then, the link is named beside the joints that are accused; and where no
-/// single joint is, nothing has changed.
+/// nothing has changed then, the link is named beside the one joint that is accused; several joints
+/// are not accused of what one cluster explains.
 JointCheck CheckBesideMarkers(
     const std::vector<LinkMarkers>& markers,
     const std::function<JointCheck(const std::vector<LinkMarkers>&)>& find) {
@@ -71,10 +71,11 @@ JointCheck CheckBesideMarkers(
     std::vector<LinkMarkers> links = LeftOpen(markers, {markers[k].link});
     JointCheck open = find(links);
     if (open.changed()) continue;
-    if (!check.moved.empty()) {
+    if (check.moved.size() == 1 && check.suspects.empty()) {
       check.or_markers.push_back(links[k].link);
       continue;
     }
+    links[k].as_one_piece = true;
     open.markers = std::move(links);
     return open;
   }

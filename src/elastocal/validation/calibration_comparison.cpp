@@ -129,26 +129,12 @@ Findings TestAll(const Differences& all, double level, const CalibrationComparis
                          : TestBySmallest(comparison.parameters, everything)};
 }
 
-/// Leaves the markers of one link after another open, which may have moved as one piece. Where a
-/// joint is then no longer accused, it names the link beside it. Of the tests of everything it
-/// keeps the one that accuses least.
-void LeaveLinksOpen(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
-  for (std::size_t k = 0; k < comparison.markers.size(); ++k) {
-    if (!comparison.markers[k].same) continue;
-    std::vector<LinkMarkers> links = comparison.markers;
-    links[k].same = false;
-    const Findings open = TestAll(OfRobot(pair, links), level, comparison);
-    if (open.overall.p > comparison.overall.p) comparison.overall = open.overall;
-    for (JointDifference& joint : comparison.joints) {
-      const auto there = std::ranges::find(open.joints, joint.joint, &JointDifference::joint);
-      if (joint.moved && !there->moved) joint.or_markers.push_back(links[k].link);
-    }
-  }
+int CountMoved(const std::vector<JointDifference>& joints) {
+  return static_cast<int>(std::ranges::count_if(joints, &JointDifference::moved));
 }
 
-/// Fills in the tests of markers, joints and everything together.
-void Judge(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
-  FindUnmovedMarkers(pair.differences, pair.markers, level, comparison.markers);
+/// Fills in the tests of joints and everything together.
+void JudgeRobot(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
   const Differences all = OfRobot(pair, comparison.markers);
   for (std::size_t i = 0; i < comparison.parameters.size(); ++i) {
     SetDifference(all, static_cast<int>(i), comparison.parameters[i]);
@@ -156,12 +142,41 @@ void Judge(const PairedEstimates& pair, double level, CalibrationComparison& com
   Findings found = TestAll(all, level, comparison);
   comparison.joints = std::move(found.joints);
   comparison.overall = found.overall;
-  LeaveLinksOpen(pair, level, comparison);
-  const bool some_moved = comparison.joints.front().moved;
+  const bool some_moved = CountMoved(comparison.joints) > 0;
   comparison.changed = some_moved || comparison.overall.p <= level;
+  comparison.suspects.clear();
   if (comparison.changed && !some_moved && comparison.with_covariance) {
     comparison.suspects = FindSuspects(all, comparison.joints, level);
   }
+}
+
+/// Leaves the markers of one link after another open, which may have moved as one piece. Where a
+/// joint is then no longer accused, it names the link beside it. Unless a single joint is, one that
+/// explains all that has changed is taken to have moved.
+void LeaveLinksOpen(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
+  for (std::size_t k = 0; k < comparison.markers.size() && comparison.changed; ++k) {
+    if (!comparison.markers[k].same) continue;
+    comparison.markers[k].same = false;
+    const Findings open = TestAll(OfRobot(pair, comparison.markers), level, comparison);
+    const bool explains = CountMoved(open.joints) == 0 && open.overall.p > level;
+    if (explains && CountMoved(comparison.joints) != 1) {
+      comparison.markers[k].as_one_piece = true;
+      JudgeRobot(pair, level, comparison);
+      return;
+    }
+    comparison.markers[k].same = true;
+    for (JointDifference& joint : comparison.joints) {
+      const auto there = std::ranges::find(open.joints, joint.joint, &JointDifference::joint);
+      if (joint.moved && !there->moved) joint.or_markers.push_back(comparison.markers[k].link);
+    }
+  }
+}
+
+/// Fills in all tests.
+void Judge(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
+  FindUnmovedMarkers(pair.differences, pair.markers, level, comparison.markers);
+  JudgeRobot(pair, level, comparison);
+  LeaveLinksOpen(pair, level, comparison);
 }
 
 void CheckSameRobot(const CalibrationEstimate& a, const CalibrationEstimate& b) {

@@ -47,9 +47,7 @@ struct JointDifference {
 struct CalibrationComparison {
   std::vector<JointDifference> joints;          ///< the most significant first
   std::vector<ParameterDifference> parameters;  ///< in the order of B
-  /// Of all parameters together; of these tests with the markers of one link or none left open, the
-  /// one that accuses least.
-  DifferenceTest overall;
+  DifferenceTest overall;                       ///< of all parameters together
   bool changed = false;  ///< whether a joint has moved, or overall.p is at or below the level
   /// Joints of which any one alone, if it moved, would explain all differences. Only if something
   /// changed and no joint could be singled out.
@@ -82,8 +80,9 @@ struct CalibrationComparison {
 /// places of markers are therefore not left open where both calibrations find them the same
 /// (FindUnmovedMarkers): differences and covariances are those that are left if these markers have
 /// not moved by more than kMarkerReturns. A cluster that moved as one piece may hide in this way,
-/// and a joint be accused in its place: `or_markers` names it, and `overall` does not rest on the
-/// markers of one link.
+/// and a joint be accused in its place: `or_markers` names it. Several joints, or differences of
+/// which none is singled out, are not put down to the robot where one cluster explains them, which
+/// is then taken to have moved (LinkMarkers::as_one_piece).
 ///
 /// **A joint** is tested by all its common quantities together (marginally, whatever else may have
 /// moved), by Fisher's F with their number and the degrees of freedom of the noise (Welch and

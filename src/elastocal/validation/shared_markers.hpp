@@ -17,6 +17,9 @@ struct LinkMarkers {
   /// Probability that their places differ as much if none has moved, given that those of the other
   /// links taken as the same have not.
   double p = 1.0;
+  /// Not the same only because all of them, moved as one piece, explain what would otherwise be put
+  /// down to several joints.
+  bool as_one_piece = false;
 };
 
 /// Standard deviation of the difference of a coordinate of a marker that nobody touched, on another
