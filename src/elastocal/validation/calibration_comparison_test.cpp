@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "tests/expect_input_error.hpp"
 
@@ -212,7 +213,7 @@ class MarkersOfTwoDays : public CalibrationComparisonTest {
     for (CalibrationEstimate* side : {&a_, &b_}) AddCluster(*side, count);
   }
   double& MarkerInB(int marker, int axis) {
-    return b_.parameters[static_cast<std::size_t>(7 + 3 * marker + axis)].value;
+    return b_.parameters[Size(7 + 3 * marker + axis)].value;
   }
   /// j3 by 5 mrad: each estimate is the most probable one, so half of it is in the markers' places.
   void TurnJoint() {
