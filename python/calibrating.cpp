@@ -282,8 +282,7 @@ void AddCalibrating(py::module_& module) {
       "saved calibration still holds: the dict of `elastocal check --json`, of markers with the "
       "'next_postures' to record where several joints may have changed. "
       "level: chance of a false alarm. days: since the calibration. new_markers: markers were "
-      "taken "
-      "off since.");
+      "taken off since.");
   module.def("compare", Compare, "a"_a, "b"_a, py::kw_only(), "level"_a = 0.05,
              "new_markers"_a = false,
              "Tells which joints moved between two saved calibrations: a dict with 'changed', "

@@ -10,6 +10,7 @@
 #include "elastocal/cli/moved_joints_report.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/pipeline/check_json.hpp"
 #include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
@@ -205,14 +206,7 @@ Json MakeComparisonJson(const CalibrationEstimate& a, const CalibrationEstimate&
       json["parameters"].push_back(ParameterJson(comparison.parameters[i]));
     }
   }
-  json["markers"] = Json::array();
-  for (const LinkMarkers& link : comparison.markers) {
-    json["markers"].push_back({{"link", link.link},
-                               {"markers", link.markers},
-                               {"same", link.same},
-                               {"p", link.p},
-                               {"as_one_piece", link.as_one_piece}});
-  }
+  json["markers"] = MarkersJson(comparison.markers);
   json["not_compared"] = Json::array();
   for (const NotCompared& one : comparison.not_compared) {
     json["not_compared"].push_back({{"name", one.name}, {"reason", one.reason}});

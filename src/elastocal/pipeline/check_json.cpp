@@ -27,19 +27,24 @@ nlohmann::ordered_json SuspectJson(const JointSuspect& suspect) {
 
 }  // namespace
 
+nlohmann::ordered_json MarkersJson(const std::vector<LinkMarkers>& links) {
+  auto json = nlohmann::ordered_json::array();
+  for (const LinkMarkers& link : links) {
+    json.push_back({{"link", link.link},
+                    {"markers", link.markers},
+                    {"same", link.same},
+                    {"p", link.p},
+                    {"as_one_piece", link.as_one_piece}});
+  }
+  return json;
+}
+
 void AddJointCheck(const JointCheck& check, nlohmann::ordered_json& json) {
   json["moved"] = nlohmann::ordered_json::array();
   for (const JointSuspect& joint : check.moved) json["moved"].push_back(SuspectJson(joint));
   json["suspects"] = check.suspects;
   json["or_markers"] = check.or_markers;
-  json["markers"] = nlohmann::ordered_json::array();
-  for (const LinkMarkers& link : check.markers) {
-    json["markers"].push_back({{"link", link.link},
-                               {"markers", link.markers},
-                               {"same", link.same},
-                               {"p", link.p},
-                               {"as_one_piece", link.as_one_piece}});
-  }
+  json["markers"] = MarkersJson(check.markers);
   json["not_told"] = check.not_told;
   json["joints"] = nlohmann::ordered_json::array();
   for (const JointSuspect& joint : check.joints) json["joints"].push_back(SuspectJson(joint));
