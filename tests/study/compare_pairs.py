@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How often `compare` is right about two recordings of one virtual robot.
 
-    compare_pairs.py PROGRAM PROJECT [--pairs 40] [--first 1] [--turn-deg 0.3] [--work DIR]
+    compare_pairs.py PROGRAM PROJECT [--pairs 40] [--first 1] [--turn-deg 0.3] [--marker-mm 1] [--work DIR]
 
 A pair is a robot with errors that the estimator does not model (`simulate`), recorded twice: other
 random postures, places, clocks and noise, the same robot. Both are calibrated with the default
@@ -10,7 +10,7 @@ settings and compared: no joint should be said to have moved. Then one joint of 
 is turned (its logged positions are off by that much in all trials, as after its motor was remounted),
 and it should be named, and alone. The joint is drawn with the seed of the pair among all joints that
 the calibration tells. The unchanged robot is also compared with markers of one link, drawn with the seed too, where
-they were not: each of them fixed anew (1 mm), and all as one piece on a plate that moved (1 mm and 10 mrad). This is done to
+they were not: each of them fixed anew (1 mm), and all as one piece on a plate that moved (1 mm and 10 mrad, or by --marker-mm). This is done to
 the second calibration's estimates and nominal places of these markers, which follow their places exactly. No joint
 should be said to have moved; where the plate moved as a joint would have moved it, this link should be named as the other
 explanation. Prints a line for each pair and the counts. Everything follows from the seeds.
@@ -55,21 +55,21 @@ def turn(folder, joint, angle):
             csv.writer(file).writerows(rows)
 
 
-def displaced(entries, link, draw, rigid):
+def displaced(entries, link, draw, rigid, size):
     """Lines of a calibration.yaml in which the markers of a link are elsewhere."""
     normal = lambda sd: [draw.gauss(0, sd) for _ in range(3)]
-    shift, turn = normal(1e-3), normal(10e-3)
+    shift, turn = normal(size), normal(10.0 * size)
     steps = {}
     for name, (on, p) in entries.items():
         if on != link:
             continue
         turned = [turn[(i + 1) % 3] * p[(i + 2) % 3] - turn[(i + 2) % 3] * p[(i + 1) % 3] for i in range(3)]
-        own = [s + t for s, t in zip(shift, turned)] if rigid else normal(1e-3)
+        own = [s + t for s, t in zip(shift, turned)] if rigid else normal(size)
         steps.update({f"marker.{name}.{axis}": step for axis, step in zip("xyz", own)})
     return steps
 
 
-def move_markers(source, target, draw, rigid):
+def move_markers(source, target, draw, rigid, size=1e-3):
     """The calibration of `source`, as it would be with the markers of a link elsewhere. Returns the link."""
     target.mkdir(exist_ok=True)
     shutil.copy(source / "covariance.csv", target)
@@ -78,7 +78,7 @@ def move_markers(source, target, draw, rigid):
     for name, link, places in re.findall(r"- {name: (\S+), link: (\S+), xyz_m: \[(.*)\]}", text):
         entries[name] = (link, [float(number) for number in places.split(",")])
     link = draw.choice(sorted({link for link, _ in entries.values()}))
-    steps = displaced(entries, link, draw, rigid)
+    steps = displaced(entries, link, draw, rigid, size)
 
     def moved(found):
         return f"{found[1]}{float(found[3]) + steps[found[2]]!r}" if found[2] in steps else found[0]
@@ -101,7 +101,8 @@ def pair(arguments, seed, scratch):
     draw = random.Random(seed)
     elsewhere = {}
     for way, rigid in (("anew", False), ("plate", True)):
-        link = move_markers(scratch / "b_out", scratch / "moved_out", draw, rigid)
+        link = move_markers(scratch / "b_out", scratch / "moved_out", draw, rigid,
+                            1e-3 * arguments.marker_mm)
         elsewhere[way] = (link, compare(program, scratch, "moved_out"))
     joints = sorted({entry["joint"] for entry in compared["joints"]
                      if entry["joint"] + ".theta" in {p["name"] for p in compared["parameters"]}})
@@ -126,6 +127,7 @@ def main():
     parser.add_argument("--pairs", type=int, default=40)
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--turn-deg", type=float, default=0.3)
+    parser.add_argument("--marker-mm", type=float, default=1.0, help="by how much markers of a link move")
     parser.add_argument("--work", help="keep the files here")
     arguments = parser.parse_args()
     false_alarms = named = alone = 0
