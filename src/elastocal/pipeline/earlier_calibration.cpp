@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
+#include "elastocal/validation/data_information.hpp"
 #include "elastocal/validation/earlier_markers.hpp"
 
 namespace elastocal {
@@ -162,40 +164,37 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
                            const JointCheckOptions& options, Project& project) {
   const CalibrationFiles files = FindCalibrationFiles(calibration);
   EarlierFit fit{.stored = ReadCalibration(files.calibration),
-                 .earlier = {},
+                 .calibration = ReadCalibrationFiles(files),
                  .robot = {},
+                 .fitted_with = {},
                  .estimate = {},
                  .check = {},
                  .measured = measured};
-  const CalibrationEstimate estimate = ReadCalibrationFiles(files);
   project.elasticity = ElasticityOf(fit.stored, project);
   project.calibration.extra = {.automatic = false, .names = project.elasticity.extra};
   const ErrorModel model = MakeProjectModel(project, measured.calibration.trials);
   CheckApplies(fit.stored, project, model);
 
+  fit.fitted_with = MakeEarlierEstimate(fit.calibration, model, project.calibration, days);
+  fit.fitted_with.covariance.diagonal() +=
+      SizeOfChanges(fit.fitted_with, model, project.calibration.prior).cwiseAbs2();
   Project open = project;
-  EarlierEstimate& fitted_with = open.calibration.earlier;
-  fitted_with = MakeEarlierEstimate(estimate, model, project.calibration, days);
-  fitted_with.covariance.diagonal() +=
-      SizeOfChanges(fitted_with, model, project.calibration.prior).cwiseAbs2();
+  open.calibration.earlier = fit.fitted_with;
   fit.robot = MakeRecordedModel(open, seed, fit.measured);
   fit.estimate = Calibrate(fit.robot.model, fit.measured.calibration, fit.robot.base,
                            ModelKinds(fit.robot.model).back(), open.calibration);
 
-  const auto known = [&](const std::vector<LinkMarkers>& markers) {
-    return MakeEarlierEstimate(estimate, fit.robot.model, project.calibration, days, markers);
-  };
   std::vector<LinkMarkers> links;
   if (!options.new_markers) {
-    links = FindMarkersThatStayed(estimate, fit.estimate, fitted_with, options.level);
+    links = FindMarkersThatStayed(fit.calibration, fit.estimate, fit.fitted_with, options.level);
   }
   fit.check = CheckBesideMarkers(links, [&](const std::vector<LinkMarkers>& markers) {
-    const EarlierEstimate earlier = known(markers);
-    return FindMovedJoints(fit.estimate, fitted_with, earlier,
+    const EarlierEstimate earlier =
+        MakeEarlierEstimate(fit.calibration, fit.robot.model, project.calibration, days, markers);
+    return FindMovedJoints(fit.estimate, fit.fitted_with, earlier,
                            SizeOfChanges(earlier, fit.robot.model, project.calibration.prior),
                            options);
   });
-  fit.earlier = known(LeftOpen(fit.check.markers, fit.check.or_markers));
   return fit;
 }
 
@@ -227,6 +226,25 @@ std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::s
   return texts;
 }
 
+EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const CalibrationOptions& options) {
+  const ErrorModel& model = fit.robot.model;
+  const std::vector<LinkMarkers> stayed = LeftOpen(fit.check.markers, fit.check.or_markers);
+  const DataInformation data = InformationOfData(fit.estimate, fit.fitted_with);
+  EarlierEstimate best;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const double share : {1.0, 0.25, 1.0 / 16.0, 1.0 / 64.0, 0.0}) {
+    EarlierEstimate known = ForgetMoved(
+        fit.check, MakeEarlierEstimate(fit.calibration, model, options, share * days, stayed),
+        model, options.prior);
+    const double evidence = LogEvidence(data, MeanBefore(fit.estimate, data, known),
+                                        CovarianceBefore(fit.estimate, data, known));
+    if (!(evidence > most)) continue;
+    most = evidence;
+    best = std::move(known);
+  }
+  return best;
+}
+
 std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,
                                           const Measurements& measured,
                                           std::optional<std::uint64_t> seed, Project& project) {
@@ -239,8 +257,7 @@ std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibrati
   for (std::string& text : DescribeForgotten(fit.check, fit.stored.source)) {
     warnings.push_back(std::move(text));
   }
-  project.calibration.earlier =
-      ForgetMoved(fit.check, fit.earlier, fit.robot.model, project.calibration.prior);
+  project.calibration.earlier = KnownAfter(fit, days, project.calibration);
   return warnings;
 }
 

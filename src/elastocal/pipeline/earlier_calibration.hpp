@@ -36,9 +36,10 @@ EarlierEstimate MakeEarlierEstimate(const CalibrationEstimate& calibration, cons
 /// A recording fitted with an earlier calibration as the prior.
 struct EarlierFit {
   StoredCalibration stored;
-  EarlierEstimate earlier;  ///< also of markers that stayed; not of those of `or_markers`
+  CalibrationEstimate calibration;  ///< the same with its covariance
   RecordedModel robot;
-  CalibrationResult estimate;  ///< every joint free to have moved
+  EarlierEstimate fitted_with;  ///< every joint free to have moved, markers anywhere
+  CalibrationResult estimate;
   JointCheck check;
   Measurements measured;  ///< with separate markers before and after knocks
 };
@@ -55,6 +56,12 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
 /// known of a new robot.
 EarlierEstimate ForgetMoved(const JointCheck& check, const EarlierEstimate& earlier,
                             const ErrorModel& model, const Prior& prior);
+
+/// What the fit leaves of its earlier calibration, as the prior of an update: of a joint that has
+/// moved or may have, as little as what is known of a new robot; of markers, those that stayed and
+/// cannot have moved instead of a joint. Zeros have drifted for as many of the `days` as makes the
+/// data most probable: what has not drifted need not be doubted.
+EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const CalibrationOptions& options);
 
 /// These joints, a sentence each. `source`: the earlier calibration.
 std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::string& source);

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include <Eigen/Cholesky>
+
 #include "elastocal/calibration/posterior.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
@@ -58,6 +61,23 @@ Eigen::VectorXd MeanBefore(const CalibrationResult& estimate, const DataInformat
   const EarlierPart known = PartOf(earlier, estimate.model, data.parameters);
   mean(known.positions) = known.mean.cwiseQuotient(data.unit(known.positions));
   return mean;
+}
+
+double LogEvidence(const DataInformation& data, const Eigen::VectorXd& mean,
+                   const Eigen::MatrixXd& covariance) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  if (factor.info() != Eigen::Success) {
+    throw InputError("the covariance of the earlier calibration is not positive definite");
+  }
+  const Eigen::MatrixXd L = factor.matrixL();
+  const Eigen::VectorXd score = L.transpose() * (data.vector - data.information * mean);
+  const auto identity = Eigen::MatrixXd::Identity(mean.size(), mean.size());
+  const Eigen::LLT<Eigen::MatrixXd> told(identity + L.transpose() * data.information * L);
+  const double log_det = 2.0 * told.matrixLLT().diagonal().array().log().sum();
+  // Beside the part at the mean: log p(data | x = mean) = vector' mean - mean' information mean
+  // / 2.
+  const double at_mean = mean.dot(data.vector) - 0.5 * mean.dot(data.information * mean);
+  return at_mean + 0.5 * (score.dot(told.solve(score)) - log_det);
 }
 
 }  // namespace elastocal

@@ -33,4 +33,9 @@ Eigen::MatrixXd CovarianceBefore(const CalibrationResult& estimate, const DataIn
 Eigen::VectorXd MeanBefore(const CalibrationResult& estimate, const DataInformation& data,
                            const EarlierEstimate& earlier);
 
+/// Logarithm of p(data | N(mean, covariance) before them), in the units of the data, less a
+/// constant that is the same for all.
+double LogEvidence(const DataInformation& data, const Eigen::VectorXd& mean,
+                   const Eigen::MatrixXd& covariance);
+
 }  // namespace elastocal
