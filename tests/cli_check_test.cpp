@@ -90,6 +90,28 @@ TEST_F(Program, CheckTellsTheLastJointByMarkersThatStayed) {
   EXPECT_EQ(json["not_told"], nlohmann::json({"flange_joint"}));
 }
 
+// The project was corrected since: the markers are where they were all the same.
+TEST_F(Program, CheckKnowsMarkersThatTheProjectNowHasElsewhere) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const std::string table =
+      AnotherDay(scratch_.path() / "same.csv", project_, truth_, "elbow_joint.theta", 0.0);
+  std::string text = ReadFile(project_);
+  const std::string before = "[25, 45, 20]", now = "[31, 42, 20]";
+  ASSERT_NE(text.find(before), std::string::npos);
+  text.replace(text.find(before), before.size(), now);
+  const std::string urdf = "arm6.urdf";
+  ASSERT_NE(text.find(urdf), std::string::npos);
+  text.replace(text.find(urdf), urdf.size(), SourceFile("tests/robots/" + urdf));
+  const std::string corrected = scratch_.Write("corrected.yaml", text);
+  const std::string file = (scratch_.path() / "check.json").string();
+  const ProgramResult result = RunProgram("check " + corrected + " --calibration " + out_ +
+                                          " --recording " + table + " --json " + file);
+  EXPECT_TRUE(result.out.starts_with("Unchanged")) << result.out << result.err;
+  for (const nlohmann::json& link : nlohmann::json::parse(ReadFile(file))["markers"]) {
+    EXPECT_EQ(link["same"], true) << link;
+  }
+}
+
 // Of four postures of one marker, no joint is certain at this level; but the calibration does not
 // hold.
 TEST_F(Program, CheckSaysChangedWhereTooFewPosturesTellTheJoint) {
