@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -231,14 +230,14 @@ EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const Calibration
   const std::vector<LinkMarkers> stayed = LeftOpen(fit.check.markers, fit.check.or_markers);
   const DataInformation data = InformationOfData(fit.estimate, fit.fitted_with);
   EarlierEstimate best;
-  double most = -std::numeric_limits<double>::infinity();
+  double most = 0.0;  // of the best; not a number under an infinite prior, which keeps all days
   for (const double share : {1.0, 0.25, 1.0 / 16.0, 1.0 / 64.0, 0.0}) {
     EarlierEstimate known = ForgetMoved(
         fit.check, MakeEarlierEstimate(fit.calibration, model, options, share * days, stayed),
         model, options.prior);
     const double evidence = LogEvidence(data, MeanBefore(fit.estimate, data, known),
                                         CovarianceBefore(fit.estimate, data, known));
-    if (!(evidence > most)) continue;
+    if (!best.empty() && !(evidence > most)) continue;
     most = evidence;
     best = std::move(known);
   }

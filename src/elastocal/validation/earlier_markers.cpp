@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/validation/earlier_markers.hpp"
 
+#include <stdexcept>
+
 #include "elastocal/calibration/posterior.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/validation/data_information.hpp"
 #include "elastocal/validation/paired_estimates.hpp"
@@ -50,7 +53,11 @@ std::vector<LinkMarkers> FindMarkersThatStayed(const CalibrationEstimate& earlie
   if (!earlier.has_covariance()) return {};
   PairedEstimates pair =
       PairEstimates(earlier, EstimateOfData(estimate, fitted_with), {}, true, true);
-  FindUnmovedMarkers(pair.differences, pair.markers, level, pair.links);
+  try {
+    FindUnmovedMarkers(pair.differences, pair.markers, level, pair.links);
+  } catch (const std::invalid_argument&) {
+    throw InputError(earlier.source + ": its covariance is not positive definite");
+  }
   return pair.links;
 }
 

@@ -17,7 +17,8 @@ std::vector<MarkerPlace> PlacesOfMarkers(const ErrorModel& model);
 /// `estimate` was fitted to the recording with `fitted_with`, which knows the robot by that
 /// calibration and so is not independent of it. Its places are therefore compared with those of the
 /// estimate that the data alone give of a robot that was never calibrated. Empty if `earlier` has
-/// no covariance, or if no link has three markers in both.
+/// no covariance, or if no link has three markers in both. Throws InputError if its covariance is
+/// not positive definite.
 std::vector<LinkMarkers> FindMarkersThatStayed(const CalibrationEstimate& earlier,
                                                const CalibrationResult& estimate,
                                                const EarlierEstimate& fitted_with, double level);
