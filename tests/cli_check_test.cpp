@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The commands `check`, `calibrate --prior` and `design --after` as their users run them.
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -285,6 +290,47 @@ TEST_F(Program, APriorMakesAFewPosturesEnough) {
   const ProgramResult alone =
       RunProgram("calibrate " + project_ + " --recording " + today + " --days 2 -o " + updated);
   EXPECT_EQ(alone.exit_code, 2) << "--days without --prior";
+}
+
+/// Makes two entries of a covariance larger than their variances allow.
+void Damage(const std::filesystem::path& covariance, const std::string& a, const std::string& b) {
+  std::istringstream file(ReadFile(covariance));
+  std::string written, line;
+  std::vector<std::string> names;
+  for (std::getline(file, line); !line.empty(); line.clear(), std::getline(file, line)) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    if (names.empty()) names = cells;
+    for (const auto& [of, other] : {std::pair(a, b), std::pair(b, a)}) {
+      const auto column = std::ranges::find(names, other) - names.begin();
+      if (cells.front() == of) cells[Size(column)] = "1";
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i) written += (i > 0 ? "," : "") + cells[i];
+    written += "\n";
+  }
+  WriteFile(covariance, written);
+}
+
+// Also where it is that of markers, by which is asked whether they stayed.
+TEST_F(Program, AnEarlierCalibrationOfNoCovarianceIsRefused) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const std::string today =
+      AnotherDay(scratch_.path() / "today.csv", project_, truth_, "elbow_joint.theta", 0.0);
+  const std::string check =
+      "check " + project_ + " --calibration " + out_ + " --recording " + today;
+  const std::string update =
+      "calibrate " + project_ + " --recording " + today + " --prior " + out_ + " -o " + out_ + "2";
+  EXPECT_EQ(RunProgram(check).exit_code, 0);
+  std::filesystem::remove(out_ + "/SHA256SUMS");
+  Damage(out_ + "/covariance.csv", "marker.TOOL_1.x", "marker.TOOL_1.y");
+  for (const std::string& words : {check, update}) {
+    const ProgramResult refused = RunProgram(words);
+    EXPECT_EQ(refused.exit_code, 3) << refused.err;
+    EXPECT_NE(refused.err.find(out_), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("not positive definite"), std::string::npos) << refused.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(out_ + "2"));
 }
 
 // Its errors count from another frame of the root link.

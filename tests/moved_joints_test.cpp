@@ -159,6 +159,37 @@ TEST_F(KnownArm, EightPosturesTellWhichJointHasMoved) {
   RecordProperty("false_alarms", false_alarms);
 }
 
+// All that it says is off by three times its standard deviations.
+TEST_F(KnownArm, AnEarlierCalibrationThatIsTooSureAccusesNoJoint) {
+  constexpr int kRobots = 20;
+  int accused = 0, named = 0, widened = 0, sound = 0;
+  for (int robot = 0; robot < kRobots; ++robot) {
+    const auto seed = 10 * static_cast<std::uint64_t>(robot);
+    const Eigen::VectorXd truth = Truth(robot);
+    const EarlierEstimate right = EstimateOf(Fit(Record(truth, 30, seed + 1)));
+    EarlierEstimate earlier = right;
+    Random random(seed);
+    const Eigen::MatrixXd L = earlier.covariance.llt().matrixL();
+    earlier.mean += 3.0 * L * random.NormalVector(earlier.mean.size(), 1.0);
+    const JointCheck same = Check(earlier, Record(truth, 8, seed + 2));
+    accused += same.changed() ? 1 : 0;
+    widened += same.widened >= 4.0 ? 1 : 0;
+    sound += Check(right, Record(truth, 8, seed + 2)).widened <= 2.0 ? 1 : 0;
+    Eigen::VectorXd later = truth;
+    later[FindParameter(model_.parameters, "elbow_joint.theta")] += 1.0 * kDegree;
+    const JointCheck check = Check(earlier, Record(later, 8, seed + 2));
+    named += check.moved.size() == 1 && check.moved[0].joint == "elbow_joint" ? 1 : 0;
+  }
+  EXPECT_LE(accused, 2);
+  EXPECT_GE(widened, kRobots - 2);
+  EXPECT_GE(sound, kRobots - 2);
+  EXPECT_GE(named, kRobots - 2);
+  RecordProperty("accused", accused);
+  RecordProperty("widened", widened);
+  RecordProperty("sound", sound);
+  RecordProperty("named", named);
+}
+
 // Errors of single lengths have no common pattern; a wrong scale of the cameras has.
 TEST_F(KnownArm, AWrongScaleOfAllPositionsIsToldFromErrorsOfSingleLengths) {
   constexpr int kRobots = 40;

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How often `compare` is right about two recordings of one virtual robot.
 
-    compare_pairs.py PROGRAM PROJECT [--pairs 40] [--first 1] [--turn-deg 0.3] [--marker-mm 1] [--work DIR]
+    compare_pairs.py PROGRAM PROJECT [--pairs 40] [--first 1] [--turn-deg 0.3] [--marker-mm 1 ...]
+                     [--marker-draws 1] [--work DIR]
 
 A pair is a robot with errors that the estimator does not model (`simulate`), recorded twice: other
 random postures, places, clocks and noise, the same robot. Both are calibrated with the default
@@ -10,13 +11,14 @@ settings and compared: no joint should be said to have moved. Then one joint of 
 is turned (its logged positions are off by that much in all trials, as after its motor was remounted),
 and it should be named, and alone. The joint is drawn with the seed of the pair among all joints that
 the calibration tells. The unchanged robot is also compared with markers of one link, drawn with the seed too, where
-they were not: each of them fixed anew (1 mm), and all as one piece on a plate that moved (1 mm and 10 mrad, or by --marker-mm). This is done to
+they were not: each of them fixed anew (1 mm), and all as one piece on a plate that moved (1 mm and 10 mrad, or by each --marker-mm). This is done to
 the second calibration's estimates and nominal places of these markers, which follow their places exactly. No joint
 should be said to have moved; where the plate moved as a joint would have moved it, this link should be named as the other
 explanation. Prints a line for each pair and the counts. Everything follows from the seeds.
 """
 
 import argparse
+import collections
 import csv
 import json
 import math
@@ -88,6 +90,9 @@ def move_markers(source, target, draw, rigid, size=1e-3):
     return link
 
 
+WAYS = {"anew": "fixed anew", "plate": "moved as one piece"}
+
+
 def pair(arguments, seed, scratch):
     """Joints said to have moved without a change; the joint turned, and those named then."""
     program, project = arguments.program, arguments.project
@@ -99,11 +104,11 @@ def pair(arguments, seed, scratch):
             may_fail=True)
     compared = compare(program, scratch, "b_out")
     draw = random.Random(seed)
-    elsewhere = {}
-    for way, rigid in (("anew", False), ("plate", True)):
-        link = move_markers(scratch / "b_out", scratch / "moved_out", draw, rigid,
-                            1e-3 * arguments.marker_mm)
-        elsewhere[way] = (link, compare(program, scratch, "moved_out"))
+    elsewhere = []
+    for size in arguments.marker_mm:
+        for way in list(WAYS) * arguments.marker_draws:
+            link = move_markers(scratch / "b_out", scratch / "moved_out", draw, way == "plate", 1e-3 * size)
+            elsewhere.append(((size, way), link, compare(program, scratch, "moved_out")))
     joints = sorted({entry["joint"] for entry in compared["joints"]
                      if entry["joint"] + ".theta" in {p["name"] for p in compared["parameters"]}})
     joint = random.Random(seed).choice(joints)
@@ -127,12 +132,12 @@ def main():
     parser.add_argument("--pairs", type=int, default=40)
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--turn-deg", type=float, default=0.3)
-    parser.add_argument("--marker-mm", type=float, default=1.0, help="by how much markers of a link move")
+    parser.add_argument("--marker-mm", type=float, default=[1.0], nargs="+", help="by how much markers of a link move")
+    parser.add_argument("--marker-draws", type=int, default=1, help="links of a pair, for each of these and each way")
     parser.add_argument("--work", help="keep the files here")
     arguments = parser.parse_args()
     false_alarms = named = alone = 0
-    seen = {"anew": 0, "plate": 0}
-    wrong = {"anew": 0, "plate": 0}
+    seen, accused, wrong = collections.Counter(), collections.Counter(), collections.Counter()
     for seed in range(arguments.first, arguments.first + arguments.pairs):
         scratch = pathlib.Path(tempfile.mkdtemp(prefix=f"pair_{seed}_", dir=arguments.work))
         same, joint, changed, elsewhere = pair(arguments, seed, scratch)
@@ -142,11 +147,12 @@ def main():
         least = same["joints"][0]
         print(f"{seed}: unchanged: moved {same['moved']} (least p {least['joint']} {least['p']:.2g}, "
               f"overall {same['overall']['p']:.2g}); {joint} turned: moved {changed['moved']}")
-        for way, (link, found) in elsewhere.items():
+        for way, link, found in elsewhere:
             seen[way] += not next(one["same"] for one in found["markers"] if one["link"] == link)
             others = {one["joint"]: one["or_markers"] for one in found["joints"] if one["moved"]}
+            accused[way] += bool(others)
             wrong[way] += any(link not in links for links in others.values())
-            print(f"    markers of {link} {way}: moved {others}", flush=True)
+            print(f"    markers of {link} {way[1]} ({way[0]} mm): moved {others}", flush=True)
         if arguments.work is None:
             shutil.rmtree(scratch)
         else:
@@ -155,9 +161,9 @@ def main():
     pairs = arguments.pairs
     print(f"{pairs} pairs: a false alarm in {false_alarms}; the turned joint is named in {named}, "
           f"alone in {alone}")
-    for way, title in (("anew", "fixed anew"), ("plate", "moved as one piece")):
-        print(f"markers of a link {title}: seen in {seen[way]}; a joint accused without naming that link "
-              f"in {wrong[way]}")
+    for way in [(size, way) for size in arguments.marker_mm for way in WAYS]:
+        print(f"markers of a link {WAYS[way[1]]} ({way[0]} mm), {pairs * arguments.marker_draws}: seen in {seen[way]}; "
+              f"a joint accused in {accused[way]}, without naming that link in {wrong[way]}")
 
 
 if __name__ == "__main__":

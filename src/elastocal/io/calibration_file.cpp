@@ -200,6 +200,8 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
        << YAML::Comment("who says where the root link's frame is");
   yaml << YAML::Key << "termination" << YAML::Value << TerminationName(result.termination);
   yaml << YAML::Key << "marker_sd_mm" << YAML::Value << FormatNumber(1e3 * result.marker_sd);
+  yaml << YAML::Key << "cluster_factor" << YAML::Value
+       << FormatNumber(result.posterior.cluster_factor);
   if (beside.rmse_3d > 0.0) {
     yaml << YAML::Key << "rmse_3d_mm" << YAML::Value << FormatNumber(1e3 * beside.rmse_3d)
          << YAML::Comment("what is left of its own markers");
@@ -312,6 +314,11 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   if (const auto left = root.Find("rmse_3d_mm")) {
     stored.rmse_3d = 1e-3 * left->Number();
     left->Expect(stored.rmse_3d >= 0.0, "a length");
+  }
+  if (const auto factor = root.Find("cluster_factor")) {
+    stored.scatter_sd =
+        1e-3 * root.Get("marker_sd_mm").Number() * std::sqrt(std::max(1.0, factor->Number()));
+    factor->Expect(factor->Number() >= 0.0, "a ratio of variances");
   }
   for (const ParameterEstimate& parameter : estimate.parameters) {
     (parameter.external ? stored.externals : stored.joint_errors)[parameter.name] = parameter.value;

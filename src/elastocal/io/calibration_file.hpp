@@ -51,6 +51,9 @@ struct StoredCalibration {
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
   double rmse_3d = 0.0;  ///< what it left of its own markers, m; 0: the file is silent
+  /// Scatter of a marker's coordinate between postures, of as many independent ones as would tell
+  /// as much as these postures do, m; 0: the file is silent.
+  double scatter_sd = 0.0;
   std::map<std::string, double> joint_errors;  ///< by parameter name, SI
   /// The errors that the calibrated URDF has, where they are others; else empty.
   std::map<std::string, double> urdf_errors;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "elastocal/calibration/prediction.hpp"
@@ -26,6 +28,34 @@ using Json = nlohmann::ordered_json;
 Eigen::MatrixXd DistancesBy(const EarlierFit& fit, const CalibrationOptions& options) {
   return Predict(fit.estimate.model, fit.estimate.delta, fit.measured.calibration, options)
       .distances;
+}
+
+/// Joints of which the calibration knows a play as large as what seems to have changed: the
+/// direction of approach may be other than the log tells.
+std::vector<std::string> DescribePlay(const JointCheck& check, const StoredCalibration& earlier) {
+  std::vector<JointSuspect> accused = check.moved;
+  std::ranges::copy_if(check.joints, std::back_inserter(accused), [&](const JointSuspect& joint) {
+    return std::ranges::count(check.suspects, joint.joint) > 0;
+  });
+  std::vector<std::string> texts;
+  for (const JointSuspect& joint : accused) {
+    for (const char* cause : {"backlash", "hysteresis"}) {
+      const auto half = earlier.joint_errors.find(joint.joint + "." + cause);
+      if (half == earlier.joint_errors.end()) continue;
+      const double play = 2.0 * std::abs(half->second);
+      for (const ParameterChange& change : joint.changes) {
+        const bool angle = change.name == joint.joint + ".theta";
+        if (!angle && change.name != joint.joint + ".r") continue;
+        if (std::abs(change.value) > play + 2.0 * change.sd) continue;
+        texts.push_back(fmt::format(
+            "{}: the calibration has {} there, {:.2g} {} from one side to the other; what seems to "
+            "have changed may be the side on which the joint came to rest",
+            joint.joint, cause, angle ? play * 180.0 / M_PI : 1e3 * play,
+            angle ? "degrees" : "mm"));
+      }
+    }
+  }
+  return texts;
 }
 
 }  // namespace
@@ -88,6 +118,9 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
     run.alternatives = FindAlternatives(calibration, postures, measured, project);
   }
 
+  std::ranges::move(DescribeWidened(run.check, run.calibration_file),
+                    std::back_inserter(run.warnings));
+  std::ranges::move(DescribePlay(run.check, fit.stored), std::back_inserter(run.warnings));
   run.warnings.insert(run.warnings.end(), fit.measured.warnings.begin(),
                       fit.measured.warnings.end());
   run.recording = std::move(fit.measured.calibration);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/check_json.hpp"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 namespace elastocal {
@@ -45,6 +47,7 @@ void AddJointCheck(const JointCheck& check, nlohmann::ordered_json& json) {
   json["suspects"] = check.suspects;
   json["or_markers"] = check.or_markers;
   json["markers"] = MarkersJson(check.markers);
+  json["earlier_sd_factor"] = std::sqrt(check.widened);
   json["not_told"] = check.not_told;
   json["joints"] = nlohmann::ordered_json::array();
   for (const JointSuspect& joint : check.joints) json["joints"].push_back(SuspectJson(joint));

@@ -137,7 +137,7 @@ class AlternativeSearch {
     const bool rest_holds = left >= kFewestChecked && left >= kMostOthers * all.posture_count() &&
                             Holds(WithoutPostures(all, bad));
     if (!rest_holds) return {};
-    return {text, EvidenceOfWrong(bad) > EvidenceOfMoves()};
+    return {text, EvidenceOfWrong(bad) > run_.check.log_evidence};
   }
 
   /// Faults of the tables.
@@ -193,16 +193,6 @@ class AlternativeSearch {
       evidence += LogNormal(residuals.Residual(i), wide * wide.transpose()) -
                   LogNormal(residuals.Residual(i), right);
     }
-    return evidence;
-  }
-
-  /// The same of the joints that were found to have moved.
-  double EvidenceOfMoves() const {
-    const JointCheck& check = run_.check;
-    const double choice = std::log(static_cast<double>(check.moved.size() + check.joints.size()));
-    double evidence = 0.0;
-    for (const JointSuspect& joint : check.moved) evidence += joint.log_evidence - choice;
-    if (!check.suspects.empty()) evidence += check.joints.front().log_evidence - choice;
     return evidence;
   }
 
@@ -285,6 +275,8 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
   const EarlierEstimate known = MakeEarlierOfContacts(earlier, run.model, project, options.days);
   OpenedRobot opened = OpenJoints(run.model, known, run.observations, project, options.joints);
   run.check = std::move(opened.check);
+  std::ranges::move(DescribeWidened(run.check, run.calibration_file),
+                    std::back_inserter(run.warnings));
   run.converged = opened.estimate.fit.termination == Termination::kConverged;
   run.updated = MakeFigures(run.model, run.observations,
                             LeftOf(run.model, run.observations, opened.estimate.fit.values));

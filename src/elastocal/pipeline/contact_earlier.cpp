@@ -2,6 +2,7 @@
 #include "elastocal/pipeline/contact_earlier.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -104,10 +105,16 @@ std::vector<std::string> StartFromEarlierContacts(const EarlierContacts& earlier
                                                   const Observations& observations,
                                                   const Project& project, double days,
                                                   ObservedRobot& model) {
-  const EarlierEstimate known = MakeEarlierOfContacts(earlier, model, project, days);
-  const JointCheck check = OpenJoints(model, known, observations, project).check;
-  model.earlier = ForgetMoved(check, known, model.robot, project.calibration.prior);
+  const auto after = [&](double drifting) {
+    return MakeEarlierOfContacts(earlier, model, project, drifting);
+  };
+  const OpenedRobot opened = OpenJoints(model, after(days), observations, project);
+  const JointCheck& check = opened.check;
+  model.earlier =
+      MostProbable(check, InformationOfContacts(opened.model, observations, opened.estimate.fit),
+                   opened.model.earlier, days, after, project.calibration.prior);
   std::vector<std::string> texts = DescribeForgotten(check, earlier.stored.source);
+  std::ranges::move(DescribeWidened(check, earlier.stored.source), std::back_inserter(texts));
   const std::string before =
       ", " + earlier.stored.recording + ", ";  // files, as ContactRun has them
   for (const std::string& file : observations.files) {

@@ -2,7 +2,7 @@
 #include "elastocal/pipeline/earlier_calibration.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -56,6 +56,15 @@ std::vector<LinkMarkers> LeftOpen(std::vector<LinkMarkers> markers,
                                   const std::vector<std::string>& links) {
   for (LinkMarkers& one : markers) one.same = one.same && !std::ranges::count(links, one.link);
   return markers;
+}
+
+/// A few postures, with every joint free to have moved, do not tell how much the model errs from
+/// one to the next: no less than in the many of the earlier calibration.
+void ScatterAsBefore(const StoredCalibration& earlier, CalibrationResult& estimate) {
+  if (!(estimate.marker_sd > 0.0)) return;
+  const double variances = std::pow(earlier.scatter_sd / estimate.marker_sd, 2);
+  if (!(variances > estimate.posterior.cluster_factor)) return;
+  estimate.posterior.cluster_factor = variances;
 }
 
 /// The joints that have moved (`find`), if the markers have not on links where they are the same.
@@ -182,6 +191,7 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
   fit.robot = MakeRecordedModel(open, seed, fit.measured);
   fit.estimate = Calibrate(fit.robot.model, fit.measured.calibration, fit.robot.base,
                            ModelKinds(fit.robot.model).back(), open.calibration);
+  ScatterAsBefore(fit.stored, fit.estimate);
 
   std::vector<LinkMarkers> links;
   if (!options.new_markers) {
@@ -203,6 +213,7 @@ EarlierEstimate ForgetMoved(const JointCheck& check, const EarlierEstimate& earl
   for (const JointSuspect& joint : check.moved) joints.push_back(joint.joint);
   const Eigen::VectorXd sizes = SizeOfChanges(earlier, model, prior);
   EarlierEstimate left = earlier;
+  left.covariance *= check.widened;
   for (std::size_t i = 0; i < earlier.names.size(); ++i) {
     const std::string joint = OwnerName(earlier.names[i]);
     if (std::find(joints.begin(), joints.end(), joint) == joints.end()) continue;
@@ -225,23 +236,41 @@ std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::s
   return texts;
 }
 
-EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const CalibrationOptions& options) {
-  const ErrorModel& model = fit.robot.model;
-  const std::vector<LinkMarkers> stayed = LeftOpen(fit.check.markers, fit.check.or_markers);
-  const DataInformation data = InformationOfData(fit.estimate, fit.fitted_with);
+std::vector<std::string> DescribeWidened(const JointCheck& check, const std::string& source) {
+  constexpr double kTold = 4.0;  // less may be chance
+  if (check.widened < kTold) return {};
+  return {
+      fmt::format("{}: errs by {:.2g} times its standard deviations in these postures (errors "
+                  "that its model lacks), which are taken to be so much larger",
+                  source, std::sqrt(check.widened))};
+}
+
+EarlierEstimate MostProbable(const JointCheck& check, const CalibrationResult& estimate,
+                             const EarlierEstimate& fitted_with, double days,
+                             const std::function<EarlierEstimate(double)>& after,
+                             const Prior& prior) {
+  const DataInformation data = InformationOfData(estimate, fitted_with);
   EarlierEstimate best;
   double most = 0.0;  // of the best; not a number under an infinite prior, which keeps all days
   for (const double share : {1.0, 0.25, 1.0 / 16.0, 1.0 / 64.0, 0.0}) {
-    EarlierEstimate known = ForgetMoved(
-        fit.check, MakeEarlierEstimate(fit.calibration, model, options, share * days, stayed),
-        model, options.prior);
-    const double evidence = LogEvidence(data, MeanBefore(fit.estimate, data, known),
-                                        CovarianceBefore(fit.estimate, data, known));
+    EarlierEstimate known = ForgetMoved(check, after(share * days), estimate.model, prior);
+    const double evidence = LogEvidence(data, MeanBefore(estimate, data, known),
+                                        CovarianceBefore(estimate, data, known));
     if (!best.empty() && !(evidence > most)) continue;
     most = evidence;
     best = std::move(known);
   }
   return best;
+}
+
+EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const CalibrationOptions& options) {
+  const std::vector<LinkMarkers> stayed = LeftOpen(fit.check.markers, fit.check.or_markers);
+  return MostProbable(
+      fit.check, fit.estimate, fit.fitted_with, days,
+      [&](double drifting) {
+        return MakeEarlierEstimate(fit.calibration, fit.robot.model, options, drifting, stayed);
+      },
+      options.prior);
 }
 
 std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,
@@ -254,6 +283,9 @@ std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibrati
     warnings.push_back(fit.stored.source + ": made from the same recording, which counts twice");
   }
   for (std::string& text : DescribeForgotten(fit.check, fit.stored.source)) {
+    warnings.push_back(std::move(text));
+  }
+  for (std::string& text : DescribeWidened(fit.check, fit.stored.source)) {
     warnings.push_back(std::move(text));
   }
   project.calibration.earlier = KnownAfter(fit, days, project.calibration);

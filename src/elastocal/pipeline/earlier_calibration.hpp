@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,19 +53,28 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
                            const Measurements& measured, std::optional<std::uint64_t> seed,
                            const JointCheckOptions& options, Project& project);
 
-/// The earlier estimate that counts, for joints that have moved or may have, as little as what is
-/// known of a new robot.
+/// The earlier estimate as wide as the data have it (JointCheck::widened), that counts, for joints
+/// that have moved or may have, as little as what is known of a new robot.
 EarlierEstimate ForgetMoved(const JointCheck& check, const EarlierEstimate& earlier,
                             const ErrorModel& model, const Prior& prior);
 
-/// What the fit leaves of its earlier calibration, as the prior of an update: of a joint that has
-/// moved or may have, as little as what is known of a new robot; of markers, those that stayed and
-/// cannot have moved instead of a joint. Zeros have drifted for as many of the `days` as makes the
-/// data most probable: what has not drifted need not be doubted.
+/// The earlier estimate as the prior of an update: `after` so many of the `days`, in which zeros
+/// drifted, as make the data most probable (what has not drifted need not be doubted), and with
+/// what ForgetMoved does. `estimate`: of the new data, fitted with `fitted_with`.
+EarlierEstimate MostProbable(const JointCheck& check, const CalibrationResult& estimate,
+                             const EarlierEstimate& fitted_with, double days,
+                             const std::function<EarlierEstimate(double days)>& after,
+                             const Prior& prior);
+
+/// The same of what the fit leaves of its earlier calibration; of markers, those that stayed and
+/// cannot have moved instead of a joint.
 EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const CalibrationOptions& options);
 
 /// These joints, a sentence each. `source`: the earlier calibration.
 std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::string& source);
+
+/// That it is less exact than it says, a sentence; none where that may be chance.
+std::vector<std::string> DescribeWidened(const JointCheck& check, const std::string& source);
 
 /// Takes an earlier calibration as the prior of the project's estimates. What it says of joints
 /// that seem to have moved since counts as little as what is known of a new robot. Returns what a

@@ -19,6 +19,8 @@ constexpr double kTimesPrior = 2.0;  // a change may be larger than what a new r
 /// what is expected stands out of the noise by one.
 constexpr double kLeastTold = 1.0;
 constexpr double kKnownFreedom = 1e6;
+/// By how much the covariance of an earlier calibration may be too small (variance).
+constexpr double kWidenings[] = {1.0, 2.0, 4.0, 8.0, 16.0};
 
 struct Quantity {
   std::string name;
@@ -45,19 +47,20 @@ struct Explanation {
 /// What the data say of the unknowns, all in units of `unit_`.
 class Evidence {
  public:
-  Evidence(const CalibrationResult& estimate, const EarlierEstimate& fitted_with,
-           const EarlierEstimate& earlier, const Eigen::VectorXd& size_of_changes) {
-    DataInformation data = InformationOfData(estimate, fitted_with);
+  Evidence(const CalibrationResult& estimate, const DataInformation& data,
+           const EarlierEstimate& earlier, const Eigen::VectorXd& size_of_changes)
+      : parameters_(data.parameters), unit_(data.unit), information_(data.information) {
+    const Eigen::VectorXd mean = MeanBefore(estimate, data, earlier);
     prior_ = CovarianceBefore(estimate, data, earlier);
-    score_ = data.vector - data.information * MeanBefore(estimate, data, earlier);
-    parameters_ = std::move(data.parameters);
-    unit_ = std::move(data.unit);
-    information_ = std::move(data.information);
+    score_ = data.vector - data.information * mean;
+    unchanged_ = LogEvidence(data, mean, prior_);
     FindCandidates(estimate.model, earlier, size_of_changes);
     Update();
   }
 
   const std::vector<Candidate>& candidates() const { return candidates_; }
+  /// Logarithm of p(s | nothing changed), less a constant of the data.
+  double unchanged() const { return unchanged_; }
 
   /// From now on the candidate may have changed.
   void Accept(const Candidate& candidate) {
@@ -136,6 +139,7 @@ class Evidence {
   Eigen::VectorXd unit_, score_, left_score_;
   Eigen::MatrixXd information_, prior_, left_;
   std::vector<Candidate> candidates_;
+  double unchanged_ = 0.0;
 };
 
 /// Logarithm of the mean of two numbers given by their logarithms.
@@ -216,6 +220,39 @@ std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<J
   return joints;
 }
 
+/// The joints that have moved, by what the data say beside the earlier calibration as it is given.
+JointCheck SearchMoved(Evidence evidence, double freedom, const JointCheckOptions& options) {
+  JointCheck check;
+  check.joints = JudgeAll(evidence, check.moved, freedom);
+  // Each joint is as likely to have moved.
+  const double choice = std::log(static_cast<double>(check.joints.size()));
+  for (const JointSuspect& joint : check.joints) {
+    if (!joint.zero_told) check.not_told.push_back(joint.joint);
+  }
+  const auto significant = [&](const JointSuspect& joint) {
+    return joint.p_adjusted <= options.level && joint.log_evidence > 0.0;
+  };
+  while (std::any_of(check.joints.begin(), check.joints.end(), significant)) {
+    const JointSuspect first = check.joints.front();
+    check.log_evidence += first.log_evidence - choice;
+    if (first.probability < options.certainty || !significant(first)) {
+      double sum = 0.0;
+      for (const JointSuspect& joint : check.joints) {
+        if (sum >= options.certainty) break;
+        check.suspects.push_back(joint.joint);
+        sum += joint.probability;
+      }
+      break;
+    }
+    check.moved.push_back(first);
+    for (const Candidate& candidate : evidence.candidates()) {
+      if (candidate.joint == first.joint) evidence.Accept(candidate);
+    }
+    check.joints = JudgeAll(evidence, check.moved, freedom);
+  }
+  return check;
+}
+
 }  // namespace
 
 bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree) {
@@ -252,33 +289,22 @@ JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstim
                            const JointCheckOptions& options) {
   const double t = std::max(1.96, estimate.interval_factor);
   const double freedom = t < 1.9600001 ? kKnownFreedom : StudentDegreesOfFreedom(0.975, t);
-  Evidence evidence(estimate, fitted_with, earlier, size_of_changes);
-  JointCheck check;
-  check.joints = JudgeAll(evidence, check.moved, freedom);
-  for (const JointSuspect& joint : check.joints) {
-    if (!joint.zero_told) check.not_told.push_back(joint.joint);
+  const DataInformation data = InformationOfData(estimate, fitted_with);
+  JointCheck best;
+  double unchanged = 0.0;  // logarithm of p(data | nothing has moved, as sure as it is)
+  for (const double widened : kWidenings) {
+    EarlierEstimate wider = earlier;
+    wider.covariance *= widened;
+    const Evidence evidence(estimate, data, wider, size_of_changes);
+    if (widened == 1.0) unchanged = evidence.unchanged();
+    JointCheck check = SearchMoved(evidence, freedom, options);
+    check.widened = widened;
+    // Standard deviations that are too small by a factor of two are half as likely beforehand.
+    check.log_evidence += evidence.unchanged() - unchanged - 0.5 * std::log(widened);
+    if (widened > 1.0 && !(check.log_evidence > best.log_evidence)) continue;
+    best = std::move(check);
   }
-  const auto significant = [&](const JointSuspect& joint) {
-    return joint.p_adjusted <= options.level && joint.log_evidence > 0.0;
-  };
-  while (std::any_of(check.joints.begin(), check.joints.end(), significant)) {
-    const JointSuspect first = check.joints.front();
-    if (first.probability < options.certainty || !significant(first)) {
-      double sum = 0.0;
-      for (const JointSuspect& joint : check.joints) {
-        if (sum >= options.certainty) break;
-        check.suspects.push_back(joint.joint);
-        sum += joint.probability;
-      }
-      break;
-    }
-    check.moved.push_back(first);
-    for (const Candidate& candidate : evidence.candidates()) {
-      if (candidate.joint == first.joint) evidence.Accept(candidate);
-    }
-    check.joints = JudgeAll(evidence, check.moved, freedom);
-  }
-  return check;
+  return best;
 }
 
 }  // namespace elastocal

@@ -45,6 +45,12 @@ struct JointCheck {
   std::vector<LinkMarkers> markers;   ///< whether they are where the earlier calibration has them
   /// Links whose markers, all on one of them moved as one piece, would explain what has changed.
   std::vector<std::string> or_markers;
+  /// By how much the covariance of the earlier calibration is too small (variance, at least 1), as
+  /// the data have it: errors of its model are others in other postures.
+  double widened = 1.0;
+  /// Natural logarithm of p(data | this has moved, the earlier calibration so wide) / p(data |
+  /// nothing has, as it is), each joint being as likely to have moved.
+  double log_evidence = 0.0;
 
   bool changed() const { return !moved.empty() || !suspects.empty(); }
 };
@@ -83,7 +89,10 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
 /// - Joints are **told apart** by their evidence p(s | joint moved), of its zero alone or of all
 ///   its parameters.
 /// The most probable joint is accepted, and the search goes on beside it, until no joint is
-/// significant with an evidence that speaks for its move.
+/// significant with an evidence that speaks for its move. All of this is done with the covariance
+/// of the earlier calibration as it is and 2, 4, 8 and 16 times as large, and the most probable of
+/// these counts: an earlier calibration that is less exact in these postures than it says differs
+/// in many parameters by some standard deviations, a joint that has moved in a few by many.
 JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& fitted_with,
                            const EarlierEstimate& earlier, const Eigen::VectorXd& size_of_changes,
                            const JointCheckOptions& options = {});
