@@ -354,6 +354,37 @@ TEST_F(Program, APriorWithAnotherGaugeIsRefused) {
   EXPECT_EQ(RunProgram(words + out_ + " --kfold 0 -o " + out_ + "2").exit_code, 0);
 }
 
+// The first joint of a limb shows against the markers of the bodies that carry the limb.
+TEST_F(Program, FollowUpsTellTheZerosThatCheckTells) {
+  std::string text = ReadFile(project_);
+  const std::string urdf = "arm6.urdf";
+  text.replace(text.find(urdf), urdf.size(), SourceFile("tests/robots/arm6.urdf").string());
+  const std::string project =
+      scratch_.Write("designed.yaml", text + "design: {chains: [{chain: arm}]}\n");
+  ASSERT_EQ(Calibrate(project, recording_).exit_code, 0);
+  const std::string figures = (scratch_.path() / "d.json").string();
+  const ProgramResult designed =
+      RunProgram("design " + project + " --after " + out_ + " --check -o " +
+                 (scratch_.path() / "p.yaml").string() + " --json " + figures);
+  ASSERT_EQ(designed.exit_code, 0) << designed.err;
+  const std::string today =
+      AnotherDay(scratch_.path() / "today.csv", project, truth_, "elbow_joint.theta", 0.0);
+  ASSERT_EQ(RunProgram("check " + project + " --calibration " + out_ + " --recording " + today +
+                       " --json " + figures + "2")
+                .exit_code,
+            0);
+  const auto not_told = nlohmann::json::parse(ReadFile(figures + "2"))["not_told"];
+  const auto design = nlohmann::json::parse(ReadFile(figures));
+  int told = 0;
+  for (const auto& zero : design["chains"][0]["zeros"]) {
+    const bool is_told = !zero["sd"].is_null();
+    const bool by_check = std::ranges::count(not_told, zero["joint"]) == 0;
+    EXPECT_TRUE(is_told || !by_check) << zero["joint"];
+    told += is_told ? 1 : 0;
+  }
+  EXPECT_GE(told, 6);
+}
+
 TEST_F(Program, FollowUpsAreDesignedAndWrongOnesRefused) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string no_design = RunProgram("design " + project_ + " --after " + out_ + " -o " +

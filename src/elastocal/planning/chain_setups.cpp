@@ -29,11 +29,13 @@ Elasticity ChainElasticity(const Project& project, const ChainSetup& setup) {
   return elasticity;
 }
 
-/// The markers of a chain. With a free root also those that it is seen from: on the body that it
-/// begins at or, if that has none, on the nearest body towards the root.
-std::vector<std::string> SeenMarkers(const Project& project, const Chain& chain) {
+/// The markers of a chain. `towards_root`: also those on all bodies that carry it. With a free root
+/// else those that it is seen from: on the body that it begins at or, if that has none, on the
+/// nearest body towards the root.
+std::vector<std::string> SeenMarkers(const Project& project, const Chain& chain,
+                                     bool towards_root) {
   std::vector<std::string> names = ChainMarkers(project, chain);
-  if (names.empty() || !project.motion.free_root) return names;
+  if (names.empty() || !(project.motion.free_root || towards_root)) return names;
   const RobotTree& tree = project.tree;
   std::vector<int> bodies = {0};  // from the root out
   for (int joint : JointsToBody(tree, tree.links[chain.from_link].body)) {
@@ -44,19 +46,20 @@ std::vector<std::string> SeenMarkers(const Project& project, const Chain& chain)
     bool found = false;
     for (const Marker& marker : project.markers) {
       if (tree.links[marker.link].body != body) continue;
-      names.push_back(marker.name);
+      if (std::ranges::count(names, marker.name) == 0) names.push_back(marker.name);
       found = true;
     }
-    if (found) break;
+    if (found && !towards_root) break;
   }
   return names;
 }
 
 }  // namespace
 
-DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic) {
+DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic,
+                           bool towards_root) {
   const std::vector<std::string> markers =
-      SeenMarkers(project, project.chains[FindChain(project, setup.name)]);
+      SeenMarkers(project, project.chains[FindChain(project, setup.name)], towards_root);
   if (markers.empty()) {
     throw InputError(project.file.string() + ": chain '" + setup.name + "' carries no markers");
   }

@@ -10,7 +10,7 @@
 
 namespace elastocal {
 
-/// A chain for which postures are sought, with its error model (of the chain's markers only) and
+/// A chain for which postures are sought, with its error model (of the markers that are seen) and
 /// the parameters of it that can be identified. Problems refer to the model, so the model has an
 /// address that stays.
 struct DesignedChain {
@@ -20,8 +20,10 @@ struct DesignedChain {
 };
 
 /// `elastic`: the joints' compliances (torsion and bending) are to be identified as well.
+/// `towards_root`: the markers on all bodies that carry the chain are seen besides.
 /// Throws InputError where the chain carries no markers.
-DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic);
+DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic,
+                           bool towards_root = false);
 
 /// The chain set-ups of the project's section `design` with these names, or all of them. Throws
 /// InputError for an unknown name, and where the project has no section `design`.

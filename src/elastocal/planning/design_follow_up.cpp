@@ -73,7 +73,7 @@ PriorKnowledge KnowledgeOf(const DesignedChain& chain, const std::vector<int>& c
 
 FollowUpChain DesignOne(const Project& project, const ChainSetup& setup, const Known& known,
                         const FollowUpOptions& options, std::string& infeasible) {
-  const DesignedChain chain = PrepareChain(project, setup, true);
+  const DesignedChain chain = PrepareChain(project, setup, true, true);
   CheckApplies(known.stored, project, *chain.model);
   const std::vector<int> columns = Columns(chain);
   const PriorKnowledge knowledge = KnowledgeOf(chain, columns, known, project, options);
