@@ -2,6 +2,7 @@
 #include "elastocal/pipeline/contact_check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -165,7 +166,8 @@ class AlternativeSearch {
  private:
   /// Natural logarithm of p(all | these postures are wrong) / p(all | nothing has changed), each
   /// posture being as likely to be wrong. What is wrong is off by as much as no calibrated robot
-  /// is (LargestError); what is not, by its noise and by what the others leave open.
+  /// is (LargestError) or by a half, a quarter or an eighth of it, each as likely; what is not, by
+  /// its noise and by what the others leave open.
   double EvidenceOfWrong(const std::set<int>& postures) const {
     const Observations& all = run_.observations;
     ObservationFit fit = StartFit(calibrated_, all);
@@ -179,7 +181,8 @@ class AlternativeSearch {
     residuals.Evaluate(residuals.Start(), true);
     const NormalEquations equations(residuals);
     const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
-    double evidence = -static_cast<double>(postures.size()) * std::log(all.posture_count());
+    constexpr std::array kShares = {1.0, 0.5, 0.25, 0.125};
+    std::array<double, kShares.size()> by_share{};
     for (int i = 0; i < all.count(); ++i) {
       if (fit.weights[Size(i)] > 0.0) continue;
       const Instrument& instrument = calibrated_.instrument(all.all[Size(i)].instrument);
@@ -190,10 +193,17 @@ class AlternativeSearch {
       const Eigen::MatrixXd wide = instrument.Weights(fit.spread) * wrong.asDiagonal();
       Eigen::MatrixXd right = equations.Explained(i, covariance);
       right.diagonal().array() += 1.0;
-      evidence += LogNormal(residuals.Residual(i), wide * wide.transpose()) -
-                  LogNormal(residuals.Residual(i), right);
+      for (std::size_t k = 0; k < kShares.size(); ++k) {
+        by_share[k] += LogNormal(residuals.Residual(i),
+                                 right + kShares[k] * kShares[k] * wide * wide.transpose()) -
+                       LogNormal(residuals.Residual(i), right);
+      }
     }
-    return evidence;
+    const double most = *std::ranges::max_element(by_share);
+    double mean = 0.0;
+    for (const double one : by_share) mean += std::exp(one - most) / kShares.size();
+    return most + std::log(mean) -
+           static_cast<double>(postures.size()) * std::log(all.posture_count());
   }
 
   /// Whether the robot is as it was calibrated in other observations of the same day.

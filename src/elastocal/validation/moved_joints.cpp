@@ -19,6 +19,8 @@ constexpr double kTimesPrior = 2.0;  // a change may be larger than what a new r
 /// what is expected stands out of the noise by one.
 constexpr double kLeastTold = 1.0;
 constexpr double kKnownFreedom = 1e6;
+/// Logarithm of the odds against a move before the data: one day of ten something has moved.
+const double kOddsAgainst = std::log(10.0);
 /// By how much the covariance of an earlier calibration may be too small (variance).
 constexpr double kWidenings[] = {1.0, 2.0, 4.0, 8.0, 16.0};
 
@@ -230,7 +232,7 @@ JointCheck SearchMoved(Evidence evidence, double freedom, const JointCheckOption
     if (!joint.zero_told) check.not_told.push_back(joint.joint);
   }
   const auto significant = [&](const JointSuspect& joint) {
-    return joint.p_adjusted <= options.level && joint.log_evidence > 0.0;
+    return joint.p_adjusted <= options.level && joint.log_evidence > choice + kOddsAgainst;
   };
   while (std::any_of(check.joints.begin(), check.joints.end(), significant)) {
     const JointSuspect first = check.joints.front();
