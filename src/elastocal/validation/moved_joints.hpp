@@ -89,7 +89,8 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
 /// - Joints are **told apart** by their evidence p(s | joint moved), of its zero alone or of all
 ///   its parameters.
 /// The most probable joint is accepted, and the search goes on beside it, until no joint is
-/// significant with an evidence that speaks for its move. All of this is done with the covariance
+/// significant with an evidence that outweighs its choice among the joints and the odds against a
+/// move, ten to one. All of this is done with the covariance
 /// of the earlier calibration as it is and 2, 4, 8 and 16 times as large, and the most probable of
 /// these counts: an earlier calibration that is less exact in these postures than it says differs
 /// in many parameters by some standard deviations, a joint that has moved in a few by many.
