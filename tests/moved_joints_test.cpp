@@ -4,11 +4,15 @@
 
 #include "elastocal/validation/moved_joints.hpp"
 
+#include <limits>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
 #include "tests/invented_arm.hpp"
 
 namespace elastocal {
@@ -119,6 +123,50 @@ TEST_F(KnownArm, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
   RecordProperty("first_nm", static_cast<int>(1e8 * first));
   RecordProperty("updated_nm", static_cast<int>(1e8 * updated));
   RecordProperty("few_nm", static_cast<int>(1e8 * few));
+}
+
+// Zeros that may have drifted by a degree in all the days.
+TEST_F(KnownArm, ZerosHaveDriftedForAsManyDaysAsTheDataAsk) {
+  constexpr double kDays = 64.0;
+  const Eigen::VectorXd truth = Truth(4);
+  const EarlierEstimate earlier = EstimateOf(Fit(Record(truth, 30, 4)));
+  std::vector<Eigen::Index> zeros;
+  for (std::size_t i = 0; i < earlier.names.size(); ++i) {
+    const int index = FindParameter(model_.parameters, earlier.names[i]);
+    if (IsZeroOffset(model_.parameters[index], model_.tree) &&
+        model_.parameters[index].unit == ParameterUnit::kRadian) {
+      zeros.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  const auto after = [&](double days) {
+    EarlierEstimate later = earlier;
+    for (const Eigen::Index i : zeros) {
+      later.covariance(i, i) += days / kDays * kDegree * kDegree;
+    }
+    return later;
+  };
+  const auto days_of = [&](const Eigen::VectorXd& now, double prior_sd_of_first) {
+    CalibrationOptions options;
+    options.earlier = after(kDays);
+    CalibrationResult estimate = Fit(Record(now, 8, 5), options);
+    if (!(prior_sd_of_first > 0.0)) prior_sd_of_first = estimate.prior_sd[0];
+    estimate.prior_sd[0] = prior_sd_of_first;
+    const EarlierEstimate known =
+        MostProbable({}, estimate, options.earlier, kDays, after, Prior());
+    const double added =
+        known.covariance(zeros[0], zeros[0]) - earlier.covariance(zeros[0], zeros[0]);
+    return kDays * added / (kDegree * kDegree);
+  };
+  Eigen::VectorXd drifted = truth;
+  Random random(6);
+  for (const Eigen::Index i : zeros) {
+    drifted[FindParameter(model_.parameters, earlier.names[static_cast<std::size_t>(i)])] +=
+        random.Normal(kDegree);
+  }
+  EXPECT_LE(days_of(truth, 0.0), 1.01);
+  EXPECT_GE(days_of(drifted, 0.0), 15.9);
+  // Of what nothing is known the evidence is no number: all days count.
+  EXPECT_NEAR(days_of(truth, std::numeric_limits<double>::infinity()), kDays, 1e-6);
 }
 
 TEST_F(KnownArm, TheZeroOfASlidingJointIsALength) {
