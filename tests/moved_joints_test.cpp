@@ -4,6 +4,7 @@
 
 #include "elastocal/validation/moved_joints.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -205,6 +206,29 @@ TEST_F(KnownArm, EightPosturesTellWhichJointHasMoved) {
   EXPECT_LE(false_alarms, 5);  // 5 % are 2; 6 or more would have a chance of 1 %
   RecordProperty("named", named);
   RecordProperty("false_alarms", false_alarms);
+}
+
+// None of them is more probable than another until the others are known to have moved.
+TEST_F(KnownArm, JointsThatMovedByTheSameAngleAreAllNamed) {
+  int named = 0, others = 0;
+  for (int robot = 0; robot < 10; ++robot) {
+    const auto seed = 10 * static_cast<std::uint64_t>(robot);
+    const Eigen::VectorXd truth = Truth(robot);
+    const EarlierEstimate earlier = EstimateOf(Fit(Record(truth, 30, seed + 1)));
+    Eigen::VectorXd later = truth;
+    const std::vector<std::string> turned = {"shoulder_joint", "elbow_joint", "bend_joint"};
+    for (const std::string& joint : turned) {
+      later[FindParameter(model_.parameters, joint + ".theta")] += 0.3 * kDegree;
+    }
+    const JointCheck check = Check(earlier, Record(later, 8, seed + 2));
+    EXPECT_TRUE(check.suspects.empty());
+    for (const JointSuspect& joint : check.moved) {
+      (std::ranges::count(turned, joint.joint) > 0 ? named : others) += 1;
+      EXPECT_NEAR(joint.changes.front().value, 0.3 * kDegree, 4.0 * joint.changes.front().sd);
+    }
+  }
+  EXPECT_EQ(named, 30);
+  EXPECT_LE(others, 1);
 }
 
 // All that it says is off by three times its standard deviations.

@@ -64,10 +64,14 @@ class Evidence {
   /// Logarithm of p(s | nothing changed), less a constant of the data.
   double unchanged() const { return unchanged_; }
 
-  /// From now on the candidate may have changed.
-  void Accept(const Candidate& candidate) {
-    Widen(candidate, prior_);
-    Update();
+  /// The same beside joints that may have changed.
+  Evidence Beside(const std::vector<std::string>& joints) const {
+    Evidence other = *this;
+    for (const Candidate& candidate : candidates_) {
+      if (std::ranges::count(joints, candidate.joint) > 0) Widen(candidate, other.prior_);
+    }
+    if (!joints.empty()) other.Update();
+    return other;
   }
 
   Explanation Explain(const std::vector<Quantity>& quantities) const {
@@ -191,15 +195,12 @@ JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double 
 }
 
 /// All candidates that are not among those found, the most probable first.
-std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<JointSuspect>& moved,
+std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<std::string>& moved,
                                    double freedom) {
   std::vector<JointSuspect> joints;
   std::vector<double> logs;
   for (const Candidate& candidate : evidence.candidates()) {
-    const bool known = std::any_of(moved.begin(), moved.end(), [&](const JointSuspect& one) {
-      return one.joint == candidate.joint;
-    });
-    if (known) continue;
+    if (std::ranges::count(moved, candidate.joint) > 0) continue;
     joints.push_back(Judge(evidence, candidate, freedom));
     logs.push_back(joints.back().log_evidence);
   }
@@ -223,37 +224,105 @@ std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<J
 }
 
 /// The joints that have moved, by what the data say beside the earlier calibration as it is given.
-JointCheck SearchMoved(Evidence evidence, double freedom, const JointCheckOptions& options) {
-  JointCheck check;
-  check.joints = JudgeAll(evidence, check.moved, freedom);
-  // Each joint is as likely to have moved.
-  const double choice = std::log(static_cast<double>(check.joints.size()));
-  for (const JointSuspect& joint : check.joints) {
-    if (!joint.zero_told) check.not_told.push_back(joint.joint);
-  }
-  const auto significant = [&](const JointSuspect& joint) {
-    return joint.p_adjusted <= options.level && joint.log_evidence > choice + kOddsAgainst;
-  };
-  while (std::any_of(check.joints.begin(), check.joints.end(), significant)) {
-    const JointSuspect first = check.joints.front();
-    check.log_evidence += first.log_evidence - choice;
-    if (first.probability < options.certainty || !significant(first)) {
-      double sum = 0.0;
-      for (const JointSuspect& joint : check.joints) {
-        if (sum >= options.certainty) break;
-        check.suspects.push_back(joint.joint);
-        sum += joint.probability;
+class MoveSearch {
+ public:
+  MoveSearch(const Evidence& as_calibrated, double freedom, const JointCheckOptions& options)
+      : as_calibrated_(as_calibrated),
+        freedom_(freedom),
+        options_(options),
+        // Each joint is as likely to have moved.
+        choice_(std::log(static_cast<double>(as_calibrated.candidates().size()))) {}
+
+  JointCheck Find() const {
+    JointCheck check;
+    for (const JointSuspect& joint : Beside({})) {
+      if (!joint.zero_told) check.not_told.push_back(joint.joint);
+    }
+    const std::vector<std::string> found = WithoutNeedless(Forward());
+    check.log_evidence = EvidenceOf(found);
+    std::vector<std::string> certain;
+    for (const std::string& joint : found) {
+      const std::vector<JointSuspect> joints = Beside(Others(found, joint));
+      if (joints.front().joint == joint && joints.front().probability >= options_.certainty) {
+        check.moved.push_back(joints.front());
+        certain.push_back(joint);
+      } else {
+        AddSuspects(joints, check.suspects);
       }
-      break;
     }
-    check.moved.push_back(first);
-    for (const Candidate& candidate : evidence.candidates()) {
-      if (candidate.joint == first.joint) evidence.Accept(candidate);
-    }
-    check.joints = JudgeAll(evidence, check.moved, freedom);
+    check.joints = Beside(certain);
+    return check;
   }
-  return check;
-}
+
+ private:
+  bool Significant(const JointSuspect& joint) const {
+    return joint.p_adjusted <= options_.level && joint.log_evidence > choice_ + kOddsAgainst;
+  }
+
+  std::vector<JointSuspect> Beside(const std::vector<std::string>& moved) const {
+    return JudgeAll(as_calibrated_.Beside(moved), moved, freedom_);
+  }
+
+  static std::vector<std::string> Others(std::vector<std::string> joints, const std::string& but) {
+    std::erase(joints, but);
+    return joints;
+  }
+
+  /// The most probable joint, beside it the next one, until none is significant.
+  std::vector<std::string> Forward() const {
+    std::vector<std::string> found;
+    while (true) {
+      const std::vector<JointSuspect> joints = Beside(found);
+      const auto next = std::ranges::find_if(
+          joints, [&](const JointSuspect& joint) { return Significant(joint); });
+      if (next == joints.end()) return found;
+      found.push_back(next->joint);
+    }
+  }
+
+  /// Leaves out what is not significant beside the others: it was taken for one of them.
+  std::vector<std::string> WithoutNeedless(std::vector<std::string> found) const {
+    for (std::size_t i = 0; i < found.size();) {
+      const std::vector<std::string> others = Others(found, found[i]);
+      const std::vector<JointSuspect> joints = Beside(others);
+      const auto own = std::ranges::find(joints, found[i], &JointSuspect::joint);
+      if (Significant(*own)) {
+        ++i;
+      } else {
+        found = others;
+        i = 0;
+      }
+    }
+    return found;
+  }
+
+  double EvidenceOf(const std::vector<std::string>& found) const {
+    double evidence = 0.0;
+    std::vector<std::string> before;
+    for (const std::string& joint : found) {
+      const std::vector<JointSuspect> joints = Beside(before);
+      evidence += std::ranges::find(joints, joint, &JointSuspect::joint)->log_evidence - choice_;
+      before.push_back(joint);
+    }
+    return evidence;
+  }
+
+  /// Those that make up the certainty.
+  void AddSuspects(const std::vector<JointSuspect>& joints,
+                   std::vector<std::string>& suspects) const {
+    double sum = 0.0;
+    for (const JointSuspect& joint : joints) {
+      if (sum >= options_.certainty) break;
+      if (std::ranges::count(suspects, joint.joint) == 0) suspects.push_back(joint.joint);
+      sum += joint.probability;
+    }
+  }
+
+  const Evidence& as_calibrated_;
+  double freedom_;
+  const JointCheckOptions& options_;
+  double choice_;
+};
 
 }  // namespace
 
@@ -299,7 +368,7 @@ JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstim
     wider.covariance *= widened;
     const Evidence evidence(estimate, data, wider, size_of_changes);
     if (widened == 1.0) unchanged = evidence.unchanged();
-    JointCheck check = SearchMoved(evidence, freedom, options);
+    JointCheck check = MoveSearch(evidence, freedom, options).Find();
     check.widened = widened;
     // Standard deviations that are too small by a factor of two are half as likely beforehand.
     check.log_evidence += evidence.unchanged() - unchanged - 0.5 * std::log(widened);

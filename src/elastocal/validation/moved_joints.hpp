@@ -38,7 +38,7 @@ struct JointSuspect {
 struct JointCheck {
   /// As seen beside the joints that are found to have moved; the most probable first.
   std::vector<JointSuspect> joints;
-  std::vector<JointSuspect> moved;  ///< in the order in which they were found
+  std::vector<JointSuspect> moved;  ///< in the order in which they were found; beside the others
   /// Where something has changed and no single joint can be named: those of which one may be it.
   std::vector<std::string> suspects;
   std::vector<std::string> not_told;  ///< joints of which a change of the zero cannot be seen
@@ -90,10 +90,14 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
 ///   its parameters.
 /// The most probable joint is accepted, and the search goes on beside it, until no joint is
 /// significant with an evidence that outweighs its choice among the joints and the odds against a
-/// move, ten to one. All of this is done with the covariance
-/// of the earlier calibration as it is and 2, 4, 8 and 16 times as large, and the most probable of
-/// these counts: an earlier calibration that is less exact in these postures than it says differs
-/// in many parameters by some standard deviations, a joint that has moved in a few by many.
+/// move, ten to one. Those that are not significant beside the others are left out again. One of
+/// the rest has moved if, beside the others, it is the only one that is likely; else it is one of
+/// the suspects.
+///
+/// All of this is done with the covariance of the earlier calibration as it is and 2, 4, 8 and 16
+/// times as large, and the most probable of these counts: an earlier calibration that is less exact
+/// in these postures than it says differs in many parameters by some standard deviations, a joint
+/// that has moved in a few by many.
 JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstimate& fitted_with,
                            const EarlierEstimate& earlier, const Eigen::VectorXd& size_of_changes,
                            const JointCheckOptions& options = {});
