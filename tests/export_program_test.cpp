@@ -110,6 +110,15 @@ TEST_F(CalibratedTalos, SevenNumbersAJointAreTheCalibratedRobot) {
   EXPECT_EQ(offsets, zeros);
 }
 
+TEST_F(CalibratedTalos, NamesThatCDoesNotTakeAreRefused) {
+  for (const char* prefix : {"1bad", "'a b'"}) {
+    const ProgramResult refused =
+        RunExport("c99", (scratch_.path() / "x.h").string(), "--prefix " + std::string(prefix));
+    EXPECT_EQ(refused.exit_code, 3) << refused.err;
+    EXPECT_NE(refused.err.find("--prefix"), std::string::npos) << refused.err;
+  }
+}
+
 TEST_F(CalibratedTalos, ControllersGetTheElasticRobot) {
   Compensator expected = Robot(RuntimeContent::kEverything);
   Compensator read(ReadRuntimeModel(std::filesystem::path(Export("runtime"))));

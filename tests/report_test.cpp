@@ -216,6 +216,18 @@ TEST_F(Report, ShowsEarlierCalibrationsAndGoesWhereItIsTold) {
   EXPECT_EQ(lower.size(), (names * (names + 1) / 2 + 2) / 3 * 4);  // a byte a pair, in base64
 }
 
+TEST_F(Report, RefusesAnEarlierCalibrationOfAnotherRobot) {
+  ASSERT_EQ(Calibrate().exit_code, 0);
+  std::string text = ReadFile(out_ + "/calibration.yaml");
+  const std::size_t at = text.find("nominal: \"");
+  ASSERT_NE(at, std::string::npos);
+  const std::string other =
+      scratch_.Write("other.yaml", text.replace(at, 27, "nominal: \"0123456789abcdef\""));
+  const ProgramResult refused = RunProgram("report " + out_ + " --earlier " + other);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("other.yaml: is of robot 'arm6'"), std::string::npos) << refused.err;
+}
+
 TEST_F(Report, NeverReplacesWhatItShows) {
   ASSERT_EQ(Calibrate().exit_code, 0);
   std::filesystem::copy(out_, out_ + "_earlier");

@@ -32,6 +32,7 @@ TEST_F(Simulate, WritesAFolderThatDependsOnTheSeedAlone) {
   ASSERT_EQ(one.exit_code, 0) << one.err;
   EXPECT_NE(one.out.find("upper_random"), std::string::npos) << one.out;
   EXPECT_EQ(Run("three", "--threads 3 --quiet").exit_code, 0);
+  EXPECT_EQ(Run("other", "--robot-seed -1").exit_code, 2);
   EXPECT_EQ(Run("other", "--seed 2 --quiet").exit_code, 0);
   const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
   const Experiment experiment = ReadExperiment(Folder("one"), project);

@@ -125,7 +125,8 @@ void AddCalibrate(CLI::App& app, Action& action) {
           ->type_name("DIR");
   command
       ->add_option("--days", options->days,
-                   "Days since that calibration: the longer, the less it counts")
+                   "Days since that calibration: zeros may have drifted for as many of them as "
+                   "the recording asks for")
       ->needs(prior)
       ->check(InBounds("calibrate --days"))
       ->capture_default_str();

@@ -85,12 +85,16 @@ std::string Conclusion(const CheckRun& run, const CheckCommand& command) {
   }
   if (!run.explained()) return Unexplained(run);
   if (run.changed_beyond_telling()) {
+    const double errs = run.transfer.calibrated.metrics_all.rmse_3d;
+    const bool joints_explain = run.rmse_estimate < 0.5 * errs;
     return fmt::format(
-        "Changed: the calibrated robot errs by {} mm here, where the calibration left {} mm; these "
-        "postures are too few to tell which joint has moved. Record more, and more different "
-        "ones.\n",
-        Millimetres(run.transfer.calibrated.metrics_all.rmse_3d, 3),
-        Millimetres(run.left_before, 3));
+        "Changed: the calibrated robot errs by {} mm here, where the calibration left {} mm; {}\n",
+        Millimetres(errs, 3), Millimetres(run.left_before, 3),
+        joints_explain
+            ? "these postures are too few to tell which joint has moved. Record more, and more "
+              "different ones."
+            : "no joint that has moved explains it. Was the robot calibrated in the same way: on "
+              "its feet or held, with the same load, in postures as far apart?");
   }
   return DescribeMoved(run.check, run.alternatives, command.check.joints.level);
 }

@@ -36,9 +36,11 @@ void AddCommonOptions(CLI::App& command, CommonOptions& options) {
       .add_option("--seed", options.seed,
                   "Seed of all that is drawn at random (postures for identifiability, folds, the "
                   "demo's truth); default 1, or the project's")
-      ->check([](const std::string& text) {
-        return text.starts_with('-') ? std::string("a seed is 0 or above") : std::string();
-      });
+      ->check(IsSeed);
+}
+
+std::string IsSeed(const std::string& text) {
+  return text.starts_with('-') ? "a seed is 0 or above" : "";
 }
 
 void AddOutputOptions(CLI::App& command, CommonOptions& options) {

@@ -239,10 +239,11 @@ void AddSimulate(CLI::App& app, Action& action) {
   command->add_flag("--force", options->force,
                     "Replace recordings in the folder that were not simulated");
   AddCommonOptions(*command, options->common);
-  command->add_option(
-      "--robot-seed", options->robot_seed,
-      "Seed of the robot's errors, if another than --seed: the same robot, recorded "
-      "again with other postures and noise");
+  command
+      ->add_option("--robot-seed", options->robot_seed,
+                   "Seed of the robot's errors, if another than --seed: the same robot, recorded "
+                   "again with other postures and noise")
+      ->check(IsSeed);
   VirtualExperimentOptions defaults;
   for (const SimulationSetting& setting : SimulationSettings(defaults)) {
     const std::string value = SettingText(setting);

@@ -261,6 +261,7 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   if (described.joints.empty()) {
     throw InputError(source + ": the robot has no movable joint; nothing can be calibrated");
   }
+  CheckBelongs(semantics, described);
   ProjectDraft draft;
   draft.shapes = ReadBodyShapes(described, urdf, source, places);
   draft.warnings = draft.shapes.warnings;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "elastocal/files/xml_element.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -37,6 +38,7 @@ Semantics ParseSemantics(const std::string& text, const std::string& source) {
     root.Fail("found <" + std::string(root.Tag()) + ">; an SRDF begins with <robot>");
   }
   Semantics semantics;
+  semantics.source = source;
   for (const XmlElement& element : root.Children()) {
     if (element.Tag() == "group") semantics.groups.push_back(ReadGroup(element));
     if (element.Tag() == "end_effector") {
@@ -55,6 +57,27 @@ Semantics ParseSemantics(const std::string& text, const std::string& source) {
     root.Fail("there is no group, state, end effector or pair of links in it; is this an SRDF?");
   }
   return semantics;
+}
+
+void CheckBelongs(const Semantics& semantics, const RobotTree& tree) {
+  if (semantics.source.empty()) return;
+  std::set<std::string> names(semantics.end_links.begin(), semantics.end_links.end());
+  for (const SemanticGroup& group : semantics.groups) {
+    names.insert(group.tip_link);
+    names.insert(group.joints.begin(), group.joints.end());
+  }
+  for (const auto& [state, positions] : semantics.states) {
+    for (const auto& [joint, position] : positions) names.insert(joint);
+  }
+  for (const auto& [one, other] : semantics.apart) names.insert({one, other});
+  names.erase("");
+  const auto named = [&](const auto& part) { return names.contains(part.name); };
+  if (names.empty() || std::ranges::any_of(tree.joints, named) ||
+      std::ranges::any_of(tree.links, named)) {
+    return;
+  }
+  throw InputError(semantics.source + ": names no joint and no link of robot '" + tree.name +
+                   "' (but " + Quote(*names.begin()) + "); the SRDF of this robot was expected");
 }
 
 }  // namespace elastocal

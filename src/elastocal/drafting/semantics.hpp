@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "elastocal/robot/robot_tree.hpp"
+
 namespace elastocal {
 
 /// Part of a robot that somebody gave a name.
@@ -18,6 +20,7 @@ struct SemanticGroup {
 
 /// What an SRDF says that a draft can use. Nothing is checked against a robot yet.
 struct Semantics {
+  std::string source;  ///< the file; empty: there is none
   std::vector<SemanticGroup> groups;
   std::vector<std::string> end_links;  ///< that carry an end effector
   /// Named postures: joint to position [rad or m].
@@ -30,5 +33,8 @@ struct Semantics {
 /// degrees of freedom are passed over. Throws InputError naming file and line: malformed XML, no
 /// element `robot`, an element without its name or link, nothing of use.
 Semantics ParseSemantics(const std::string& text, const std::string& source);
+
+/// Throws InputError where the robot has none of the joints and links that it names.
+void CheckBelongs(const Semantics& semantics, const RobotTree& tree);
 
 }  // namespace elastocal

@@ -166,10 +166,9 @@ std::string CHeaderOf(const CalibratedRobot& robot, const Kept& kept,
                       const CalibrationEstimate& estimate, const std::string& heading,
                       const std::string& given) {
   const std::string prefix = given.empty() ? CPrefix(robot.project.tree.name) : given;
-  if (prefix != CPrefix(prefix) && prefix.find_first_not_of("abcdefghijklmnopqrstuvwxyz"
-                                                            "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                            "0123456789_") != std::string::npos) {
-    throw InputError("prefix '" + prefix + "': letters, digits and '_' were expected");
+  if (!IsCName(prefix)) {
+    throw InputError("--prefix " + prefix +
+                     ": letters, digits and '_', the first no digit, were expected");
   }
   return MakeCHeader(MakeRuntimeModel(robot.project, kept.calibration),
                      {prefix, heading, ParameterComments(estimate), {}});

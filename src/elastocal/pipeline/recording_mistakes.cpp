@@ -358,9 +358,8 @@ std::vector<std::string> AcceptMistakes(const Project& project,
   Accept(project, names, measured.validation, measured.validation_truth, shown, undone);
   for (const std::string& name : names) {
     if (shown.contains(name)) continue;
-    throw InputError(fmt::format(
-        "--accept {}: the recording shows no such mistake; {}", name,
-        shown.empty() ? "it shows none" : fmt::format("it shows {}", fmt::join(shown, ", "))));
+    throw InputError("--accept " + name + ": nothing in the recording points to it" +
+                     DidYouMean(name, shown));
   }
   return undone;
 }

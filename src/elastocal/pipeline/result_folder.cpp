@@ -131,7 +131,16 @@ std::string MakePageOf(const fs::path& folder, const std::set<std::string>& name
     sources.calibrations.push_back(
         {given.lexically_normal().string(), ReadCalibrationFiles(FindCalibrationFiles(given))});
   }
-  if (auto own = CalibrationOf(folder, after)) sources.calibrations.push_back(std::move(*own));
+  if (auto own = CalibrationOf(folder, after)) {
+    for (const LabelledCalibration& other : sources.calibrations) {
+      if (other.estimate.nominal == own->estimate.nominal) continue;
+      throw InputError(other.estimate.source + ": is of robot '" + other.estimate.robot +
+                       "', whose nominal geometry is not that of " + own->estimate.source + " ('" +
+                       own->estimate.robot +
+                       "'); an earlier calibration of the same robot was expected");
+    }
+    sources.calibrations.push_back(std::move(*own));
+  }
   return MakePage(PageTemplate(), MakeReportJson(sources));
 }
 

@@ -47,7 +47,7 @@ void CheckSize(const std::string& name, double size, double least, double larges
 
 /// Undoes it in one recording; whether the recording has the trial.
 bool ApplyTo(const StatedCorrection& correction, const RobotTree& tree, Recording& recording) {
-  bool found = correction.trial.empty();
+  bool found = correction.trial.empty(), reached = false;
   int number = 0;  // of the posture in the trial
   for (int i = 0; i < recording.posture_count(); ++i) {
     const bool here =
@@ -58,6 +58,7 @@ bool ApplyTo(const StatedCorrection& correction, const RobotTree& tree, Recordin
     if (!here) continue;
     found = true;
     if (++number < correction.from) continue;
+    reached = true;
     if (correction.kind == FaultKind::kCameraScale) {
       recording.markers.row(i) /= correction.size;
       continue;
@@ -81,6 +82,12 @@ bool ApplyTo(const StatedCorrection& correction, const RobotTree& tree, Recordin
                                    linkage.name, DescribePosture(recording, i)));
     }
     recording.q.row(i) = q.transpose();
+  }
+  if (!correction.trial.empty() && found && !reached) {
+    throw InputError(
+        fmt::format("--accept: trial '{}' has {} postures; one of them was expected "
+                    "instead of {}",
+                    correction.trial, number, correction.from));
   }
   return found;
 }

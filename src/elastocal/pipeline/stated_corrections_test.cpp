@@ -95,6 +95,7 @@ TEST_F(StatedCorrections, OfAnOffsetFromAPostureOnHaveANameForEachTrial) {
   Eigen::VectorXd expected(5);
   expected << 1.0, left, left, left, left;
   EXPECT_LT((recording.q.col(Coordinate()) - expected).cwiseAbs().maxCoeff(), 1e-12);
+  ExpectInputError([&] { Apply("offset:turret_joint@a:4=1"); }, {"trial 'a'", "3 postures", "4"});
   for (const char* wrong : {"0", "1.5", "x", ""}) {
     ExpectInputError([&] { Apply("offset:turret_joint@a:" + std::string(wrong) + "=1"); },
                      {"of a posture"});

@@ -11,12 +11,6 @@
 namespace elastocal {
 namespace {
 
-bool IsCName(const std::string& name) {
-  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-  return !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
-         std::all_of(name.begin(), name.end(), fits);
-}
-
 std::string CNumber(double value) {
   if (std::isinf(value)) return value > 0 ? "1e308" : "-1e308";
   char text[40];
@@ -279,9 +273,15 @@ class CHeaderWriter {
 
 }  // namespace
 
+bool IsCName(const std::string& name) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  return !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
+         std::all_of(name.begin(), name.end(), fits);
+}
+
 std::string MakeCHeader(RuntimeModel model, const CHeaderOptions& options) {
   if (!IsCName(options.prefix)) {
-    throw std::invalid_argument("prefix '" + options.prefix + "': a C name was expected");
+    throw std::invalid_argument("prefix '" + options.prefix + "': no C name");
   }
   const Compensator robot(std::move(model), options.limits);
   return CHeaderWriter(robot, options).Write();

@@ -17,6 +17,9 @@ struct CHeaderOptions {
   CompensatorOptions limits = {};  ///< written into the header
 };
 
+/// Whether C takes the text for a name.
+bool IsCName(const std::string& name);
+
 /// One self-contained C99 header (that is C++ as well) for this robot and this calibration: the
 /// functions of Compensator, their constants, and indices of joints, links and feet by name. It
 /// needs nothing but math.h, and allocates nothing. The functions are the library's own, so that

@@ -47,8 +47,10 @@ void MotionRecorder::Record(Eigen::Index frame, const VirtualRobot& body) {
 }
 
 InputError Fallen(double time_s) {
-  return InputError("the robot fell after " + std::to_string(time_s) +
-                    " s: a robot that stands freely needs motions that keep its balance");
+  return InputError(
+      "the robot fell after " + std::to_string(time_s) +
+      " s: a robot that stands freely needs motions that keep its balance (elastocal plan "
+      "makes them of postures; play them with --motion)");
 }
 
 }  // namespace elastocal
