@@ -116,7 +116,7 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
     text += fmt::format("These are far off, and the others are not: {}. Look at them.\n",
                         fmt::join(FarPostures(run), ", "));
   }
-  return text + DescribeMarkers(check.markers) + DescribeNotTold(check);
+  return text + DescribeMarkers(check.markers) + DescribeSensitivity(check);
 }
 
 int Check(const CheckCommand& command) {

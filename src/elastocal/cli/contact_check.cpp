@@ -81,7 +81,7 @@ int RunContactCheck(const ContactCheckCommand& command, const Project& project) 
   text += fmt::format("{}, {} postures\n", run.recording, run.observations.posture_count());
   text += ErrorsByInstrument(run);
   if (!run.check.suspects.empty() || command.common.verbose) text += "\n" + SuspectTable(run.check);
-  Print(quiet, text + DescribeNotTold(run.check) + DescribeNext(project, next, command.output));
+  Print(quiet, text + DescribeSensitivity(run.check) + DescribeNext(project, next, command.output));
   PrintWarnings(run.warnings, command.common.verbose);
   if (!run.converged) spdlog::error("the fit has not converged: variances did not come to rest");
   return run.unchanged() ? kFine : kNotConverged;

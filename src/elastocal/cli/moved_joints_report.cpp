@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/cli/moved_joints_report.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -104,11 +106,25 @@ std::string DescribeWrongRecording(const std::vector<std::string>& alternatives)
       fmt::join(alternatives, ", or "));
 }
 
-std::string DescribeNotTold(const JointCheck& check) {
-  if (check.not_told.empty()) return "";
-  return fmt::format(
-      "These postures cannot tell whether the zeros of these joints have moved: {}\n",
-      fmt::join(check.not_told, ", "));
+std::string DescribeSensitivity(const JointCheck& check) {
+  std::string text;
+  for (const bool lengths : {false, true}) {
+    std::vector<const JointSuspect*> told;
+    for (const JointSuspect& joint : check.joints) {
+      if (joint.zero_told && joint.zero_is_length == lengths) told.push_back(&joint);
+    }
+    if (told.empty()) continue;
+    const auto seen = [](const JointSuspect* joint) { return joint->smallest_seen; };
+    const auto [least, most] = std::ranges::minmax_element(told, {}, seen);
+    const double factor = lengths ? 1e3 : 180.0 / M_PI;
+    text += fmt::format("Changes of a zero would be seen from {:.2g} {} on ({}), {:.2g} at {}\n",
+                        factor * (*least)->smallest_seen, lengths ? "mm" : "deg", (*least)->joint,
+                        factor * (*most)->smallest_seen, (*most)->joint);
+  }
+  if (check.not_told.empty()) return text;
+  return text + fmt::format(
+                    "These postures cannot tell whether the zeros of these joints have moved: {}\n",
+                    fmt::join(check.not_told, ", "));
 }
 
 }  // namespace elastocal::cli

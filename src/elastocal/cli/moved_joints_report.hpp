@@ -26,7 +26,7 @@ std::string Probability(double p);
 /// On how many links the markers stayed, and on which they did not.
 std::string DescribeMarkers(const std::vector<LinkMarkers>& links);
 
-/// Joints of which these postures cannot tell it; empty where there are none.
-std::string DescribeNotTold(const JointCheck& check);
+/// How small a change of a joint's zero these postures show, and joints of which they show none.
+std::string DescribeSensitivity(const JointCheck& check);
 
 }  // namespace elastocal::cli

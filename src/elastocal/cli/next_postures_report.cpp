@@ -42,10 +42,9 @@ std::string DescribeNext(const Project& project, const NextPostures& next,
 }
 
 std::string SmallestChange(const ZeroSensitivity& zero) {
-  constexpr double kSeen = 1.96 + 1.28;
-  if (!std::isfinite(zero.sd)) return "not told";
-  return zero.prismatic ? fmt::format("{:.2f} mm", 1e3 * kSeen * zero.sd)
-                        : fmt::format("{:.2f} deg", 180.0 / M_PI * kSeen * zero.sd);
+  if (!std::isfinite(zero.smallest_seen)) return "not told";
+  return zero.prismatic ? fmt::format("{:.2f} mm", 1e3 * zero.smallest_seen)
+                        : fmt::format("{:.2f} deg", 180.0 / M_PI * zero.smallest_seen);
 }
 
 }  // namespace elastocal::cli

@@ -12,8 +12,7 @@ namespace elastocal::cli {
 /// empty: nowhere.
 std::string DescribeNext(const Project& project, const NextPostures& next, const std::string& file);
 
-/// The smallest change of a joint's zero, in units of people: what is seen nine times in ten, at a
-/// level of 5 %.
+/// The smallest change of a joint's zero that check sees nine times in ten, in units of people.
 std::string SmallestChange(const ZeroSensitivity& zero);
 
 }  // namespace elastocal::cli

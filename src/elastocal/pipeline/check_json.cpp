@@ -17,6 +17,8 @@ nlohmann::ordered_json SuspectJson(const JointSuspect& suspect) {
   json["p"] = suspect.test.p;
   json["p_adjusted"] = suspect.p_adjusted;
   json["probability"] = suspect.probability;
+  json["smallest_seen"] = suspect.zero_told ? nlohmann::ordered_json(suspect.smallest_seen)
+                                            : nlohmann::ordered_json(nullptr);
   json["changes"] = nlohmann::ordered_json::array();
   for (const ParameterChange& change : suspect.changes) {
     json["changes"].push_back({{"name", change.name},

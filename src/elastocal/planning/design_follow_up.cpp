@@ -100,8 +100,10 @@ FollowUpChain DesignOne(const Project& project, const ChainSetup& setup, const K
     if (knowledge.change_sd[at] <= 0.0) continue;
     const Joint& joint = chain.model->tree.joints[chain.model->parameters[columns[i]].joint];
     const bool told = sd[at] <= knowledge.change_sd[at];
-    result.zeros.push_back({joint.name, joint.type == JointType::kPrismatic,
-                            told ? sd[at] : std::numeric_limits<double>::infinity()});
+    result.zeros.push_back(
+        {joint.name, joint.type == JointType::kPrismatic,
+         told ? sd[at] : std::numeric_limits<double>::infinity(),
+         SmallestChange(sd[at], knowledge.change_sd[at], chain.model->tree.joints.size())});
   }
   return result;
 }
@@ -128,6 +130,10 @@ std::vector<ChainSetup> Chosen(const Project& project, const FollowUpOptions& op
            options.chains.end();
   });
   return setups;
+}
+
+nlohmann::ordered_json FiniteJson(double number) {
+  return std::isfinite(number) ? nlohmann::ordered_json(number) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace
@@ -162,8 +168,8 @@ nlohmann::ordered_json ZerosJson(const std::vector<ZeroSensitivity>& zeros) {
   for (const ZeroSensitivity& zero : zeros) {
     json.push_back({{"joint", zero.joint},
                     {"unit", zero.prismatic ? "m" : "rad"},
-                    {"sd", std::isfinite(zero.sd) ? nlohmann::ordered_json(zero.sd)
-                                                  : nlohmann::ordered_json(nullptr)}});
+                    {"sd", FiniteJson(zero.sd)},
+                    {"smallest_seen", FiniteJson(zero.smallest_seen)}});
   }
   return json;
 }

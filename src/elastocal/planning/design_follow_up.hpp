@@ -33,6 +33,7 @@ struct ZeroSensitivity {
   std::string joint;
   bool prismatic = false;
   double sd = 0.0;  ///< rad or m; infinite: they cannot tell one of the size that is expected
+  double smallest_seen = 0.0;  ///< by check (SmallestChange), rad or m; infinite likewise
 };
 
 /// `zeros` of the figures for programs (docs/formats.md).

@@ -155,7 +155,8 @@ std::vector<ZeroSensitivity> ZerosTold(const ObservedRobot& model,
     const int entry = candidates.residuals().RobotEntry(unknown);
     const double sd = candidates.residuals().scale()[entry] / std::sqrt(std::max(0.0, told[entry]));
     zeros.push_back({OwnerName(parameter.name), parameter.unit == ParameterUnit::kMetre,
-                     sd <= size ? sd : std::numeric_limits<double>::infinity()});
+                     sd <= size ? sd : std::numeric_limits<double>::infinity(),
+                     SmallestChange(sd, size, model.robot.tree.joints.size())});
   }
   return zeros;
 }

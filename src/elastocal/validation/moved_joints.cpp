@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "elastocal/math/decompositions.hpp"
@@ -19,8 +20,8 @@ constexpr double kTimesPrior = 2.0;  // a change may be larger than what a new r
 /// what is expected stands out of the noise by one.
 constexpr double kLeastTold = 1.0;
 constexpr double kKnownFreedom = 1e6;
-/// Logarithm of the odds against a move before the data: one day of ten something has moved.
-const double kOddsAgainst = std::log(10.0);
+/// Logarithm of the odds against a move before the data: in one check of four something has moved.
+const double kOddsAgainst = std::log(3.0);
 /// By how much the covariance of an earlier calibration may be too small (variance).
 constexpr double kWidenings[] = {1.0, 2.0, 4.0, 8.0, 16.0};
 
@@ -44,6 +45,8 @@ struct Explanation {
   double evidence = 0.0;  // logarithm of p(s | changed) over p(s | nothing changed)
   Eigen::VectorXd change;
   Eigen::MatrixXd covariance;  // of it
+  // Of a single quantity: how large a change is expected to be, and how exactly the data tell it.
+  double size = 0.0, sd = 0.0;
 };
 
 /// What the data say of the unknowns, all in units of `unit_`.
@@ -97,6 +100,9 @@ class Evidence {
     }
     Eigen::VectorXd unit = size;
     for (std::size_t i = 0; i < at.size(); ++i) unit[static_cast<Eigen::Index>(i)] *= unit_[at[i]];
+    result.size = unit[0];
+    result.sd = eigen.values[0] > 0.0 ? unit[0] / std::sqrt(eigen.values[0])
+                                      : std::numeric_limits<double>::infinity();
     const Eigen::MatrixXd back = unit.asDiagonal() * eigen.vectors;
     result.change = back * factor.cwiseProduct(z);
     result.covariance = back * factor.asDiagonal() * back.transpose();
@@ -176,6 +182,8 @@ JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double 
     const Explanation zero = evidence.Explain(offset.quantities);
     const DifferenceTest test = TestOf(zero, freedom);
     suspect.zero_told = zero.told > 0;
+    suspect.zero_is_length = offset.quantities.front().unit == ParameterUnit::kMetre;
+    suspect.smallest_seen = SmallestChange(zero.sd, zero.size, evidence.candidates().size());
     suspect.zero_alone = zero.evidence >= best.evidence;
     if (offset.quantities.size() < candidate.quantities.size()) {
       if (test.p < suspect.test.p) suspect.test = test;
@@ -325,6 +333,16 @@ class MoveSearch {
 };
 
 }  // namespace
+
+double SmallestChange(double sd, double size, std::size_t joints) {
+  constexpr double kNineInTen = 1.28;  // standard deviations
+  const double told = size * size / (sd * sd);
+  if (!(told >= kLeastTold)) return std::numeric_limits<double>::infinity();
+  // The evidence z^2 told / (1 + told) / 2 - log(1 + told) / 2, of one of two ways to change.
+  const double needed = std::log(2.0 * static_cast<double>(joints)) + kOddsAgainst;
+  const double z = std::sqrt((2.0 * needed + std::log1p(told)) * (1.0 + told) / told);
+  return sd * (z + kNineInTen);
+}
 
 bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree) {
   if (parameter.kind == ParameterKind::kMotorZero) return true;

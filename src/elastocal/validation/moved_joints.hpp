@@ -28,7 +28,9 @@ struct JointSuspect {
   double log_evidence = 0.0;
   /// That this joint has moved, if exactly one has, each being as likely beforehand.
   double probability = 0.0;
-  bool zero_told = false;                ///< whether the data tell a change of its zero
+  bool zero_told = false;  ///< whether the data tell a change of its zero
+  bool zero_is_length = false;
+  double smallest_seen = 0.0;            ///< change of its zero (SmallestChange), rad or m
   bool zero_alone = false;               ///< whether that alone explains it best
   std::vector<ParameterChange> changes;  ///< of its zero alone, or of all its parameters
 
@@ -73,6 +75,11 @@ bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree);
 Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& model,
                               const Prior& prior);
 
+/// The smallest change of a joint's zero that FindMovedJoints sees nine times in ten, where the
+/// data tell it with the standard deviation `sd`, and `size` is that of a change beforehand;
+/// infinite where the data do not tell it. `joints`: among which the one is sought.
+double SmallestChange(double sd, double size, std::size_t joints);
+
 /// Finds joints that have moved since an earlier calibration, from a recording too small to
 /// calibrate by.
 ///
@@ -90,7 +97,7 @@ Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& 
 ///   its parameters.
 /// The most probable joint is accepted, and the search goes on beside it, until no joint is
 /// significant with an evidence that outweighs its choice among the joints and the odds against a
-/// move, ten to one. Those that are not significant beside the others are left out again. One of
+/// move, three to one. Those that are not significant beside the others are left out again. One of
 /// the rest has moved if, beside the others, it is the only one that is likely; else it is one of
 /// the suspects.
 ///
