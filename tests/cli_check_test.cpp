@@ -13,6 +13,7 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
 #include "tests/arm_with_tracker.hpp"
 #include "tests/program_fixture.hpp"
 
@@ -331,6 +332,24 @@ TEST_F(Program, AnEarlierCalibrationOfNoCovarianceIsRefused) {
     EXPECT_NE(refused.err.find("not positive definite"), std::string::npos) << refused.err;
   }
   EXPECT_FALSE(std::filesystem::exists(out_ + "2"));
+}
+
+TEST_F(Program, AnUpdateThatPredictsWorseThanTheEarlierCalibrationSaysSo) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const std::string today =
+      AnotherDay(scratch_.path() / "today.csv", project_, truth_, "elbow_joint.theta", 0.0);
+  Project project = ReadProject(project_);
+  Measurements measured = ReadMeasurements(project, {today}, ReadFor::kAnyUse);
+  const RecordedModel robot = MakeRecordedModel(project, 1, measured);
+  const auto said = [&](double updated) {
+    return DescribeWorseUpdate(out_, robot, measured.calibration, project.calibration, updated);
+  };
+  EXPECT_EQ(said(1e-5), "");
+  EXPECT_NE(said(1e-2).find("the update by 10 mm on those that were left out"), std::string::npos)
+      << said(1e-2);
+  const ProgramResult update = RunProgram("calibrate " + project_ + " --recording " + today +
+                                          " --prior " + out_ + " -o " + out_ + "2 --kfold 4");
+  EXPECT_EQ(update.err.find("left out"), std::string::npos) << update.err;
 }
 
 // Its errors count from another frame of the root link.

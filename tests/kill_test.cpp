@@ -89,7 +89,7 @@ Files FilesOf(const fs::path& folder) {
 }
 
 /// Names of the files in which two folders differ.
-std::string Differences(const Files& a, const Files& b) {
+std::string DifferencesOf(const Files& a, const Files& b) {
   std::string names;
   for (const auto& [name, text] : a) {
     const auto other = b.find(name);
@@ -116,7 +116,7 @@ class Killed : public Program {
     Finish(second, folder);
     const double duration = Seconds(std::chrono::steady_clock::now() - begin).count();
     const Files later = FilesOf(folder);
-    ASSERT_NE(Differences(earlier, later), "");
+    ASSERT_NE(DifferencesOf(earlier, later), "");
     Random random(1);
     int left_earlier = 0;
     for (int i = 0; i < Kills(); ++i) {
@@ -128,7 +128,8 @@ class Killed : public Program {
       waitpid(child, nullptr, 0);
       RecoverOutputs(folder);
       const Files left = FilesOf(folder);
-      const std::string new_ones = Differences(earlier, left), old_ones = Differences(later, left);
+      const std::string new_ones = DifferencesOf(earlier, left),
+                        old_ones = DifferencesOf(later, left);
       ASSERT_TRUE(new_ones.empty() || old_ones.empty())
           << "kill " << i << " left files of two runs; not of the earlier: " << new_ones
           << "; not of the later: " << old_ones;

@@ -218,6 +218,12 @@ CalibrationRun CalibrateExperiment(const Project& given,
       run.warnings.push_back(std::string("not cross-validated: ") + error.what());
     }
   }
+  if (!options.prior.empty() && run.cross_validation.folds > 0) {
+    const auto kind = static_cast<std::size_t>(run.comparison.largest_kind());
+    const std::string worse = DescribeWorseUpdate(options.prior, robot, recording, settings,
+                                                  run.cross_validation.metrics[kind].rmse_3d);
+    if (!worse.empty()) run.warnings.push_back(worse);
+  }
   if (measured.validation.posture_count() > 0) {
     run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);
     if (run.faults.empty()) {

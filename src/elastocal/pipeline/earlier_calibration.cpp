@@ -14,6 +14,7 @@
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/validation/data_information.hpp"
 #include "elastocal/validation/earlier_markers.hpp"
+#include "elastocal/validation/transfer.hpp"
 
 namespace elastocal {
 namespace {
@@ -271,6 +272,23 @@ EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const Calibration
         return MakeEarlierEstimate(fit.calibration, fit.robot.model, options, drifting, stayed);
       },
       options.prior);
+}
+
+std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
+                                const RecordedModel& robot, const Recording& recording,
+                                CalibrationOptions options, double updated) {
+  constexpr double kClearly = 1.1;  // markers and waist fit the earlier one to all postures
+  options.earlier = {};
+  const StoredCalibration stored = ReadCalibration(FindCalibrationFiles(calibration).calibration);
+  const double before =
+      ValidateTransfer(robot.model, recording, robot.base, options, stored.joint_errors)
+          .calibrated.metrics_all.rmse_3d;
+  if (!(updated > kClearly * before)) return "";
+  return fmt::format(
+      "{}: errs by {:.3g} mm on these postures, and the update by {:.3g} mm on those that were "
+      "left "
+      "out: these postures are too few or too near to each other to improve on it",
+      stored.source, 1e3 * before, 1e3 * updated);
 }
 
 std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,

@@ -84,4 +84,10 @@ std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibrati
                                           const Measurements& measured,
                                           std::optional<std::uint64_t> seed, Project& project);
 
+/// Says it where an update, which errs by `updated` (m, 3-D) on postures that were left out,
+/// predicts them clearly worse than the calibration that it began with; else empty.
+std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
+                                const RecordedModel& robot, const Recording& recording,
+                                CalibrationOptions options, double updated);
+
 }  // namespace elastocal
