@@ -349,7 +349,7 @@ TEST_F(Program, AnUpdateThatPredictsWorseThanTheEarlierCalibrationSaysSo) {
       << said(1e-2);
   const ProgramResult update = RunProgram("calibrate " + project_ + " --recording " + today +
                                           " --prior " + out_ + " -o " + out_ + "2 --kfold 4");
-  EXPECT_EQ(update.err.find("left out"), std::string::npos) << update.err;
+  EXPECT_EQ(update.err.find("the update by"), std::string::npos) << update.err;
 }
 
 // Its errors count from another frame of the root link.

@@ -277,13 +277,19 @@ EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const Calibration
 std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
                                 const RecordedModel& robot, const Recording& recording,
                                 CalibrationOptions options, double updated) {
-  constexpr double kClearly = 1.1;  // markers and waist fit the earlier one to all postures
+  constexpr double kClearly = 1.1;
   options.earlier = {};
+  // Markers and waist fit the earlier one to all postures, and the update to those of other folds.
+  const auto fitted = static_cast<double>(std::ranges::count_if(
+      robot.model.parameters, [](const Parameter& one) { return IsExternal(one.kind); }));
+  const auto rows = static_cast<double>(3 * SeenMask(recording).count());
+  if (fitted >= rows) return "";
+  const double by_fit = std::sqrt((1.0 + fitted / rows) / (1.0 - fitted / rows));
   const StoredCalibration stored = ReadCalibration(FindCalibrationFiles(calibration).calibration);
   const double before =
       ValidateTransfer(robot.model, recording, robot.base, options, stored.joint_errors)
           .calibrated.metrics_all.rmse_3d;
-  if (!(updated > kClearly * before)) return "";
+  if (!(updated > kClearly * by_fit * before)) return "";
   return fmt::format(
       "{}: errs by {:.3g} mm on these postures, and the update by {:.3g} mm on those that were "
       "left "
