@@ -5,6 +5,7 @@
 #include "elastocal/validation/moved_joints.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -206,6 +207,35 @@ TEST_F(KnownArm, EightPosturesTellWhichJointHasMoved) {
   EXPECT_LE(false_alarms, 5);  // 5 % are 2; 6 or more would have a chance of 1 %
   RecordProperty("named", named);
   RecordProperty("false_alarms", false_alarms);
+}
+
+TEST(SmallestChange, IsWhatOutweighsTheOddsAndTheChoice) {
+  // z^2 / 2 = log(2 . 7) + log 3 + log(1 + 100^2) / 2, and 1.28 for nine times in ten.
+  EXPECT_NEAR(SmallestChange(0.01, 1.0, 7), 0.01 * (4.085 + 1.28), 1e-5);
+  EXPECT_TRUE(std::isinf(SmallestChange(2.0, 1.0, 7)));
+}
+
+TEST_F(KnownArm, TheSmallestChangeIsSeenNineTimesInTen) {
+  constexpr int kRobots = 40;
+  int seen = 0, of_half = 0;
+  for (int robot = 0; robot < kRobots; ++robot) {
+    const auto seed = 10 * static_cast<std::uint64_t>(robot);
+    const Eigen::VectorXd truth = Truth(robot);
+    const EarlierEstimate earlier = EstimateOf(Fit(Record(truth, 30, seed + 1)));
+    const JointCheck before = Check(earlier, Record(truth, 8, seed + 2));
+    const auto elbow = std::ranges::find(before.joints, "elbow_joint", &JointSuspect::joint);
+    ASSERT_NE(elbow, before.joints.end());
+    for (const double share : {1.0, 0.5}) {
+      Eigen::VectorXd later = truth;
+      later[FindParameter(model_.parameters, "elbow_joint.theta")] += share * elbow->smallest_seen;
+      const bool changed = Check(earlier, Record(later, 8, seed + 3)).changed();
+      (share == 1.0 ? seen : of_half) += changed ? 1 : 0;
+    }
+  }
+  EXPECT_GE(seen, 30);     // 36 are expected, with a standard deviation of 2
+  EXPECT_LE(of_half, 10);  // 3
+  RecordProperty("seen", seen);
+  RecordProperty("of_half", of_half);
 }
 
 // None of them is more probable than another until the others are known to have moved.
