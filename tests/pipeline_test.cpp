@@ -107,7 +107,7 @@ TEST_F(Pipeline, ACalibrationIsValidatedOnAnotherRecording) {
             0.5 * validation.transfer.uncalibrated.metrics.rmse_3d);
   ExpectInputError(
       [&] { ValidateCalibration(project_, folder, table_, {.accept = {"sign:arm_2_joint"}}); },
-      {"sign:arm_2_joint", "it shows none"});
+      {"sign:arm_2_joint", "nothing in the recording points to it"});
 }
 
 // A file whose URDF has the geometry of the full model says no other errors for it; the URDF has no
@@ -221,7 +221,7 @@ TEST_F(Pipeline, MistakesAreUndoneOnRequest) {
   EXPECT_EQ(measured.calibration.q, q);
   EXPECT_EQ(measured.validation.q, q_validation);
   ExpectInputError([&] { AcceptMistakes(project_, {"sign:" + joint}, measured); },
-                   {"it shows none"});
+                   {"nothing in the recording points to it"});
 
   measured.calibration.q.col(2).tail(15).setConstant(measured.calibration.q(25, 2));
   EXPECT_EQ(AcceptMistakes(project_, {"frozen:" + joint}, measured).size(), 1u);
