@@ -207,7 +207,7 @@ TEST_F(Pipeline, MistakesAreUndoneOnRequest) {
   measured.calibration.q.col(2) *= -1.0;
   measured.validation.q.col(2) *= -1.0;
   ExpectInputError([&] { AcceptMistakes(project_, {"frozen:" + joint}, measured); },
-                   {"frozen:" + joint, "it shows sign:" + joint});
+                   {"frozen:" + joint, "did you mean 'sign:" + joint});
   const auto error_of = [&](const Recording& corrected) {
     return (corrected.q - q).norm() < 1e-12 ? 0.1 : 0.9;
   };
