@@ -49,6 +49,17 @@ class KnownArm : public InventedArm {
     return earlier;
   }
 
+  struct CalibratedArm {
+    std::uint64_t seed;
+    Eigen::VectorXd truth;
+    EarlierEstimate earlier;  ///< by thirty postures
+  };
+  CalibratedArm Calibrated(int robot) const {
+    const auto seed = 10 * static_cast<std::uint64_t>(robot);
+    const Eigen::VectorXd truth = Truth(robot);
+    return {seed, truth, EstimateOf(Fit(Record(truth, 30, seed + 1)))};
+  }
+
   JointCheck Check(const EarlierEstimate& earlier, const Recording& recording) const {
     const Eigen::VectorXd sizes = SizeOfChanges(earlier, model_, Prior());
     CalibrationOptions options;
@@ -185,9 +196,7 @@ TEST_F(KnownArm, EightPosturesTellWhichJointHasMoved) {
   constexpr int kRobots = 40;
   int named = 0, others = 0, false_alarms = 0, covered = 0;
   for (int robot = 0; robot < kRobots; ++robot) {
-    const auto seed = 10 * static_cast<std::uint64_t>(robot);
-    const Eigen::VectorXd truth = Truth(robot);
-    const EarlierEstimate earlier = EstimateOf(Fit(Record(truth, 30, seed + 1)));
+    const auto [seed, truth, earlier] = Calibrated(robot);
     false_alarms += Check(earlier, Record(truth, 8, seed + 2)).changed() ? 1 : 0;
     Eigen::VectorXd later = truth;
     later[FindParameter(model_.parameters, "elbow_joint.theta")] += 0.2 * kDegree;
@@ -219,9 +228,7 @@ TEST_F(KnownArm, TheSmallestChangeIsSeenNineTimesInTen) {
   constexpr int kRobots = 40;
   int seen = 0, of_half = 0;
   for (int robot = 0; robot < kRobots; ++robot) {
-    const auto seed = 10 * static_cast<std::uint64_t>(robot);
-    const Eigen::VectorXd truth = Truth(robot);
-    const EarlierEstimate earlier = EstimateOf(Fit(Record(truth, 30, seed + 1)));
+    const auto [seed, truth, earlier] = Calibrated(robot);
     const JointCheck before = Check(earlier, Record(truth, 8, seed + 2));
     const auto elbow = std::ranges::find(before.joints, "elbow_joint", &JointSuspect::joint);
     ASSERT_NE(elbow, before.joints.end());
@@ -242,9 +249,7 @@ TEST_F(KnownArm, TheSmallestChangeIsSeenNineTimesInTen) {
 TEST_F(KnownArm, JointsThatMovedByTheSameAngleAreAllNamed) {
   int named = 0, others = 0;
   for (int robot = 0; robot < 10; ++robot) {
-    const auto seed = 10 * static_cast<std::uint64_t>(robot);
-    const Eigen::VectorXd truth = Truth(robot);
-    const EarlierEstimate earlier = EstimateOf(Fit(Record(truth, 30, seed + 1)));
+    const auto [seed, truth, earlier] = Calibrated(robot);
     Eigen::VectorXd later = truth;
     const std::vector<std::string> turned = {"shoulder_joint", "elbow_joint", "bend_joint"};
     for (const std::string& joint : turned) {

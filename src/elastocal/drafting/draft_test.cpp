@@ -351,15 +351,6 @@ TEST(Draft, PairsThatTouchInAnyPostureOfRestAreNotChecked) {
   EXPECT_EQ(two.touching_at_rest, 1);
 }
 
-TEST(Draft, RefusesTheSrdfOfAnotherRobot) {
-  const Semantics semantics = ParseSemantics(
-      "<robot name='pole'><group_state name='home' group='all'><joint name='LF_HAA' value='0.1'/>"
-      "</group_state><disable_collisions link1='LF' link2='RF' reason='Never'/></robot>",
-      "dog.srdf");
-  EXPECT_THROW(DraftProject(PoleUrdf("<sphere radius='0.1'/>", "10"), "pole", semantics),
-               InputError);
-}
-
 TEST(Draft, SaysWhereTheSrdfBreaksLimitsOfTheUrdf) {
   const Semantics semantics = ParseSemantics(
       "<robot name='pole'><group_state name='home' group='all'><joint name='l1_joint' value='0.1'/>"

@@ -316,9 +316,9 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
     left->Expect(stored.rmse_3d >= 0.0, "a length");
   }
   if (const auto factor = root.Find("cluster_factor")) {
+    factor->Expect(factor->Number() >= 0.0, "a ratio of variances");
     stored.scatter_sd =
         1e-3 * root.Get("marker_sd_mm").Number() * std::sqrt(std::max(1.0, factor->Number()));
-    factor->Expect(factor->Number() >= 0.0, "a ratio of variances");
   }
   for (const ParameterEstimate& parameter : estimate.parameters) {
     (parameter.external ? stored.externals : stored.joint_errors)[parameter.name] = parameter.value;

@@ -12,7 +12,8 @@ namespace elastocal {
 /// By link, whether its markers are where they were.
 nlohmann::ordered_json MarkersJson(const std::vector<LinkMarkers>& links);
 
-/// `moved`, `suspects`, `or_markers`, `markers`, `not_told` and `joints` (docs/formats.md).
+/// `moved`, `suspects`, `or_markers`, `markers`, `earlier_sd_factor`, `not_told` and `joints`
+/// (docs/formats.md).
 void AddJointCheck(const JointCheck& check, nlohmann::ordered_json& json);
 
 }  // namespace elastocal

@@ -293,7 +293,7 @@ std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
   return fmt::format(
       "{}: errs by {:.3g} mm on these postures, and the update by {:.3g} mm on those that were "
       "left "
-      "out: these postures are too few or too near to each other to improve on it",
+      "out: they are too few or too near to each other to improve on it",
       stored.source, 1e3 * before, 1e3 * updated);
 }
 
