@@ -30,12 +30,14 @@ class Pipeline : public testing::Test {
 
   /// Calibrates into a folder as the program does.
   std::string Publish(const std::filesystem::path& folder, CalibrationRun& run) const {
+    const std::vector<std::filesystem::path> inputs = InputFiles(project_, {table_});
     OutputSet outputs;
-    outputs.Protect(InputFiles(project_, {table_}));
+    outputs.Protect(inputs);
     DeclareResults(folder, CalibrationFileNames(project_), outputs);
     outputs.Prepare();
-    const std::string no_page = SetResults(folder, MakeCalibrationFiles(project_, run),
-                                           {"calibrate", "", "1", {}, {}}, outputs);
+    const std::string no_page =
+        SetResults(folder, MakeCalibrationFiles(project_, run),
+                   {"calibrate", "", "1", {}, RecordInputs(inputs)}, outputs);
     outputs.Publish();
     return no_page;
   }
@@ -103,11 +105,36 @@ TEST_F(Pipeline, ACalibrationIsValidatedOnAnotherRecording) {
   const ValidationRun validation =
       ValidateCalibration(project_, folder / "calibration.yaml", table_);
   EXPECT_EQ(ValidationStatus(validation), "better");
+  EXPECT_TRUE(validation.own_recording);
   EXPECT_LT(validation.transfer.calibrated.metrics.rmse_3d,
             0.5 * validation.transfer.uncalibrated.metrics.rmse_3d);
   ExpectInputError(
       [&] { ValidateCalibration(project_, folder, table_, {.accept = {"sign:arm_2_joint"}}); },
       {"sign:arm_2_joint", "nothing in the recording points to it"});
+}
+
+// A shoulder that is off by 5 mrad moves a hand at 0.5 m by 2.5 mm; the noise is 0.35 mm.
+TEST_F(Pipeline, AValidationSaysWhetherTheErrorsAreThosePredicted) {
+  const std::filesystem::path folder = scratch_.path() / "out";
+  CalibrationRun run = CalibrateExperiment(project_, {table_}, {.folds = 3});
+  Publish(folder, run);
+  const auto validate = [&](double turned) {
+    Recording other = recorded_;
+    other.q.col(1).array() += turned;
+    const std::filesystem::path file = scratch_.path() / "other.csv";
+    WritePostureTable(file, other, project_.tree);
+    return ValidateCalibration(project_, folder, file);
+  };
+  const ValidationRun same = validate(1e-9);
+  EXPECT_FALSE(same.own_recording);
+  EXPECT_NEAR(same.predicted, run.deployment.urdf, 1e-9);
+  EXPECT_TRUE(same.as_predicted());
+  EXPECT_TRUE(same.warnings.empty()) << same.warnings.front();
+  const ValidationRun moved = validate(0.005);
+  EXPECT_TRUE(moved.better());
+  EXPECT_FALSE(moved.as_predicted());
+  ASSERT_FALSE(moved.warnings.empty());
+  EXPECT_NE(moved.warnings.back().find("its calibration predicted"), std::string::npos);
 }
 
 // A file whose URDF has the geometry of the full model says no other errors for it; the URDF has no

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
@@ -27,9 +28,10 @@ std::string CauseTable(const CauseReport& report, bool all) {
   std::size_t shown = 0;
   for (const CauseFinding& finding : report.search.findings) {
     if (!all && ++shown > kShown) break;
+    const double sd = 1e3 * finding.gain_sd;
     table.Add({finding.cause, fmt::format("{:.1f}", finding.score),
-               fmt::format("{:.2g}", finding.p_adjusted), fmt::format("{:.3f}", 1e3 * finding.gain),
-               fmt::format("{:.3f} +- {:.3f}", 1e3 * finding.mean_gain, 1e3 * finding.gain_sd)});
+               fmt::format("{:.2g}", finding.p_adjusted), RoundedTo(1e3 * finding.gain, sd),
+               fmt::format("{} +- {}", RoundedTo(1e3 * finding.mean_gain, sd), RoundedSd(sd))});
   }
   return table.Render();
 }

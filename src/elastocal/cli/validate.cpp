@@ -9,6 +9,7 @@
 
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/contact_commands.hpp"
+#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
@@ -48,11 +49,33 @@ std::string Table(const ValidationRun& run) {
   return table.Render();
 }
 
+/// One sentence for whoever reads no table.
+std::string VerdictText(const ValidationRun& run) {
+  if (!run.mistakes.empty()) return "Verdict: the recording has a mistake; see below.\n\n";
+  if (!run.converged() || !run.plausible() || !run.better()) {
+    return "Verdict: do not deploy; see below.\n\n";
+  }
+  const auto error = [](const Refit& refit) { return Millimetres(refit.metrics_all.rmse_3d, 3); };
+  const char* word = run.own_recording      ? "the recording is the calibration's own. From"
+                     : run.predicted == 0.0 ? "from"
+                     : run.as_predicted()   ? "as calibrated. From"
+                                            : "worse than calibrated. From";
+  std::string text =
+      fmt::format("Verdict: {} {} to {} mm{}", word, error(run.transfer.uncalibrated),
+                  error(run.urdf ? *run.urdf : run.transfer.calibrated),
+                  run.urdf ? " by the URDF alone" : ", nothing fitted");
+  if (run.predicted > 0.0) {
+    text += fmt::format(" (predicted: {} mm)", Millimetres(run.predicted, 3));
+  }
+  return text + ".\n\n";
+}
+
 void PrintRun(const ValidationRun& run, const CommonOptions& options) {
   const bool quiet = options.Silent();
-  Print(quiet, fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
-                           run.recording.source, run.calibration.recording,
-                           run.recording.posture_count(), run.recording.marker_count()) +
+  Print(quiet, VerdictText(run) +
+                   fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
+                               run.recording.source, run.calibration.recording,
+                               run.recording.posture_count(), run.recording.marker_count()) +
                    Table(run));
   const std::vector<Outlier>& outliers = run.transfer.calibrated.result.outliers;
   for (std::size_t i = 0; i < std::min<std::size_t>(10, outliers.size()); ++i) {

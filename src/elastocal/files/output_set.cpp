@@ -276,7 +276,6 @@ void OutputSet::Publish() {
     const FolderLock lock(folder);  // readers wait until the folder is of one run
     ApplyCommit(place);
   }
-  state_->folders.Keep();
 }
 
 void RecoverOutputs(const fs::path& folder) {

@@ -57,6 +57,18 @@ TEST_F(OutputSetTest, DroppedWithoutPublishingItLeavesNoTrace) {
   EXPECT_FALSE(fs::exists(folder_));
 }
 
+TEST_F(OutputSetTest, LeavesNoFolderForAFileThatIsNotWritten) {
+  {
+    OutputSet outputs;
+    for (const char* name : {"written", "not written"}) outputs.Declare(folder_ / name / "a");
+    outputs.Prepare();
+    outputs.Set(folder_ / "written" / "a", "text");
+    outputs.Publish();
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "written" / "a"));
+  EXPECT_FALSE(fs::exists(folder_ / "not written"));
+}
+
 TEST_F(OutputSetTest, RemovesWhatWasDeclaredAndNotSetAndKeepsTheRest) {
   WriteFiles({{folder_ / "mine", "old"}, {folder_ / "gone", "old"}, {folder_ / "other", "kept"}});
   OutputSet outputs;

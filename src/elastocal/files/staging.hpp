@@ -31,12 +31,11 @@ void WriteNew(const std::filesystem::path& path, const std::string& contents,
 /// Waits until a file that somebody else wrote is on the disk.
 void SyncFile(const std::filesystem::path& path, const std::filesystem::path& given);
 
-/// Folders made for files; those that are empty are removed again unless they are kept.
+/// Folders made for files; those that are empty in the end are removed again.
 class NewFolders {
  public:
   ~NewFolders();
   void Create(const std::filesystem::path& folder);
-  void Keep() { created_.clear(); }
 
  private:
   std::vector<std::filesystem::path> created_;

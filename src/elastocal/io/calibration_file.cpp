@@ -173,6 +173,23 @@ std::string OwnerOf(const std::string& parameter) {
   return parameter.substr(0, parameter.rfind('.'));
 }
 
+constexpr const char* kLeft = "rmse_3d_mm";
+constexpr const char* kHeldOutUrdf = "held_out_urdf_mm";
+constexpr const char* kHeldOut = "held_out_mm";
+
+/// An error of markers, m; 0 where the file is silent.
+double ReadErrorMm(const YamlValue& root, const char* key) {
+  const auto error = root.Find(key);
+  if (!error) return 0.0;
+  error->Expect(error->Number() >= 0.0, "a length");
+  return 1e-3 * error->Number();
+}
+
+void WriteErrorMm(const char* key, double error, const char* comment, YAML::Emitter& yaml) {
+  if (!(error > 0.0)) return;
+  yaml << YAML::Key << key << YAML::Value << FormatNumber(1e3 * error) << YAML::Comment(comment);
+}
+
 Eigen::Vector3d ReadNumbers(const YamlValue& value) {
   const std::vector<YamlValue> items = value.Items();
   value.Expect(items.size() == 3, "three numbers");
@@ -202,10 +219,9 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   yaml << YAML::Key << "marker_sd_mm" << YAML::Value << FormatNumber(1e3 * result.marker_sd);
   yaml << YAML::Key << "cluster_factor" << YAML::Value
        << FormatNumber(result.posterior.cluster_factor);
-  if (beside.rmse_3d > 0.0) {
-    yaml << YAML::Key << "rmse_3d_mm" << YAML::Value << FormatNumber(1e3 * beside.rmse_3d)
-         << YAML::Comment("what is left of its own markers");
-  }
+  WriteErrorMm(kLeft, beside.rmse_3d, "what is left of its own markers", yaml);
+  WriteErrorMm(kHeldOutUrdf, beside.held_out.urdf, "of markers left out, by the URDF", yaml);
+  WriteErrorMm(kHeldOut, beside.held_out.compensated, "by these parameters", yaml);
   yaml << YAML::Key << "prior_scale" << YAML::Value << YAML::Flow << YAML::BeginMap;
   for (int g = 0; g < kPriorGroupCount; ++g) {
     const bool corrections = g == static_cast<int>(PriorGroup::kCorrections);
@@ -311,10 +327,8 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   stored.robot = estimate.robot;
   stored.nominal = estimate.nominal;
   stored.recording = estimate.recording;
-  if (const auto left = root.Find("rmse_3d_mm")) {
-    stored.rmse_3d = 1e-3 * left->Number();
-    left->Expect(stored.rmse_3d >= 0.0, "a length");
-  }
+  stored.rmse_3d = ReadErrorMm(root, kLeft);
+  stored.held_out = {ReadErrorMm(root, kHeldOutUrdf), ReadErrorMm(root, kHeldOut)};
   if (const auto factor = root.Find("cluster_factor")) {
     factor->Expect(factor->Number() >= 0.0, "a ratio of variances");
     stored.scatter_sd =

@@ -14,6 +14,12 @@
 
 namespace elastocal {
 
+/// 3-D RMSE of markers that an estimate did not use (held-out trials or postures), m; 0: not known.
+struct HeldOutErrors {
+  double urdf = 0.0;         ///< by the calibrated URDF alone
+  double compensated = 0.0;  ///< by the calibrated model, with elasticity
+};
+
 /// What a calibration.yaml has beside its result.
 struct BesideCalibration {
   /// The result that has only waist and markers fitted to the same recording, for a comparison on
@@ -25,6 +31,7 @@ struct BesideCalibration {
   Eigen::Vector3d gravity = kGravity;  ///< in the frame of the recording, a table of postures
   /// What the result leaves of its own markers, outliers included, m; 0: not known.
   double rmse_3d = 0.0;
+  HeldOutErrors held_out = {};
 };
 
 /// calibration.yaml: every parameter with unit, value, standard deviation and status, and what is
@@ -50,7 +57,8 @@ struct StoredCalibration {
   std::string robot;
   std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
   std::string recording;
-  double rmse_3d = 0.0;  ///< what it left of its own markers, m; 0: the file is silent
+  double rmse_3d = 0.0;    ///< what it left of its own markers, m; 0: the file is silent
+  HeldOutErrors held_out;  ///< what it predicted of other recordings
   /// Scatter of a marker's coordinate between postures, of as many independent ones as would tell
   /// as much as these postures do, m; 0: the file is silent.
   double scatter_sd = 0.0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/calibrated_robot.hpp"
 
+#include <set>
+#include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -125,6 +127,24 @@ std::vector<fs::path> RecordedFiles(const CalibratedRobot& robot) {
     return {};  // the calibration was read without its record, by --project
   }
   return files;
+}
+
+std::vector<fs::path> FilesCalibratedFrom(const fs::path& calibration,
+                                          const std::vector<fs::path>& files) {
+  const fs::path record = FolderOf(calibration) / "runs.json";
+  std::error_code error;
+  if (!fs::exists(record, error)) return {};
+  std::set<std::string> used;
+  const std::vector<RecordedInput> inputs = RecordedInputs(record);
+  for (std::size_t i = 2; i < inputs.size(); ++i) {  // after project and URDF
+    if (inputs[i].file.filename() != "experiment.yaml") used.insert(inputs[i].sha256);
+  }
+  std::vector<fs::path> found;
+  for (const fs::path& file : files) {
+    const std::vector<InputRecord> now = RecordInputs({file});
+    if (!now.empty() && used.contains(now.front().sha256)) found.push_back(file);
+  }
+  return found;
 }
 
 }  // namespace elastocal

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/calibration_files.hpp"
 
+#include <cmath>
+
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
@@ -16,6 +18,13 @@ namespace {
 
 std::string UrdfName(const Project& project) {
   return project.urdf.stem().string() + "_calibrated.urdf";
+}
+
+HeldOutErrors HeldOutErrorsOf(const CalibrationRun& run) {
+  if (!run.held_out && run.cross_validation.folds == 0) return {};
+  const Deployment& deployed = run.deployment;
+  const double best = std::isfinite(deployed.compensated) ? deployed.compensated : deployed.urdf;
+  return {.urdf = deployed.urdf, .compensated = best};
 }
 
 /// Of project and run together; adds to the run's warnings.
@@ -53,7 +62,8 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
         {.uncalibrated = &results[static_cast<int>(ModelKind::kUncalibrated)],
          .in_urdf = same ? nullptr : &results[static_cast<int>(in_urdf)],
          .gravity = run.recording.gravity,
-         .rmse_3d = run.comparison.metrics_all[static_cast<int>(result.kind)].rmse_3d});
+         .rmse_3d = run.comparison.metrics_all[static_cast<int>(result.kind)].rmse_3d,
+         .held_out = HeldOutErrorsOf(run)});
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
     if (!project.tree.linkages.empty()) files["linkages.yaml"] = MakeLinkagesYaml(result);

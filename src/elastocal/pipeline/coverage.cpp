@@ -109,7 +109,8 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
     ChainCoverage of{chain.name,
                      Shows(measured.calibration, chain.name, markers,
                            ExercisesEachJoint(project, measured.calibration, chain)),
-                     Shows(measured.validation, chain.name, markers, false),
+                     Shows(measured.validation, chain.name, markers,
+                           ExercisesEachJoint(project, measured.validation, chain)),
                      {},
                      {},
                      MovingTrial(project, chain, measured.calibration)};

@@ -125,5 +125,18 @@ TEST_F(CoverageOfChains, WhatIsNotJudgedIsSaidWhereOthersAre) {
   EXPECT_NE(verdict.remarks[0].find("left_arm"), std::string::npos);
 }
 
+TEST_F(CoverageOfChains, AChainWhoseJointsOthersMoveInValidationIsJudged) {
+  Project project = project_;
+  const int left = FindLink(project.tree, "left_hand");
+  project.chains.push_back({.name = "whole_left_arm", .tip_link = left});
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  measured.validation = Shown("left_arm");
+  measured.validation.trials[0].chains = {"whole_left_arm"};
+  for (const ChainCoverage& of : FindCoverage(project, measured)) {
+    EXPECT_EQ(of.judged, of.chain == "left_arm" || of.chain == "whole_left_arm") << of.chain;
+  }
+}
+
 }  // namespace
 }  // namespace elastocal

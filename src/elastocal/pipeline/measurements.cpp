@@ -121,6 +121,15 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
   return measured;
 }
 
+/// A folder that is not a recording: says what would be one.
+void ExpectNoFolder(const fs::path& recording) {
+  std::error_code error;
+  if (!fs::is_directory(recording, error)) return;
+  throw InputError(recording.string() +
+                   ": no experiment.yaml in this folder; expected a recording folder, which has "
+                   "one, or the file of a posture table");
+}
+
 }  // namespace
 
 Measurements ReadMeasurements(const Project& project, const std::vector<fs::path>& recordings,
@@ -133,6 +142,7 @@ Measurements ReadMeasurements(const Project& project, const std::vector<fs::path
     throw InputError(recordings[1].string() +
                      ": no experiment.yaml in it; only recording folders can be taken together");
   }
+  ExpectNoFolder(recordings[0]);
   PostureTable table = ReadPostureTable(recordings[0], project);
   Measurements measured;
   measured.calibration = std::move(table.recording);
@@ -145,6 +155,7 @@ std::vector<fs::path> InputFiles(const Project& project, const std::vector<fs::p
   std::vector<fs::path> files = {project.file, project.urdf};
   for (const fs::path& recording : recordings) {
     if (!IsRecordingFolder(recording)) {
+      ExpectNoFolder(recording);
       files.push_back(recording);
       continue;
     }

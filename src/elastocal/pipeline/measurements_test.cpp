@@ -142,6 +142,9 @@ TEST_F(MeasurementsTest, OnlyFoldersCanBeTakenTogether) {
       },
       {"b.csv", "no experiment.yaml"});
   ExpectInputError([&] { ReadMeasurements(project_, {}); }, {"no recording"});
+  const ScratchFolder empty;
+  ExpectInputError([&] { InputFiles(project_, {empty.path()}); },
+                   {empty.path().string(), "no experiment.yaml in this folder", "posture table"});
 }
 
 }  // namespace

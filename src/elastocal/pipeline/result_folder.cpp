@@ -97,7 +97,7 @@ void RemoveOutdated(const std::string& calibration, ReportSources& sources) {
   for (const char* name : {"deployment.json", "diagnosis.json", "validation.json"}) {
     const auto file = sources.files.find(name);
     if (file == sources.files.end()) continue;
-    const auto json = ParseJsonObject(name, file->second);
+    const auto json = ParseJsonObject((fs::path(sources.folder) / name).string(), file->second);
     const auto of = json.find("calibration_fingerprint");
     if (of == json.end() || *of == CalibrationFingerprint(calibration)) continue;
     sources.outdated.emplace_back(name);

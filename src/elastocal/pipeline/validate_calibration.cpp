@@ -4,9 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
@@ -69,6 +71,27 @@ void WarnOfOutliers(ValidationRun& run) {
                          "with outliers");
 }
 
+/// Warns where the calibration was made from this recording, or predicted less than it shows.
+void CompareWithPrediction(const Project& project, const std::filesystem::path& recording,
+                           ValidationRun& run) {
+  const HeldOutErrors& held_out = run.calibration.held_out;
+  run.predicted = run.urdf ? held_out.urdf : held_out.compensated;
+  run.shown = (run.urdf ? *run.urdf : run.transfer.calibrated).metrics_all.rmse_3d;
+  run.own_recording =
+      !FilesCalibratedFrom(run.calibration_file, InputFiles(project, {recording})).empty();
+  if (run.own_recording) {
+    run.warnings.push_back(
+        "the calibration was made from this recording: it says nothing of another day; validate on "
+        "another recording");
+  } else if (!run.as_predicted() && run.better()) {
+    run.warnings.push_back(fmt::format(
+        "the {} errs by {:.2g} mm, where its calibration predicted {:.2g} mm: the robot has "
+        "changed, or moves where it was not calibrated; `elastocal check` says whether a joint "
+        "moved",
+        run.urdf ? "calibrated URDF" : "calibrated robot", 1e3 * run.shown, 1e3 * run.predicted));
+  }
+}
+
 }  // namespace
 
 bool ValidationRun::converged() const {
@@ -81,6 +104,10 @@ bool ValidationRun::better() const {
 
 bool ValidationRun::plausible() const {
   return !(ErrorOf(transfer) > kImplausible * expected_error);
+}
+
+bool ValidationRun::as_predicted() const {
+  return predicted == 0.0 || shown <= kWorseThanPredicted * predicted;
 }
 
 ValidationRun ValidateCalibration(const Project& given, const std::filesystem::path& calibration,
@@ -122,6 +149,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   run.recording = std::move(measured.calibration);
   run.warnings.insert(run.warnings.end(), measured.warnings.begin(), measured.warnings.end());
   WarnOfOutliers(run);
+  CompareWithPrediction(project, recording, run);
   return run;
 }
 
@@ -138,6 +166,7 @@ std::string MakeValidationJson(const ValidationRun& run) {
   json["calibration_fingerprint"] = run.calibration.fingerprint;
   json["frozen"] = run.frozen;
   json["recording"] = run.recording.source;
+  json["own_recording"] = run.own_recording;
   json["postures"] = run.recording.posture_count();
   json["markers"] = run.recording.marker_count();
   std::vector<std::pair<const char*, const Refit*>> refits = {
@@ -153,6 +182,10 @@ std::string MakeValidationJson(const ValidationRun& run) {
       json["by_marker"][run.recording.marker_names[m]]["rmse_3d_mm_all"][name] =
           std::isfinite(rmse) ? Json(1e3 * rmse) : Json(nullptr);
     }
+  }
+  if (run.predicted > 0.0) {
+    json["predicted_mm"] = 1e3 * run.predicted;
+    json["as_predicted"] = run.as_predicted();
   }
   json["expected_error_mm"] = 1e3 * run.expected_error;
   json["not_predicted"] = run.transfer.not_predicted;

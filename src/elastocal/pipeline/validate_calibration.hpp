@@ -25,6 +25,10 @@ struct ValidationRun {
   bool frozen = false;          ///< whether nothing was fitted
   std::vector<std::string> mistakes;  ///< of the recording, which say nothing of the robot
   std::vector<std::string> warnings;  ///< what a user should know of, a sentence each
+  /// Errors that the calibration expects, and what the recording shows, m: by the calibrated URDF,
+  /// or by the calibrated model if frozen. Expected 0: the calibration left nothing out.
+  double predicted = 0.0, shown = 0.0;
+  bool own_recording = false;  ///< whether the calibration was made from the recording
 
   bool converged() const;
   /// Whether the calibrated robot explains the recording better than the uncalibrated one, outliers
@@ -33,7 +37,13 @@ struct ValidationRun {
   /// Whether the calibrated robot errs by less than twice what one that was never calibrated is
   /// expected to: otherwise recording, project and calibration do not belong together.
   bool plausible() const;
+  /// Whether the calibrated robot errs by no more than kWorseThanPredicted times what its
+  /// calibration predicted; true where that predicted nothing.
+  bool as_predicted() const;
 };
+
+/// Other days and other parts of the workspace bring somewhat more than held-out postures show.
+inline constexpr double kWorseThanPredicted = 1.5;
 
 struct TransferOptions {
   /// Fit nothing: waist and markers are those of the calibration (see ValidateFrozen).

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -56,14 +57,19 @@ Json CorrelationJson(const CalibrationEstimate& estimate) {
   return {{"names", estimate.covariance_names}, {"lower", Base64(lower)}};
 }
 
+/// A file of the folder, for messages.
+std::string PathOf(const ReportSources& sources, const std::string& name) {
+  return (std::filesystem::path(sources.folder) / name).string();
+}
+
 Json DesignJson(const ReportSources& sources) {
   Json json;
   for (const auto& [name, text] : sources.files) {
     std::size_t rows = 0;
     if (name.ends_with("_curves.csv")) {
-      json["curves"] = ReadCsvColumns(name, text, kMostCurveRows, rows);
+      json["curves"] = ReadCsvColumns(PathOf(sources, name), text, kMostCurveRows, rows);
     } else if (name.ends_with("_summary.json")) {
-      json["summary"] = ParseJsonObject(name, text);
+      json["summary"] = ParseJsonObject(PathOf(sources, name), text);
     }
   }
   return json;
@@ -75,11 +81,12 @@ Json MotionsJson(const ReportSources& sources) {
     const std::string stem = WithoutSuffix(name, ".csv");
     if (stem.empty() || stem.ends_with("_curves")) continue;
     std::size_t rows = 0;
-    Json motion = {{"name", stem}, {"columns", ReadCsvColumns(name, text, kMostMotionRows, rows)}};
+    Json motion = {{"name", stem},
+                   {"columns", ReadCsvColumns(PathOf(sources, name), text, kMostMotionRows, rows)}};
     motion["rows"] = rows;
     const auto margins = sources.files.find(stem + "_margins.json");
     if (margins != sources.files.end())
-      motion["margins"] = ParseJsonObject(margins->first, margins->second);
+      motion["margins"] = ParseJsonObject(PathOf(sources, margins->first), margins->second);
     json.push_back(std::move(motion));
   }
   return json;
@@ -165,11 +172,12 @@ std::string MakeReportJson(const ReportSources& sources) {
         std::pair{"deployment", "deployment.json"}, std::pair{"diagnosis", "diagnosis.json"},
         std::pair{"runs", "runs.json"}}) {
     const auto file = sources.files.find(name);
-    if (file != sources.files.end()) report[key] = ParseJsonObject(file->first, file->second);
+    if (file != sources.files.end())
+      report[key] = ParseJsonObject(PathOf(sources, name), file->second);
   }
   const auto robot = sources.files.find("robot_data.json");
   if (!report.contains("data") && robot != sources.files.end()) {
-    report["data"] = ParseJsonObject(robot->first, robot->second);
+    report["data"] = ParseJsonObject(PathOf(sources, robot->first), robot->second);
   }
   report["calibrations"] = Json::array();
   for (const LabelledCalibration& calibration : sources.calibrations) {

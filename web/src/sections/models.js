@@ -62,6 +62,8 @@ function validationTable(validation) {
     note: [`Recording: ${validation.recording}.`, validation.frozen
       ? 'Nothing was fitted to it: the waist and the markers are as in the calibration.'
       : 'The poses of the waist and the positions of the markers were fitted to it; the joints stayed as calibrated.',
+      ...(validation.own_recording ? ['The calibration was made from this recording: it says nothing of another day.'] : []),
+      ...(validation.predicted_mm !== undefined ? [`The calibration predicted ${fixed(validation.predicted_mm)} mm${validation.frozen ? '' : ' of the URDF'}.`] : []),
       ...(validation.mistakes ?? []).map((mistake) => `The recording is wrong: ${mistake}.`),
       ...(validation.status === 'implausible' ? [`A robot that was never calibrated should err by some ${fixed(validation.expected_error_mm)} mm: recording, project and calibration do not belong together.`] : []),
     ].join(' '),
