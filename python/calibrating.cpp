@@ -94,11 +94,15 @@ PyCalibration CalibrateInstruments(const Project& project, const Paths& files,
 PyCalibration CalibrateFiles(const Project& project, const py::object& recordings,
                              std::optional<int> folds, const std::string& fold_by,
                              std::optional<std::uint64_t> seed, int threads,
-                             const std::string& zero_offsets, const Path& prior, double days,
-                             const Names& accept, const StepProgress& progress) {
+                             const std::string& zero_offsets, const Path& prior,
+                             std::optional<double> days, const Names& accept,
+                             const StepProgress& progress) {
   ExpectWithin("threads", threads, 1, 64);
   if (folds) ExpectWithin("folds", *folds, 0, 100000);
-  ExpectBounded("calibrate --days", days);
+  if (days) {
+    ExpectBounded("calibrate --days", *days);
+    Expect(!prior.empty(), "days", "it is of the earlier calibration, `prior`, which is missing");
+  }
   const Paths files = PathsOf(recordings);
   const CalibrateArguments given{
       folds,
@@ -108,7 +112,7 @@ PyCalibration CalibrateFiles(const Project& project, const py::object& recording
       Named<ZeroOffsets>("zero_offsets", zero_offsets,
                          {{"origin", ZeroOffsets::kOrigin}, {"encoder", ZeroOffsets::kEncoder}}),
       prior,
-      days,
+      days.value_or(1.0),
       accept,
       progress};
   return Unlocked([&] {
@@ -262,12 +266,13 @@ void AddCalibrating(py::module_& module) {
   module.def(
       "calibrate", CalibrateFiles, "project"_a, "recordings"_a, py::kw_only(),
       "folds"_a = std::nullopt, "fold_by"_a = "posture", "seed"_a = std::nullopt, "threads"_a = 1,
-      "zero_offsets"_a = "origin", "prior"_a = "", "days"_a = 1.0, "accept"_a = Names(),
+      "zero_offsets"_a = "origin", "prior"_a = "", "days"_a = std::nullopt, "accept"_a = Names(),
       "progress"_a = StepProgress(),
       "Calibrates from a posture table or from recording folders (a path or several), like the "
       "command of that name; with contact or instruments, from tables of observations. folds: of "
       "the cross-validation, 0 for none; None: ten for a table. fold_by: what a fold leaves out, "
-      "'posture', 'trial' or 'session'. prior: the folder of an earlier calibration, `days` ago. "
+      "'posture', 'trial' or 'session'. prior: the folder of an earlier calibration, `days` ago "
+      "(None: one). "
       "accept: mistakes of the recording to undo. progress: called with (step, done, total).");
   module.def(
       "validate", Validate, "project"_a, "calibration"_a, "recording"_a, py::kw_only(),

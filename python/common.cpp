@@ -17,14 +17,6 @@ py::object FromJson(const std::string& text) {
   return py::module_::import("json").attr("loads")(text);
 }
 
-Paths PathsOf(const py::object& paths) {
-  const py::object os = py::module_::import("os");
-  if (py::isinstance<py::str>(paths) || py::isinstance(paths, os.attr("PathLike"))) {
-    return {paths.cast<Path>()};
-  }
-  return paths.cast<Paths>();
-}
-
 namespace {
 
 /// Raises TypeError, saying what was expected, for an object of another type.
@@ -39,6 +31,14 @@ Value Cast(const py::handle& object, const std::string& expected) {
 }
 
 }  // namespace
+
+Paths PathsOf(const py::object& paths) {
+  const py::object os = py::module_::import("os");
+  if (py::isinstance<py::str>(paths) || py::isinstance(paths, os.attr("PathLike"))) {
+    return {paths.cast<Path>()};
+  }
+  return Cast<Paths>(paths, "a file (str or Path), or a list of files,");
+}
 
 Eigen::VectorXd PositionsOf(const py::object& q, const Names& coordinates,
                             const std::string& what) {

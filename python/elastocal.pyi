@@ -204,14 +204,14 @@ def calibrate(
     threads: int = 1,
     zero_offsets: str = "origin",
     prior: _Path = "",
-    days: float = 1.0,
+    days: float | None = None,
     accept: Sequence[str] = ...,
     progress: Optional[Callable[[str, int, int], None]] = None,
 ) -> Calibration:
     """Calibrates from a posture table or from recording folders (a path or several), like the command of that name;
     with contact or instruments, from tables of observations. folds: of the cross-validation, 0 for none; None: ten
     for a table. fold_by: what a fold leaves out, 'posture', 'trial' or 'session'. prior: the folder of an earlier
-    calibration, `days` ago. accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
+    calibration, `days` ago (None: one). accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
 def validate(
     project: Project,
     calibration: _Path,
@@ -376,6 +376,10 @@ class Runtime:
     @property
     def feet(self) -> list[str]:
         """Links of the feet, in the order of the bits of `feet`."""
+    @property
+    def status(self) -> str:
+        """What the last call had to cut or replace, in words; also of q that is not finite, where the last good answer
+        is given."""
     def forward(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> dict[str, Any]:
         """Poses (4, 4) in m of all 'links' in the root link's frame, with deflection, of the 'root', and the
         'status'. q: (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the

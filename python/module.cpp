@@ -11,6 +11,14 @@ PYBIND11_MODULE(elastocal, module) {
       "NumPy's, "
       "files are str or Path. Long calls let other threads run and end on Ctrl-C.";
   module.attr("__version__") = ProgramVersion();
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const py::cast_error&) {
+      PyErr_SetString(PyExc_TypeError,
+                      "an argument, or a part of it, has a type that was not expected");
+    }
+  });
   py::register_exception<InputError>(module, "InputError", PyExc_ValueError).attr("__doc__") =
       "A file or value that cannot be used: where, what was found and what was expected.";
   py::register_exception<python::Infeasible>(module, "InfeasibleError", PyExc_RuntimeError)

@@ -16,7 +16,7 @@ class PyRuntime {
   const RuntimeModel& model() const { return compensator_.model(); }
 
   py::dict Forward(const py::object& q, const Eigen::VectorXd& torque, StandingFeet feet) {
-    const CompensatorStatus status = compensator_.Forward(Positions(q), Checked(torque), feet);
+    status_ = compensator_.Forward(Positions(q), Checked(torque), feet);
     py::dict poses;
     for (std::size_t i = 0; i < model().link_names.size(); ++i) {
       poses[py::str(model().link_names[i])] =
@@ -25,19 +25,23 @@ class PyRuntime {
     py::dict result;
     result["links"] = poses;
     result["root"] = Eigen::Matrix4d(compensator_.root_pose().matrix());
-    result["status"] = DescribeStatus(status);
+    result["status"] = Status();
     return result;
   }
 
   Eigen::VectorXd Command(const py::object& q, const Eigen::VectorXd& torque, StandingFeet feet) {
-    compensator_.Command(Positions(q), Checked(torque), feet);
+    ExpectTips();
+    status_ = compensator_.Command(Positions(q), Checked(torque), feet);
     return compensator_.command();
   }
 
   Eigen::VectorXd Correct(const py::object& q, const Eigen::VectorXd& torque, StandingFeet feet) {
-    compensator_.Correct(Positions(q), Checked(torque), feet);
+    ExpectTips();
+    status_ = compensator_.Correct(Positions(q), Checked(torque), feet);
     return compensator_.rigid_positions();
   }
+
+  std::string Status() const { return DescribeStatus(status_); }
 
  private:
   static RuntimeModel Make(const Path& calibration, const Path& project,
@@ -60,7 +64,12 @@ class PyRuntime {
                      std::to_string(model().joint_count()) + " were expected");
   }
 
+  void ExpectTips() const {
+    if (model().tips.empty()) throw InputError(NothingToCorrect());
+  }
+
   Compensator compensator_;
+  CompensatorStatus status_ = {};
 };
 
 constexpr const char* kArguments =
@@ -86,6 +95,9 @@ void AddRuntime(py::module_& module) {
       .def_property_readonly(
           "feet", [](const PyRuntime& r) { return r.model().foot_names; },
           "Links of the feet, in the order of the bits of `feet`.")
+      .def_property_readonly("status", &PyRuntime::Status,
+                             "What the last call had to cut or replace, in words; also of q that "
+                             "is not finite, where the last good answer is given.")
       .def("forward", &PyRuntime::Forward, "q"_a, "torque"_a = none, "feet"_a = 0u,
            with_arguments("Poses (4, 4) in m of all 'links' in the root link's frame, with "
                           "deflection, of the 'root', and the 'status'.")

@@ -44,6 +44,7 @@ VirtualExperimentOptions ExperimentOf(const py::object& settings, bool nominal, 
     ReadSimulationSettings(settings.cast<Path>(), options);
   }
   CheckRanges(options);
+  CheckTargets(options);
   if (free) options.physics.standing = Standing::kFree;
   options.seed = seed;
   options.robot_seed = robot_seed;

@@ -83,6 +83,37 @@ TEST_F(PlainMistakes, SignsAndExchangesOfAnyJoints) {
   ExpectNamed(Find(wrong), "", ": their positions are exchanged");
 }
 
+// A column that was not logged is filled with something. One that is right (a joint that was held)
+// is not accused of another joint's mistake.
+TEST_F(PlainMistakes, AColumnThatIsTheSameInAllRows) {
+  for (const int c : {1, 2, 3}) {
+    Recording wrong = recorded_;
+    wrong.q.col(c).setZero();
+    const std::vector<std::string> found = Find(wrong);
+    ASSERT_EQ(found.size(), 1u);
+    const auto& tree = project_.tree;
+    EXPECT_EQ(found[0].find(tree.joints[Size(tree.coordinate_joint[Size(c)])].name +
+                            ": its positions are the same in all rows"),
+              0u)
+        << found[0];
+  }
+}
+
+TEST_F(PlainMistakes, AJointThatWasHeldIsNotAccused) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  Recording held = recorded_;
+  held.q.col(2).setConstant(0.3);
+  held.markers = PredictedPositions(model, held, Eigen::VectorXd::Zero(model.parameter_count()),
+                                    project_.calibration);
+  EXPECT_EQ(First(Find(held)), "");
+  for (const int c : {1, 3, 4}) {
+    Recording wrong = held;
+    wrong.q.col(c) *= 1.3;
+    EXPECT_EQ(First(Find(wrong)).find("its positions are the same"), std::string::npos)
+        << First(Find(wrong));
+  }
+}
+
 TEST_F(PlainMistakes, TwoAreNamedBesideEachOther) {
   Recording wrong = recorded_;
   wrong.q.col(1) *= -1.0;

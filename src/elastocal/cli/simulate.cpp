@@ -56,6 +56,7 @@ VirtualExperimentOptions Settings(const SimulateCommand& options) {
     ApplySetting(setting, given->second, FlagName(setting.key) + ": ");
   }
   CheckRanges(settings);
+  CheckTargets(settings);
   if (options.free) settings.physics.standing = Standing::kFree;
   return settings;
 }

@@ -2,6 +2,7 @@
 #include "elastocal/description/calibrated_urdf.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -256,7 +257,11 @@ std::string MakeXacroOffsets(const CalibratedUrdf& calibrated) {
                        "of the controller + offset. ");
   pugi::xml_node robot = xml.append_child("robot");
   robot.append_attribute("xmlns:xacro") = "http://www.ros.org/wiki/xacro";
-  const auto add = [&](const std::string& name, double value) {
+  const auto add = [&](std::string name, double value) {
+    for (char& c : name) {
+      if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    }
+    if (std::isdigit(static_cast<unsigned char>(name.front()))) name = '_' + name;
     pugi::xml_node property = robot.append_child("xacro:property");
     property.append_attribute("name") = name.c_str();
     property.append_attribute("value") = FormatNumber(value).c_str();

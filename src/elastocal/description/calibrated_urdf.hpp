@@ -44,7 +44,8 @@ CalibratedUrdf MakeCalibratedUrdf(const std::string& urdf, const std::string& so
                                   const CalibrationResult& calibration, ZeroOffsets zero_offsets);
 
 /// The same changes as PAL's xacro properties: `<joint>_{x,y,z,roll,pitch,yaw}_offset`, to be added
-/// component by component to the nominal origin, and `<joint>_offset` for all encoder offsets.
+/// component by component to the nominal origin, and `<joint>_offset` for all encoder offsets. What
+/// a name in Python cannot have is '_' in them.
 std::string MakeXacroOffsets(const CalibratedUrdf& calibrated);
 
 }  // namespace elastocal

@@ -243,6 +243,7 @@ std::vector<std::string> SilentInstruments(const ObservationTables& tables) {
 ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>& files,
                                         const Project& project,
                                         const std::vector<ContactFoot>* feet) {
+  if (files.empty()) throw InputError("no recording; one or more were expected");
   ObservationTables tables;
   tables.setup = project.contact->setup;
   std::vector<ObservationFile> read;

@@ -63,7 +63,7 @@ bool HasChanged(const RecordedInput& input) {
 /// The project file that the record of a calibration names first, as it was then.
 fs::path RecordedProject(const fs::path& folder) {
   const fs::path file = folder / "runs.json";
-  const std::string hint = "; name the project file by --project";
+  const std::string hint = "; name the project file (--project; in Python, project=)";
   std::error_code error;
   if (!fs::exists(file, error)) {
     throw InputError(file.string() + ": is not there: it says which project was calibrated" + hint);

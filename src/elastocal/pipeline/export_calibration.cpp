@@ -276,7 +276,12 @@ std::vector<ExportFormat> ExportFormats() {
 ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options) {
   CheckExportOptions(options);
   const Kept kept = KeepWhatHelps(robot, ReadEstimate(robot.calibration.source), options);
-  return {TextOf(robot, kept, options), kept.comments};
+  ExportedCalibration exported{TextOf(robot, kept, options), kept.comments};
+  const bool at_run_time = options.format == "c99" || options.format == "runtime";
+  if (at_run_time && MakeRuntimeModel(robot.project, kept.calibration).tips.empty()) {
+    exported.notes.push_back("Commands are left as they are: " + NothingToCorrect());
+  }
+  return exported;
 }
 
 bool IsExported(const std::string& text) { return text.find(kMadeBy) != std::string::npos; }

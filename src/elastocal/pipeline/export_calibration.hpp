@@ -37,7 +37,8 @@ struct ExportOptions {
 
 struct ExportedCalibration {
   std::string text;  ///< of the file
-  /// Which joints stay nominal and why, where that was asked for; comments of the file, too.
+  /// Which joints stay nominal and why, where that was asked for (comments of the file, too), and
+  /// that a robot without chains has no commands to correct.
   std::vector<std::string> notes;
 };
 

@@ -16,6 +16,7 @@
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/log_check.hpp"
 #include "elastocal/calibration/placed_misfit.hpp"
+#include "elastocal/calibration/told_positions.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
@@ -29,7 +30,8 @@ constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated le
 // What is left at most once a mistake is undone, of the placed nominal robot:
 constexpr double kLeftOfMisfit = 0.7;
 constexpr double kLeftByOneOfSeveral = 0.9;
-constexpr double kLeftWhereNoRobot = 0.5;  // where the offsets with the mistake are no robot's
+constexpr double kLeftByToldPositions = 0.3;  // of one joint, told by the markers
+constexpr double kLeftWhereNoRobot = 0.5;     // where the offsets with the mistake are no robot's
 // ... and of the robot with joint offsets:
 constexpr double kLeftOfOffsets = 0.5;
 constexpr double kLeftByNoRobot = 0.98;  // where neither the offsets with nor without it are one's
@@ -103,8 +105,8 @@ class PlainSearch {
 
   /// Mistakes, each beside those before it; empty: none.
   std::vector<Alternative> Run() {
-    for (const auto& search :
-         {&PlainSearch::FindInTable, &PlainSearch::FindExchange, &PlainSearch::FindWrongFollower}) {
+    for (const auto& search : {&PlainSearch::FindInTable, &PlainSearch::FindExchange,
+                               &PlainSearch::FindWrongFollower, &PlainSearch::FindLostColumn}) {
       std::vector<Alternative> found = Confirmed((this->*search)());
       if (!found.empty()) return found;
     }
@@ -209,6 +211,29 @@ class PlainSearch {
     }
     return {what + " (couplings of the project, mimic of the URDF)", "",
             ModelOf(other, given_.recording), given_.recording};
+  }
+
+  /// A joint that moved, and whose column says the same in all rows: the markers tell where it was.
+  /// That explains a part of any mistake, so it has to explain most.
+  std::vector<Alternative> FindLostColumn() const {
+    if (given_.recording.free_root || misfit_ < kMostLeft) return {};
+    const RobotTree& tree = project_.tree;
+    std::vector<Alternative> found;
+    double least = kLeftByToldPositions * misfit_;
+    for (const int k : given_.model.active_joints) {
+      const Joint& joint = tree.joints[Size(k)];
+      const auto column = given_.recording.q.col(joint.coordinate);
+      if (joint.mimic || IsMovedByRods(tree, k) || column.maxCoeff() > column.minCoeff()) continue;
+      Recording told = WithToldPositions(given_.model, given_.recording, joint.coordinate);
+      const double left = MisfitOf(given_.model, told);
+      if (!(left < least)) continue;
+      least = left;
+      found = {{joint.name +
+                    ": its positions are the same in all rows, and the markers show that it moved "
+                    "(a column that was not logged?)",
+                "", given_.model, std::move(told)}};
+    }
+    return found;
   }
 
   /// A root link that was taken to stand still, and does not. In each posture, its pose explains

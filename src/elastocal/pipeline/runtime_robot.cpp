@@ -331,6 +331,11 @@ StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibr
   return robot;
 }
 
+std::string NothingToCorrect() {
+  return "no chain of the project ends at a link that moves, so that nothing says what is to be "
+         "where the nominal robot has it; 'chains: [{name: NAME, tip: LINK}]' was expected";
+}
+
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,
                               RuntimeContent content) {
   CheckHasNoLinkages(project, "the robot at run time");

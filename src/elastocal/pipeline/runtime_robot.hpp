@@ -24,6 +24,9 @@ enum class RuntimeContent {
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,
                               RuntimeContent content = RuntimeContent::kEverything);
 
+/// What a model without tips is worth, in words: no command can be corrected.
+std::string NothingToCorrect();
+
 /// The error model with the joints and legs that a calibration found elastic, for all markers of
 /// the project, and the calibration's errors of joints and legs in its order.
 struct StoredRobot {

@@ -131,8 +131,12 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
     return fmt::format("the cameras' positions{} were divided by {:g}", where, correction.size);
   }
   if (correction.kind == FaultKind::kJointGain) {
-    return fmt::format("the positions of {}{} were divided by {:g}", correction.joint, where,
-                       correction.size);
+    std::string text = fmt::format("the positions of {}{} were divided by {:g}", correction.joint,
+                                   where, correction.size);
+    if (!correction.trial.empty()) return text;
+    return text +
+           ": all figures are of positions so divided; where the robot has this gain, and not the "
+           "log alone, its controller has to divide them too";
   }
   const LoggedPosition logged = LoggedPositionOf(tree, correction.linkage, correction.coordinate);
   const std::string from =

@@ -42,7 +42,10 @@ class StatedCorrections : public testing::Test {
 
 TEST_F(StatedCorrections, AreDoneWhereTheySay) {
   const int joint = Coordinate();
-  EXPECT_EQ(Apply("gain:turret_joint=1.25"), "the positions of turret_joint were divided by 1.25");
+  EXPECT_EQ(Apply("gain:turret_joint=1.25"),
+            "the positions of turret_joint were divided by 1.25: all figures are of positions so "
+            "divided; where the robot has this gain, and not the log alone, its controller has to "
+            "divide them too");
   EXPECT_DOUBLE_EQ(measured_.calibration.q(0, joint), 0.8);
   EXPECT_DOUBLE_EQ(measured_.validation.q(1, joint), 0.8);
   EXPECT_EQ(Apply("offset:turret_joint@b=-18"),

@@ -158,10 +158,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
                      "calibrated URDF serves such a robot");
   }
   if (model.tips.empty()) {
-    throw InputError(
-        project.file.string() +
-        ": no chain ends at a link that moves, so that nothing says what is to be where "
-        "the plan has it; 'chains: [{name: NAME, tip: LINK}]' was expected");
+    throw InputError(project.file.string() + ": " + NothingToCorrect());
   }
   CompensatedMotion result;
   result.planned.motion = planned;

@@ -296,6 +296,28 @@ void CheckRanges(const VirtualExperimentOptions& options) {
   check("least_lag_s", sensors.least_lag_s, "largest_lag_s", sensors.largest_lag_s);
 }
 
+void CheckTargets(const VirtualExperimentOptions& options) {
+  const VirtualExperimentOptions none;
+  const auto check = [](const std::string& key, double size, double usual, const std::string& of,
+                        const std::string& target) {
+    if (size == usual || !target.empty()) return;
+    throw InputError(key + " without " + of + ": nothing says whose it is");
+  };
+  const SensorOptions& sensors = options.sensors;
+  const std::string& joint = sensors.cause_joint;
+  check("eccentricity_mrad", sensors.eccentricity, 0.0, "cause_joint", joint);
+  check("gear_error_share", sensors.gear_error, 0.0, "cause_joint", joint);
+  check("backlash_mrad", sensors.backlash, 0.0, "cause_joint", joint);
+  check("hysteresis_mrad", sensors.hysteresis, 0.0, "cause_joint", joint);
+  const TruthOptions& truth = options.truth;
+  check("heavy_share", truth.heavy_share, none.truth.heavy_share, "heavy_link", truth.heavy_link);
+  check("creep_mm_per_h", truth.creep, 0.0, "creeping_marker", truth.creeping_marker);
+  const Faults& faults = options.faults;
+  check("knock_mm", faults.knock, none.faults.knock, "knocked_cluster", faults.knocked_cluster);
+  check("saturation_nm", faults.saturation, none.faults.saturation, "saturated_torque_sensor",
+        faults.saturated_torque_sensor);
+}
+
 void ReadSimulationSettings(const std::filesystem::path& file, VirtualExperimentOptions& options) {
   const YamlValue root = YamlValue::Parse(ReadFile(file), file.string());
   const Settings settings = SimulationSettings(options);

@@ -37,6 +37,10 @@ void ApplySetting(const SimulationSetting& setting, const std::string& text,
 /// Throws InputError naming both keys where the least of a range is above the largest.
 void CheckRanges(const VirtualExperimentOptions& options);
 
+/// Throws InputError naming both keys where a cause or fault has a size, and no joint, link, marker
+/// or cluster to have it.
+void CheckTargets(const VirtualExperimentOptions& options);
+
 /// Reads a settings file: a YAML mapping of keys to values. Throws InputError naming file, line and
 /// key, with the nearest known key for one that is unknown.
 void ReadSimulationSettings(const std::filesystem::path& file, VirtualExperimentOptions& options);
