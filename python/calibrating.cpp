@@ -101,7 +101,7 @@ PyCalibration CalibrateFiles(const Project& project, const py::object& recording
   if (folds) ExpectWithin("folds", *folds, 0, 100000);
   if (days) {
     ExpectBounded("calibrate --days", *days);
-    Expect(!prior.empty(), "days", "it is of the earlier calibration, `prior`, which is missing");
+    if (prior.empty()) throw InputError("days: without the earlier calibration, prior");
   }
   const Paths files = PathsOf(recordings);
   const CalibrateArguments given{

@@ -13,9 +13,12 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastScale = 3e-3;
-constexpr double kFalseAlarm = 1e-3;     // probability that a clean recording is accused
-constexpr double kNarrowestPrior = 0.6;  // times that of lengths
+constexpr double kFalseAlarm = 1e-3;  // probability that a clean recording is accused
+// Times the prior of lengths: as widely do they scatter at least, where many tell how widely (of
+// whatever robot), and where some do; fewer tell nothing of it.
+constexpr double kNarrowestPrior = 0.6, kNarrowestOfSome = 0.4;
 constexpr Eigen::Index kManyLengths = 20;
+constexpr double kSomeLengths = 8.0;  // that the recording determines
 constexpr int kRounds = 10;
 constexpr int kFewestLengths = 4;
 constexpr double kLeastLength = 0.02;  // m: shorter ones tell nothing of a scale
@@ -126,9 +129,8 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
       InverseOfPositive(Eigen::MatrixXd::Identity(own_count, own_count) +
                         ShiftsOfNormals(model, parameters, result.prior_sd));
   // The prior was widened with the pattern in it; how wide it has to be beside the pattern. Small
-  // robots are made more exactly than the prior expects, which many lengths tell.
+  // robots and industrial arms are made more exactly than the prior expects, which lengths tell.
   const double first = 1.0 / result.prior_scale[PriorGroup::kLengths];
-  const double narrowest = own_count >= kManyLengths ? kNarrowestPrior * first : first;
   double width = first;
   CommonScale scale;
   for (int round = 0; round < kRounds; ++round) {
@@ -146,6 +148,11 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
         static_cast<double>(own_count) - weight * own_weight.cwiseProduct(covariance).sum();
     scale.degrees_of_freedom = std::max(1.0, determined);
     if (determined < 1.0) break;
+    double narrowest = own_count >= kManyLengths ? kNarrowestPrior * first : first;
+    if (own_count < kManyLengths && determined >= kSomeLengths) {
+      narrowest = kNarrowestOfSome * first;
+      scale.degrees_of_freedom -= 1.0;  // the scale's own
+    }
     width = std::max(narrowest, width * std::sqrt(squares / determined));
   }
   return scale;

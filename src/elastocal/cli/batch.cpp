@@ -152,8 +152,12 @@ std::string DescribeReport(const FleetReport& report, const fs::path& output) {
                         FirstOf(failed, kMostFindings));
   }
   if (report.robots > 0) {
-    text += fmt::format("{} robots; half of their URDFs err by less than {} mm\n", report.robots,
-                        Millimetres(report.family.median_error, 3));
+    text += fmt::format("{} robots", report.robots);
+    if (std::isfinite(report.family.median_error)) {
+      text += fmt::format("; half of their URDFs err by less than {} mm",
+                          Millimetres(report.family.median_error, 3));
+    }
+    text += "\n";
   }
   text += DescribeFamily(report);
   if (!PageTemplate().empty())

@@ -87,7 +87,8 @@ void AddAcceptOption(CLI::App& command, std::vector<std::string>& names) {
                   "calibrate or validate gave them: sign:JOINT, exchange:JOINT,JOINT, "
                   "frozen:JOINT, labels:NAME,NAME, rows:COUNT, gain:JOINT=FACTOR, "
                   "offset:JOINT@TRIAL=DEGREES, "
-                  "offset:JOINT@TRIAL:POSTURE=DEGREES (from that one on), scale:TRIAL=FACTOR, "
+                  "offset:JOINT@TRIAL:POSTURE=DEGREES (from that one on; of a table "
+                  "offset:JOINT:POSTURE), scale:TRIAL=FACTOR, "
                   "scale=FACTOR (in all trials); JOINT may be a motor of rods; of tables of "
                   "observations, TRIAL is a file, "
                   "and @FILE or @FILE:POSTURE may follow sign, exchange, labels and rows as well")

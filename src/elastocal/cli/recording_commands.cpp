@@ -128,10 +128,9 @@ int Convert(const RecordingCommand& command) {
 /// The file, and what it may not say by itself.
 void AddRecording(CLI::App& command, RecordingCommand& options) {
   command
-      .add_option(
-          "recording", options.file,
-          "Recording of cameras or robot: C3D, Vicon CSV, Motive CSV, TRC, Qualisys TSV, "
-          ".npz, ROS bag (MCAP, db3, bag), joint log, posture table; its contents tell which")
+      .add_option("recording", options.file,
+                  "Recording of cameras or robot: C3D, Vicon CSV, Motive CSV, TRC, Qualisys TSV, "
+                  ".npz, ROS bag (MCAP, db3, bag), joint log; its contents tell which")
       ->required()
       ->type_name("FILE");
   command

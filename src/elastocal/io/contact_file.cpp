@@ -121,6 +121,10 @@ std::string MakeContactYaml(const ObservedRobot& model, const ObservationFit& ca
   return std::string(yaml.c_str()) + "\n";
 }
 
+bool HasContacts(const std::filesystem::path& file) {
+  return YamlValue::Parse(ReadFile(file), file.string()).Find("contact").has_value();
+}
+
 StoredContacts ReadContacts(const std::filesystem::path& file, const Project& project) {
   const YamlValue root = YamlValue::Parse(ReadFile(file), file.string());
   const auto section = root.Find("contact");

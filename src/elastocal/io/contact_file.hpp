@@ -28,6 +28,9 @@ struct StoredContacts {
   StoredContact calibrated, uncalibrated;
 };
 
+/// Whether a calibration.yaml has the section.
+bool HasContacts(const std::filesystem::path& file);
+
 /// Reads the section. Throws InputError naming file, line and key: a calibration that was not made
 /// from touches or instruments, other feet or quantities than the project's.
 StoredContacts ReadContacts(const std::filesystem::path& file, const Project& project);

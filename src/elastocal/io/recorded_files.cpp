@@ -178,7 +178,8 @@ JointLog ReadPlainLog(const ByteSource& source) {
   if (at == header.end()) {
     table.Fail(
         "this is no recording of a known format, nor a joint log: there is no column 't' or "
-        "'time'");
+        "'time' (tables of postures, observations and detections have none: `calibrate` reads "
+        "them with their project)");
   }
   std::vector<double> time;
   std::map<std::string, std::vector<double>> columns;

@@ -68,11 +68,20 @@ EarlierContacts ReadEarlierContacts(const std::filesystem::path& calibration,
           ReadCalibrationFiles(files)};
 }
 
+EarlierContacts ReadPriorOfContacts(const std::filesystem::path& calibration,
+                                    const Project& project) {
+  const CalibrationFiles files = FindCalibrationFiles(calibration);
+  if (HasContacts(files.calibration)) return ReadEarlierContacts(calibration, project);
+  EarlierContacts earlier{ReadCalibration(files.calibration), {}, ReadCalibrationFiles(files)};
+  earlier.of_contacts = false;
+  return earlier;
+}
+
 ObservedRobot MakeRobotAfterEarlier(const EarlierContacts& earlier, const Project& project,
                                     const ObservationTables& tables) {
   ObservationSetup setup = tables.setup;
   setup.outlier_probability = project.calibration.outlier_probability;
-  TakeSpread(earlier.contacts.calibrated.spread, setup.sources);
+  if (earlier.of_contacts) TakeSpread(earlier.contacts.calibrated.spread, setup.sources);
   ObservedRobot model = MakeStoredRobot(earlier.stored, project, setup);
   for (const std::string& pattern : project.identifiability.hold) {
     if (!MatchParameters(model.robot.parameters, {pattern}).empty()) setup.hold.push_back(pattern);

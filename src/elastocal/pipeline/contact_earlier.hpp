@@ -28,11 +28,18 @@ struct EarlierContacts {
   StoredCalibration stored;
   StoredContacts contacts;
   CalibrationEstimate estimate;
+  /// Whether it was made from touches or instruments; else it knows the robot alone, and contacts
+  /// are as the project has them.
+  bool of_contacts = true;
 };
 
 /// Reads the folder that calibrate wrote to, or its calibration.yaml. Throws InputError: files that
 /// cannot be read, or without covariance; a calibration that was not made from such tables.
 EarlierContacts ReadEarlierContacts(const std::filesystem::path& calibration,
+                                    const Project& project);
+
+/// The same of a prior, which may also have been made from markers, or be that of a fleet.
+EarlierContacts ReadPriorOfContacts(const std::filesystem::path& calibration,
                                     const Project& project);
 
 /// The robot as it stands in new tables, elastic where the earlier calibration found it elastic.

@@ -133,9 +133,10 @@ ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options) {
   std::optional<EarlierContacts> earlier;
-  if (!options.prior.empty()) earlier = ReadEarlierContacts(options.prior, project);
+  if (!options.prior.empty()) earlier = ReadPriorOfContacts(options.prior, project);
+  const bool feet_known = earlier && earlier->of_contacts;
   ObservationTables tables =
-      ReadObservationTables(recordings, project, earlier ? &earlier->contacts.feet : nullptr);
+      ReadObservationTables(recordings, project, feet_known ? &earlier->contacts.feet : nullptr);
   ContactRun run;
   run.warnings = std::move(tables.warnings);
   run.recording = JoinNames(tables.observations.files);

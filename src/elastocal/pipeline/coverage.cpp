@@ -5,6 +5,9 @@
 #include <map>
 #include <set>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "elastocal/calibration/observations.hpp"
 
 namespace elastocal {
@@ -69,6 +72,41 @@ bool Shows(const Recording& recording, const std::string& chain,
   return false;
 }
 
+/// Joints that move one of these markers.
+std::set<int> JointsShownBy(const Project& project, const std::vector<std::string>& markers) {
+  std::set<int> shown;
+  for (const Marker& marker : project.markers) {
+    if (std::find(markers.begin(), markers.end(), marker.name) == markers.end()) continue;
+    for (const int joint : JointsToBody(project.tree, project.tree.links[marker.link].body)) {
+      shown.insert(joint);
+    }
+  }
+  return shown;
+}
+
+std::vector<std::string> SeenMarkers(const Recording& recording) {
+  std::vector<std::string> seen;
+  const ObservationMask mask = SeenMask(recording);
+  for (int m = 0; m < recording.marker_count(); ++m) {
+    if (mask.col(m).any()) seen.push_back(recording.marker_names[m]);
+  }
+  return seen;
+}
+
+/// The joints of a chain that its markers show, but no marker that was seen.
+std::vector<std::string> UnseenJoints(const Project& project, const Recording& recording,
+                                      const Chain& chain, const std::vector<std::string>& markers) {
+  const std::set<int> shown = JointsShownBy(project, markers);
+  const std::set<int> seen = JointsShownBy(project, SeenMarkers(recording));
+  std::vector<std::string> unseen;
+  for (const int joint : JointsOf(project, chain)) {
+    if (shown.contains(joint) && !seen.contains(joint)) {
+      unseen.push_back(project.tree.joints[joint].name);
+    }
+  }
+  return unseen;
+}
+
 /// The trial that moves the joints of a chain most without being said to exercise it.
 std::string MovingTrial(const Project& project, const Chain& chain, const Recording& recording) {
   std::vector<int> coordinates;
@@ -113,7 +151,9 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
                            ExercisesEachJoint(project, measured.validation, chain)),
                      {},
                      {},
-                     MovingTrial(project, chain, measured.calibration)};
+                     MovingTrial(project, chain, measured.calibration),
+                     {}};
+    if (of.calibrated) of.unseen = UnseenJoints(project, measured.calibration, chain, markers);
     for (const TrialSummary& trial : measured.trials) {
       if (!Exercises(trial.trial, chain.name)) continue;
       if (trial.trial.kind != TrialKind::kCalibration) of.validation_trial = trial.trial.name;
@@ -166,6 +206,11 @@ void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict)
           " for validation exercises it, and no trial for calibration" +
           (of.moving_trial.empty() ? "" : "; trial " + of.moving_trial + " moves its joints most") +
           ": is `chains` of the trials in experiment.yaml right?");
+    }
+    if (!of.unseen.empty()) {
+      verdict.remarks.push_back(
+          fmt::format("chain {}: {} not calibrated, because no marker beyond was seen", of.chain,
+                      fmt::join(of.unseen, ", ")));
     }
     if (of.calibrated && !of.judged && any_judged) {
       verdict.remarks.push_back("chain " + of.chain +

@@ -22,6 +22,8 @@ struct ChainCoverage {
   std::string validation_trial;      ///< one that is said to exercise it; empty: none
   /// The trial for calibration that moves its joints most without being said to exercise it.
   std::string moving_trial;
+  /// Joints that markers of the project show, none of which was seen: they stay nominal.
+  std::vector<std::string> unseen;
 };
 
 /// Of the chains that carry markers, in the project's order.
@@ -36,7 +38,8 @@ std::vector<std::string> UnknownStance(const Project& project, const Measurement
 /// Adds an objection for each chain that stays uncalibrated because its trials cannot be used: who
 /// records a chain expects it to be calibrated. Another for each chain that trials for validation
 /// exercise and no trial for calibration: more likely, `chains` of a trial is wrong. And a remark
-/// for each that was calibrated and is not judged although others are.
+/// for each that was calibrated and is not judged although others are, or of which joints were not
+/// seen.
 void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict);
 
 }  // namespace elastocal

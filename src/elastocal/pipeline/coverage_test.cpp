@@ -125,6 +125,32 @@ TEST_F(CoverageOfChains, WhatIsNotJudgedIsSaidWhereOthersAre) {
   EXPECT_NE(verdict.remarks[0].find("left_arm"), std::string::npos);
 }
 
+// The hand's markers were lost: what they alone show is told.
+TEST_F(CoverageOfChains, JointsBeyondAllSeenMarkersAreNamed) {
+  Project project = project_;
+  Marker upper = project.markers.front();
+  upper.name = "UPPER";
+  const int hand = FindLink(project.tree, "left_hand");
+  const std::vector<int> joints = JointsToBody(project.tree, project.tree.links[hand].body);
+  ASSERT_GE(joints.size(), 2u);
+  for (std::size_t l = 0; l < project.tree.links.size(); ++l) {
+    if (project.tree.links[l].body == joints[joints.size() - 2] + 1) {
+      upper.link = static_cast<int>(l);
+    }
+  }
+  project.markers.push_back(upper);
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  for (const ChainCoverage& of : FindCoverage(project, measured)) EXPECT_TRUE(of.unseen.empty());
+  measured.calibration.marker_names = {"UPPER"};
+  measured.calibration.markers.setZero(1, 3);
+  Verdict verdict;
+  JudgeCoverage(FindCoverage(project, measured), verdict);
+  ASSERT_EQ(verdict.remarks.size(), 1u);
+  EXPECT_EQ(verdict.remarks[0], "chain left_arm: " + project.tree.joints[joints.back()].name +
+                                    " not calibrated, because no marker beyond was seen");
+}
+
 TEST_F(CoverageOfChains, AChainWhoseJointsOthersMoveInValidationIsJudged) {
   Project project = project_;
   const int left = FindLink(project.tree, "left_hand");

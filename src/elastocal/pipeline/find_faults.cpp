@@ -99,6 +99,7 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
 
 constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
 constexpr double kContradicted = 10.0;
+constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
 /// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
 /// be as good in motion, which statics does not describe.
 constexpr double kBestExpected = 0.03;
@@ -283,7 +284,10 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
   }
   // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;
-  if (const auto up = FindUpByLoads(project, seed, as_recorded)) return {Describe(*up, recording)};
+  const double left = MarkerError(comparison.largest(), recording, project.calibration);
+  if (const auto up = FindUpByLoads(project, seed, as_recorded, left)) {
+    return {Describe(*up, recording)};
+  }
   if (!of_slides.empty() && !scale_is_known) return {of_slides};
   for (const RecordingFault& gear : gears) {
     faults.push_back(FaultAndRemedy(gear, project.tree, recording));
@@ -306,8 +310,12 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   const Contrast contrast = LargestContrast(fitted, held_out_table, comparison.largest().kind);
   if (!(contrast.ratio() > kSuspicious)) return {};
   const Recording all = JoinTrials(recording, EvenlyThinned(held_out, recording.posture_count()));
+  // Trials that contradict each other keep noise and outliers from coming to rest.
+  CalibrationOptions roughly = project.calibration;
+  roughly.outliers = OutlierPolicy::kKeep;
+  roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
   const CalibrationResult together =
-      Calibrate(robot.model, all, robot.base, comparison.largest().kind, project.calibration);
+      Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
   const std::vector<RecordingFault> faults =
       FindRecordingFaults(together, all, project.calibration);
   if (!faults.empty()) {

@@ -83,26 +83,26 @@ bool ApplyTo(const StatedCorrection& correction, const RobotTree& tree, Recordin
     }
     recording.q.row(i) = q.transpose();
   }
-  if (!correction.trial.empty() && found && !reached) {
-    throw InputError(
-        fmt::format("--accept: trial '{}' has {} postures; one of them was expected "
-                    "instead of {}",
-                    correction.trial, number, correction.from));
+  if (found && !reached && number > 0) {
+    throw InputError(fmt::format(
+        "--accept: {} has {} postures; one of them was expected instead of {}",
+        correction.trial.empty() ? std::string("the table") : "trial '" + correction.trial + "'",
+        number, correction.from));
   }
   return found;
 }
 
-/// Takes ":4" from the end of the trial.
-void ReadFirstPosture(const std::string& name, StatedCorrection& correction) {
-  const std::size_t colon = correction.trial.rfind(':');
+/// Takes ":4" from the end of what names a trial, or a joint in a table.
+void ReadFirstPosture(const std::string& name, std::string& of, StatedCorrection& correction) {
+  const std::size_t colon = of.rfind(':');
   if (colon == std::string::npos) return;
-  const std::string text = correction.trial.substr(colon + 1);
+  const std::string text = of.substr(colon + 1);
   const std::optional<double> number = ParseNumber(text);
   if (!number || !(*number >= 1.0 && *number <= 1e6) || *number != std::floor(*number)) {
     Refuse(name, "'" + text + "' is not the number of a posture, from 1");
   }
   correction.from = static_cast<int>(*number);
-  correction.trial.resize(colon);
+  of.resize(colon);
 }
 
 /// The names that undo an offset in all trials from a posture on.
@@ -170,9 +170,11 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
   }
   const std::size_t equals = name.rfind('=');
   if (colon == std::string::npos || equals == std::string::npos || equals < colon) {
-    Refuse(name,
-           "gain:JOINT=FACTOR, gain:JOINT@TRIAL=FACTOR, offset:JOINT@TRIAL=SIZE, "
-           "offset:JOINT@TRIAL:POSTURE=SIZE or scale:TRIAL=FACTOR or scale=FACTOR was expected");
+    Refuse(
+        name,
+        "gain:JOINT=FACTOR, gain:JOINT@TRIAL=FACTOR, offset:JOINT@TRIAL=SIZE, "
+        "offset:JOINT@TRIAL:POSTURE=SIZE, of a table offset:JOINT:POSTURE=SIZE, scale:TRIAL=FACTOR "
+        "or scale=FACTOR was expected");
   }
   const std::optional<double> size = ParseNumber(name.substr(equals + 1));
   if (!size) Refuse(name, "'" + name.substr(equals + 1) + "' is not a number");
@@ -187,6 +189,12 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
   if (at != std::string::npos) {
     correction.trial = of.substr(at + 1);
     of.resize(at);
+    if (correction.kind == FaultKind::kJointOffset) {
+      ReadFirstPosture(name, correction.trial, correction);
+    }
+  } else if (correction.kind == FaultKind::kJointOffset &&
+             ParseNumber(of.substr(of.rfind(':') + 1))) {
+    ReadFirstPosture(name, of, correction);
   }
   std::tie(correction.linkage, correction.coordinate) = FindLogged(name, of, tree);
   const LoggedPosition logged = LoggedPositionOf(tree, correction.linkage, correction.coordinate);
@@ -196,12 +204,11 @@ std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
     correction.size = *size;
     return correction;
   }
-  if (correction.trial.empty()) {
+  if (correction.trial.empty() && correction.from == 1) {
     Refuse(name,
-           "an offset in all trials is an error of the robot; offset:JOINT@TRIAL=SIZE was "
-           "expected");
+           "an offset in all postures is an error of the robot; offset:JOINT@TRIAL=SIZE or, of a "
+           "table, offset:JOINT:POSTURE=SIZE was expected");
   }
-  ReadFirstPosture(name, correction);
   const double largest = logged.slides ? kLargestOffsetMm : kLargestOffsetDeg;
   CheckSize(name, *size, -largest, largest, logged.slides ? " mm" : " deg");
   correction.size = *size * UnitOf(logged);
@@ -223,7 +230,11 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
     return fmt::format("gain:{}{}={:.5f}", logged.name, where, 1.0 + fault.size);
   }
   if (trial.empty()) {
-    if (recording.trial.empty()) return std::nullopt;
+    if (recording.trial.empty()) {
+      if (fault.posture < 1) return std::nullopt;
+      return fmt::format("offset:{}:{}={:.4f}", logged.name, fault.posture + 1,
+                         fault.size / UnitOf(logged));
+    }
     return NamesFromPosture(fault, logged, recording);
   }
   std::string from;
@@ -236,6 +247,10 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
 
 std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree& tree,
                             Measurements& measured) {
+  if (correction.trial.empty() && correction.from > 1 && !measured.calibration.trial.empty()) {
+    throw InputError("--accept offset:" + correction.joint +
+                     ": the recording has trials; offset:JOINT@TRIAL:POSTURE=SIZE was expected");
+  }
   const bool first = ApplyTo(correction, tree, measured.calibration);
   const bool second = ApplyTo(correction, tree, measured.validation);
   if (!first && !second) {

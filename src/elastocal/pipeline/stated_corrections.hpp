@@ -16,6 +16,7 @@ namespace elastocal {
 ///     gain:JOINT@TRIAL=1.05    in this trial alone
 ///     offset:JOINT@TRIAL=2.1   they are 2.1 deg (of a sliding joint: mm) too large in this trial
 ///     offset:JOINT@TRIAL:4=2.1 the same from its fourth posture on
+///     offset:JOINT:31=2.1      of a table, from its posture 31 on
 ///     scale:TRIAL=1.005        the cameras' positions are 1.005 times the true ones in this trial
 ///     scale=1.005              ... in all trials
 struct StatedCorrection {

@@ -105,6 +105,22 @@ TEST_F(StatedCorrections, OfAnOffsetFromAPostureOnHaveANameForEachTrial) {
   }
 }
 
+TEST_F(StatedCorrections, OfATableAnOffsetIsFromAPostureOn) {
+  Recording& table = measured_.calibration;
+  table.trials.clear();
+  table.trial.clear();
+  table.q = Eigen::MatrixXd::Ones(3, project_.tree.coordinate_count());
+  table.markers = Eigen::MatrixXd::Ones(3, 3);
+  measured_.validation = {};
+  const RecordingFault fault{FaultKind::kJointOffset, Coordinate(), -1, 1, 0.1 * M_PI};
+  EXPECT_EQ(NameOfCorrection(fault, project_.tree, table), "offset:turret_joint:2=18.0000");
+  EXPECT_EQ(Apply("offset:turret_joint:2=18"),
+            "18 deg were taken from the positions of turret_joint from posture 2 on");
+  const Eigen::Vector3d expected(1.0, 1.0 - 0.1 * M_PI, 1.0 - 0.1 * M_PI);
+  EXPECT_LT((table.q.col(Coordinate()) - expected).norm(), 1e-12);
+  ExpectInputError([&] { Apply("offset:turret_joint:4=1"); }, {"the table", "3 postures", "4"});
+}
+
 TEST_F(StatedCorrections, NamesThatSayNothingAreRefused) {
   EXPECT_FALSE(ParseStatedCorrection("sign:turret_joint", project_.tree).has_value());
   const auto refused = [&](const std::string& name, const std::string& why) {
@@ -119,6 +135,7 @@ TEST_F(StatedCorrections, NamesThatSayNothingAreRefused) {
   refused("scale=3", "0.5 to 2");
   refused("scale=", "'' is not a number");
   refused("offset:turret_joint=1", "error of the robot");
+  refused("offset:turret_joint:2=1", "the recording has trials");
   refused("offset:turret_joint@a=61", "-60 to 60 deg");
   refused("offset:turret_joint@d=1", "trials: a, b, c");
 }

@@ -19,6 +19,9 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeftOfStated = 0.6;  // at most, with another axis up
+constexpr double kLeftOfRigid = 0.75;
+constexpr double kShareOfFound = 0.2;      // of what it explains is explained with the stated axis
+constexpr double kLeftOfCalibrated = 0.9;  // of what causes explain with the stated axis
 constexpr int kLeastRows = 10;
 constexpr int kMostRows = 60;
 
@@ -48,6 +51,15 @@ double ErrorOfFit(const RecordedModel& robot, const Recording& recording,
   return MarkerError(FitOf(robot, recording, options), recording, options);
 }
 
+/// Whether springs explain much with that axis up, as good as nothing with the stated one, and
+/// more than all that was found with the stated one: noise may be most of both errors.
+bool OnlyItExplains(const UpByLoads& found, double rigid, double calibrated) {
+  const double by_found = rigid * rigid - found.found * found.found;
+  const double by_stated = rigid * rigid - found.stated * found.stated;
+  return found.found < kLeftOfRigid * rigid && by_stated < kShareOfFound * by_found &&
+         found.found < kLeftOfCalibrated * calibrated;
+}
+
 /// Whether the gain of a joint, with the stated axis up, explains the recording better than
 /// `error`.
 bool GainExplains(const RecordedModel& robot, const Recording& recording,
@@ -65,7 +77,7 @@ bool GainExplains(const RecordedModel& robot, const Recording& recording,
 }  // namespace
 
 std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
-                                       const Measurements& as_recorded) {
+                                       const Measurements& as_recorded, double calibrated) {
   if (!IsHeldByStatics(given, as_recorded.calibration)) return std::nullopt;
   Project project = given;
   project.elasticity.torsion = std::vector<std::string>{"*"};
@@ -76,7 +88,11 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
   Recording& recording = measured.calibration;
   const Eigen::Vector3d stated = recording.gravity;
   UpByLoads found{.axis = {}, .stated = 0.0, .found = std::numeric_limits<double>::infinity()};
+  double rigid = 0.0;
   try {
+    rigid = MarkerError(
+        Calibrate(robot.model, recording, robot.base, ModelKind::kGeometric, project.calibration),
+        recording, project.calibration);
     found.stated = ErrorOfFit(robot, recording, project.calibration);
     for (const char* axis : {"x", "-x", "y", "-y", "z", "-z"}) {
       recording.gravity = GravityBelow(axis);
@@ -90,7 +106,8 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
   } catch (const InputError&) {  // fewer equations than a robot with springs has unknowns
     return std::nullopt;
   }
-  if (!(found.found < kLeftOfStated * found.stated)) return std::nullopt;
+  const bool far_better = found.found < kLeftOfStated * found.stated;
+  if (!far_better && !OnlyItExplains(found, rigid, calibrated)) return std::nullopt;
   recording.gravity = stated;
   if (GainExplains(robot, recording, project.calibration, found.found)) return std::nullopt;
   return found;

@@ -20,11 +20,12 @@ struct UpByLoads {
 /// Tries each axis of the frame of the markers as the one that points up, on a recording of a robot
 /// whose root link is held (a robot on its feet: FindWrongUp) and whose joints carry what statics
 /// say. Found is an axis with which the error of a fit falls to less than 0.6 of that with the
-/// stated one; not where the gain of a joint, the stated one being up, leaves less. A rigid robot
-/// shows nothing: nothing depends on gravity then. `as_recorded`: before markers were split at
-/// knocks.
+/// stated one, or to less than that of a rigid robot and of the `calibrated` one [m, with its
+/// causes], while springs explain nothing with the stated axis; not where the gain of a joint, the
+/// stated one being up, leaves less. A rigid robot shows nothing: nothing depends on gravity then.
+/// `as_recorded`: before markers were split at knocks.
 std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
-                                       const Measurements& as_recorded);
+                                       const Measurements& as_recorded, double calibrated);
 
 /// "up: with y up, elastic joints explain the recording to 0.35 mm, with z up only to 1.3 mm ..."
 std::string Describe(const UpByLoads& found, const Recording& recording);

@@ -10,6 +10,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/motion/motion_check.hpp"
+#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/robot/collision.hpp"
 

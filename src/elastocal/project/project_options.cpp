@@ -116,8 +116,9 @@ void CheckHasMarkers(const Project& project) {
   if (!project.markers.empty()) return;
   throw InputError(
       project.file.string() +
-      ": the project has no markers; with contact or instruments alone there are only calibrate, "
-      "validate, compare and report");
+      ": the project has no markers, which this command is about; with contact or instruments "
+      "alone "
+      "there are calibrate, validate, check, compare, design, plan, simulate, export and report");
 }
 
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {
