@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/moved_frame.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
@@ -256,6 +257,35 @@ TEST_F(PlainMistakes, ARootThatMoved) {
 }
 
 // Not all postures of a long table are fitted, but some of all its parts.
+// The tripod is turned by 4 mrad: the markers on the pedestal hardly move, the hand by millimetres.
+TEST_F(PlainMistakes, AFrameOfTheMarkersThatMovedIsToldByTheRootsMarkers) {
+  Recording pushed = recorded_;
+  const Eigen::Matrix3d R = RotationFromVector({0.0, 0.0, 4e-3});
+  for (int i = 14; i < pushed.posture_count(); ++i) {
+    for (int m = 0; m < pushed.marker_count(); ++m) {
+      pushed.markers.block<1, 3>(i, 3 * m) *= R.transpose();
+    }
+  }
+  const std::vector<std::string> found = Find(pushed);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].find("from posture 15 on the frame of the markers lies elsewhere"), 0u)
+      << found[0];
+  EXPECT_NE(found[0].find(" 4"), std::string::npos);
+  const auto moved =
+      FindMovedFrame(MakeErrorModel(project_.tree, project_.markers, project_.placement), pushed);
+  ASSERT_TRUE(moved);
+  EXPECT_NEAR(moved->angle, 4e-3, 0.5e-3);
+}
+
+TEST_F(PlainMistakes, AMarkerOfTheRootThatSlippedIsNoMovedFrame) {
+  Recording slipped = recorded_;
+  for (int i = 14; i < slipped.posture_count(); ++i) slipped.markers(i, 0) += 5e-3;
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  ASSERT_EQ(project_.tree.links[static_cast<std::size_t>(model.markers[0].link)].body, 0);
+  EXPECT_FALSE(FindMovedFrame(model, slipped));
+  EXPECT_FALSE(FindMovedFrame(model, recorded_));
+}
+
 TEST_F(PlainMistakes, ARootThatMovedAtTheEndOfALongTable) {
   Record(0.02, 700);
   MoveRoot(500);

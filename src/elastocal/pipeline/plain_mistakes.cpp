@@ -15,6 +15,7 @@
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/log_check.hpp"
+#include "elastocal/calibration/moved_frame.hpp"
 #include "elastocal/calibration/placed_misfit.hpp"
 #include "elastocal/calibration/told_positions.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
@@ -304,6 +305,9 @@ class PlainSearch {
 std::vector<std::string> FindPlainMistakes(const Project& project, const Recording& recording) {
   if (!recording.trials.empty() || recording.posture_count() < kFewestPlaced) return {};
   std::vector<std::string> found;
+  if (const auto moved = FindMovedFrame(ModelOf(project, recording), recording)) {
+    return {Describe(*moved)};
+  }
   for (const Alternative& one : PlainSearch(project, recording).Run()) {
     found.push_back(one.name.empty() ? one.what
                                      : one.what + " (--accept " + one.name + " corrects it)");

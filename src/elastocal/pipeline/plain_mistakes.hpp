@@ -16,8 +16,10 @@ namespace elastocal {
 /// (Where those offsets are such as no robot has, they explain much by themselves: then less than a
 /// half of PlacedMisfit, and of the error no more.) Tried are: the sign of each joint or motor,
 /// labels exchanged, rows shifted (RecordingMistake); then two joints or motors exchanged; then
-/// couplings and mimic joints of the opposite sign or that do not follow; then a root link that
-/// stands elsewhere in each posture, for which all geometric errors are estimated.
+/// couplings and mimic joints of the opposite sign or that do not follow; then a joint's column
+/// that is the same in all rows, which the markers contradict; then a root link that
+/// stands elsewhere in each posture, for which all geometric errors are estimated. First of all, a
+/// frame of the markers that lies elsewhere from some posture on (FindMovedFrame).
 std::vector<std::string> FindPlainMistakes(const Project& project, const Recording& recording);
 
 }  // namespace elastocal

@@ -247,12 +247,17 @@ std::optional<Eigen::VectorXd> ObservedPostureSampler::DrawTouch(int plate) {
 
 std::optional<Eigen::VectorXd> ObservedPostureSampler::DrawLook() {
   blame_.clear();
+  // Camera and tag both on the robot tell more than one of them in the room.
+  const std::vector<TagInCamera>& views = project_.contact->seen_tags;
+  const auto between_links = [&](const TagInCamera& view) {
+    return setup_.instruments[Size(view.instrument)]->links.size() == 2;
+  };
+  const bool any_between = std::any_of(views.begin(), views.end(), between_links);
   const auto sees = [&](const PlacedPosture& pose) {
-    const std::vector<TagInCamera>& views = project_.contact->seen_tags;
     const std::vector<Transform> T_root_link = LinkTransforms(robot_->tree, pose.q);
     return views.empty() || std::any_of(views.begin(), views.end(), [&](const TagInCamera& view) {
              const Instrument& seen = *setup_.instruments[Size(view.instrument)];
-             return seen.links.size() == 2 &&
+             return (between_links(view) || !any_between) &&
                     seen.Sees(NominalSight(setup_, seen, T_root_link, pose.T_world_root));
            });
   };

@@ -152,8 +152,10 @@ std::vector<std::string> SimulationWarnings(const Project& project, const Simula
                                 [](const PlannedTrial& trial) { return trial.support.empty(); });
   if (held && !simulation.experiment.legs.empty()) {
     warnings.emplace_back(
-        "the robot cannot stand on one or two flat feet: its root link is held still in all "
-        "trials");
+        "no postures were found in which the robot stands on one and on both of its feet, as these "
+        "trials have it: its root link is held still in all of them, and its legs carry nothing. "
+        "`plan` a motion of designed postures and play it (`simulate --motion`) to record it "
+        "standing");
   }
   return warnings;
 }
