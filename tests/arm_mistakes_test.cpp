@@ -168,7 +168,10 @@ TEST_F(ArmWithTracker, ATrackerThatWasMovedIsNamed) {
 TEST_F(ArmWithTracker, AWrongScaleIsNamed) {
   for (Eigen::VectorXd& pose : poses_) pose.head<3>() *= 1.03;
   const std::string scale = First(Calibrate(q_));
-  EXPECT_EQ(scale.find("lengths as they were measured seem 1.0"), 0u) << scale;
+  const std::string seem = "lengths as they were measured seem ";
+  ASSERT_EQ(scale.find(seem), 0u) << scale;
+  // To 0.2 %, which the errors of the lengths leave open.
+  EXPECT_NEAR(std::stod(scale.substr(seem.size())), 1.03, 6e-3);
 }
 
 // No mistake that has a name: the estimate needs what no robot is.

@@ -124,6 +124,43 @@ TEST_F(ObservationTableInput, SaysWhatIsWrong) {
       {"no plate lies flat"});
 }
 
+TEST_F(ObservationTableInput, RepeatedRowsAreNamed) {
+  const auto repeated = [](const ObservationTables& tables) {  // others are of limits
+    std::vector<std::string> found;
+    for (const std::string& warning : tables.warnings) {
+      if (warning.find("in every cell") != std::string::npos) found.push_back(warning);
+    }
+    return found;
+  };
+  const std::string text = TableText(project_, 6);
+  const std::string rows = text.substr(text.find('\n') + 1);
+  EXPECT_TRUE(repeated(Read(text)).empty());
+  const std::string file = file_.string();
+  const std::string counts =
+      " counts as an independent measurement, which it is not: standard deviations come out too "
+      "small";
+  EXPECT_EQ(repeated(Read(text + rows)),
+            std::vector<std::string>{file + ":8: this row and 5 more repeat rows above them in " +
+                                     "every cell (this one " + file + ":2); each" + counts});
+  EXPECT_EQ(repeated(Read(text + rows.substr(0, rows.find('\n') + 1))),
+            std::vector<std::string>{file + ":8: this row repeats " + file +
+                                     ":2 in every cell; it" + counts});
+  // One cell is another one.
+  std::string other = rows;
+  for (std::size_t at = 0; (at = other.find(",a\n", at)) != std::string::npos; ++at) {
+    other[at + 1] = 'b';
+  }
+  EXPECT_TRUE(repeated(Read(text + other)).empty());
+  // Another file.
+  const std::filesystem::path second = folder_.path() / "second.csv";
+  std::ofstream(second) << text;
+  std::ofstream(file_) << text;
+  const auto both = repeated(ReadObservationTables(
+      {file_, second}, ProjectOf(std::string(kFeet) + kPlates, "recording: {ignore: [note]}\n")));
+  ASSERT_EQ(both.size(), 1u);
+  EXPECT_EQ(both[0].find(second.string() + ":2: this row and 5 more repeat rows"), 0u) << both[0];
+}
+
 TEST_F(ObservationTableInput, APlateUpsideDownIsNamed) {
   // The sole of a foot is level whatever the posture; as a plate, it is upright or upside down.
   const auto contact = [](const char* normal) {

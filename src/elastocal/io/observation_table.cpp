@@ -11,6 +11,7 @@
 #include "elastocal/io/observation_columns.hpp"
 #include "elastocal/io/observation_sessions.hpp"
 #include "elastocal/io/posture_checks.hpp"
+#include "elastocal/io/repeated_rows.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/observation/standing_robot.hpp"
@@ -38,7 +39,8 @@ struct ObservationFile {
   std::vector<MeasuredRow> measured;
 };
 
-ObservationFile ReadObservationFile(const std::filesystem::path& file, const Project& project) {
+ObservationFile ReadObservationFile(const std::filesystem::path& file, const Project& project,
+                                    RepeatedRows& repeated) {
   std::istringstream stream = OpenTable(file);
   Table table(stream, file.string());
   const ObservationColumns columns = FindObservationColumns(table, project);
@@ -51,6 +53,7 @@ ObservationFile ReadObservationFile(const std::filesystem::path& file, const Pro
   std::vector<double> q;
   while (table.Next()) {
     if (table.row_count() > kMostRows) table.Fail("more than 20000 rows; one a posture expected");
+    repeated.Take(table);
     const int row = static_cast<int>(postures.line.size());
     postures.line.push_back(table.line());
     for (int c = 0; c < tree.coordinate_count(); ++c) {
@@ -248,6 +251,7 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
   tables.setup = project.contact->setup;
   std::vector<ObservationFile> read;
   std::vector<std::filesystem::path> detections;
+  RepeatedRows repeated;
   Eigen::Index rows = 0;
   for (auto at = files.begin(); at != files.end(); ++at) {
     const std::filesystem::path& file = *at;
@@ -263,7 +267,7 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
       detections.push_back(file);
       continue;
     }
-    read.push_back(ReadObservationFile(file, project));
+    read.push_back(ReadObservationFile(file, project, repeated));
     rows += read.back().postures.q.rows();
   }
   if (read.empty()) {
@@ -296,6 +300,9 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
   if (observations.all.empty()) {
     throw InputError(observations.files.front() +
                      ": in no row does an instrument show anything or a plate touch");
+  }
+  if (std::string warning = repeated.Warning(); !warning.empty()) {
+    tables.warnings.push_back(std::move(warning));
   }
   for (std::string& warning : SilentInstruments(tables)) {
     tables.warnings.push_back(std::move(warning));

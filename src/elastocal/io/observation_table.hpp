@@ -14,7 +14,7 @@ namespace elastocal {
 struct ObservationTables {
   Observations observations;
   ObservationSetup setup;             ///< of the project, all feet placed
-  std::vector<std::string> warnings;  ///< joints beyond their limits, ..., a sentence each
+  std::vector<std::string> warnings;  ///< joints beyond limits, repeated rows, ..., a sentence each
 };
 
 /// Reads tables of observations: CSV with a header row, one row a posture; joint columns under the

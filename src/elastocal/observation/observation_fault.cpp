@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/observation/seen_tag.hpp"
 
 namespace elastocal {
 namespace {
@@ -38,6 +39,21 @@ int LengthsMeasured(const Instrument& instrument) {
   return kind == "wire" ? 1 : 0;
 }
 
+int TagSeenBy(const Instrument& instrument) {
+  return std::string_view(instrument.kind()) == "image" ? instrument.quantities[1] : -1;
+}
+
+Observations WithTagsLarger(const ObservedRobot& model, const Observations& observations, int tag,
+                            double factor) {
+  Observations larger = observations;
+  for (Observation& observation : larger.all) {
+    const int seen = TagSeenBy(model.instrument(observation.instrument));
+    if (seen < 0 || (tag >= 0 && seen != tag)) continue;
+    observation.measured = CornersOfLargerTag(observation.measured, factor);
+  }
+  return larger;
+}
+
 std::optional<ObservationFault> FindFrozen(const Observations& observations, int coordinate) {
   const auto positions = observations.q.col(coordinate);
   const int count = observations.posture_count();
@@ -64,6 +80,9 @@ Observations WithoutFault(const ObservationFault& fault, const ObservedRobot& mo
       if (i < fault.posture || i >= fault.posture + fault.count) others.push_back(i);
     }
     return SelectPostures(observations, others);
+  }
+  if (fault.kind == ObservationFaultKind::kTagSize) {
+    return WithTagsLarger(model, observations, fault.quantity, 1.0 + fault.size);
   }
   Observations without = observations;
   if (fault.kind == ObservationFaultKind::kMoved) {
@@ -107,14 +126,23 @@ std::string DescribeFault(const ObservationFault& fault, const ObservedRobot& mo
                   fault.sd);
     return "lengths as they were measured" + in + number;
   }
+  const auto quantity_name = [&] {
+    const std::string& name = model.setup.quantities[Size(fault.quantity)].name;
+    return name.substr(0, name.find('.'));
+  };
+  if (fault.kind == ObservationFaultKind::kTagSize) {
+    const bool all = fault.quantity < 0;
+    std::snprintf(number, sizeof number, " is %.4f +- %.4f times the true one", 1.0 + fault.size,
+                  fault.sd);
+    return "size_mm of " + (all ? "all tags" : quantity_name()) + number;
+  }
   if (fault.kind == ObservationFaultKind::kMoved) {
     const Quantity& quantity = model.setup.quantities[Size(fault.quantity)];
-    const std::string name = quantity.name.substr(0, quantity.name.find('.'));
     const double unit = fault.turns ? kPerDegree : 1e-3;
     std::snprintf(number, sizeof number, " was moved%s by some %.2g %s before ",
                   quantity.of_surroundings ? "" : " on its link", std::abs(fault.size) / unit,
                   fault.turns ? "deg" : "mm");
-    return name + number + from;
+    return quantity_name() + number + from;
   }
   const RobotTree& tree = model.robot.tree;
   const Joint& joint = tree.joints[Size(tree.coordinate_joint[Size(fault.coordinate)])];

@@ -28,6 +28,7 @@ double LeastSize(const ObservationFault& fault, bool slides) {
     case ObservationFaultKind::kJointGain:
       return 0.005;
     case ObservationFaultKind::kScale:
+    case ObservationFaultKind::kTagSize:
       return 0.003;
     case ObservationFaultKind::kJointOffset:
     case ObservationFaultKind::kJointDrift:
@@ -42,6 +43,7 @@ double LargestSize(const ObservationFault& fault, bool slides) {
   const double angle = 15.0 * kOneDegree;
   if (fault.kind == ObservationFaultKind::kJointGain) return 0.3;
   if (fault.kind == ObservationFaultKind::kScale) return 0.3;
+  if (fault.kind == ObservationFaultKind::kTagSize) return 0.5;
   if (fault.coordinate >= 0) return slides ? 0.1 : angle;
   return fault.turns ? angle : 1.0;
 }
@@ -61,6 +63,7 @@ class ObservationFaultSearch {
       if (k != model_.root_tilt) TryMove(equations, covariance, k);
     }
     TryScales(equations, covariance);
+    TryTags(equations, covariance);
     TryFrozen();
     return Best();
   }
@@ -69,10 +72,9 @@ class ObservationFaultSearch {
   double Left(const ObservationFault& fault) {
     if (!Linearise()) return 0.0;
     const NormalEquations equations(*residuals_);
-    const bool scale = fault.kind == ObservationFaultKind::kScale;
     const auto addition =
-        equations.Add(DerivativeBy(scale ? Scaled() : Moved(fault.coordinate), fit_.values),
-                      posture_, FactorOf(fault), InverseOfInformation(equations.information()))[0];
+        equations.Add(DerivativeBy(Undone(fault), fit_.values), posture_, FactorOf(fault),
+                      InverseOfInformation(equations.information()))[0];
     return -addition.value;
   }
 
@@ -105,6 +107,16 @@ class ObservationFaultSearch {
           1.0 + kDerivativeStep;
     }
     return changed;
+  }
+
+  /// Of a scale, of tags or of a joint's positions: changed by kDerivativeStep as undoes one of the
+  /// opposite sign.
+  Observations Undone(const ObservationFault& fault) const {
+    if (fault.kind == ObservationFaultKind::kScale) return Scaled();
+    if (fault.kind == ObservationFaultKind::kTagSize) {
+      return WithTagsLarger(model_, observations_, fault.quantity, 1.0 / (1.0 + kDerivativeStep));
+    }
+    return Moved(fault.coordinate);
   }
 
   /// By posture, what the fault multiplies there: of a gain, the positions.
@@ -266,6 +278,23 @@ class ObservationFaultSearch {
     }
   }
 
+  /// All at once, and each among others.
+  void TryTags(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    std::set<int> tags;
+    for (const Observation& of : observations_.all) {
+      const int tag = TagSeenBy(model_.instrument(of.instrument));
+      if (tag >= 0) tags.insert(tag);
+    }
+    if (tags.size() != 1) tags.insert(-1);
+    ObservationFault fault;
+    fault.kind = ObservationFaultKind::kTagSize;
+    for (const int tag : tags) {
+      fault.quantity = tag;
+      Keep(Try(equations, covariance, DerivativeBy(Undone(fault), fit_.values),
+               {{fault, FactorOf(fault)}}, false));
+    }
+  }
+
   void TryMove(const NormalEquations& equations, const Eigen::MatrixXd& covariance, int quantity) {
     Observations changed = observations_;
     AddEffect(model_, quantity, 0, changed);
@@ -336,8 +365,9 @@ std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
 ObservationFault Refined(ObservationFault fault, const ObservedRobot& model,
                          const Observations& observations) {
   constexpr int kRounds = 2;
-  const bool gain =
-      fault.kind == ObservationFaultKind::kJointGain || fault.kind == ObservationFaultKind::kScale;
+  const bool gain = fault.kind == ObservationFaultKind::kJointGain ||
+                    fault.kind == ObservationFaultKind::kScale ||
+                    fault.kind == ObservationFaultKind::kTagSize;
   if (fault.kind == ObservationFaultKind::kJointFrozen ||
       fault.kind == ObservationFaultKind::kMoved) {
     return fault;

@@ -72,4 +72,27 @@ bool SeenTag::Sees(const Sight& sight) const {
   return true;
 }
 
+Eigen::VectorXd CornersOfLargerTag(const Eigen::VectorXd& corners, double factor) {
+  // Corners at x, y of -1 and 1 are seen at (a x + b y + c) / (g x + h y + 1).
+  const Eigen::Map<const Eigen::Matrix<double, 2, 4>> at(corners.data());
+  const Eigen::RowVector4d x(-1.0, 1.0, 1.0, -1.0), y(-1.0, -1.0, 1.0, 1.0);
+  const Eigen::RowVector4d xy = x.cwiseProduct(y);
+  const Eigen::Vector2d by_one = at.rowwise().sum(), by_x = at * x.transpose(),
+                        by_y = at * y.transpose(), by_xy = at * xy.transpose();
+  // xy is orthogonal to 1, x and y: by_xy + g by_y + h by_x = 0.
+  const double determinant = by_y[0] * by_x[1] - by_x[0] * by_y[1];
+  if (determinant == 0.0) return corners;
+  const double g = (by_x[0] * by_xy[1] - by_xy[0] * by_x[1]) / determinant;
+  const double h = (by_xy[0] * by_y[1] - by_y[0] * by_xy[1]) / determinant;
+  const Eigen::Vector2d a = 0.25 * (by_x + g * by_one + h * by_xy);
+  const Eigen::Vector2d b = 0.25 * (by_y + g * by_xy + h * by_one);
+  const Eigen::Vector2d c = 0.25 * (by_one + g * by_x + h * by_y);
+  Eigen::VectorXd larger(8);
+  for (int corner = 0; corner < 4; ++corner) {
+    const double u = factor * x[corner], v = factor * y[corner];
+    larger.segment<2>(2 * corner) = (a * u + b * v + c) / (g * u + h * v + 1.0);
+  }
+  return larger;
+}
+
 }  // namespace elastocal

@@ -35,4 +35,9 @@ class SeenTag : public Instrument {
   Transform TagParent(const Sight& sight) const;
 };
 
+/// The corners that would be measured of a tag `factor` times as large in the same place, from
+/// those that were: its plane is seen by a projective map, which they determine. (Distortion within
+/// the tag is neglected.)
+Eigen::VectorXd CornersOfLargerTag(const Eigen::VectorXd& corners, double factor);
+
 }  // namespace elastocal

@@ -58,6 +58,9 @@ std::string RemedyOf(const ObservationFault& fault, const ObservedRobot& model,
         *name, 1.0 / (1.0 + fault.size));
   }
   if (name) return "--accept " + *name + " corrects it";
+  if (fault.kind == ObservationFaultKind::kTagSize) {
+    return WriteSizeOfTags(model, observations, fault.quantity, 1.0 + fault.size);
+  }
   if (fault.kind == ObservationFaultKind::kJointDrift) return "measure again";
   const auto varies = [&](const std::shared_ptr<const Instrument>& of) {
     return of->varying >= 0 && of->quantities[Size(of->varying)] == fault.quantity;
@@ -79,28 +82,14 @@ double LeftWithout(const ContactRun& run, const ObservationFault& fault) {
                  fewer ? std::vector<ObservationOutlier>() : outliers);
 }
 
-/// Links are made one by one; a tracker of a wrong scale makes all of them too long or too short.
-std::string DescribeScale(const CommonScale& scale) {
-  constexpr double kLargestAccepted = 2.0;  // beyond, it is a unit
-  const double factor = 1.0 + scale.size;
-  const bool accepted = factor < kLargestAccepted && factor > 1.0 / kLargestAccepted;
-  return fmt::format(
-      "lengths as they were measured seem {:.4f} +- {:.4f} times the true ones, since all lengths "
-      "of the robot are off by as much: {}",
-      factor, scale.sd,
-      accepted ? fmt::format("check the scale of the trackers, or describe the robot with its own "
-                             "size (--accept scale={:.5f} corrects it)",
-                             factor)
-               : "metres were expected");
-}
-
 /// Of a wrong scale, most looks like the gain of a sliding joint; without that, lengths tell it.
 std::optional<CommonScale> ScaleBesideRails(const ContactRun& run,
                                             const std::vector<ObservationFault>& faults) {
   for (const ObservationFault& fault : faults) {
     if (fault.kind != ObservationFaultKind::kJointGain) continue;
     if (!Slides(run.model, fault.coordinate)) continue;
-    const Observations without = WithoutFault(fault, run.model, run.observations);
+    const ObservationFault gain = Refined(fault, run.model, run.observations);
+    const Observations without = WithoutFault(gain, run.model, run.observations);
     const ObservedEstimate estimate = EstimateObserved(run.model, without, {});
     const auto scale = FindObservedScale(run.model, without, estimate.fit);
     if (scale) return scale;
@@ -119,7 +108,9 @@ std::string DescribeWithRemedy(const ObservationFault& fault, const ObservedRobo
 std::string FindContactFault(const ContactRun& run) {
   const ObservationFit& fit = run.calibrated.estimate.fit;
   std::vector<ObservationFault> faults = FindObservationFaults(run.model, run.observations, fit);
-  if (const auto scale = ScaleBesideRails(run, faults)) return DescribeScale(*scale);
+  if (const auto scale = ScaleBesideRails(run, faults)) {
+    return DescribeScale(*scale, run.model, run.observations);
+  }
   if (faults.size() > kMostFaults) faults.resize(kMostFaults);
   const ObservationFault* best = nullptr;
   double least = kHalved;
@@ -136,7 +127,7 @@ std::string FindContactFault(const ContactRun& run) {
                        std::min(least, LeftWithout(run, fault)));
   }
   const auto scale = FindObservedScale(run.model, run.observations, fit);
-  return scale ? DescribeScale(*scale) : "";
+  return scale ? DescribeScale(*scale, run.model, run.observations) : "";
 }
 
 }  // namespace elastocal

@@ -147,8 +147,10 @@ bool NameMistakes(ContactRun& run) {
   if (run.mistakes->empty()) return false;
   run.verdict.objections.insert(
       run.verdict.objections.begin(),
-      fmt::format("{}; without that, even the uncalibrated robot errs by less than a third",
-                  fmt::join(*run.mistakes, "; or ")));
+      fmt::format(
+          "{}; without that, even the uncalibrated robot, mounted as the project says, errs by "
+          "less than a third",
+          fmt::join(*run.mistakes, "; or ")));
   return true;
 }
 

@@ -50,6 +50,13 @@ std::string ApplyStated(const std::string& name, const StatedCorrection& correct
   const std::vector<char> here =
       PosturesNamed(name, correction.trial, correction.from, observations);
   if (correction.kind == FaultKind::kCameraScale) {
+    const auto& instruments = model.setup.instruments;
+    if (std::none_of(instruments.begin(), instruments.end(),
+                     [](const auto& of) { return LengthsMeasured(*of) > 0; })) {
+      RefuseName(
+          name,
+          "no instrument measures lengths; of tags, size_mm in the project is to be corrected");
+    }
     for (Observation& observation : observations.all) {
       if (here[Size(observation.posture)] == 0) continue;
       const int lengths = LengthsMeasured(model.instrument(observation.instrument));
@@ -198,7 +205,7 @@ std::vector<std::string> CorrectObservations(const std::vector<std::string>& acc
 
 std::optional<std::string> NameOfFault(const ObservationFault& fault, const ObservedRobot& model,
                                        const Observations& observations) {
-  if (fault.kind == ObservationFaultKind::kMoved ||
+  if (fault.kind == ObservationFaultKind::kMoved || fault.kind == ObservationFaultKind::kTagSize ||
       fault.kind == ObservationFaultKind::kJointDrift) {
     return std::nullopt;
   }

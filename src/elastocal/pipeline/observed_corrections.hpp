@@ -27,7 +27,8 @@ namespace elastocal {
 ///
 /// All but `frozen` are done as they say. Returns what was undone, in words. Throws InputError for
 /// other names, joints or files that are not there, sizes that no fault has
-/// (ParseStatedCorrection), and joints that are not frozen anywhere.
+/// (ParseStatedCorrection), a scale where nothing measures lengths, and joints that are not frozen
+/// anywhere.
 std::vector<std::string> CorrectObservations(const std::vector<std::string>& accepted,
                                              const ObservedRobot& model,
                                              Observations& observations);
@@ -36,7 +37,7 @@ std::vector<std::string> CorrectObservations(const std::vector<std::string>& acc
 std::string NameInAccept(const std::string& file);
 
 /// The name that undoes a fault. Nothing for what was moved: rows from there on belong into a file
-/// of their own.
+/// of their own; nor for sizes of tags, which are corrected in the project.
 std::optional<std::string> NameOfFault(const ObservationFault& fault, const ObservedRobot& model,
                                        const Observations& observations);
 

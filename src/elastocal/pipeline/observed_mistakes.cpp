@@ -9,53 +9,17 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/observation/observation_figures.hpp"
-#include "elastocal/observation/observation_fit.hpp"
-#include "elastocal/observation/observed_posture.hpp"
-#include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/pipeline/observed_conventions.hpp"
 #include "elastocal/pipeline/observed_corrections.hpp"
+#include "elastocal/pipeline/observed_misfit.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr double kLeftWithout = 0.1;
-constexpr double kNearTheBest = 2.0;     // times the squares that the best one leaves
-constexpr int kMostRowsOff = 2;          // by which rows are shifted
-constexpr int kMostFittedPostures = 24;  // that are fitted
-constexpr int kFewestRowsTried = 8;      // of few, anything is explained
-
-/// Squares over the largest errors that calibrated robots have, summed over the kinds of rows.
-double SquaresOf(const ObservedRobot& model, const Observations& some,
-                 const ObservedValues& values) {
-  const ObservationFigures figures = MakeFigures(model, some, LeftOf(model, some, values));
-  double squares = 0.0;
-  for (const RowErrors& row : figures.rows) {
-    squares += std::pow(row.rms / LargestError(model, row.unit), 2);
-  }
-  return std::isfinite(squares) ? squares : std::numeric_limits<double>::infinity();
-}
-
-/// Places the nominal robot among what it sees.
-ObservedValues Placed(const ObservedRobot& model, const Observations& some) {
-  InterruptionPoint();
-  return FitObservations(model, some, StartFit(model, some),
-                         {.freedom = {.robot = false}, .estimate_spread = false})
-      .values;
-}
-
-/// What is left of some of the postures, evenly spread, once the nominal robot is placed; infinite
-/// where it cannot be.
-double PlacedSquares(const ObservedRobot& model, const Observations& all) {
-  if (all.posture_count() < kFewestRowsTried) return std::numeric_limits<double>::infinity();
-  const int stride = 1 + all.posture_count() / kMostFittedPostures;
-  std::vector<int> rows;
-  for (int i = 0; i < all.posture_count(); i += stride) rows.push_back(i);
-  const Observations some = SelectPostures(all, rows);
-  return SquaresOf(model, some, Placed(model, some));
-}
+constexpr double kNearTheBest = 2.0;  // times the squares that the best one leaves
+constexpr int kMostRowsOff = 2;       // by which rows are shifted
 
 std::vector<int> Rows(int first, int end) {
   std::vector<int> rows;
@@ -64,9 +28,15 @@ std::vector<int> Rows(int first, int end) {
 }
 
 struct TriedMistake {
-  std::string what;  ///< with the name that undoes it
-  double squares = 0.0;
+  std::string what;         ///< with the name that undoes it
+  double left = 0.0;        ///< of the squares before
+  std::string family = {};  ///< what it is if others of its family are as good
 };
+
+/// What is left of the squares before.
+double ShareOf(double squares, double before) {
+  return std::isfinite(squares) ? squares / before : std::numeric_limits<double>::infinity();
+}
 
 /// Among the rows of a part of the tables.
 class MistakeSearch {
@@ -79,7 +49,7 @@ class MistakeSearch {
         name_(std::move(name)),
         where_(std::move(where)),
         all_(Size(part.posture_count()), 1),
-        before_(PlacedSquares(model, part)) {}
+        before_(MisfitOfNominal(model, part)) {}
 
   std::vector<std::string> Run() {
     const RobotTree& tree = model_.robot.tree;
@@ -93,8 +63,7 @@ class MistakeSearch {
       if (rows != 0) TryShift(rows);
     }
     for (const WrittenConvention& convention : WrittenConventions(model_, part_)) {
-      tried_.push_back({convention.what + where_ + ": " + convention.right + " was expected",
-                        PlacedSquares(model_, convention.undone)});
+      TryConvention(convention);
     }
     std::vector<std::string> found = Found();
     if (!found.empty()) return found;
@@ -121,7 +90,21 @@ class MistakeSearch {
 
   void Try(const std::string& what, const std::string& name, const Observations& undone) {
     tried_.push_back({fmt::format("{}{} (--accept {}{} corrects it)", what, where_, name, name_),
-                      PlacedSquares(model_, undone)});
+                      ShareOf(MisfitOfNominal(model_, undone).squares, before_.squares)});
+  }
+
+  /// Of tags and inertial units the mounting counts: it is turned far where a convention is wrong.
+  void TryConvention(const WrittenConvention& convention) {
+    const ObservedMisfit after = MisfitOfNominal(model_, convention.undone);
+    const double share = convention.turns_mountings ? ShareOf(after.squares + after.turned,
+                                                              before_.squares + before_.turned)
+                                                    : ShareOf(after.squares, before_.squares);
+    const auto in_words = [&](const std::string& what, const std::string& right) {
+      return what + where_ + ": " + right + " was expected";
+    };
+    tried_.push_back(
+        {in_words(convention.what, convention.right), share,
+         convention.family.empty() ? "" : in_words(convention.family, convention.right)});
   }
 
   Observations With(const Eigen::MatrixXd& q) const {
@@ -161,12 +144,20 @@ class MistakeSearch {
 
   std::vector<std::string> Found() {
     std::stable_sort(tried_.begin(), tried_.end(),
-                     [](const auto& a, const auto& b) { return a.squares < b.squares; });
-    std::vector<std::string> found;
+                     [](const auto& a, const auto& b) { return a.left < b.left; });
+    std::vector<const TriedMistake*> best;
     for (const TriedMistake& one : tried_) {
-      if (one.squares > kLeftWithout * before_) break;
-      if (one.squares > kNearTheBest * tried_.front().squares) break;
-      found.push_back(one.what);
+      if (!(one.left <= kLeftWithout)) break;
+      if (one.left > kNearTheBest * tried_.front().left) break;
+      best.push_back(&one);
+    }
+    std::vector<std::string> found;
+    for (const TriedMistake* one : best) {
+      const auto related = std::count_if(best.begin(), best.end(), [&](const TriedMistake* other) {
+        return !one->family.empty() && other->family == one->family;
+      });
+      const std::string& what = related > 1 ? one->family : one->what;
+      if (std::find(found.begin(), found.end(), what) == found.end()) found.push_back(what);
     }
     return found;
   }
@@ -175,7 +166,7 @@ class MistakeSearch {
   const Observations& part_;
   std::string name_, where_;
   std::vector<char> all_;
-  double before_;
+  ObservedMisfit before_;
   std::vector<TriedMistake> tried_;
 };
 
@@ -183,10 +174,10 @@ class MistakeSearch {
 /// what it sees; nothing where the first ones are no better than all.
 std::optional<int> FirstUnexplained(const ObservedRobot& model, const Observations& of_file) {
   const int count = of_file.posture_count();
-  const double all = PlacedSquares(model, of_file);
+  const double all = MisfitOfNominal(model, of_file).squares;
   for (int share = 2; count / share >= kFewestRowsTried; ++share) {
     const Observations first = SelectPostures(of_file, Rows(0, count / share));
-    const ObservedValues placed = Placed(model, first);
+    const ObservedValues placed = PlacedAmong(model, first);
     if (SquaresOf(model, first, placed) > kLeftWithout * all) continue;
     std::vector<double> logs;  // of what is left of each posture
     for (int i = 0; i < count; ++i) {
@@ -243,7 +234,8 @@ std::vector<std::string> FindObservedMistakes(const ObservedRobot& model,
     }
     if (static_cast<int>(rows.size()) < kFewestRowsTried) continue;
     const Observations of_file = SelectPostures(observations, rows);
-    files.push_back({NameInAccept(observations.files[f]), of_file, PlacedSquares(model, of_file)});
+    files.push_back(
+        {NameInAccept(observations.files[f]), of_file, MisfitOfNominal(model, of_file).squares});
   }
   double least = std::numeric_limits<double>::infinity();
   for (const File& file : files) least = std::min(least, file.squares);
