@@ -258,6 +258,17 @@ class ArmWithTwoBodies : public ArmWithTracker {
   Observations seen_;
 };
 
+// One of the rows alone; else "rows:-2", which drops it, would explain as much.
+TEST_F(ArmWithTwoBodies, ARowThatContradictsAllOthersIsNamed) {
+  const std::string found = MistakeOf([](Observation& of) {
+    if (of.posture == kPostures - 1) of.measured[0] += 0.3;
+  });
+  EXPECT_EQ(found.find("table.csv:" + std::to_string(kPostures + 1) +
+                       ": what the row shows contradicts all others"),
+            0u)
+      << found;
+}
+
 TEST_F(ArmWithTwoBodies, OtherConventionsAreNamed) {
   EXPECT_EQ(MistakeOf([](Observation&) {}), "");
   EXPECT_EQ(MistakeOf([&](Observation& of) {

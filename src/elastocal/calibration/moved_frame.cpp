@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/transform.hpp"
@@ -121,17 +119,6 @@ std::optional<MovedFrame> FindMovedFrame(const ErrorModel& model, const Recordin
   if (moved.displaced < kLeastMove) return std::nullopt;
   for (const int m : root.markers) moved.markers.push_back(recording.marker_names[Size(m)]);
   return moved;
-}
-
-std::string Describe(const MovedFrame& moved) {
-  return fmt::format(
-      "from posture {} on the frame of the markers lies elsewhere against the root link: {} on it "
-      "moved by {:.2g} mm and {:.2g} mrad, which displaces the other markers by {:.2g} mm (a "
-      "tracker or the base was pushed). Calibrate the postures before and after apart, or let "
-      "these markers place the root link in each posture (recording: {{root: free}} in the "
-      "project)",
-      moved.posture + 1, fmt::join(moved.markers, ", "), 1e3 * moved.shift, 1e3 * moved.angle,
-      1e3 * moved.displaced);
 }
 
 }  // namespace elastocal

@@ -27,7 +27,4 @@ struct MovedFrame {
 /// own.
 std::optional<MovedFrame> FindMovedFrame(const ErrorModel& model, const Recording& recording);
 
-/// "from posture 21 on the frame of the markers seems to lie elsewhere ..."
-std::string Describe(const MovedFrame& moved);
-
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/calibrated_robot.hpp"
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -129,22 +130,25 @@ std::vector<fs::path> RecordedFiles(const CalibratedRobot& robot) {
   return files;
 }
 
-std::vector<fs::path> FilesCalibratedFrom(const fs::path& calibration,
-                                          const std::vector<fs::path>& files) {
+bool WarnOfOwnRecording(const fs::path& calibration, const std::vector<fs::path>& files,
+                        std::vector<std::string>& warnings) {
   const fs::path record = FolderOf(calibration) / "runs.json";
   std::error_code error;
-  if (!fs::exists(record, error)) return {};
+  if (!fs::exists(record, error)) return false;
   std::set<std::string> used;
   const std::vector<RecordedInput> inputs = RecordedInputs(record);
   for (std::size_t i = 2; i < inputs.size(); ++i) {  // after project and URDF
     if (inputs[i].file.filename() != "experiment.yaml") used.insert(inputs[i].sha256);
   }
-  std::vector<fs::path> found;
-  for (const fs::path& file : files) {
-    const std::vector<InputRecord> now = RecordInputs({file});
-    if (!now.empty() && used.contains(now.front().sha256)) found.push_back(file);
+  const std::vector<InputRecord> now = RecordInputs(files);
+  if (std::none_of(now.begin(), now.end(),
+                   [&](const InputRecord& file) { return used.contains(file.sha256); })) {
+    return false;
   }
-  return found;
+  warnings.emplace_back(
+      "the calibration was made from this recording: it says nothing of another day; take another "
+      "recording");
+  return true;
 }
 
 }  // namespace elastocal

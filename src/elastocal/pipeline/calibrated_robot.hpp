@@ -32,10 +32,11 @@ std::vector<std::filesystem::path> RecordedRecordings(const CalibratedRobot& rob
 /// where there is no record that can be read. No output may replace them.
 std::vector<std::filesystem::path> RecordedFiles(const CalibratedRobot& robot);
 
-/// Those of `files` that the calibration (its calibration.yaml) was made from, as the record beside
-/// it has their checksums; files that describe the robot and experiments do not count. Nothing
-/// where there is no record.
-std::vector<std::filesystem::path> FilesCalibratedFrom(
-    const std::filesystem::path& calibration, const std::vector<std::filesystem::path>& files);
+/// Whether the calibration (its calibration.yaml) was made from one of these files, as the record
+/// beside it has their checksums; files that describe the robot and experiments do not count. Adds
+/// a warning then. False where there is no record.
+bool WarnOfOwnRecording(const std::filesystem::path& calibration,
+                        const std::vector<std::filesystem::path>& files,
+                        std::vector<std::string>& warnings);
 
 }  // namespace elastocal

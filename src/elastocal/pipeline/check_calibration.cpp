@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/calibration/prediction.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/check_alternatives.hpp"
 #include "elastocal/pipeline/check_json.hpp"
@@ -121,6 +122,7 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   std::ranges::move(DescribeWidened(run.check, run.calibration_file),
                     std::back_inserter(run.warnings));
   std::ranges::move(DescribePlay(run.check, fit.stored), std::back_inserter(run.warnings));
+  WarnOfOwnRecording(fit.stored.source, InputFiles(given, {recording}), run.warnings);
   run.warnings.insert(run.warnings.end(), fit.measured.warnings.begin(),
                       fit.measured.warnings.end());
   run.recording = std::move(fit.measured.calibration);

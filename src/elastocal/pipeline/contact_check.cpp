@@ -16,6 +16,7 @@
 #include "elastocal/observation/observation_faults.hpp"
 #include "elastocal/observation/observation_residuals.hpp"
 #include "elastocal/optim/normal_equations.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/check_json.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/pipeline/contact_faults.hpp"
@@ -263,6 +264,7 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
   run.model = MakeRobotAfterEarlier(earlier, project, tables);
   run.observations = std::move(tables.observations);
   run.warnings = std::move(tables.warnings);
+  WarnOfOwnRecording(run.calibration_file, recordings, run.warnings);
   for (const std::string& what : CorrectObservations(options.accept, run.model, run.observations)) {
     run.warnings.push_back("corrected on request: " + what);
   }

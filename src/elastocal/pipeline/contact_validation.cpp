@@ -10,6 +10,7 @@
 #include "elastocal/io/contact_file.hpp"
 #include "elastocal/io/observation_table.hpp"
 #include "elastocal/observation/standing_robot.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
@@ -85,6 +86,7 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   run.surroundings_refitted = refit_table;
   run.observations = std::move(tables.observations);
   run.warnings = std::move(tables.warnings);
+  WarnOfOwnRecording(file, recordings, run.warnings);
   run.model = MakeStoredRobot(stored, project, tables.setup);
   for (const std::string& what : CorrectObservations(accept, run.model, run.observations)) {
     run.warnings.push_back("corrected on request: " + what);

@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/pipeline/observed_conventions.hpp"
 #include "elastocal/pipeline/observed_corrections.hpp"
 #include "elastocal/pipeline/observed_misfit.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -200,6 +202,36 @@ std::optional<int> FirstUnexplained(const ObservedRobot& model, const Observatio
   return std::nullopt;
 }
 
+/// A few rows that contradict all others, which would hide or feign every other mistake: without
+/// them the nominal robot explains what it sees.
+std::vector<std::string> FindFarRows(const ObservedRobot& model, const Observations& all) {
+  constexpr int kMost = 3, kOneIn = 10;
+  constexpr double kFar = 25.0;  // times the median of the squares
+  const int count = all.posture_count();
+  if (count < 2 * kFewestRowsTried) return {};
+  const ObservedValues placed = PlacedAmong(model, all);
+  std::vector<double> squares;
+  for (const int i : Rows(0, count)) {
+    squares.push_back(SquaresOf(model, SelectPostures(all, {i}), placed));
+  }
+  const double far = kFar * Median(squares);
+  std::vector<int> kept, off;
+  for (const int i : Rows(0, count)) (squares[Size(i)] > far ? off : kept).push_back(i);
+  const int most = std::min(kMost, count / kOneIn);
+  if (off.empty() || static_cast<int>(off.size()) > most) return {};
+  const Observations rest = SelectPostures(all, kept);
+  const double left = SquaresOf(model, rest, PlacedAmong(model, rest));
+  if (!(left <= kLeftWithout * SquaresOf(model, all, placed))) return {};
+  std::vector<std::string> found;
+  for (const int i : off) {
+    const PosturePlace& place = all.postures[Size(i)];
+    found.push_back(Place(all.files[Size(place.file)], place.line) +
+                    "what the row shows contradicts all others: correct it (a plate, a tag, a "
+                    "session of another row?) or take it out");
+  }
+  return found;
+}
+
 /// In the rows of one file alone: all of them, or from one on.
 std::vector<std::string> FindInFile(const ObservedRobot& model, const Observations& of_file,
                                     const std::string& file, bool others) {
@@ -219,7 +251,8 @@ std::vector<std::string> FindInFile(const ObservedRobot& model, const Observatio
 
 std::vector<std::string> FindObservedMistakes(const ObservedRobot& model,
                                               const Observations& observations) {
-  std::vector<std::string> found = MistakeSearch(model, observations, "", "").Run();
+  std::vector<std::string> found = FindFarRows(model, observations);
+  if (found.empty()) found = MistakeSearch(model, observations, "", "").Run();
   if (!found.empty()) return found;
   struct File {
     std::string name;

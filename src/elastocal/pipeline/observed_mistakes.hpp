@@ -15,6 +15,9 @@ namespace elastocal {
 /// sees, in two dozen postures; it is a mistake if a tenth of the squares is left (of each kind of
 /// row over LargestError), and less than twice what the best one leaves.
 ///
+/// First, up to three rows (one in ten) that contradict all others are named: whatever is tried on
+/// all rows would be judged by them.
+///
 /// Where no mistake explains all rows, those of a file alone are looked at, if another file is
 /// sound, and those of a file from some row on, if the rows before are.
 ///

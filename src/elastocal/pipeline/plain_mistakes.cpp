@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/log_check.hpp"
@@ -61,6 +62,17 @@ double MisfitOf(const ErrorModel& model, const Recording& recording) {
   } catch (const InputError&) {  // rods that do not close
     return std::numeric_limits<double>::infinity();
   }
+}
+
+std::string Describe(const MovedFrame& moved) {
+  return fmt::format(
+      "from posture {} on the frame of the markers lies elsewhere against the root link: {} on it "
+      "moved by {:.2g} mm and {:.2g} mrad, which displaces the other markers by {:.2g} mm (a "
+      "tracker or the base was pushed). Calibrate the postures before and after apart, or let "
+      "these markers place the root link in each posture (recording: {{root: free}} in the "
+      "project)",
+      moved.posture + 1, fmt::join(moved.markers, ", "), 1e3 * moved.shift, 1e3 * moved.angle,
+      1e3 * moved.displaced);
 }
 
 /// With so many of the postures, evenly, that more would tell nothing new of the root link.

@@ -78,12 +78,8 @@ void CompareWithPrediction(const Project& project, const std::filesystem::path& 
   run.predicted = run.urdf ? held_out.urdf : held_out.compensated;
   run.shown = (run.urdf ? *run.urdf : run.transfer.calibrated).metrics_all.rmse_3d;
   run.own_recording =
-      !FilesCalibratedFrom(run.calibration_file, InputFiles(project, {recording})).empty();
-  if (run.own_recording) {
-    run.warnings.push_back(
-        "the calibration was made from this recording: it says nothing of another day; validate on "
-        "another recording");
-  } else if (!run.as_predicted() && run.better()) {
+      WarnOfOwnRecording(run.calibration_file, InputFiles(project, {recording}), run.warnings);
+  if (!run.own_recording && !run.as_predicted() && run.better()) {
     run.warnings.push_back(fmt::format(
         "the {} errs by {:.2g} mm, where its calibration predicted {:.2g} mm: the robot has "
         "changed, or moves where it was not calibrated; `elastocal check` says whether a joint "
