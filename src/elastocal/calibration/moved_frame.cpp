@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/math/transform.hpp"
 
 namespace elastocal {
@@ -16,7 +17,7 @@ constexpr int kFewestOnRoot = 3;
 constexpr int kFewestAside = 4;        // postures before and after
 constexpr double kCertain = 10.0;      // standard deviations of the sum of squares
 constexpr double kLeastMove = 1.5e-3;  // m
-constexpr double kMostUnequal = 9.0;   // ratio of the variances before and after
+constexpr double kMostUnequal = 9.0;   // ratio of squares, before and after
 constexpr double kNotRigid = 0.3;      // of the move, left by a rigid one
 
 /// Where the markers on the root link were measured: their coordinates by posture.
@@ -71,15 +72,28 @@ Eigen::Index RowOfChange(const Eigen::MatrixXd& positions) {
   return found;
 }
 
-/// Whether positions scatter before and after a row about equally: else the root link moves about.
+/// How far rows lie from their median, m^2: the median over rows, and the mean of all but the
+/// furthest tenth, which may be mistakes of the cameras.
+struct RowScatter {
+  double median = 0.0, mean = 0.0;
+};
+
+RowScatter ScatterOfRows(const Eigen::MatrixXd& rows) {
+  Eigen::RowVectorXd middle(rows.cols());
+  for (Eigen::Index c = 0; c < rows.cols(); ++c) middle[c] = Median(Eigen::VectorXd(rows.col(c)));
+  Eigen::VectorXd squares = (rows.rowwise() - middle).rowwise().squaredNorm();
+  std::sort(squares.begin(), squares.end());
+  const Eigen::Index most = std::max<Eigen::Index>(1, squares.size() - squares.size() / 10);
+  return {Median(squares), squares.head(most).mean()};
+}
+
+/// Whether the root link stays before a row and from there on, each like the other; else it moves
+/// about for a while.
 bool StaysOnBothSides(const Eigen::MatrixXd& positions, Eigen::Index row) {
-  const auto variance = [&](Eigen::Index begin, Eigen::Index count) {
-    const Eigen::MatrixXd some = positions.middleRows(begin, count);
-    const Eigen::RowVectorXd mean = some.colwise().mean();
-    return (some.rowwise() - mean).squaredNorm() / static_cast<double>(count - 1);
-  };
-  const double before = variance(0, row), after = variance(row, positions.rows() - row);
-  return std::max(before, after) < kMostUnequal * std::min(before, after);
+  const RowScatter before = ScatterOfRows(positions.topRows(row));
+  const RowScatter after = ScatterOfRows(positions.bottomRows(positions.rows() - row));
+  const double least = std::min(before.median, after.median);
+  return std::max({before.mean, after.mean, before.median, after.median}) < kMostUnequal * least;
 }
 
 /// How far a move of the frame displaces the markers that are not on the root link, rms, m.
