@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/report/run_record.hpp"
 
+#include <cstdint>
 #include <fstream>
+#include <system_error>
 
 #include <nlohmann/json.hpp>
 
@@ -18,6 +20,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kPlain =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+@%";
 
+constexpr std::uintmax_t kLargestInput = std::uintmax_t{4} << 30;  // no recording is larger
+
 }  // namespace
 
 std::vector<InputRecord> RecordInputs(const std::vector<std::filesystem::path>& files) {
@@ -25,6 +29,8 @@ std::vector<InputRecord> RecordInputs(const std::vector<std::filesystem::path>& 
   for (const std::filesystem::path& file : files) {
     try {
       if (FileTypeOf(file) != std::filesystem::file_type::regular) continue;
+      std::error_code error;
+      if (std::filesystem::file_size(file, error) > kLargestInput || error) continue;
       std::ifstream stream(file, std::ios::binary);
       if (!stream) continue;
       std::size_t bytes = 0;

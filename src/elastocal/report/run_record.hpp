@@ -26,7 +26,8 @@ struct RunRecord {
   std::string folder = {};  ///< in which it was typed: relative names start there
 };
 
-/// Size and checksum of files, in their order; those that cannot be read are left out.
+/// Size and checksum of files, in their order; those that cannot be read, or are larger than 4 GiB,
+/// are left out.
 std::vector<InputRecord> RecordInputs(const std::vector<std::filesystem::path>& files);
 
 /// A command line that a shell reads as these words.
