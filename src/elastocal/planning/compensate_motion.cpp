@@ -11,6 +11,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/motion/motion_check.hpp"
 #include "elastocal/planning/project_motion.hpp"
+#include "elastocal/planning/stopped_joints.hpp"
 #include "elastocal/robot/collision.hpp"
 
 namespace elastocal {
@@ -76,18 +77,20 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
       KeepLarger(speed / limits.velocity, motion.time_s[i], name, result.velocity);
     }
   }
-  const auto refuse = [&](const char* what, const MotionExtreme& at, double scale,
-                          const char* unit) {
-    result.broken.push_back(fmt::format("{}: {} {:.3g} {} at {:.2f} s", what, at.where,
-                                        scale * at.value, unit, at.time_s));
+  const auto refuse = [&](const char* what, const MotionExtreme& at, double scale, const char* unit,
+                          const char* advice) {
+    result.broken.push_back(fmt::format("{}: {} {:.3g} {} at {:.2f} s; {}", what, at.where,
+                                        scale * at.value, unit, at.time_s, advice));
   };
   constexpr double kRounding = 1e-9;
   if (result.position.value < -kRounding)
-    refuse("beyond a joint's limit", result.position, 180.0 / M_PI, "deg");
+    refuse("beyond a joint's limit", result.position, 180.0 / M_PI, "deg",
+           "plan it within the limit");
   if (result.velocity.value > 1.0)
-    refuse("faster than a joint's limit", result.velocity, 100.0, "%");
+    refuse("faster than a joint's limit", result.velocity, 100.0, "%",
+           "plan it slower, or its limb less stretched there");
   if (result.has_clearance && result.clearance.value < 0.0) {
-    refuse("parts touch", result.clearance, 1e3, "mm");
+    refuse("parts touch", result.clearance, 1e3, "mm", "plan more room there");
   }
 }
 
@@ -183,6 +186,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   result.clearance.value = std::numeric_limits<double>::infinity();
   const StandingFeet all = (StandingFeet{1} << model.feet.size()) - 1;
   CompensatorStatus status = 0;
+  StoppedJoints stopped(project.tree);
   Eigen::VectorXd torque;
   for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
     const Eigen::VectorXd nominal = planned.q.row(i).transpose();
@@ -194,6 +198,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
       torque = JointTorques(project.tree, result.planned.torques.row(i).transpose());
     }
     status |= compensator.Command(nominal, torque, feet);
+    stopped.Look(compensator, TimeAt(planned, i));
     motion.q.row(i) = compensator.command().transpose();
     result.residual_m = std::max(result.residual_m, compensator.residual_m());
     result.residual_rad = std::max(result.residual_rad, compensator.residual_rad());
@@ -204,6 +209,8 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     compensator.Forward(compensator.command(), torque, feet);
     clearance.Look(compensator, TimeAt(planned, i), result.clearance);
   }
+  result.broken = stopped.Describe(static_cast<int>(motion.q.rows()));
+  status &= ~CompensatorStatus{EC_JOINT_LIMIT | EC_CORRECTION_CUT};
   if (status != 0) result.broken.push_back(DescribeStatus(status));
   CheckLimits(project, result);
   return result;

@@ -224,20 +224,30 @@ class CHeaderWriter {
     array("double", "load", 3 * robot_.joints);
     array("double", "root_load", 3 * robot_.joints);
     array("double", "normal", largest * largest);
+    array("double", "factor", largest * largest);
     array("double", "gradient", largest);
+    array("double", "step", largest);
+    array("int", "held", largest);
+    array("int", "loosed", largest);
+    array("ec_search", "search", robot_.branches);
     array("double", "column", 6 * 64);
     array("double", "good_q", robot_.coordinates);
     array("double", "good_torque", robot_.joints);
     array("double", "work_q", robot_.coordinates);
+    array("double", "best_q", robot_.coordinates);
+    array("double", "kept_q", robot_.coordinates);
+    array("unsigned", "stopped", robot_.coordinates);
     array("double", "shift", robot_.joints);
     array("double", "centre", 3 * robot_.feet);
     array("double", "share", robot_.feet);
     out_ << "  ec_memory memory;\n} " << name_ << "_state;\n\n";
     out_ << "/* To be called once before anything else. */\nstatic inline void " << name_
          << "_init(" << name_ << "_state* s) {\n  ec_memory* m = &s->memory;\n";
-    for (const char* name : {"body", "twisted", "target", "sole", "motion", "axis", "beyond",
-                             "load", "root_load", "normal", "gradient", "column", "good_q",
-                             "good_torque", "work_q", "shift", "centre", "share"}) {
+    for (const char* name :
+         {"body",   "twisted",   "target", "sole",   "motion",      "axis",   "beyond",
+          "load",   "root_load", "normal", "factor", "gradient",    "step",   "held",
+          "loosed", "search",    "column", "good_q", "good_torque", "work_q", "best_q",
+          "kept_q", "stopped",   "shift",  "centre", "share"}) {
       out_ << "  m->" << name << " = s->" << name << ";\n";
     }
     out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";

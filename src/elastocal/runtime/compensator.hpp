@@ -71,7 +71,9 @@ class Compensator {
                             StandingFeet feet) noexcept;
 
   /// Commands with which hands, feet and waist are where the nominal robot has them at
-  /// `nominal`: command(). What is left is in residual_m() and residual_rad().
+  /// `nominal`: command(). They are within the limits of the joints: what one cannot do, others
+  /// take over. Where that is not enough the command is the best nearby, and never worse than
+  /// `nominal` as it is. What is left is in residual_m() and residual_rad(), and why in stopped().
   CompensatorStatus Command(const Eigen::Ref<const Eigen::VectorXd>& nominal,
                             const Eigen::Ref<const Eigen::VectorXd>& torque,
                             StandingFeet feet) noexcept;
@@ -101,6 +103,14 @@ class Compensator {
   double residual_m() const noexcept { return residual_[0]; }
   double residual_rad() const noexcept { return residual_[1]; }
 
+  /// Of the last Command, by coordinate: EC_JOINT_LIMIT or EC_CORRECTION_CUT where this limit keeps
+  /// the end of a limb from its place, by 0.2 mm or more; else 0.
+  const std::vector<unsigned>& stopped() const noexcept { return stopped_; }
+
+  /// Of the last Command: the largest error that is left at the ends of the limbs that a coordinate
+  /// can move, m; an angle counts as its displacement at 0.3 m. 0 for one that moves none.
+  double left_m(int coordinate) const noexcept;
+
   /// The same robot for the functions of core_correction.h.
   const ec_robot& robot() const noexcept { return robot_; }
 
@@ -116,6 +126,9 @@ class Compensator {
   ec_memory memory_{};
   std::vector<double> numbers_, not_finite_;
   std::vector<ec_pose> poses_;
+  std::vector<int> whole_;
+  std::vector<ec_search> search_;
+  std::vector<unsigned> stopped_;
   ec_pose root_{};
   ec_pose* links_ = nullptr;
   ec_pose* wanted_ = nullptr;

@@ -18,8 +18,8 @@ enum {
   EC_BAD_TORQUE = 2,      /* a torque is not finite: the last good one was used, or else statics */
   EC_BAD_SUPPORT = 4,     /* no such foot: the last good support was used */
   EC_DEFLECTION_CUT = 8,  /* a deflection was larger than its limit: cut to it */
-  EC_CORRECTION_CUT = 16, /* a correction was larger than its limit: cut to it */
-  EC_JOINT_LIMIT = 32,    /* a command was beyond the limits of its joint: cut to them */
+  EC_CORRECTION_CUT = 16, /* the limit of corrections keeps an end of a limb off, or cut one */
+  EC_JOINT_LIMIT = 32,    /* the limit of a joint keeps the end of a limb from its place */
   EC_NOTHING_YET = 64     /* bad input before any good one: nominal, no correction */
 };
 
@@ -99,6 +99,16 @@ typedef struct {
   double largest_correction;   /* limit of a command's difference to the nominal one, rad or m */
 } ec_robot;
 
+/* How far the search for a branch's command is. */
+enum { EC_TRYING, EC_AGAIN, EC_DONE };
+
+typedef struct {
+  int state, bad;           /* bad: steps that have made it worse, in a row */
+  double damping, gain;     /* gain: by how much the next step should lower the cost */
+  double cost, left, first; /* squared errors: the best, of its furthest limb, the plan's */
+  double kept, kept_left;   /* those of the first start */
+} ec_search;
+
 /* Working memory, of the sizes given; all of one call, but the last good input. */
 typedef struct {
   ec_pose* body;       /* joints + 1 */
@@ -110,7 +120,16 @@ typedef struct {
   double* root_load;   /* 3 x joints: of those on the root link, about its origin */
   double* normal;      /* square of the largest branch */
   double* gradient;    /* largest branch */
+  double* factor;      /* square of the largest branch: of `normal` */
+  double* step;        /* largest branch */
+  int* held;           /* largest branch: at which limit, -1, 1, or -2, 2 for the second time */
+  int* loosed;         /* largest branch: it was held and let go of */
   double* column;      /* 6 x largest branch: of one tip */
+  ec_search* search;   /* branches */
+  double* best_q;      /* coordinates: the best so far ... */
+  double* kept_q;      /* ... and that of the first start */
+  unsigned* stopped;   /* coordinates: EC_JOINT_LIMIT or EC_CORRECTION_CUT where that limit keeps
+                          the end of a limb from where it should be, or EC_FINE */
   ec_pose* target;     /* tips */
   double* good_q;      /* coordinates */
   double* good_torque; /* joints; NaN: never seen */
