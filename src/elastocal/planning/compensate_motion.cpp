@@ -83,9 +83,13 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
                                         scale * at.value, unit, at.time_s, advice));
   };
   constexpr double kRounding = 1e-9;
-  if (result.position.value < -kRounding)
-    refuse("beyond a joint's limit", result.position, 180.0 / M_PI, "deg",
-           "plan it within the limit");
+  if (result.position.value < -kRounding) {
+    const int joint = FindJoint(project.tree, result.position.where);
+    const bool slides =
+        project.tree.joints[static_cast<std::size_t>(joint)].type == JointType::kPrismatic;
+    refuse("beyond a joint's limit", result.position, slides ? 1e3 : 180.0 / M_PI,
+           slides ? "mm" : "deg", "plan it within the limit");
+  }
   if (result.velocity.value > 1.0)
     refuse("faster than a joint's limit", result.velocity, 100.0, "%",
            "plan it slower, or its limb less stretched there");

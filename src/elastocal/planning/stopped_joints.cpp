@@ -14,17 +14,14 @@ constexpr double kDegreesARadian = 180.0 / M_PI;
 
 }  // namespace
 
-std::string StoppedJoints::JointAt(const Compensator& compensator, Eigen::Index coordinate,
-                                   CompensatorStatus kind) const {
+std::string StoppedJoints::JointAt(const Compensator& compensator, Eigen::Index coordinate) const {
   const auto c = static_cast<std::size_t>(coordinate);
   const Joint& joint = tree_.joints[static_cast<std::size_t>(tree_.coordinate_joint[c])];
   const bool slides = joint.type == JointType::kPrismatic;
   const double scale = slides ? 1e3 : kDegreesARadian;
   const char* unit = slides ? "mm" : "deg";
   const double at = compensator.command()[coordinate];
-  if (kind == EC_JOINT_LIMIT) return fmt::format("{} ({:.2f} {})", joint.name, scale * at, unit);
-  return fmt::format("{} ({:.2f} {})", joint.name, scale * compensator.robot().largest_correction,
-                     unit);
+  return fmt::format("{} ({:.2f} {})", joint.name, scale * at, unit);
 }
 
 void StoppedJoints::Look(const Compensator& compensator, double time_s, CompensatorStatus kind,
@@ -34,7 +31,7 @@ void StoppedJoints::Look(const Compensator& compensator, double time_s, Compensa
   const std::vector<unsigned>& stopped = compensator.stopped();
   for (std::size_t c = 0; c < stopped.size(); ++c) {
     if (stopped[c] != kind) continue;
-    joints.push_back(JointAt(compensator, static_cast<Eigen::Index>(c), kind));
+    joints.push_back(JointAt(compensator, static_cast<Eigen::Index>(c)));
     left = std::max(left, compensator.left_m(static_cast<int>(c)));
   }
   if (joints.empty()) return;
@@ -63,7 +60,8 @@ std::vector<std::string> StoppedJoints::Describe(int samples) const {
   describe(
       limit_, "stopped by a joint's limit",
       "plan the motion further from this limit, or widen it in the URDF if the robot can go on");
-  describe(correction_, "stopped by the largest correction of a joint",
+  describe(correction_,
+           "stopped by the limit of a correction (its size, or its change from the last sample)",
            "plan the limb less stretched and further from limits there");
   return sentences;
 }

@@ -29,8 +29,7 @@ class StoppedJoints {
     std::vector<std::string> joints = {};  ///< with the limit
   };
   void Look(const Compensator& compensator, double time_s, CompensatorStatus kind, Worst& worst);
-  std::string JointAt(const Compensator& compensator, Eigen::Index coordinate,
-                      CompensatorStatus kind) const;
+  std::string JointAt(const Compensator& compensator, Eigen::Index coordinate) const;
 
   const RobotTree& tree_;
   Worst limit_, correction_;

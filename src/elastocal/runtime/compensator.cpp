@@ -120,13 +120,23 @@ void Compensator::Allocate() {
                                               {&memory_.work_q, coordinates},
                                               {&memory_.best_q, coordinates},
                                               {&memory_.kept_q, coordinates},
+                                              {&memory_.near_q, coordinates},
+                                              {&memory_.start_q, coordinates},
+                                              {&memory_.lowest, coordinates},
+                                              {&memory_.highest, coordinates},
+                                              {&memory_.last_q, coordinates},
+                                              {&memory_.last_command, coordinates},
                                               {&memory_.shift, joints},
                                               {&memory_.centre, 3 * feet},
                                               {&memory_.share, feet},
                                               {&memory_.motion, 3 * joints}};
-  const std::pair<ec_pose**, int> poses[] = {
-      {&memory_.body, joints + 1}, {&memory_.twisted, joints}, {&memory_.target, robot_.tips},
-      {&memory_.sole, feet},       {&links_, robot_.links},    {&wanted_, robot_.tips}};
+  const std::pair<ec_pose**, int> poses[] = {{&memory_.body, joints + 1},
+                                             {&memory_.twisted, joints},
+                                             {&memory_.target, robot_.tips},
+                                             {&memory_.sole, feet},
+                                             {&links_, robot_.links},
+                                             {&wanted_, robot_.tips},
+                                             {&memory_.last_target, robot_.tips}};
   const auto hand_out = [](auto& store, const auto& parts) {
     std::size_t size = 0;
     for (const auto& part : parts) size += static_cast<std::size_t>(part.second);
@@ -183,6 +193,8 @@ CompensatorStatus Compensator::Command(const Eigen::Isometry3d* T_root_tip, cons
   return ec_command_poses(&robot_, wanted_, Positions(nominal), Torques(torque), feet, &memory_,
                           command_.data(), residual_);
 }
+
+void Compensator::Forget() noexcept { ec_forget(&memory_); }
 
 Eigen::Isometry3d Compensator::link_pose(int link) const noexcept {
   return ToIsometry(links_[link]);

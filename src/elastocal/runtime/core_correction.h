@@ -39,6 +39,10 @@ static inline unsigned ec_take(const ec_robot* robot, const double* q, const dou
 
 /* ---- what a controller calls ---- */
 
+/* Forgets the last command: the next one is found from its plan alone, as the first one is. For a
+   controller that starts again from another place. */
+static inline void ec_forget(ec_memory* memory) { memory->has_last = 0; }
+
 /* Forgets all input. To be called once before anything else. Until a good position comes, the
    robot is taken to be at position 0 of all coordinates, within their limits. */
 static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
@@ -54,6 +58,8 @@ static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
   for (k = 0; k < robot->joints; ++k) memory->good_torque[k] = NAN;
   memory->good_support = 0;
   memory->has_good_q = 0;
+  memory->is_bound = memory->is_settled = memory->had_torque = 0;
+  ec_forget(memory);
 }
 
 /* Where the nominal robot at the good positions has its feet: from `body` after a nominal walk. */
@@ -169,7 +175,7 @@ static inline unsigned ec_command(const ec_robot* robot, const double* nominal,
   ec_place_feet(robot, memory, placed);
   for (f = 0; f < robot->feet; ++f) memory->sole[f] = placed[f];
   ec_tip_poses(robot, memory, memory->target);
-  ec_reach(robot, memory->good_q, torque ? memory->good_torque : 0, memory->good_support, memory,
+  ec_reach(robot, memory->good_q, torque ? memory->good_torque : 0, memory->good_support, 0, memory,
            command, residual, &status);
   return status;
 }
@@ -191,7 +197,7 @@ static inline unsigned ec_command_poses(const ec_robot* robot, const ec_pose* ta
     return ec_command(robot, memory->good_q, torque, support, memory, command, residual) |
            EC_BAD_POSITION;
   for (t = 0; t < robot->tips; ++t) memory->target[t] = targets[t];
-  ec_reach(robot, memory->good_q, torque ? memory->good_torque : 0, memory->good_support, memory,
+  ec_reach(robot, memory->good_q, torque ? memory->good_torque : 0, memory->good_support, 1, memory,
            command, residual, &status);
   return status;
 }

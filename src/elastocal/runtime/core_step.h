@@ -11,19 +11,28 @@
 
 /* Lowest and highest command of a coordinate, and the bit that says which of its limits that is. A
    plan beyond the joint's limits is not moved, but gets no further. */
-static inline double ec_bound(const ec_robot* robot, const double* nominal, int c, int side,
-                              unsigned* bit) {
+static inline double ec_bound(const ec_robot* robot, const ec_memory* memory, const double* nominal,
+                              int c, int side, unsigned* bit) {
   const double limit = side < 0 ? robot->lower[c] : robot->upper[c];
   const double most = nominal[c] + side * robot->largest_correction;
-  const double bound = side * (nominal[c] - limit) > 0.0 ? nominal[c] : limit;
+  double bound = side * (nominal[c] - limit) > 0.0 ? nominal[c] : limit;
   *bit = side * (bound - most) > 0.0 ? EC_CORRECTION_CUT : EC_JOINT_LIMIT;
-  return *bit == EC_CORRECTION_CUT ? most : bound;
+  if (*bit == EC_CORRECTION_CUT) bound = most;
+  if (memory->is_bound) {
+    const double furthest = side < 0 ? memory->lowest[c] : memory->highest[c];
+    if (side * (bound - furthest) > 0.0) {
+      *bit = EC_CORRECTION_CUT;
+      return furthest;
+    }
+  }
+  return bound;
 }
 
-static inline double ec_within(const ec_robot* robot, const double* nominal, int c, double q) {
+static inline double ec_within(const ec_robot* robot, const ec_memory* memory,
+                               const double* nominal, int c, double q) {
   unsigned bit;
-  const double low = ec_bound(robot, nominal, c, -1, &bit);
-  const double high = ec_bound(robot, nominal, c, 1, &bit);
+  const double low = ec_bound(robot, memory, nominal, c, -1, &bit);
+  const double high = ec_bound(robot, memory, nominal, c, 1, &bit);
   return q < low ? low : q > high ? high : q;
 }
 
@@ -82,7 +91,7 @@ static inline int ec_change_held(const ec_robot* robot, int branch, const double
       }
       continue;
     }
-    room = ec_bound(robot, nominal, c, up, &bit) - q[c];
+    room = ec_bound(robot, memory, nominal, c, up, &bit) - q[c];
     if (up * (memory->step[i] - room) <= 0.0) continue;
     share = room / memory->step[i];
     if (share >= first) continue;
@@ -120,7 +129,7 @@ static inline double ec_bounded_step(const ec_robot* robot, int branch, const do
   for (c = 0; c < robot->coordinates; ++c) {
     if (robot->branch_of_coordinate[c] != branch) continue;
     i = robot->column_of_coordinate[c];
-    command[c] = ec_within(robot, nominal, c, q[c] + memory->step[i]);
+    command[c] = ec_within(robot, memory, nominal, c, q[c] + memory->step[i]);
     memory->step[i] = command[c] - q[c];
   }
   for (i = 0; i < size; ++i) {
