@@ -380,6 +380,8 @@ class Runtime:
     def status(self) -> str:
         """What the last call had to cut or replace, in words; also of q that is not finite, where the last good answer
         is given."""
+    def forget(self) -> None:
+        """Lets the next command be found by itself. Commands near the last one go on from it, as along a motion."""
     def forward(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> dict[str, Any]:
         """Poses (4, 4) in m of all 'links' in the root link's frame, with deflection, of the 'root', and the
         'status'. q: (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the

@@ -41,6 +41,8 @@ class PyRuntime {
     return compensator_.rigid_positions();
   }
 
+  void Forget() { compensator_.Forget(); }
+
   std::string Status() const { return DescribeStatus(status_); }
 
  private:
@@ -98,6 +100,9 @@ void AddRuntime(py::module_& module) {
       .def_property_readonly("status", &PyRuntime::Status,
                              "What the last call had to cut or replace, in words; also of q that "
                              "is not finite, where the last good answer is given.")
+      .def("forget", &PyRuntime::Forget,
+           "Lets the next command be found by itself. Commands near the last one go on from it, as "
+           "along a motion.")
       .def("forward", &PyRuntime::Forward, "q"_a, "torque"_a = none, "feet"_a = 0u,
            with_arguments("Poses (4, 4) in m of all 'links' in the root link's frame, with "
                           "deflection, of the 'root', and the 'status'.")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command `compensate` as its users run it, and calibrations of another robot.
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -49,14 +51,19 @@ TEST_F(CalibratedTalos, CompensatedHandsAreWhereThePlanMeant) {
 }
 
 TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {
-  // At the limit of a joint that the correction moves beyond it: one direction or the other.
-  int refused = 0;
-  const Joint& elbow =
-      project_.tree.joints[static_cast<std::size_t>(FindJoint(project_.tree, "arm_left_4_joint"))];
-  const Eigen::Index k = elbow.coordinate;
-  Eigen::VectorXd middle = project_.motion.rest;
-  for (const double limit : {elbow.limits.lower, elbow.limits.upper}) {
-    middle[k] = limit;
+  // At limits of a leg of six joints, which has none that could take over: the correction moves
+  // some beyond them.
+  int refused = 0, named = 0;
+  std::vector<std::pair<const Joint*, double>> limits;
+  for (const char* name : {"leg_left_2_joint", "leg_left_5_joint", "leg_left_6_joint"}) {
+    const Joint& joint =
+        project_.tree.joints[static_cast<std::size_t>(FindJoint(project_.tree, name))];
+    limits.emplace_back(&joint, joint.limits.lower);
+    limits.emplace_back(&joint, joint.limits.upper);
+  }
+  for (const auto& [joint, limit] : limits) {
+    Eigen::VectorXd middle = project_.motion.rest;
+    middle[joint->coordinate] = limit;
     const std::string motion = scratch_.Write("plan.csv", MotionText(project_.tree, middle, 0.0));
     const std::string json = (scratch_.path() / "c.json").string();
     std::filesystem::remove(scratch_.path() / "corrected.csv");
@@ -71,8 +78,12 @@ TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {
     EXPECT_FALSE(written);
     EXPECT_NE(result.err.find("must not be played"), std::string::npos) << result.err;
     EXPECT_EQ(nlohmann::json::parse(ReadFile(json))["status"], "refused");
+    const bool says =
+        result.err.find("stopped by a joint's limit: " + joint->name) != std::string::npos;
+    if (says) ++named;
   }
   EXPECT_GT(refused, 0);
+  EXPECT_GT(named, 0);
 }
 
 TEST_F(CalibratedTalos, AMotionOfTheUsersIsNotReplaced) {

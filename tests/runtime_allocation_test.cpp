@@ -47,6 +47,7 @@ TEST(RuntimeAllocation, NoCallAllocates) {
     robot.Forward(q, none, feet);
     robot.Correct(q, torque, feet);
     robot.Command(q, none, feet);
+    robot.Command(project.motion.lower, none, feet);  // searches longer
     robot.Command(targets.data(), q, torque, feet);
   }
   counting = false;

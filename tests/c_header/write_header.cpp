@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes a C99 header of a robot with errors, postures, and what the library makes of them:
 //   write_header FOLDER
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -28,10 +29,17 @@ int main(int argc, char** argv) {
     std::snprintf(text, sizeof text, "%a\n", value);
     expected << text;
   };
-  for (int i = 0; i < 20; ++i) {
-    Eigen::VectorXd q = project.motion.rest;
-    for (double& position : q) position += random.Uniform(-0.15, 0.15);
-    const auto feet = static_cast<StandingFeet>(i % 4);
+  Eigen::VectorXd q;
+  for (int i = 0; i < 60; ++i) {
+    const bool goes_on = i >= 40;  // near the last one: Command follows
+    if (!goes_on) q = project.motion.rest;
+    for (double& position : q) position += (goes_on ? 0.1 : 1.0) * random.Uniform(-0.15, 0.15);
+    // Stretched limbs and joints near their limits, where Command searches longer.
+    for (Eigen::Index c = 0; i >= 20 && !goes_on && c < q.size(); ++c) {
+      const auto at = static_cast<std::size_t>(c);
+      q[c] = std::clamp(q[c] - 0.5, model.lower[at], model.upper[at]);
+    }
+    const auto feet = static_cast<StandingFeet>(goes_on ? i / 10 % 4 : i % 4);
     postures << feet;
     for (double position : q) {
       char text[40];

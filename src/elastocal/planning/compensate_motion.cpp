@@ -12,6 +12,7 @@
 #include "elastocal/motion/motion_check.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/project_motion.hpp"
+#include "elastocal/planning/stopped_joints.hpp"
 #include "elastocal/robot/collision.hpp"
 
 namespace elastocal {
@@ -77,18 +78,24 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
       KeepLarger(speed / limits.velocity, motion.time_s[i], name, result.velocity);
     }
   }
-  const auto refuse = [&](const char* what, const MotionExtreme& at, double scale,
-                          const char* unit) {
-    result.broken.push_back(fmt::format("{}: {} {:.3g} {} at {:.2f} s", what, at.where,
-                                        scale * at.value, unit, at.time_s));
+  const auto refuse = [&](const char* what, const MotionExtreme& at, double scale, const char* unit,
+                          const char* advice) {
+    result.broken.push_back(fmt::format("{}: {} {:.3g} {} at {:.2f} s; {}", what, at.where,
+                                        scale * at.value, unit, at.time_s, advice));
   };
   constexpr double kRounding = 1e-9;
-  if (result.position.value < -kRounding)
-    refuse("beyond a joint's limit", result.position, 180.0 / M_PI, "deg");
+  if (result.position.value < -kRounding) {
+    const int joint = FindJoint(project.tree, result.position.where);
+    const bool slides =
+        project.tree.joints[static_cast<std::size_t>(joint)].type == JointType::kPrismatic;
+    refuse("beyond a joint's limit", result.position, slides ? 1e3 : 180.0 / M_PI,
+           slides ? "mm" : "deg", "plan it within the limit");
+  }
   if (result.velocity.value > 1.0)
-    refuse("faster than a joint's limit", result.velocity, 100.0, "%");
+    refuse("faster than a joint's limit", result.velocity, 100.0, "%",
+           "plan it slower, or its limb less stretched there");
   if (result.has_clearance && result.clearance.value < 0.0) {
-    refuse("parts touch", result.clearance, 1e3, "mm");
+    refuse("parts touch", result.clearance, 1e3, "mm", "plan more room there");
   }
 }
 
@@ -181,6 +188,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   result.clearance.value = std::numeric_limits<double>::infinity();
   const StandingFeet all = (StandingFeet{1} << model.feet.size()) - 1;
   CompensatorStatus status = 0;
+  StoppedJoints stopped(project.tree);
   Eigen::VectorXd torque;
   for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
     const Eigen::VectorXd nominal = planned.q.row(i).transpose();
@@ -192,6 +200,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
       torque = JointTorques(project.tree, result.planned.torques.row(i).transpose());
     }
     status |= compensator.Command(nominal, torque, feet);
+    stopped.Look(compensator, TimeAt(planned, i));
     motion.q.row(i) = compensator.command().transpose();
     result.residual_m = std::max(result.residual_m, compensator.residual_m());
     result.residual_rad = std::max(result.residual_rad, compensator.residual_rad());
@@ -202,6 +211,8 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     compensator.Forward(compensator.command(), torque, feet);
     clearance.Look(compensator, TimeAt(planned, i), result.clearance);
   }
+  result.broken = stopped.Describe(static_cast<int>(motion.q.rows()));
+  status &= ~CompensatorStatus{EC_JOINT_LIMIT | EC_CORRECTION_CUT};
   if (status != 0) result.broken.push_back(DescribeStatus(status));
   CheckLimits(project, result);
   return result;

@@ -36,8 +36,9 @@ struct CompensatedMotion {
   /// there are any.
   MotionExtreme clearance;
   bool has_clearance = false;
-  /// Why the motion must not be played, a sentence each: a joint beyond its limit or faster than
-  /// it, parts that touch, a correction that was cut. Empty: it may be played.
+  /// Why the motion must not be played, a sentence each with what a user can do: a limit that keeps
+  /// the end of a limb from its place, a joint beyond its limit or faster than it, parts that
+  /// touch. Empty: it may be played.
   std::vector<std::string> broken;
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/planning/compensate_motion.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include <gtest/gtest.h>
 
 #include "elastocal/math/input_error.hpp"
@@ -37,6 +40,25 @@ TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
     naive = std::max(naive, std::abs(robot->clearances(commanded).minCoeff() - planned));
   }
   EXPECT_GT(naive, 16e-3);
+}
+
+TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
+  JointMotion plan;
+  plan.q = project.motion.rest.transpose();
+  const auto knee = static_cast<std::size_t>(std::distance(
+      model.coordinate_names.begin(),
+      std::find(model.coordinate_names.begin(), model.coordinate_names.end(), "leg_left_4_joint")));
+  ASSERT_LT(knee, model.lower.size());
+  EXPECT_TRUE(CompensateMotion(project, model, plan).broken.empty());
+  model.lower[knee] = model.upper[knee] = plan.q(0, static_cast<Eigen::Index>(knee));
+  const CompensatedMotion result = CompensateMotion(project, model, plan);
+  ASSERT_FALSE(result.broken.empty());
+  EXPECT_EQ(result.broken[0].find("stopped by a joint's limit: leg_left_4_joint ("), 0U)
+      << result.broken[0];
+  EXPECT_NE(result.broken[0].find("plan the motion further from this limit"), std::string::npos);
 }
 
 // Nothing would be corrected, and all of it said to be where the plan has it.

@@ -212,7 +212,9 @@ class CHeaderWriter {
     const auto array = [&](const char* type, const char* name, int count) {
       out_ << "  " << type << " " << name << "[" << std::max(1, count) << "];\n";
     };
-    out_ << "/* Working memory and last good input of one controller: static or on its stack. */\n"
+    out_ << "/* Working memory, last good input and last command of one controller: static or on "
+            "its "
+            "stack. */\n"
             "typedef struct {\n";
     for (const char* name : {"body"}) array("ec_pose", name, robot_.joints + 1);
     array("ec_pose", "twisted", robot_.joints);
@@ -224,23 +226,43 @@ class CHeaderWriter {
     array("double", "load", 3 * robot_.joints);
     array("double", "root_load", 3 * robot_.joints);
     array("double", "normal", largest * largest);
+    array("double", "factor", largest * largest);
     array("double", "gradient", largest);
+    array("double", "step", largest);
+    array("int", "held", largest);
+    array("int", "loosed", largest);
+    array("ec_search", "search", robot_.branches);
     array("double", "column", 6 * 64);
     array("double", "good_q", robot_.coordinates);
     array("double", "good_torque", robot_.joints);
     array("double", "work_q", robot_.coordinates);
+    array("double", "best_q", robot_.coordinates);
+    array("double", "kept_q", robot_.coordinates);
+    array("double", "near_q", robot_.coordinates);
+    array("double", "start_q", robot_.coordinates);
+    array("double", "lowest", robot_.coordinates);
+    array("double", "highest", robot_.coordinates);
+    array("double", "last_q", robot_.coordinates);
+    array("double", "last_command", robot_.coordinates);
+    array("ec_pose", "last_target", robot_.tips);
+    array("unsigned", "stopped", robot_.coordinates);
     array("double", "shift", robot_.joints);
     array("double", "centre", 3 * robot_.feet);
     array("double", "share", robot_.feet);
     out_ << "  ec_memory memory;\n} " << name_ << "_state;\n\n";
     out_ << "/* To be called once before anything else. */\nstatic inline void " << name_
          << "_init(" << name_ << "_state* s) {\n  ec_memory* m = &s->memory;\n";
-    for (const char* name : {"body", "twisted", "target", "sole", "motion", "axis", "beyond",
-                             "load", "root_load", "normal", "gradient", "column", "good_q",
-                             "good_torque", "work_q", "shift", "centre", "share"}) {
+    for (const char* name :
+         {"body",        "twisted",   "target",  "sole",   "motion",      "axis",   "beyond",
+          "load",        "root_load", "normal",  "factor", "gradient",    "step",   "held",
+          "loosed",      "search",    "column",  "good_q", "good_torque", "work_q", "best_q",
+          "kept_q",      "near_q",    "start_q", "lowest", "highest",     "last_q", "last_command",
+          "last_target", "stopped",   "shift",   "centre", "share"}) {
       out_ << "  m->" << name << " = s->" << name << ";\n";
     }
     out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";
+    out_ << "/* Forgets the last command, see ec_forget above. */\nstatic inline void " << name_
+         << "_forget(" << name_ << "_state* s) { ec_forget(&s->memory); }\n\n";
   }
 
   void Functions() {

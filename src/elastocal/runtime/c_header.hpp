@@ -28,7 +28,7 @@ bool IsCName(const std::string& name);
 /// Throws std::invalid_argument for a prefix that is no C name, and what Compensator throws.
 std::string MakeCHeader(RuntimeModel model, const CHeaderOptions& options);
 
-/// The text of core_poses.h, core_motion.h, core_statics.h and core_correction.h, one after the
+/// The text of core_poses.h and the other core_*.h, up to core_correction.h, one after the
 /// other, without their includes of each other.
 extern const char* const kRuntimeCore;
 

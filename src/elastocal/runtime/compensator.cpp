@@ -2,6 +2,7 @@
 #include "elastocal/runtime/compensator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -46,8 +47,8 @@ std::string DescribeStatus(CompensatorStatus status) {
       {EC_BAD_TORQUE, "a torque that is not finite: its last good value was used"},
       {EC_BAD_SUPPORT, "an unknown foot: the last good support was used"},
       {EC_DEFLECTION_CUT, "a deflection beyond its limit was cut"},
-      {EC_CORRECTION_CUT, "a correction beyond its limit was cut"},
-      {EC_JOINT_LIMIT, "a command beyond the limits of its joint was cut"},
+      {EC_CORRECTION_CUT, "a correction is at its limit, and the end of a limb not in its place"},
+      {EC_JOINT_LIMIT, "a joint is at its limit, and the end of a limb not in its place"},
       {EC_NOTHING_YET, "no good positions so far: those of the zero posture were used"}};
   std::string text;
   for (const auto& [bit, words] : kTexts) {
@@ -110,18 +111,32 @@ void Compensator::Allocate() {
                                               {&memory_.load, 3 * joints},
                                               {&memory_.root_load, 3 * joints},
                                               {&memory_.normal, largest * largest},
+                                              {&memory_.factor, largest * largest},
                                               {&memory_.gradient, largest},
+                                              {&memory_.step, largest},
                                               {&memory_.column, 6 * 64},
                                               {&memory_.good_q, coordinates},
                                               {&memory_.good_torque, joints},
                                               {&memory_.work_q, coordinates},
+                                              {&memory_.best_q, coordinates},
+                                              {&memory_.kept_q, coordinates},
+                                              {&memory_.near_q, coordinates},
+                                              {&memory_.start_q, coordinates},
+                                              {&memory_.lowest, coordinates},
+                                              {&memory_.highest, coordinates},
+                                              {&memory_.last_q, coordinates},
+                                              {&memory_.last_command, coordinates},
                                               {&memory_.shift, joints},
                                               {&memory_.centre, 3 * feet},
                                               {&memory_.share, feet},
                                               {&memory_.motion, 3 * joints}};
-  const std::pair<ec_pose**, int> poses[] = {
-      {&memory_.body, joints + 1}, {&memory_.twisted, joints}, {&memory_.target, robot_.tips},
-      {&memory_.sole, feet},       {&links_, robot_.links},    {&wanted_, robot_.tips}};
+  const std::pair<ec_pose**, int> poses[] = {{&memory_.body, joints + 1},
+                                             {&memory_.twisted, joints},
+                                             {&memory_.target, robot_.tips},
+                                             {&memory_.sole, feet},
+                                             {&links_, robot_.links},
+                                             {&wanted_, robot_.tips},
+                                             {&memory_.last_target, robot_.tips}};
   const auto hand_out = [](auto& store, const auto& parts) {
     std::size_t size = 0;
     for (const auto& part : parts) size += static_cast<std::size_t>(part.second);
@@ -134,6 +149,12 @@ void Compensator::Allocate() {
   };
   hand_out(numbers_, doubles);
   hand_out(poses_, poses);
+  const std::pair<int**, int> whole[] = {{&memory_.held, largest}, {&memory_.loosed, largest}};
+  hand_out(whole_, whole);
+  search_.resize(branches_.branch_size.size());
+  memory_.search = search_.data();
+  stopped_.resize(static_cast<std::size_t>(coordinates));
+  memory_.stopped = stopped_.data();
   not_finite_.assign(static_cast<std::size_t>(std::max(joints, coordinates)),
                      std::numeric_limits<double>::quiet_NaN());
   rigid_ = Eigen::VectorXd::Zero(coordinates);
@@ -173,8 +194,15 @@ CompensatorStatus Compensator::Command(const Eigen::Isometry3d* T_root_tip, cons
                           command_.data(), residual_);
 }
 
+void Compensator::Forget() noexcept { ec_forget(&memory_); }
+
 Eigen::Isometry3d Compensator::link_pose(int link) const noexcept {
   return ToIsometry(links_[link]);
+}
+
+double Compensator::left_m(int coordinate) const noexcept {
+  const int branch = robot_.branch_of_coordinate[coordinate];
+  return branch < 0 ? 0.0 : std::sqrt(search_[static_cast<std::size_t>(branch)].left);
 }
 
 Eigen::Isometry3d Compensator::root_pose() const noexcept { return ToIsometry(root_); }

@@ -58,6 +58,10 @@ class Compensator {
 
   const RuntimeModel& model() const noexcept { return model_; }
 
+  /// The next Command is found from its plan alone, as the first one is: for a motion that starts
+  /// anew.
+  void Forget() noexcept;
+
   /// Forward kinematics with deflection (eq. 3, 5, 6): fills link_pose() and root_pose().
   CompensatorStatus Forward(const Eigen::Ref<const Eigen::VectorXd>& q,
                             const Eigen::Ref<const Eigen::VectorXd>& torque,
@@ -71,7 +75,17 @@ class Compensator {
                             StandingFeet feet) noexcept;
 
   /// Commands with which hands, feet and waist are where the nominal robot has them at
-  /// `nominal`: command(). What is left is in residual_m() and residual_rad().
+  /// `nominal`: command(). They are within the limits of the joints: what one cannot do, others
+  /// take over. Where that is not enough the command is the best nearby, and that of a call by
+  /// itself never worse than `nominal` as it is. What is left is in residual_m() and
+  /// residual_rad(), and why in stopped().
+  ///
+  /// Calls along a motion stay at one solution: while no joint of `nominal` is further than 0.1
+  /// (rad, m) from the last call, the search starts from the last correction. If the same feet
+  /// stand, and torques are given as then or not, a joint moves as `nominal` does or less, and
+  /// beside that by at most the largest change of `nominal` and 0.2 mrad (a slide: 0.1 m for each
+  /// radian of that). Where that keeps the end of a limb from its place, more is left,
+  /// EC_CORRECTION_CUT says so, and it can be more than `nominal` itself would leave. See Forget().
   CompensatorStatus Command(const Eigen::Ref<const Eigen::VectorXd>& nominal,
                             const Eigen::Ref<const Eigen::VectorXd>& torque,
                             StandingFeet feet) noexcept;
@@ -101,6 +115,15 @@ class Compensator {
   double residual_m() const noexcept { return residual_[0]; }
   double residual_rad() const noexcept { return residual_[1]; }
 
+  /// Of the last Command, by coordinate: EC_JOINT_LIMIT or EC_CORRECTION_CUT (of the correction's
+  /// size, or of its change from the last one) where this limit keeps
+  /// the end of a limb from its place, by 0.2 mm or more; else 0.
+  const std::vector<unsigned>& stopped() const noexcept { return stopped_; }
+
+  /// Of the last Command: the largest error that is left at the ends of the limbs that a coordinate
+  /// can move, m; an angle counts as its displacement at 0.3 m. 0 for one that moves none.
+  double left_m(int coordinate) const noexcept;
+
   /// The same robot for the functions of core_correction.h.
   const ec_robot& robot() const noexcept { return robot_; }
 
@@ -116,6 +139,9 @@ class Compensator {
   ec_memory memory_{};
   std::vector<double> numbers_, not_finite_;
   std::vector<ec_pose> poses_;
+  std::vector<int> whole_;
+  std::vector<ec_search> search_;
+  std::vector<unsigned> stopped_;
   ec_pose root_{};
   ec_pose* links_ = nullptr;
   ec_pose* wanted_ = nullptr;

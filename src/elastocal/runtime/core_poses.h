@@ -18,8 +18,9 @@ enum {
   EC_BAD_TORQUE = 2,      /* a torque is not finite: the last good one was used, or else statics */
   EC_BAD_SUPPORT = 4,     /* no such foot: the last good support was used */
   EC_DEFLECTION_CUT = 8,  /* a deflection was larger than its limit: cut to it */
-  EC_CORRECTION_CUT = 16, /* a correction was larger than its limit: cut to it */
-  EC_JOINT_LIMIT = 32,    /* a command was beyond the limits of its joint: cut to them */
+  EC_CORRECTION_CUT = 16, /* the limit of corrections, or of their change from the last call, keeps
+                             an end of a limb off, or cut one */
+  EC_JOINT_LIMIT = 32,    /* the limit of a joint keeps the end of a limb from its place */
   EC_NOTHING_YET = 64     /* bad input before any good one: nominal, no correction */
 };
 
@@ -99,29 +100,59 @@ typedef struct {
   double largest_correction;   /* limit of a command's difference to the nominal one, rad or m */
 } ec_robot;
 
-/* Working memory, of the sizes given; all of one call, but the last good input. */
+/* How far the search for a branch's command is. */
+enum { EC_TRYING, EC_AGAIN, EC_DONE };
+
 typedef struct {
-  ec_pose* body;       /* joints + 1 */
-  double* motion;      /* 3 x joints: cosine, sine and slide of the joint's own motion */
-  ec_pose* twisted;    /* joints: of the last walk, before the elastic turn */
-  double* axis;        /* 3 x joints: of the last walk, after the elastic turn */
-  double* beyond;      /* 4 x (joints + 1): mass and first moment of each body and all beyond it */
-  double* load;        /* 3 x joints, in the twisted frames */
-  double* root_load;   /* 3 x joints: of those on the root link, about its origin */
-  double* normal;      /* square of the largest branch */
-  double* gradient;    /* largest branch */
-  double* column;      /* 6 x largest branch: of one tip */
-  ec_pose* target;     /* tips */
-  double* good_q;      /* coordinates */
-  double* good_torque; /* joints; NaN: never seen */
-  double* work_q;      /* coordinates */
-  double* shift;       /* joints: of their positions, by the calibration's causes */
-  double* centre;      /* 3 x feet: of the soles */
-  double* share;       /* feet: of the weight */
-  ec_pose* sole;       /* feet */
-  double common[3];    /* point of pressure less the centre of the sole, the same for all feet */
-  unsigned good_support;
-  int has_good_q;
+  int state, bad;           /* bad: steps that have made it worse, in a row */
+  double damping, gain;     /* gain: by how much the next step should lower the cost */
+  double cost, left, first; /* squared errors: the best, of its furthest limb, the plan's */
+  double kept, kept_left;   /* those of the first start */
+  double last_left;         /* what the last command leaves */
+  double near_left;         /* what the search beside the last command leaves */
+} ec_search;
+
+/* Working memory, of the sizes given; all of one call, but the last good input and command. */
+typedef struct {
+  ec_pose* body;        /* joints + 1 */
+  double* motion;       /* 3 x joints: cosine, sine and slide of the joint's own motion */
+  ec_pose* twisted;     /* joints: of the last walk, before the elastic turn */
+  double* axis;         /* 3 x joints: of the last walk, after the elastic turn */
+  double* beyond;       /* 4 x (joints + 1): mass and first moment of each body and all beyond it */
+  double* load;         /* 3 x joints, in the twisted frames */
+  double* root_load;    /* 3 x joints: of those on the root link, about its origin */
+  double* normal;       /* square of the largest branch */
+  double* gradient;     /* largest branch */
+  double* factor;       /* square of the largest branch: of `normal` */
+  double* step;         /* largest branch */
+  int* held;            /* largest branch: at which limit, -1, 1, or -2, 2 for the second time */
+  int* loosed;          /* largest branch: it was held and let go of */
+  double* column;       /* 6 x largest branch: of one tip */
+  ec_search* search;    /* branches */
+  double* best_q;       /* coordinates: the best so far ... */
+  double* kept_q;       /* ... and that of the first start */
+  double* near_q;       /* coordinates: where the search beside the last command ends */
+  double* start_q;      /* coordinates: the nominal positions with the last correction ... */
+  double* lowest;       /* ... and how low and ... */
+  double* highest;      /* ... how high a command may be, while `is_bound` */
+  double* last_q;       /* coordinates: nominal positions of the last command ... */
+  double* last_command; /* ... and that */
+  ec_pose* last_target; /* tips: what it was for */
+  unsigned* stopped;    /* coordinates: EC_JOINT_LIMIT or EC_CORRECTION_CUT where that limit keeps
+                           the end of a limb from where it should be, or EC_FINE */
+  ec_pose* target;      /* tips */
+  double* good_q;       /* coordinates */
+  double* good_torque;  /* joints; NaN: never seen */
+  double* work_q;       /* coordinates */
+  double* shift;        /* joints: of their positions, by the calibration's causes */
+  double* centre;       /* 3 x feet: of the soles */
+  double* share;        /* feet: of the weight */
+  ec_pose* sole;        /* feet */
+  double common[3];     /* point of pressure less the centre of the sole, the same for all feet */
+  unsigned good_support, last_support;
+  int has_good_q, has_last, had_torque;
+  int is_bound;   /* commands are between `lowest` and `highest` */
+  int is_settled; /* the last command is at none of them */
 } ec_memory;
 
 /* ---- poses ---- */

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/planning/stopped_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace elastocal {
+namespace {
+
+constexpr double kDegreesARadian = 180.0 / M_PI;
+
+}  // namespace
+
+std::string StoppedJoints::JointAt(const Compensator& compensator, Eigen::Index coordinate) const {
+  const auto c = static_cast<std::size_t>(coordinate);
+  const Joint& joint = tree_.joints[static_cast<std::size_t>(tree_.coordinate_joint[c])];
+  const bool slides = joint.type == JointType::kPrismatic;
+  const double scale = slides ? 1e3 : kDegreesARadian;
+  const char* unit = slides ? "mm" : "deg";
+  const double at = compensator.command()[coordinate];
+  return fmt::format("{} ({:.2f} {})", joint.name, scale * at, unit);
+}
+
+void StoppedJoints::Look(const Compensator& compensator, double time_s, CompensatorStatus kind,
+                         Worst& worst) {
+  std::vector<std::string> joints;
+  double left = 0.0;
+  const std::vector<unsigned>& stopped = compensator.stopped();
+  for (std::size_t c = 0; c < stopped.size(); ++c) {
+    if (stopped[c] != kind) continue;
+    joints.push_back(JointAt(compensator, static_cast<Eigen::Index>(c)));
+    left = std::max(left, compensator.left_m(static_cast<int>(c)));
+  }
+  if (joints.empty()) return;
+  ++worst.samples;
+  if (left < worst.left_m) return;
+  worst.left_m = left;
+  worst.time_s = time_s;
+  worst.joints = std::move(joints);
+}
+
+void StoppedJoints::Look(const Compensator& compensator, double time_s) {
+  Look(compensator, time_s, EC_JOINT_LIMIT, limit_);
+  Look(compensator, time_s, EC_CORRECTION_CUT, correction_);
+}
+
+std::vector<std::string> StoppedJoints::Describe(int samples) const {
+  std::vector<std::string> sentences;
+  const auto describe = [&](const Worst& worst, const char* what, const char* advice) {
+    if (worst.samples == 0) return;
+    sentences.push_back(
+        fmt::format("{}: {} at {:.2f} s, where {:.2f} mm are left at the end of its limb (a degree "
+                    "counts 5.2 mm; {} of {} samples are like this); {}",
+                    what, fmt::join(worst.joints, ", "), worst.time_s, 1e3 * worst.left_m,
+                    worst.samples, samples, advice));
+  };
+  describe(
+      limit_, "stopped by a joint's limit",
+      "plan the motion further from this limit, or widen it in the URDF if the robot can go on");
+  describe(correction_,
+           "stopped by the limit of a correction (its size, or its change from the last sample)",
+           "plan the limb less stretched and further from limits there");
+  return sentences;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/robot/robot_tree.hpp"
+#include "elastocal/runtime/compensator.hpp"
+
+namespace elastocal {
+
+/// The samples of a motion in which limits keep the end of a limb from its place
+/// (Compensator::stopped): how many, and the worst of them.
+class StoppedJoints {
+ public:
+  explicit StoppedJoints(const RobotTree& tree) : tree_(tree) {}
+
+  /// After a Command of the sample at `time_s`.
+  void Look(const Compensator& compensator, double time_s);
+
+  /// A sentence for each kind of limit: the joints at it in the worst sample, what is left there,
+  /// and what a user can do.
+  std::vector<std::string> Describe(int samples) const;
+
+ private:
+  struct Worst {
+    int samples = 0;
+    double left_m = 0.0, time_s = 0.0;     ///< left: Compensator::left_m
+    std::vector<std::string> joints = {};  ///< with the limit
+  };
+  void Look(const Compensator& compensator, double time_s, CompensatorStatus kind, Worst& worst);
+  std::string JointAt(const Compensator& compensator, Eigen::Index coordinate) const;
+
+  const RobotTree& tree_;
+  Worst limit_, correction_;
+};
+
+}  // namespace elastocal

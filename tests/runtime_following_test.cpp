@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands of the robot along a motion: they go on from the last one.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/random.hpp"
+#include "elastocal/runtime/compensator.hpp"
+#include "tests/planar_chain.hpp"
+#include "tests/runtime_fixture.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kStep = 1e-3;  // of the planned knee from one sample to the next, rad
+
+/// Knees from one angle to another.
+std::vector<Eigen::VectorXd> Knees(double from, double to) {
+  std::vector<Eigen::VectorXd> plans;
+  const int count = static_cast<int>(std::lround(std::abs(to - from) / kStep));
+  for (int i = 0; i <= count; ++i) {
+    plans.emplace_back(Eigen::Vector3d(0.3, from + i * (to - from) / count, -0.2));
+  }
+  return plans;
+}
+
+struct Played {
+  double largest_change = 0.0;     ///< of a joint's command from one sample to the next
+  std::vector<double> residual_m;  ///< by sample
+  std::vector<double> residual_rad;
+  unsigned status = 0;
+};
+
+Played Play(Compensator& robot, const std::vector<Eigen::VectorXd>& plans, bool forget) {
+  Played played;
+  Eigen::VectorXd last;
+  for (const Eigen::VectorXd& plan : plans) {
+    if (forget) robot.Forget();
+    played.status |= robot.Command(plan, kNoTorque, 0);
+    const Eigen::VectorXd command = robot.command();
+    if (last.size() > 0) {
+      played.largest_change =
+          std::max(played.largest_change, (command - last).cwiseAbs().maxCoeff());
+    }
+    last = command;
+    played.residual_m.push_back(robot.residual_m());
+    played.residual_rad.push_back(robot.residual_rad());
+  }
+  return played;
+}
+
+double Largest(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+// The leg is longer than nominal, so that its knee is bent by 0.2 rad where the plan's is straight.
+// The plan goes on to the other side, where a bend to this side would be a correction of more than
+// 0.25 rad: the knee has to come over.
+TEST(RuntimeFollowing, AKneeThatComesOverDoesNotJump) {
+  Compensator robot = PlanarLeg(4e-3, -2.3, 2.3).Make();
+  const std::vector<Eigen::VectorXd> plans = Knees(0.3, -0.5);
+  EXPECT_GT(Play(robot, plans, true).largest_change, 0.15);  // each call by itself
+  robot.Forget();
+  const Played played = Play(robot, plans, false);
+  EXPECT_LE(played.largest_change, 2.0 * kStep + 2e-4 + 1e-12);
+  EXPECT_EQ(played.status, unsigned{EC_CORRECTION_CUT});
+  // The straight leg is longer by 4 mm; it bends only as fast as it may.
+  EXPECT_LT(Largest(played.residual_m), 8e-3);
+  EXPECT_LT(played.residual_m.back(), 2e-5);
+  EXPECT_LT(played.residual_rad.back(), 1e-4);
+}
+
+// Where the knee comes back its bend to the same side is a solution all the time: the command
+// hardly moves while the plan's knee goes through the straight posture.
+TEST(RuntimeFollowing, WhereASolutionGoesOnNothingIsLeft) {
+  Compensator robot = PlanarLeg(4e-3, -2.3, 2.3).Make();
+  std::vector<Eigen::VectorXd> plans = Knees(0.3, -0.03);
+  const std::vector<Eigen::VectorXd> back = Knees(-0.03, 0.3);
+  plans.insert(plans.end(), back.begin(), back.end());
+  EXPECT_GT(Play(robot, plans, true).largest_change, 0.15);
+  robot.Forget();
+  const Played played = Play(robot, plans, false);
+  EXPECT_LE(played.largest_change, 2.0 * kStep + 2e-4 + 1e-12);
+  EXPECT_LT(Largest(played.residual_m), 2e-5);
+  EXPECT_LT(Largest(played.residual_rad), 1e-4);
+  EXPECT_EQ(played.status, 0U);
+}
+
+// A leg that is too short cannot reach where the plan's knee is nearly straight. Calls by
+// themselves leave as much.
+TEST(RuntimeFollowing, WhatNoCommandReachesIsLeftAsBefore) {
+  Compensator robot = PlanarLeg(-4e-3, -2.3, 2.3).Make();
+  const std::vector<Eigen::VectorXd> plans = Knees(0.5, -0.5);
+  const Played alone = Play(robot, plans, true);
+  robot.Forget();
+  const Played played = Play(robot, plans, false);
+  EXPECT_LE(played.largest_change, 2.0 * kStep + 2e-4 + 1e-12);
+  EXPECT_NEAR(Largest(played.residual_m), Largest(alone.residual_m), 2e-4);
+  EXPECT_LT(played.residual_m.back(), 2e-5);
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    EXPECT_LT(played.residual_m[i], alone.residual_m[i] + 1e-3) << i;
+  }
+}
+
+// Targets that move while the nominal posture stays are followed as well.
+TEST(RuntimeFollowing, TargetsThatMoveAreFollowed) {
+  Compensator robot = PlanarLeg(4e-3, -2.3, 2.3).Make(), alone = PlanarLeg(4e-3, -2.3, 2.3).Make();
+  PlanarChain leg = PlanarLeg(0.0, -2.3, 2.3);
+  Compensator nominal = leg.Make();
+  const Eigen::Vector3d middle(0.3, 0.8, -0.2);
+  for (int i = 0; i <= 100; ++i) {
+    const Eigen::Vector3d plan(0.3, 0.8 + 1e-3 * i, -0.2);
+    nominal.Forward(plan, kNoTorque, 0);
+    const Eigen::Isometry3d target = nominal.link_pose(0);
+    robot.Command(&target, middle, kNoTorque, 0);
+    EXPECT_LT(robot.residual_m(), 2e-5) << i;
+  }
+  // One that is far away has nothing to do with the last one.
+  nominal.Forward(Eigen::Vector3d(0.3, 0.6, -0.2), kNoTorque, 0);
+  const Eigen::Isometry3d target = nominal.link_pose(0);
+  robot.Command(&target, middle, kNoTorque, 0);
+  alone.Command(&target, middle, kNoTorque, 0);
+  EXPECT_TRUE(robot.command() == alone.command());
+}
+
+class RuntimeFollowingTalos : public Runtime {};
+
+TEST_F(RuntimeFollowingTalos, CallsFarFromEachOtherStandByThemselves) {
+  Compensator robot = Make();
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const Eigen::VectorXd q = Posture(seed);
+    const auto feet = static_cast<StandingFeet>(seed % 4);
+    Compensator alone = Make();
+    EXPECT_EQ(robot.Command(q, kNoTorque, feet), alone.Command(q, kNoTorque, feet));
+    EXPECT_TRUE(robot.command() == alone.command()) << seed;  // the same bits
+    EXPECT_EQ(robot.residual_m(), alone.residual_m());
+    // What comes between does not matter.
+    robot.Forward(Posture(seed + 100), kNoTorque, 0);
+    robot.Correct(Posture(seed + 200), kNoTorque, 0);
+  }
+}
+
+TEST_F(RuntimeFollowingTalos, ForgetMakesACallStandByItself) {
+  Compensator robot = Make();
+  const Eigen::VectorXd from = Posture(1);
+  const Eigen::VectorXd to = from.array() + 0.05;
+  Compensator alone = Make();
+  alone.Command(to, kNoTorque, 1);
+  robot.Command(from, kNoTorque, 1);
+  robot.Command(to, kNoTorque, 1);
+  EXPECT_FALSE(robot.command() == alone.command());
+  EXPECT_LT(robot.residual_m(), 2e-4);
+  robot.Command(from, kNoTorque, 1);
+  robot.Forget();
+  robot.Command(to, kNoTorque, 1);
+  EXPECT_TRUE(robot.command() == alone.command());
+}
+
+TEST_F(RuntimeFollowingTalos, ARobotThatShallStandStands) {
+  Compensator robot = Make();
+  const Eigen::VectorXd from = Posture(1);
+  for (int i = 0; i < 10; ++i) robot.Command(from.array() + 0.01 * i, kNoTorque, 3);
+  for (int i = 0; i < 5; ++i) robot.Command(from.array() + 0.1, kNoTorque, 3);  // comes to rest
+  const Eigen::VectorXd command = robot.command();
+  const double left = robot.residual_m();
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(robot.Command(from.array() + 0.1, kNoTorque, 3), 0U);
+    EXPECT_TRUE(robot.command() == command) << i;
+    EXPECT_NEAR(robot.residual_m(), left, 2e-5);
+  }
+  // Torques that are given from now on are corrected at once, and others by 0.2 mrad a call.
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(robot.robot().joints);
+  EXPECT_EQ(robot.Command(from.array() + 0.1, zero, 3), 0U);
+  EXPECT_LT(robot.residual_m(), 2e-4);
+  const Eigen::VectorXd unloaded = robot.command();
+  const Eigen::VectorXd torque = zero.array() + 20.0;
+  robot.Command(from.array() + 0.1, torque, 3);
+  EXPECT_LE((robot.command() - unloaded).cwiseAbs().maxCoeff(), 2e-4 + 1e-12);
+  for (int i = 0; i < 300; ++i) robot.Command(from.array() + 0.1, torque, 3);
+  EXPECT_GT((robot.command() - unloaded).cwiseAbs().maxCoeff(), 5e-4);
+  EXPECT_LT(robot.residual_m(), 1e-4);
+}
+
+// Loads jump where a foot is lifted: what the legs have to do then is done at once.
+TEST_F(RuntimeFollowingTalos, AStepOfTheSupportIsCorrectedAtOnce) {
+  Compensator robot = Make();
+  const Eigen::VectorXd q = project_.motion.rest;
+  for (StandingFeet feet : {3U, 1U, 3U, 2U, 0U}) {
+    EXPECT_EQ(robot.Command(q, kNoTorque, feet), 0U);
+    EXPECT_LT(robot.residual_m(), 5e-5) << feet;
+  }
+}
+
+}  // namespace
+}  // namespace elastocal
