@@ -3,7 +3,7 @@
 #ifndef ELASTOCAL_CORE_CORRECTION_H
 #define ELASTOCAL_CORE_CORRECTION_H
 
-#include "elastocal/runtime/core_reach.h"
+#include "elastocal/runtime/core_follow.h"
 
 /* ---- input ---- */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The calibrated robot at run time: the positions within limits that bring the ends of the limbs
-   nearest to their targets. See core_poses.h. */
+/* The calibrated robot at run time: the search for the positions within limits that bring the ends
+   of the limbs nearest to their targets. See core_follow.h. */
 #ifndef ELASTOCAL_CORE_REACH_H
 #define ELASTOCAL_CORE_REACH_H
 
@@ -24,18 +24,6 @@
 #define EC_GROWN 1.1
 /* A second start counts if it leaves less than this share of the squared error of the first. */
 #define EC_CLEARLY 0.8
-/* The last command counts while no joint of the plan is further than this from then, rad or m. */
-#define EC_NEARBY 0.1
-/* From one such command to the next a joint moves as the plan does, or less, and by at most so many
-   times the largest change of a joint of the plan and so many radians beside that; a slide by so
-   many metres for each of these radians, because slides are slow. */
-#define EC_FOLLOW 1.0
-#define EC_CREEP 2e-4
-#define EC_SLIDE 0.1
-/* Another solution is gone to where that beside the last command leaves more than so many times as
-   much. */
-#define EC_TWICE 2.0
-
 /* Squared error of a branch at q after a walk there: the ends of its limbs, and how far it is from
    `nominal`. `left`: the largest of an end that does not yield. */
 static inline double ec_cost(const ec_robot* robot, int branch, const double* nominal,
@@ -286,173 +274,6 @@ static inline unsigned ec_search_anew(const ec_robot* robot, const double* nomin
     ec_all_cost(robot, nominal, command, memory);
   }
   return at_end;
-}
-
-/* How far the plan is from that of the last command: the largest change of a joint, or of a target
-   where `moves` says that these are not the plan's. Negative: they have nothing to do with each
-   other. */
-static inline double ec_change(const ec_robot* robot, const double* nominal, int moves,
-                               const ec_memory* memory) {
-  double change = 0.0, error[6];
-  int c, t;
-  if (!memory->has_last) return -1.0;
-  for (c = 0; c < robot->coordinates; ++c) {
-    const double moved = fabs(nominal[c] - memory->last_q[c]);
-    if (moved > change) change = moved;
-  }
-  for (t = 0; moves && t < robot->tips; ++t) {
-    double moved;
-    ec_tip_error(&memory->last_target[t], &memory->target[t], error);
-    moved = sqrt(ec_dot(error, error) + ec_dot(&error[3], &error[3])) / EC_ARM;
-    if (moved > change) change = moved;
-  }
-  return change <= EC_NEARBY ? change : -1.0;
-}
-
-/* Where to start: the nominal positions with the last correction. And how far the command may go:
-   it may stay where it was as well as go along with the plan, and a little further to both sides;
-   as far as ever where other feet stand than then, or loads come from elsewhere, because the
-   corrections then jump. */
-static inline void ec_stay_near(const ec_robot* robot, const double* nominal, const double* torque,
-                                unsigned support, double change, ec_memory* memory) {
-  const int same = support == memory->last_support && (torque != 0) == memory->had_torque;
-  const double room = same ? EC_FOLLOW * change + EC_CREEP : 2.0 * robot->largest_correction;
-  int c, k;
-  for (c = 0; c < robot->coordinates; ++c) memory->lowest[c] = room;
-  for (k = 0; same && k < robot->joints; ++k) {
-    if (robot->calibrated[k].prismatic) {
-      memory->lowest[robot->calibrated[k].coordinate] = EC_SLIDE * room;
-    }
-  }
-  for (c = 0; c < robot->coordinates; ++c) {
-    const double last = memory->last_command[c], more = memory->lowest[c];
-    const double start =
-        ec_within(robot, memory, nominal, c, last + (nominal[c] - memory->last_q[c]));
-    memory->start_q[c] = start;
-    memory->lowest[c] = (start < last ? start : last) - more;
-    memory->highest[c] = (start > last ? start : last) + more;
-  }
-}
-
-/* The command of a branch between two: `command` as the search from the plan gives it, and near_q.
-   That has one as far from start_q towards the former as it may be, but for a near_q that comes
-   about as near to it by itself. */
-static inline void ec_go_over(const ec_robot* robot, int branch, const ec_memory* memory,
-                              double* command) {
-  double share = 1.0, all = 0.0, left = 0.0;
-  int c;
-  for (c = 0; c < robot->coordinates; ++c) {
-    const double way = command[c] - memory->start_q[c];
-    const double most = (way < 0.0 ? memory->lowest[c] : memory->highest[c]) - memory->start_q[c];
-    const double rest = command[c] - memory->near_q[c];
-    if (robot->branch_of_coordinate[c] != branch) continue;
-    if (fabs(share * way) > fabs(most)) share = most / way;
-    all += way * way;
-    left += rest * rest;
-  }
-  if (left <= (1.0 - 0.5 * share) * (1.0 - 0.5 * share) * all) {
-    ec_copy_branch(robot, branch, memory->near_q, command);
-    return;
-  }
-  for (c = 0; c < robot->coordinates; ++c) {
-    if (robot->branch_of_coordinate[c] != branch) continue;
-    command[c] = memory->start_q[c] + share * (command[c] - memory->start_q[c]);
-  }
-}
-
-/* After a walk at the last command for the plan of then: whether it still does what it did, so that
-   a robot that shall stand stands. */
-static inline int ec_still_does(const ec_robot* robot, const ec_memory* memory) {
-  const double most = EC_REACHED * EC_REACHED;
-  int branch;
-  for (branch = 0; branch < robot->branches; ++branch) {
-    const ec_search* search = &memory->search[branch];
-    if (search->left <= 0.01 * most) continue;
-    if (!memory->is_settled || search->last_left > most) return 0;
-    if (search->left > 1.2 * search->last_left) return 0;
-  }
-  return 1;
-}
-
-/* Beside the last command: the same solution a little further on. Where it has become clearly worse
-   than another, goes there, but no faster than a command may change. */
-static inline unsigned ec_follow(const ec_robot* robot, const double* nominal, const double* torque,
-                                 unsigned support, double change, ec_memory* memory,
-                                 double* command, unsigned* status) {
-  const double reached = EC_REACHED * EC_REACHED;
-  unsigned at_end = EC_FINE;
-  int c, branch, any = 0;
-  for (c = 0; c < robot->coordinates; ++c) command[c] = memory->start_q[c];
-  ec_start(robot, torque, support, memory, command, status);
-  memory->is_bound = 1;
-  if (!(change > 0.0) && support == memory->last_support) {
-    unsigned cut = EC_FINE;
-    ec_walk_command(robot, command, torque, support, memory, &cut); /* loads as deflected */
-    ec_walk_command(robot, command, torque, support, memory, &at_end);
-    ec_all_cost(robot, nominal, command, memory);
-    if (ec_still_does(robot, memory)) return at_end;
-    at_end = EC_FINE;
-  }
-  ec_search_all(robot, nominal, torque, support, memory, command);
-  ec_walk_command(robot, command, torque, support, memory, &at_end);
-  ec_all_cost(robot, nominal, command, memory);
-  for (branch = 0; branch < robot->branches; ++branch) {
-    ec_search* search = &memory->search[branch];
-    search->near_left = search->left;
-    if (search->left > reached) any = 1;
-  }
-  if (!any) return at_end;
-  for (c = 0; c < robot->coordinates; ++c) memory->near_q[c] = command[c];
-  memory->is_bound = 0;
-  ec_search_anew(robot, nominal, torque, support, memory, command, status);
-  memory->is_bound = 1;
-  for (branch = 0; branch < robot->branches; ++branch) {
-    const ec_search* search = &memory->search[branch];
-    if (search->near_left <= reached || search->near_left <= EC_TWICE * EC_TWICE * search->left) {
-      ec_copy_branch(robot, branch, memory->near_q, command);
-    } else {
-      ec_go_over(robot, branch, memory, command);
-    }
-  }
-  at_end = EC_FINE;
-  ec_walk_command(robot, command, torque, support, memory, &at_end);
-  ec_all_cost(robot, nominal, command, memory);
-  return at_end;
-}
-
-/* Commands with which the real robot has the ends of its limbs at the targets in memory, or as near
-   as limits allow. `moves`: the targets are not those of the plan. */
-static inline void ec_reach(const ec_robot* robot, const double* nominal, const double* torque,
-                            unsigned support, int moves, ec_memory* memory, double* command,
-                            double* residual, unsigned* status) {
-  const double change = ec_change(robot, nominal, moves, memory);
-  unsigned at_end;
-  int c, t;
-  memory->is_bound = 0;
-  if (change < 0.0) {
-    at_end = ec_search_anew(robot, nominal, torque, support, memory, command, status);
-    memory->is_settled = 1;
-  } else {
-    ec_stay_near(robot, nominal, torque, support, change, memory);
-    at_end = ec_follow(robot, nominal, torque, support, change, memory, command, status);
-    memory->is_settled = 1;
-    for (c = 0; c < robot->coordinates; ++c) {
-      if (command[c] <= memory->lowest[c] || command[c] >= memory->highest[c]) {
-        memory->is_settled = 0;
-      }
-    }
-  }
-  *status |= at_end | ec_in_the_way(robot, nominal, command, memory);
-  ec_residual(robot, memory, residual);
-  for (c = 0; c < robot->coordinates; ++c) {
-    memory->last_q[c] = nominal[c];
-    memory->last_command[c] = command[c];
-  }
-  for (t = 0; t < robot->tips; ++t) memory->last_target[t] = memory->target[t];
-  for (t = 0; t < robot->branches; ++t) memory->search[t].last_left = memory->search[t].left;
-  memory->last_support = support;
-  memory->had_torque = torque != 0;
-  memory->has_last = 1;
 }
 
 #endif /* ELASTOCAL_CORE_REACH_H */
