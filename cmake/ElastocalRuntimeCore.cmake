@@ -14,6 +14,9 @@ string(REPLACE "\n/* " ")CORE\"\nR\"CORE(\n/* " core_text "${core_text}")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/runtime_core_text.cpp CONTENT [[
 #include "elastocal/runtime/c_header.hpp"
 
+// Longer than every compiler has to take; gcc and clang do.
+#pragma GCC diagnostic ignored "-Woverlength-strings"
+
 namespace elastocal {
 
 const char* const kRuntimeCore = R"CORE(@core_text@)CORE";
