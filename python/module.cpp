@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <exception>
+#include <utility>
+
 #include "bindings.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/report/version.hpp"
@@ -13,7 +16,7 @@ PYBIND11_MODULE(elastocal, module) {
   module.attr("__version__") = ProgramVersion();
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const py::cast_error&) {
       PyErr_SetString(PyExc_TypeError,
                       "an argument, or a part of it, has a type that was not expected");

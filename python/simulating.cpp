@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/files/output_set.hpp"
+#include "elastocal/planning/design_observations.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/planning/simulate_observations.hpp"
 #include "elastocal/planning/simulation_settings.hpp"

@@ -84,15 +84,6 @@ std::set<int> JointsShownBy(const Project& project, const std::vector<std::strin
   return shown;
 }
 
-std::vector<std::string> SeenMarkers(const Recording& recording) {
-  std::vector<std::string> seen;
-  const ObservationMask mask = SeenMask(recording);
-  for (int m = 0; m < recording.marker_count(); ++m) {
-    if (mask.col(m).any()) seen.push_back(recording.marker_names[m]);
-  }
-  return seen;
-}
-
 /// The joints of a chain that its markers show, but no marker that was seen.
 std::vector<std::string> UnseenJoints(const Project& project, const Recording& recording,
                                       const Chain& chain, const std::vector<std::string>& markers) {

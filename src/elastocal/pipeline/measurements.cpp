@@ -41,15 +41,6 @@ Recording WithMarkers(const Recording& recording, const std::vector<std::string>
   return SelectPostures(selected, postures);
 }
 
-std::vector<std::string> SeenMarkers(const Recording& recording) {
-  std::vector<std::string> seen;
-  const ObservationMask mask = SeenMask(recording);
-  for (int m = 0; m < mask.cols(); ++m) {
-    if (mask.col(m).any()) seen.push_back(recording.marker_names[m]);
-  }
-  return seen;
-}
-
 /// A model has no position for a marker that the calibration never shows.
 void WarnOfOtherMarkers(const std::vector<std::string>& known, const Recording& validation,
                         std::vector<std::string>& warnings) {
@@ -131,6 +122,15 @@ void ExpectNoFolder(const fs::path& recording) {
 }
 
 }  // namespace
+
+std::vector<std::string> SeenMarkers(const Recording& recording) {
+  std::vector<std::string> seen;
+  const ObservationMask mask = SeenMask(recording);
+  for (int m = 0; m < mask.cols(); ++m) {
+    if (mask.col(m).any()) seen.push_back(recording.marker_names[m]);
+  }
+  return seen;
+}
 
 Measurements ReadMeasurements(const Project& project, const std::vector<fs::path>& recordings,
                               ReadFor purpose) {

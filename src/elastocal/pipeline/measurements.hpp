@@ -44,6 +44,9 @@ Measurements ReadMeasurements(const Project& project,
                               const std::vector<std::filesystem::path>& recordings,
                               ReadFor purpose = ReadFor::kCalibration);
 
+/// Names of the markers that were seen in some posture, in the recording's order.
+std::vector<std::string> SeenMarkers(const Recording& recording);
+
 /// All files that are read with a project and these recordings: project, URDF, tables, and of a
 /// folder experiment.yaml with all files that it names. Throws what ReadExperiment throws.
 std::vector<std::filesystem::path> InputFiles(const Project& project,
