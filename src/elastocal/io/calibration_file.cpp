@@ -173,9 +173,8 @@ std::string OwnerOf(const std::string& parameter) {
   return parameter.substr(0, parameter.rfind('.'));
 }
 
-constexpr const char* kLeft = "rmse_3d_mm";
-constexpr const char* kHeldOutUrdf = "held_out_urdf_mm";
-constexpr const char* kHeldOut = "held_out_mm";
+constexpr const char *kLeft = "rmse_3d_mm", *kHeldOutUrdf = "held_out_urdf_mm",
+                     *kHeldOut = "held_out_mm";
 
 /// An error of markers, m; 0 where the file is silent.
 double ReadErrorMm(const YamlValue& root, const char* key) {

@@ -23,6 +23,14 @@ class CoverageOfChains : public testing::Test {
     return recording;
   }
 
+  /// With another chain that has the joints of the left arm.
+  Project WithWholeLeftArm() const {
+    Project project = project_;
+    const int left = FindLink(project.tree, "left_hand");
+    project.chains.push_back({.name = "whole_left_arm", .tip_link = left});
+    return project;
+  }
+
   static TrialSummary Refused(const std::string& chain) {
     TrialSummary summary;
     summary.trial = {.name = chain + "_trial", .chains = {chain}};
@@ -65,9 +73,7 @@ TEST_F(CoverageOfChains, AChainThatOnlyTrialsForValidationExerciseIsNotDeployed)
 }
 
 TEST_F(CoverageOfChains, AChainWhoseJointsOthersExerciseIsCalibrated) {
-  Project project = project_;
-  const int left = FindLink(project.tree, "left_hand");
-  project.chains.push_back({.name = "whole_left_arm", .tip_link = left});
+  const Project project = WithWholeLeftArm();
   Measurements measured;
   measured.calibration = Shown("left_arm");
   TrialSummary validation;
@@ -152,9 +158,7 @@ TEST_F(CoverageOfChains, JointsBeyondAllSeenMarkersAreNamed) {
 }
 
 TEST_F(CoverageOfChains, AChainWhoseJointsOthersMoveInValidationIsJudged) {
-  Project project = project_;
-  const int left = FindLink(project.tree, "left_hand");
-  project.chains.push_back({.name = "whole_left_arm", .tip_link = left});
+  const Project project = WithWholeLeftArm();
   Measurements measured;
   measured.calibration = Shown("left_arm");
   measured.validation = Shown("left_arm");
