@@ -14,7 +14,8 @@
 namespace elastocal {
 namespace {
 
-// An arm that is made to 0.2 mm shows a scale of 0.6 %, which one with errors of 1 mm may have.
+// Twenty lengths and more (kManyLengths). An arm that is made to 0.2 mm shows a scale of 0.6 %,
+// which one with errors of 1 mm may have.
 TEST(CameraScale, IsToldTheBetterTheMoreExactlyTheArmIsMade) {
   constexpr int kRobots = 10;
   const Project project = ParseProject(kTalosLeftArm, SourceFile("project.yaml"));
