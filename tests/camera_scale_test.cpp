@@ -10,18 +10,16 @@
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/talos_left_arm.hpp"
 #include "tests/test_files.hpp"
+#include "tests/test_robots.hpp"
 
 namespace elastocal {
 namespace {
 
-// Twenty lengths and more (kManyLengths). An arm that is made to 0.2 mm shows a scale of 0.6 %,
-// which one with errors of 1 mm may have.
-TEST(CameraScale, IsToldTheBetterTheMoreExactlyTheArmIsMade) {
+/// An arm that is made to `exact` shows a scale of 0.6 %, which one with errors of 1 mm may have.
+void ExpectThatAnExactArmTells(const ErrorModel& model, const BaseParameters& base,
+                               const CalibrationOptions& options, double exact) {
   constexpr int kRobots = 10;
-  const Project project = ParseProject(kTalosLeftArm, SourceFile("project.yaml"));
-  const ErrorModel model = MakeProjectModel(project, {});
-  const BaseParameters base = FindBaseParameters(model, project.identifiability);
-  for (const double length_sd : {0.2e-3, 1e-3}) {
+  for (const double length_sd : {exact, 1e-3}) {
     int found = 0, accused = 0;
     for (std::uint64_t seed = 1; seed <= kRobots; ++seed) {
       const std::map<ParameterKind, double> errors = {{ParameterKind::kTheta, 0.01},
@@ -31,17 +29,47 @@ TEST(CameraScale, IsToldTheBetterTheMoreExactlyTheArmIsMade) {
       Recording recording = MakeSyntheticRecording(
           model, DrawErrors(model, base.kept, errors, seed), {.postures = 40, .seed = seed});
       const auto wrong = [&] {
-        return FindWrongScale(
-            Calibrate(model, recording, base, ModelKind::kGeometric, project.calibration),
-            project.calibration);
+        return FindWrongScale(Calibrate(model, recording, base, ModelKind::kGeometric, options),
+                              options);
       };
       accused += wrong() ? 1 : 0;
       recording.markers *= 1.006;
       found += wrong() ? 1 : 0;
     }
     EXPECT_EQ(accused, 0) << length_sd;
-    EXPECT_TRUE(length_sd > 0.5e-3 ? found < 4 : found >= 8) << length_sd << ": " << found;
+    EXPECT_TRUE(length_sd == exact ? found >= 8 : found < 4) << length_sd << ": " << found;
   }
+}
+
+// Twenty lengths and more (kManyLengths).
+TEST(CameraScale, IsToldTheBetterTheMoreExactlyTheArmIsMade) {
+  const Project project = ParseProject(kTalosLeftArm, SourceFile("project.yaml"));
+  const ErrorModel model = MakeProjectModel(project, {});
+  ExpectThatAnExactArmTells(model, FindBaseParameters(model, project.identifiability),
+                            project.calibration, 0.2e-3);
+}
+
+/// Seven joints with axes at right angles, as common arms have them.
+ErrorModel SevenJointArm() {
+  using Eigen::Vector3d;
+  const Vector3d y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  RobotTree tree = MakeRoot();
+  AddJoint(tree, "arm_1", 0, Offset(0, 0, 0.34), z);
+  AddJoint(tree, "arm_2", 1, Transform::Identity(), y);
+  AddJoint(tree, "arm_3", 2, Offset(0, 0, 0.32), z);
+  AddJoint(tree, "arm_4", 3, Offset(0.08, 0, 0), y);
+  AddJoint(tree, "arm_5", 4, Offset(-0.08, 0, 0.38), z);
+  AddJoint(tree, "arm_6", 5, Transform::Identity(), y);
+  AddJoint(tree, "arm_7", 6, Offset(0.09, 0, 0), z);
+  return MakeErrorModel(tree, {{"HAND_1", 7, {0.05, 0.04, 0.11}},
+                               {"HAND_2", 7, {-0.06, 0.03, 0.15}},
+                               {"HAND_3", 7, {0.02, -0.07, 0.19}}});
+}
+
+// Of eight lengths to nineteen that the recording determines (kNarrowestOfSome).
+TEST(CameraScale, IsToldByAnArmOfFewLengths) {
+  const ErrorModel model = SevenJointArm();
+  ExpectThatAnExactArmTells(model, FindBaseParameters(model, {}), {}, 0.1e-3);
 }
 
 }  // namespace
