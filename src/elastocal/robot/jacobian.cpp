@@ -22,8 +22,9 @@ void SetTranslation(Screws& screws, int row, const Vector3d& direction) {
 
 }  // namespace
 
-GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
+GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model, LoadsOfRootJoints root_joints)
     : model_(model),
+      root_joints_(root_joints),
       first_parameter_(model.tree.joints.size(), -1),
       compliances_(model.tree.joints.size(), 0),
       corrections_(model.tree.joints.size(), 0),
@@ -167,6 +168,39 @@ void GeneralizedJacobian::SetRootCompliance(int row, int axis,
   SetRotation(screws_, row, moment[axis] * axes.col(axis), frames_[0].p);
 }
 
+/// Adds to the rotations among a root joint's constants that its loads turn as well.
+void GeneralizedJacobian::TurnLoads(int joint, const Geometry::JointConstants& constants,
+                                    const MdhFrame& twisted, const JointLoads& loads) {
+  const auto add = [&](int row, const Vector3d& step, const Vector3d& point) {
+    screws_.row(row).head<3>() += step.transpose().array();
+    screws_.row(row).tail<3>() += point.cross(step).transpose().array();
+  };
+  const auto turn_about_root = [&](int row, const Vector3d& axis) {
+    if (loads.about_root.cols() == 0) return;
+    const Vector3d moment = loads.about_root.col(joint);
+    const Vector3d& compliance = constants.root_compliance;
+    add(row,
+        frames_[0].R * (LeftJacobian(compliance.cwiseProduct(moment)) *
+                        compliance.cwiseProduct(axis.cross(moment))),
+        frames_[0].p);
+  };
+  int row = first_parameter_[joint];
+  if (model_.placements[joint].general) {
+    turn_about_root(row, constants.z_pre);
+    row += 2;
+  }
+  if (model_.placements[joint].parallel) turn_about_root(row++, constants.y_beta);
+  turn_about_root(row, constants.R_parent_twisted.col(0));
+  row += 2;
+  turn_about_root(row, constants.R_parent_twisted.col(2));
+  if (model_.tree.joints[joint].type != JointType::kRevolute) return;
+  const Vector3d load = loads.col(joint);
+  add(row,
+      twisted.R * (LeftJacobian(constants.compliance.cwiseProduct(load)) *
+                   constants.compliance.cwiseProduct(Vector3d::UnitZ().cross(load))),
+      twisted.p + constants.centre * twisted.R.col(2));
+}
+
 void GeneralizedJacobian::SetCorrections(int joint, int row, const MdhFrame& deflected,
                                          const JointLoads& loads) {
   const bool revolute = model_.tree.joints[joint].type == JointType::kRevolute;
@@ -289,6 +323,10 @@ void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::
     if (compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, acting);
     if (load_corrections_ > 0) AddLoadCorrections(joint, constants, twisted, acting, loads);
     SetCorrections(joint, row + compliances_[joint], deflected, loads);
+    if (root_joints_ == LoadsOfRootJoints::kTurning && acting.cols() > 0 &&
+        model_.tree.joints[joint].parent_body == 0) {
+      TurnLoads(joint, constants, twisted, acting);
+    }
   };
   EvaluateMdhFrames(model_, geometry, q, acting, frames_, visit);
   if (!linkage_rows_.empty()) SetLinkages(geometry, q);
