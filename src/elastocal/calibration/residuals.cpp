@@ -222,10 +222,7 @@ void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobians) {
       PlaceWaist(placement_.T_ref_waist[i], unknowns_.PoseStep(x, unknowns_.WaistBlock(i)),
                  geometry_);
     }
-    jacobian_.Evaluate(geometry_, in_.recording.q.row(i).transpose(),
-                       in_.loads.empty() ? JointLoads()
-                                         : TurnedLoads(in_.model, loaded_geometry_, geometry_,
-                                                       in_.loads[i].joints));
+    jacobian_.Evaluate(geometry_, in_.recording.q.row(i).transpose(), LoadsNow(i));
     for (int block : blocks_of_posture_[i]) {
       if (block >= body_count()) {
         EvaluateTie(block, i);

@@ -97,6 +97,10 @@ class BodyResiduals : public LeastSquaresProblem {
   void MakeFloorBlocks();
   void MakePriorBlocks();
   void MakeEarlierBlock(const EarlierPart& earlier);
+  JointLoads LoadsNow(int posture) const {
+    if (in_.loads.empty()) return {};
+    return TurnedLoads(in_.model, loaded_geometry_, geometry_, in_.loads[posture].joints);
+  }
   Eigen::VectorXd BodySds(std::size_t body) const;
   Vector6d TieSds(int posture) const;
   /// How many moments like this one tell as much as one posture, by the correlation of bodies or of

@@ -59,7 +59,12 @@ class GeneralizedJacobian {
 
   /// Pose of the root link in the reference frame, and its motion by T0: 6 x 6, screws as in
   /// LegScrews.
-  Transform WaistPose() const;
+  Transform WaistPose() const {
+    Transform T_ref_waist = Transform::Identity();
+    T_ref_waist.linear() = frames_[0].R;
+    T_ref_waist.translation() = frames_[0].p;
+    return T_ref_waist;
+  }
   Eigen::Matrix<double, 6, 6> WaistScrews() const {
     return screws_.topRows<kWaistParameterCount>().matrix().transpose();
   }
