@@ -60,6 +60,8 @@ class Project:
     @property
     def file(self) -> str:
         """The project file."""
+    def __fspath__(self) -> str:
+        """The project file, so that a project can be given wherever its file can."""
     @property
     def urdf(self) -> str:
         """The robot description."""

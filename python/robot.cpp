@@ -79,6 +79,9 @@ void AddRobot(py::module_& module) {
           py::return_value_policy::reference_internal, "Its nominal robot.")
       .def_property_readonly(
           "file", [](const Project& p) { return p.file.string(); }, "The project file.")
+      .def(
+          "__fspath__", [](const Project& p) { return p.file.string(); },
+          "The project file, so that a project can be given wherever its file can.")
       .def_property_readonly(
           "urdf", [](const Project& p) { return p.urdf.string(); }, "The robot description.")
       .def_property_readonly(

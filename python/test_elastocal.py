@@ -86,7 +86,7 @@ class LeftArm(unittest.TestCase):
 
     def test_runtime(self):
         nominal = elastocal.Runtime(self.folder / "cli", ARM, "nominal")
-        real = elastocal.Runtime(self.folder / "cli", ARM)
+        real = elastocal.Runtime(self.folder / "cli", self.project)  # as by its file
         bent = {"arm_left_1_joint": 0.3, "arm_left_2_joint": 0.4, "arm_left_4_joint": -1.2,
                 "leg_left_4_joint": 0.6, "leg_right_4_joint": 0.6}  # within the limits
         q = np.array([bent.get(name, 0.1 if "arm_right_2" not in name else -0.4)

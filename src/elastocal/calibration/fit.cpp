@@ -192,6 +192,7 @@ void FollowLoads(const FitProblem& problem, const Selection& selection,
     ++fit.iterations;
     residuals.loads = ComputeLoads(problem.model, problem.recording, body.ToErrors(x),
                                    body.ToPlacement(x), problem.options.load);
+    body.LoadsFollow(x);
     body.Evaluate(x, true);
     const double change = step.cwiseAbs().maxCoeff();
     if (change < kLoadTolerance) break;

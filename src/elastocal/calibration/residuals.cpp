@@ -26,8 +26,9 @@ BodyResiduals::BodyResiduals(const ResidualInputs& inputs, const std::vector<int
     : in_(inputs),
       placement_(placement),
       unknowns_(inputs.model, free, delta, placement),
-      jacobian_(inputs.model),
-      motion_(MotionOfPostures(inputs.recording)) {
+      jacobian_(inputs.model, GeneralizedJacobian::LoadsOfRootJoints::kTurning),
+      motion_(MotionOfPostures(inputs.recording)),
+      loaded_geometry_(ApplyErrors(inputs.model, delta)) {
   parameter_blocks = unknowns_.block_sizes();
   nuisance_blocks = unknowns_.WaistBlocks();
   nonnegative = unknowns_.nonnegative();
@@ -221,8 +222,7 @@ void BodyResiduals::Evaluate(const Eigen::VectorXd& x, bool with_jacobians) {
       PlaceWaist(placement_.T_ref_waist[i], unknowns_.PoseStep(x, unknowns_.WaistBlock(i)),
                  geometry_);
     }
-    jacobian_.Evaluate(geometry_, in_.recording.q.row(i).transpose(),
-                       in_.loads.empty() ? JointLoads() : in_.loads[i].joints);
+    jacobian_.Evaluate(geometry_, in_.recording.q.row(i).transpose(), LoadsNow(i));
     for (int block : blocks_of_posture_[i]) {
       if (block >= body_count()) {
         EvaluateTie(block, i);

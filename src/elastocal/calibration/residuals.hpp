@@ -59,6 +59,11 @@ class BodyResiduals : public LeastSquaresProblem {
                 const Eigen::VectorXd& delta, const Placement& placement);
 
   static constexpr double kPoseScale = BodyUnknowns::kPoseScale;
+  /// The loads now follow the solution `x`. (At first they are those of the errors given.)
+  void LoadsFollow(const Eigen::VectorXd& x) {
+    loaded_geometry_ = ApplyErrors(in_.model, unknowns_.ToErrors(x));
+  }
+
   /// See BodyUnknowns.
   Eigen::VectorXd Start() const { return unknowns_.Start(); }
   Eigen::VectorXd ToErrors(const Eigen::VectorXd& x) const { return unknowns_.ToErrors(x); }
@@ -92,6 +97,10 @@ class BodyResiduals : public LeastSquaresProblem {
   void MakeFloorBlocks();
   void MakePriorBlocks();
   void MakeEarlierBlock(const EarlierPart& earlier);
+  JointLoads LoadsNow(int posture) const {
+    if (in_.loads.empty()) return {};
+    return TurnedLoads(in_.model, loaded_geometry_, geometry_, in_.loads[posture].joints);
+  }
   Eigen::VectorXd BodySds(std::size_t body) const;
   Vector6d TieSds(int posture) const;
   /// How many moments like this one tell as much as one posture, by the correlation of bodies or of
@@ -122,8 +131,8 @@ class BodyResiduals : public LeastSquaresProblem {
   std::vector<int> earlier_entries_;   // of x, of the last block; empty: there is no such block
   Eigen::VectorXd earlier_offset_;
   Eigen::VectorXd x_;
-  Geometry geometry_;
-  std::vector<Eigen::VectorXd> sds_;  // by block, priors aside
+  Geometry geometry_, loaded_geometry_;  // now, and with which the loads were found
+  std::vector<Eigen::VectorXd> sds_;     // by block, priors aside
   std::vector<Eigen::VectorXd> residuals_;
   std::vector<RowMajorMatrix> jacobians_;
   Eigen::VectorXd raw_;  // of the body in hand, m

@@ -82,6 +82,16 @@ void FilterKnown(const SecondOrderSections& sections, Eigen::MatrixXd& values) {
   }
 }
 
+/// Logs of robots have some tens to thousands of samples a second.
+std::string LikelyUnit(double rate_hz) {
+  for (const auto& [unit, in_a_second] : {std::pair{"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}}) {
+    const double rate = rate_hz * in_a_second;
+    if (rate > 10.0 && rate < 1e4)
+      return std::string(" (is its time in ") + unit + " instead of s?)";
+  }
+  return "";
+}
+
 }  // namespace
 
 SmoothedLog SmoothLog(const JointLog& log, const SmoothingOptions& options) {
@@ -99,7 +109,7 @@ SmoothedLog SmoothLog(const JointLog& log, const SmoothingOptions& options) {
                     ": has %.3g samples a second; more than %.3g were expected, twice the cutoff "
                     "of the filter",
                     piece.rate_hz, 2.0 * options.cutoff_hz);
-      throw InputError(log.source + text);
+      throw InputError(log.source + text + LikelyUnit(piece.rate_hz));
     }
     const auto sections =
         ButterworthLowPass(options.filter_order, options.cutoff_hz, piece.rate_hz);

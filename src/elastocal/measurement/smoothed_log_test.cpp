@@ -92,6 +92,11 @@ TEST(SmoothLog, DoesNotBridgeHoles) {
 TEST(SmoothLog, RefusesASlowLog) {
   ExpectInputError([] { SmoothLog(MakeLog(Times(100, 9.0)), {}); },
                    {"j.csv: has 9 samples", "more than 10"});
+  for (const auto& [unit, a_second] : {std::pair{"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}}) {
+    JointLog log = MakeLog(Times(100, 100.0));
+    log.time_s *= a_second;
+    ExpectInputError([&] { SmoothLog(log, {}); }, {std::string("is its time in ") + unit});
+  }
 }
 
 }  // namespace

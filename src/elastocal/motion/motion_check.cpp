@@ -183,8 +183,10 @@ std::vector<Constraint> BrokenConstraints(const MotionMargins& margins,
   // Written so that NaN breaks them.
   const auto below = [](const Worst& worst, double limit) { return !(worst.value >= limit); };
   const auto above = [](const Worst& worst, double limit) { return !(worst.value <= limit); };
+  // Postures that are designed at the margin come from files with twelve digits.
+  constexpr double kRounding = 1e-9;
   const std::initializer_list<std::pair<Constraint, bool>> checks = {
-      {Constraint::kPosition, below(margins.position, limits.position_margin)},
+      {Constraint::kPosition, below(margins.position, limits.position_margin - kRounding)},
       {Constraint::kVelocity, above(margins.velocity, limits.velocity_share)},
       {Constraint::kTorque, above(margins.torque, limits.torque_share)},
       {Constraint::kClearance, below(margins.clearance, limits.clearance)},

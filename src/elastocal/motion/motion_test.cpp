@@ -61,6 +61,15 @@ TEST_F(BalancedWalker, PlacesItsFeetWhereItIsTold) {
   EXPECT_FALSE(leg.Place(Offset(0, 0.085, -1.3), q));  // longer than the leg
 }
 
+// 0.35 m - 0.343 m is less than 2 % of 0.35 m by a rounding.
+TEST_F(BalancedWalker, MayStandAtItsMargin) {
+  MotionMargins margins = CheckMotion(robot_, {100.0, robot_.rest.transpose(), {robot_.AllFeet()}});
+  margins.position.value = robot_.limits.position_margin - 1e-12;
+  EXPECT_FALSE(Broken(margins, robot_.limits));
+  margins.position.value = robot_.limits.position_margin - 1e-6;
+  EXPECT_EQ(Broken(margins, robot_.limits), Constraint::kPosition);
+}
+
 TEST_F(BalancedWalker, RestsOverItsFeet) {
   const MotionMargins margins =
       CheckMotion(robot_, {100.0, robot_.rest.transpose(), {robot_.AllFeet()}});

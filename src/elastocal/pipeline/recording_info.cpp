@@ -197,6 +197,10 @@ ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions
                        ": has markers and joints; say which by --part markers or --part "
                        "joints");
     }
+    if (!file.markers && !file.joints) {
+      throw InputError(path + " (" + file.format + "): there are no markers in it: " +
+                       file.why_no_markers + "; nor joint positions: " + file.why_no_joints);
+    }
     part = file.joints ? RecordingPart::kJoints : RecordingPart::kMarkers;
   }
   if (part == RecordingPart::kMarkers) {

@@ -96,6 +96,15 @@ TEST(RecordingInfoTest, ConvertsOnePartOfABag) {
   EXPECT_EQ(body.frame_count(), 20);
   EXPECT_TRUE(std::isnan(body.positions(7, 0)));
   EXPECT_NEAR(body.positions(3, 0), 1.03, 1e-9);
+  // What a file has neither of is said of both.
+  const ScratchFolder folder;
+  JointLog log;
+  log.names = {"elbow"};
+  log.time_s = log.positions = log.torques = Eigen::MatrixXd::Zero(1, 1);
+  const std::string other = folder.Write("other", McapBytes(log));
+  ExpectInputError(
+      [&] { ConvertRecording(other, {.joints_topic = "/no"}, RecordingPart::kOnlyOne, "z"); },
+      {"no poses", "no joint states in the topic '/no'"});
 }
 
 }  // namespace

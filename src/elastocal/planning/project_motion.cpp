@@ -95,9 +95,12 @@ JointMotion ToJointMotion(const StandingRobot& robot, const SampledMotion& motio
 std::string ReasonText(const Project& project, const LeftOut& left_out) {
   std::string text = ConstraintName(left_out.constraint);
   switch (left_out.constraint) {
-    case Constraint::kPosition:
-      return text + fmt::format(": {} {:.4f} from its end", JointName(project, left_out.index),
-                                left_out.value);
+    case Constraint::kPosition: {
+      const bool slides = project.tree.joints[Size(left_out.index)].type == JointType::kPrismatic;
+      return text + fmt::format(": {} {:.2f} {} from its end", JointName(project, left_out.index),
+                                left_out.value * (slides ? 1e3 : 1.0 / kRadiansPerDegree),
+                                slides ? "mm" : "deg");
+    }
     case Constraint::kVelocity:
     case Constraint::kTorque:
       return text + fmt::format(": {} at {:.0f} %", JointName(project, left_out.index),

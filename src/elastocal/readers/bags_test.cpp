@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/readers/recording_file.hpp"
+#include "elastocal/readers/ros_messages.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/recording_writers.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -150,10 +152,65 @@ TEST(BagsTest, OneOfSeveralTopicsIsAskedFor) {
   EXPECT_FALSE(ReadBag(bag, {.joints_topic = "/no"}).joints.has_value());
 }
 
+/// What a topic of joint states with these messages holds.
+JointLog TakeTopic(const std::vector<std::string>& messages) {
+  RosMessages topic("bag", {});
+  topic.AddTopic(1, "/joint_states", "sensor_msgs/msg/JointState", RosEncoding::kCdr);
+  for (const std::string& message : messages) topic.Add(1, message, 0, "");
+  return topic.Take().joints.value();
+}
+
+/// Drivers that list joints as a hash table has them change the order at any time.
+TEST(BagsTest, JointsMayComeInAnotherOrder) {
+  const JointLog log = SomeLog();
+  JointLog turned = log;
+  std::swap(turned.names[0], turned.names[1]);
+  turned.positions.col(0).swap(turned.positions.col(1));
+  turned.torques.col(0).swap(turned.torques.col(1));
+  std::vector<std::string> messages;
+  for (int i = 0; i < log.sample_count(); ++i) {
+    messages.push_back(JointStateCdr(i % 3 == 1 ? turned : log, i));
+  }
+  const JointLog read = TakeTopic(messages);
+  EXPECT_EQ(read.names, log.names);
+  EXPECT_EQ(read.time_s, log.time_s);
+  EXPECT_EQ(read.positions, log.positions);
+  EXPECT_EQ(read.torques, log.torques);
+}
+
+/// `ros2 bag record --compression-mode message`: each message is a frame of zstd, here of one block
+/// as it is.
+TEST(BagsTest, MessagesMayBeCompressed) {
+  const JointLog log = SomeLog();
+  std::vector<std::string> messages;
+  for (int i = 0; i < log.sample_count(); ++i) {
+    const std::string message = JointStateCdr(log, i);
+    Bytes frame;
+    frame.U(0xFD2FB528, 4).U(0xA0, 1).U(message.size(), 4).U(message.size() << 3 | 1, 3);
+    messages.push_back(frame.text + message);
+  }
+  const JointLog read = TakeTopic(messages);
+  EXPECT_EQ(read.positions, log.positions);
+  EXPECT_EQ(read.torques, log.torques);
+  messages[3].pop_back();
+  ExpectInputError([&] { TakeTopic(messages); }, {"message of '/joint_states'", "zstd"});
+}
+
+TEST(BagsTest, FolderOfABagIsNamed) {
+  const ScratchFolder folder;
+  folder.Write("metadata.yaml", "");
+  folder.Write("bag_1.db3", "");
+  ExpectInputError([&] { ReadRecordingFile(folder.path(), {}); }, {"is a folder", "bag_1.db3"});
+  folder.Write("bag_0.db3", "");
+  ExpectInputError([&] { ReadRecordingFile(folder.path(), {}); },
+                   {"bag_0.db3 and so on", "`ros2 bag convert`"});
+}
+
 TEST(BagsTest, DamageIsNamedWithItsPlace) {
   const std::string good = McapBytes(SomeLog());
   ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 45)); }, {"bag: byte", "cut off"});
-  ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 100)); }, {"bag: byte", "beyond"});
+  ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 100)); },
+                   {"bag: byte", "beyond", "`mcap recover`"});
   std::string bad = good;
   bad[bad.find("elbow") - 4] = 100;  // the length of the name
   ExpectInputError([&] { ReadBag(bad); },

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -23,6 +24,20 @@ constexpr std::size_t kStreamBlock = 1u << 18;
   throw InputError(name + ": cannot be read: " + std::generic_category().message(reason));
 }
 
+/// What to do with a folder that `ros2 bag record` wrote; empty for any other one.
+std::string BagInside(const std::filesystem::path& folder) {
+  std::vector<std::string> bags;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending == ".mcap" || ending == ".db3") bags.push_back(entry.path().filename().string());
+  }
+  if (bags.empty()) return "";
+  const std::string one = ": the bag in it, " + *std::ranges::min_element(bags);
+  return bags.size() == 1 ? one
+                          : one + " and so on (a bag in pieces becomes one by `ros2 bag convert`)";
+}
+
 }  // namespace
 
 ByteSource ByteSource::Open(const std::filesystem::path& file) {
@@ -39,7 +54,7 @@ ByteSource ByteSource::Open(const std::filesystem::path& file) {
   struct stat status {};
   if (fstat(descriptor, &status) != 0) FailToOpen(source.name_, errno);
   if (S_ISDIR(status.st_mode)) {
-    throw InputError(source.name_ + ": is a folder; a file was expected");
+    throw InputError(source.name_ + ": is a folder; a file was expected" + BagInside(file));
   }
   if (!S_ISREG(status.st_mode)) {
     throw InputError(source.name_ + ": is not a regular file (a device or a pipe)");

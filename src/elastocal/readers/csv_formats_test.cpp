@@ -40,10 +40,37 @@ void ExpectMade(const RecordingFile& file, const std::string& prefix = "") {
   EXPECT_EQ(file.up, "");  // none of them says
 }
 
+/// What a spreadsheet of a country with decimal commas makes of a text: of its numbers too.
+std::string Resaved(std::string text, char separator) {
+  std::ranges::replace(text, ',', separator);
+  for (std::size_t i = 1; i + 1 < text.size(); ++i) {
+    const auto digit = [&](std::size_t k) { return text[k] >= '0' && text[k] <= '9'; };
+    if (text[i] == '.' && digit(i - 1) && digit(i + 1)) text[i] = ',';
+  }
+  return text;
+}
+
 std::string Replaced(std::string text, const std::string& what, const std::string& by) {
   const std::size_t at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;
   return text.replace(at, what.size(), by);
+}
+
+TEST(RecordingFileTest, WhatIsSomethingElseIsNamed) {
+  const auto expect = [](const std::string& bytes, const std::string& words) {
+    ExpectInputError([&] { RecogniseRecording(ByteSource::OfMemory(bytes, "file")); },
+                     {"file: it is " + words});
+  };
+  expect("\x1F\x8B\x08", "compressed by gzip");
+  expect("\x28\xB5\x2F\xFD....", "compressed by zstd");
+  expect("\x93NUMPY\x01", "a single array");
+  expect("\x89HDF\r\n\x1A\n", "an HDF5 or MATLAB file");
+  expect(
+      "\xFF\xFE"
+      "t",
+      "text in UTF-16");
+  expect("version https://git-lfs.github.com/spec/v1\noid", "a pointer of Git LFS");
+  expect("<!DOCTYPE html><html>", "a web page");
 }
 
 TEST(ViconTest, TrajectoriesBesideOtherSections) {
@@ -58,6 +85,11 @@ TEST(ViconTest, TrajectoriesBesideOtherSections) {
     alone.insert(at, "\r");
   }
   ExpectMade(ReadCsv(alone), "talos:");
+  for (const char separator : {';', '\t'}) ExpectMade(ReadCsv(Resaved(text, separator)), "talos:");
+  // A comma is the mark of all decimals of a file, or of none.
+  std::string mixed = Resaved(text, ';');
+  mixed.replace(mixed.rfind(','), 1, ".");
+  ExpectInputError([&] { ReadCsv(mixed); }, {"a number with a decimal comma, as others above"});
 }
 
 TEST(ViconTest, MistakesAreNamed) {
@@ -78,6 +110,7 @@ TEST(TrcTest, FieldByField) {
   const RecordingFile file = ReadCsv(TrcText(ThreeMarkers()));
   EXPECT_EQ(file.format, "TRC");
   ExpectMade(file);
+  ExpectMade(ReadCsv(Resaved(TrcText(ThreeMarkers()), '\t')));
 }
 
 TEST(TrcTest, MistakesAreNamed) {
@@ -97,6 +130,7 @@ TEST(MotiveTest, MarkersWithColumnsOfQuality) {
   const RecordingFile file = ReadCsv(MotiveText(ThreeMarkers()));
   EXPECT_EQ(file.format, "OptiTrack Motive CSV");
   ExpectMade(file);
+  ExpectMade(ReadCsv(Resaved(MotiveText(ThreeMarkers()), ';')));
 }
 
 /// As Motive 2 exports a body with one measured marker, and the marker that the body's model has.
@@ -223,6 +257,8 @@ TEST(QtmOtherTest, BodiesOfTheirOwnExport) {
   EXPECT_EQ(markers.rate_hz, 100.0);
   ASSERT_EQ(markers.frame_count(), 3);
   EXPECT_NEAR(markers.positions(1, 0), -0.19564748, 1e-12);
+  const RecordingFile resaved = ReadCsv(Resaved(kQtmBodies, '\t'));
+  EXPECT_EQ(resaved.markers->positions.topRows(2), markers.positions.topRows(2));
   // QTM's own angles (its matrix has five decimals): the body's y axis, of 100 mm, rises by
   // sin(roll), and its x axis turns by yaw.
   const double roll = -0.78772 * kRadiansPerDegree, yaw = 0.12055 * kRadiansPerDegree;

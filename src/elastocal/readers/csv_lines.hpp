@@ -18,8 +18,26 @@
 
 namespace elastocal {
 
+/// The separator of a text: that of the first line which begins with one, else the first one of
+/// all; a comma where there is none.
+inline char FindFirstSeparator(std::string_view text) {
+  constexpr std::string_view kSeparators = ",;\t";
+  const std::size_t found = text.find_first_of(kSeparators);
+  for (std::size_t at = 0; at < text.size(); at = text.find_first_of("\r\n", at) + 1) {
+    if (kSeparators.find(text[at]) != std::string_view::npos) return text[at];
+    if (text.find_first_of("\r\n", at) == std::string_view::npos) break;
+  }
+  return found == std::string_view::npos ? ',' : text[found];
+}
+
+inline char FindFirstSeparator(const ByteSource& source) {
+  std::array<char, 4096> head{};
+  return FindFirstSeparator(std::string_view(head.data(), source.Read(0, head)));
+}
+
 /// A text of separated values line by line, as programs of cameras export it: lines have different
-/// lengths, and the meaning of a line depends on where it stands.
+/// lengths, and the meaning of a line depends on where it stands. Where no comma separates, numbers
+/// may have decimal commas, all of them then.
 class CsvLines {
  public:
   CsvLines(const ByteSource& source, char separator)
@@ -28,7 +46,7 @@ class CsvLines {
   bool Next() {
     std::span<char> line;
     if (!reader_.Next(line)) return false;
-    SplitCells(line, separator_, separator_ == ',' ? Quotes::kEnclose : Quotes::kOrdinary, cells_);
+    SplitCells(line, separator_, separator_ == '\t' ? Quotes::kOrdinary : Quotes::kEnclose, cells_);
     return true;
   }
 
@@ -54,16 +72,28 @@ class CsvLines {
     return name;
   }
 
+  /// A finite number as the file writes them.
+  std::optional<double> Parse(std::string_view cell) {
+    const std::size_t mark = cell.find_first_of(".,");
+    const bool comma = mark != std::string_view::npos && cell[mark] == ',' && separator_ != ',';
+    std::string changed;
+    if (comma) cell = changed.assign(cell).replace(mark, 1, ".");
+    const std::optional<double> number = ParseNumber(cell);
+    if (!number || mark == std::string_view::npos) return number;
+    if (decimal_ == '\0') decimal_ = comma ? ',' : '.';
+    return (decimal_ == ',') == comma ? number : std::nullopt;
+  }
+
   /// A finite number; NaN for a gap. Throws InputError for anything else.
-  double NumberOrGap(std::size_t i) const {
+  double NumberOrGap(std::size_t i) {
     const std::string_view cell = Cell(i);
-    if (const std::optional<double> number = ParseNumber(cell)) return *number;
-    if (!IsGap(cell)) FailCell(i, "a number with a decimal point, or nothing");
+    if (const std::optional<double> number = Parse(cell)) return *number;
+    if (!IsGap(cell)) FailNumber(i, ", or nothing");
     return kNaN;
   }
-  double Number(std::size_t i) const {
-    if (const std::optional<double> number = ParseNumber(Cell(i))) return *number;
-    FailCell(i, "a number with a decimal point");
+  double Number(std::size_t i) {
+    if (const std::optional<double> number = Parse(Cell(i))) return *number;
+    FailNumber(i, "");
   }
 
   [[noreturn]] void Fail(const std::string& message) const {
@@ -75,7 +105,7 @@ class CsvLines {
   }
 
   /// X, Y and Z in three cells: none or all of them, NaN where none. Throws InputError.
-  std::array<double, 3> Position(std::size_t i) const {
+  std::array<double, 3> Position(std::size_t i) {
     std::array<double, 3> position{};
     int missing = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -89,9 +119,15 @@ class CsvLines {
   }
 
  private:
+  [[noreturn]] void FailNumber(std::size_t i, const std::string& end) const {
+    FailCell(i, decimal_ == ',' ? "a number with a decimal comma, as others above" + end
+                                : "a number with a decimal point" + end);
+  }
+
   SourceStream stream_;
   LineReader reader_;
   char separator_;
+  char decimal_ = '\0';  ///< point or comma, when a number has told
   std::vector<std::string_view> cells_;
 };
 

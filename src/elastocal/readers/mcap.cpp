@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kRecordHead = 9;
+constexpr std::string_view kNotClosed =
+    "the bag was not closed, or was cut off; `mcap recover` mends it";
 
 /// Records of MCAP, from the first to the end of the data, chunk by chunk.
 class McapReader {
@@ -27,11 +29,12 @@ class McapReader {
     std::uint64_t at = kMcapMagic.size();
     while (!done_) {
       std::array<char, kRecordHead> head{};
-      source_.ReadAll(at, head, "a record (the bag was not closed, or was cut off)");
+      source_.ReadAll(at, head, "a record (" + std::string(kNotClosed) + ")");
       const auto [kind, length] = Head(head);
       if (length > source_.size() - at - kRecordHead) {
-        source_.Fail(
-            at, "a record of " + std::to_string(length) + " bytes goes beyond the end of the file");
+        source_.Fail(at, "a record of " + std::to_string(length) +
+                             " bytes goes beyond the end of the file (" + std::string(kNotClosed) +
+                             ")");
       }
       if (Needed(kind)) {
         if (length > kLargestChunk) source_.Fail(at, "a record of more than 512 MiB");

@@ -46,7 +46,7 @@ Eigen::Quaterniond FromEulerAngles(const std::string& order, const Eigen::Vector
 class MotiveReader {
  public:
   MotiveReader(const ByteSource& source, const ReaderOptions& options)
-      : source_(source), options_(options), lines_(source, ',') {}
+      : source_(source), options_(options), lines_(source, FindFirstSeparator(source)) {}
 
   RecordingFile Read() {
     ReadTakeLine();
@@ -68,7 +68,7 @@ class MotiveReader {
     for (std::size_t i = 0; i + 1 < lines_.count(); i += 2) {
       take_.emplace(lines_.Name(i), lines_.Name(i + 1));
     }
-    const auto rate = ParseNumber(take_["Export Frame Rate"]);
+    const auto rate = lines_.Parse(take_["Export Frame Rate"]);
     if (!rate || *rate <= 0.0) {
       lines_.Fail("Export Frame Rate: found " + Quote(take_["Export Frame Rate"]) +
                   "; frames per second, above 0, were expected");
@@ -195,7 +195,7 @@ class MotiveReader {
       ++count_;
     }
     if (count_ == 0) lines_.Fail("no frame below the header");
-    const auto stated = ParseNumber(take_["Total Exported Frames"]);
+    const auto stated = lines_.Parse(take_["Total Exported Frames"]);
     if (stated && *stated != static_cast<double>(count_)) {
       lines_.Fail("found " + std::to_string(count_) + " frames; Total Exported Frames is " +
                   FormatNumber(*stated));

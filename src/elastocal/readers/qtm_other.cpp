@@ -32,7 +32,7 @@ class QtmBodyReader {
       ++count;
     }
     if (count == 0) lines_.Fail("no frame below the header");
-    if (const auto stated = ParseNumber(header_["NO_OF_FRAMES"]);
+    if (const auto stated = lines_.Parse(header_["NO_OF_FRAMES"]);
         stated && *stated != static_cast<double>(count)) {
       lines_.Fail("found " + std::to_string(count) + " frames; NO_OF_FRAMES is " +
                   FormatNumber(*stated));
@@ -65,7 +65,7 @@ class QtmBodyReader {
     if (bodies_.names.empty()) lines_.Fail("no line BODY_NAMES above");
     for (std::size_t b = 0; b < bodies_.names.size(); ++b) CheckBody(b);
     bodies_.names = DistinctNames(bodies_.names);
-    rate_ = ParseNumber(header_["FREQUENCY"]).value_or(0.0);
+    rate_ = lines_.Parse(header_["FREQUENCY"]).value_or(0.0);
     if (rate_ <= 0.0) {
       lines_.Fail("FREQUENCY: found " + Quote(header_["FREQUENCY"]) +
                   "; frames per second, above 0, were expected");

@@ -29,9 +29,39 @@ constexpr std::array kFormats = {
     Format{"Qualisys TSV (6D, analogue or force)", IsQtmOther, ReadQtmOther},
 };
 
+/// What people take for a recording, by its first bytes, and what is to be done with it.
+struct OtherKind {
+  std::string_view begin;
+  const char* words;
+};
+
+constexpr std::array kOtherKinds = {
+    OtherKind{"\x1F\x8B", "it is compressed by gzip; unpack it first (gunzip)"},
+    OtherKind{"\x28\xB5\x2F\xFD", "it is compressed by zstd; unpack it first (zstd -d)"},
+    OtherKind{{"\xFD"
+               "7zXZ\0",
+               6},
+              "it is compressed by xz; unpack it first (unxz)"},
+    OtherKind{"\x93NUMPY",
+              "it is a single array of NumPy; save names, times and positions by numpy.savez "
+              "(docs/formats.md, Recordings of others)"},
+    OtherKind{"\x89HDF\r\n", "it is an HDF5 or MATLAB file; export it as CSV or .npz"},
+    OtherKind{"MATLAB 5.0 MAT-file", "it is a MATLAB file; export it as CSV or .npz"},
+    OtherKind{"\xFF\xFE", "it is text in UTF-16; save it as UTF-8"},
+    OtherKind{"\xFE\xFF", "it is text in UTF-16; save it as UTF-8"},
+    OtherKind{"version https://git-lfs",
+              "it is a pointer of Git LFS; `git lfs pull` fetches the file"},
+    OtherKind{"<!DOCTYPE html", "it is a web page, not the file that was to be downloaded"},
+    OtherKind{"<!doctype html", "it is a web page, not the file that was to be downloaded"},
+    OtherKind{"<html", "it is a web page, not the file that was to be downloaded"},
+};
+
 const Format* FindFormat(const ByteSource& source) {
   std::array<char, 4096> head{};
   std::string_view bytes(head.data(), source.Read(0, head));
+  for (const OtherKind& other : kOtherKinds) {
+    if (bytes.starts_with(other.begin)) throw InputError(source.name() + ": " + other.words);
+  }
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   for (const Format& format : kFormats) {

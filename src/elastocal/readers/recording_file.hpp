@@ -49,7 +49,8 @@ struct RecordingFile {
 /// Recognises the format by the bytes, never by the name: C3D, Vicon Nexus CSV, OptiTrack Motive
 /// CSV, TRC, QTM TSV of kind 6D, NumPy .npz, MCAP, ROS 2 db3, ROS 1
 /// bag. Nothing for anything else. The name
-/// is that of RecordingFile::format.
+/// is that of RecordingFile::format. Throws InputError for what is surely something else: packed
+/// files, UTF-16, web pages.
 std::optional<std::string> RecogniseRecording(const ByteSource& source);
 
 /// Reads such a file. Memory grows with what is kept of it and not with its size. Throws InputError

@@ -2,6 +2,8 @@
 #include "elastocal/readers/ros_messages.hpp"
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <set>
 
 #include "elastocal/math/input_error.hpp"
@@ -11,6 +13,8 @@
 #include "elastocal/readers/cdr.hpp"
 #include "elastocal/readers/joint_columns.hpp"
 #include "elastocal/readers/joint_series.hpp"
+#include "elastocal/readers/record_fields.hpp"
+#include "elastocal/readers/unpack.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -36,6 +40,19 @@ std::string BodyName(std::string topic) {
     topic.resize(topic.size() - kEnding.size());
   }
   return topic.substr(topic.rfind('/') + 1);
+}
+
+/// Where each of `wanted` stands in `names`, which are the same in any order.
+std::vector<std::size_t> PlacesIn(const std::vector<std::string>& names,
+                                  const std::vector<std::string>& wanted) {
+  std::vector<std::size_t> places(names.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  if (names == wanted) return places;
+  std::map<std::string_view, std::size_t> place_of;
+  for (std::size_t i = 0; i < names.size(); ++i) place_of[names[i]] = i;
+  std::ranges::transform(wanted, places.begin(),
+                         [&](const std::string& name) { return place_of.at(name); });
+  return places;
 }
 
 }  // namespace
@@ -78,6 +95,15 @@ void RosMessages::Add(std::uint64_t id, std::span<const char> message, std::int6
   Topic& topic = found->second;
   ++topic.messages;
   const std::string where = source_ + ": " + place + "message of " + Quote(topic.name) + ": ";
+  // By `ros2 bag record --compression-mode message`; CDR begins with a zero.
+  constexpr std::string_view kZstd = "\x28\xB5\x2F\xFD";
+  if (topic.kind != Kind::kOther && topic.encoding == RosEncoding::kCdr &&
+      std::string_view(message.data(), message.size()).starts_with(kZstd)) {
+    if (!UnpackZstd(message, kLargestChunk, unpacked_)) {
+      throw InputError(where + "its zstd data are damaged, or are of more than 512 MiB");
+    }
+    message = unpacked_;
+  }
   if (topic.kind == Kind::kJointState) AddJointState(topic, message, received_ns, where);
   if (topic.kind == Kind::kPose) AddPose(topic, message, received_ns, where);
   if (topic.kind == Kind::kTransforms) AddTransforms(topic, message, received_ns, where);
@@ -98,25 +124,38 @@ void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
                      std::to_string(efforts.size()) + " efforts");
   }
   topic.unstamped += stamp == 0 ? 1 : 0;
-  auto group = std::find_if(topic.groups.begin(), topic.groups.end(),
-                            [&](const JointGroup& one) { return one.names == names; });
-  if (group == topic.groups.end()) {
-    constexpr std::size_t kMostGroups = 100;
-    if (topic.groups.size() == kMostGroups) {
-      throw InputError(place + "its names are different in too many messages");
-    }
-    for (const std::string& name : names) RequireUtf8(name, source_);
-    if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
-      throw InputError(place + "a joint comes twice");
-    }
-    topic.groups.push_back({names, {}, {}, {}, {}});
-    group = topic.groups.end() - 1;
-  }
+  JointGroup& group = GroupOf(topic, names, place);
   efforts.resize(names.size(), kNaN);
-  group->stamps_ns.push_back(stamp);
-  group->received_ns.push_back(received_ns);
-  group->positions.insert(group->positions.end(), positions.begin(), positions.end());
-  group->efforts.insert(group->efforts.end(), efforts.begin(), efforts.end());
+  group.stamps_ns.push_back(stamp);
+  group.received_ns.push_back(received_ns);
+  for (const std::size_t i : PlacesIn(names, group.names)) {
+    group.positions.push_back(positions[i]);
+    group.efforts.push_back(efforts[i]);
+  }
+}
+
+/// The same joints may come in another order: some drivers list them as a hash table has them.
+RosMessages::JointGroup& RosMessages::GroupOf(Topic& topic, const std::vector<std::string>& names,
+                                              const std::string& place) const {
+  std::vector<JointGroup>& groups = topic.groups;
+  const auto same = std::ranges::find(groups, names, &JointGroup::names);
+  if (same != groups.end()) return *same;
+  const std::set<std::string> joints(names.begin(), names.end());
+  const auto turned = std::ranges::find_if(groups, [&](const JointGroup& one) {
+    return one.names.size() == names.size() && joints.size() == names.size() &&
+           std::ranges::all_of(one.names, [&](const auto& name) { return joints.contains(name); });
+  });
+  if (turned != groups.end()) return *turned;
+  constexpr std::size_t kMostGroups = 100;
+  if (groups.size() == kMostGroups) {
+    throw InputError(place + "its joints are different ones in too many messages");
+  }
+  for (const std::string& name : names) RequireUtf8(name, source_);
+  if (joints.size() != names.size()) {
+    throw InputError(place + "a joint comes twice");
+  }
+  groups.push_back({names, {}, {}, {}, {}});
+  return groups.back();
 }
 
 void RosMessages::AddPose(Topic& topic, std::span<const char> message, std::int64_t received_ns,

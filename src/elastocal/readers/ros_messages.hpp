@@ -39,7 +39,7 @@ class RosMessages {
  private:
   enum class Kind { kOther, kJointState, kPose, kTransforms };
 
-  /// Messages of one topic with the same names of joints.
+  /// Messages of one topic with the same joints, in the order in which the first one has them.
   struct JointGroup {
     std::vector<std::string> names;
     std::vector<std::int64_t> stamps_ns, received_ns;
@@ -58,6 +58,8 @@ class RosMessages {
 
   void AddJointState(Topic& topic, std::span<const char> message, std::int64_t received_ns,
                      const std::string& place);
+  JointGroup& GroupOf(Topic& topic, const std::vector<std::string>& names,
+                      const std::string& place) const;
   void AddPose(Topic& topic, std::span<const char> message, std::int64_t received_ns,
                const std::string& place);
   void AddTransforms(const Topic& topic, std::span<const char> message, std::int64_t received_ns,
@@ -72,6 +74,7 @@ class RosMessages {
   std::string wanted_topic_;
   std::map<std::uint64_t, Topic> topics_;
   FrameTransforms transforms_;
+  std::vector<char> unpacked_;
 };
 
 }  // namespace elastocal

@@ -87,9 +87,9 @@ class TrcReader {
     }
   }
 
-  std::optional<double> Header(std::string_view key) const {
+  std::optional<double> Header(std::string_view key) {
     for (std::size_t i = 0; i < keys_.size() && i < values_.size(); ++i) {
-      if (keys_[i] == key) return ParseNumber(values_[i]);
+      if (keys_[i] == key) return lines_.Parse(values_[i]);
     }
     return std::nullopt;
   }

@@ -22,7 +22,7 @@ bool IsSection(std::string_view cell) {
 class ViconReader {
  public:
   ViconReader(const ByteSource& source, const ReaderOptions& options)
-      : source_(source), options_(options), lines_(source, ',') {}
+      : source_(source), options_(options), lines_(source, FindFirstSeparator(source)) {}
 
   RecordingFile Read() {
     RecordingFile file;
@@ -122,16 +122,19 @@ class ViconReader {
 
 bool IsViconCsv(std::string_view head) {
   // The first lines may be empty; then comes the name of a section, by itself.
+  constexpr std::string_view kEnds = ",;\t ";
   while (!head.empty()) {
     const std::size_t end = std::min(head.find_first_of("\r\n"), head.size());
     std::string_view line = head.substr(0, end);
-    while (!line.empty() && (line.back() == ',' || line.back() == ' ')) line.remove_suffix(1);
+    while (!line.empty() && kEnds.find(line.back()) != std::string_view::npos) {
+      line.remove_suffix(1);
+    }
     if (!line.empty()) {
       if (!IsSection(line)) return false;
       // A line with the rate follows.
       std::string_view next = head.substr(std::min(head.size(), end));
       next.remove_prefix(std::min(next.find_first_not_of("\r\n"), next.size()));
-      next = next.substr(0, next.find_first_of(",\r\n"));
+      next = next.substr(0, next.find_first_of(",;\t\r\n"));
       return line == "Events" || next.empty() || ParseNumber(next).has_value();
     }
     head.remove_prefix(std::min(head.size(), end + 1));

@@ -184,11 +184,18 @@ TEST_P(ElasticRandomRobots, WithoutLoadsOrComplianceTheyAreRigid) {
       rigid);
 }
 
+using LoadsOfRootJoints = GeneralizedJacobian::LoadsOfRootJoints;
+
 /// Markers, then the feet, each as four points: what the differences are taken of.
-Eigen::VectorXd Points(const ElasticRobot& robot, const Eigen::VectorXd& delta) {
+Eigen::VectorXd Points(const ElasticRobot& robot, const Eigen::VectorXd& delta,
+                       LoadsOfRootJoints root_joints) {
   const Geometry geometry = ApplyErrors(robot.model, delta);
-  const Eigen::Matrix3Xd markers = MarkerPositions(robot.model, geometry, robot.q, robot.loads);
-  const auto T_ref_link = CalibratedLinkTransforms(robot.model, geometry, robot.q, robot.loads);
+  const JointLoads loads =
+      root_joints == LoadsOfRootJoints::kConstant
+          ? robot.loads
+          : TurnedLoads(robot.model, ApplyErrors(robot.model, robot.delta), geometry, robot.loads);
+  const Eigen::Matrix3Xd markers = MarkerPositions(robot.model, geometry, robot.q, loads);
+  const auto T_ref_link = CalibratedLinkTransforms(robot.model, geometry, robot.q, loads);
   Eigen::VectorXd points(3 * robot.model.marker_count() + 12 * robot.model.leg_count());
   points.head(markers.size()) = markers.reshaped();
   for (int leg = 0; leg < robot.model.leg_count(); ++leg) {
@@ -198,10 +205,9 @@ Eigen::VectorXd Points(const ElasticRobot& robot, const Eigen::VectorXd& delta) 
   return points;
 }
 
-TEST_P(ElasticRandomRobots, DerivativesAgreeWithDifferences) {
-  const ElasticRobot robot(GetParam());
+void ExpectDerivatives(const ElasticRobot& robot, LoadsOfRootJoints root_joints) {
   const ErrorModel& model = robot.model;
-  GeneralizedJacobian jacobian(model);
+  GeneralizedJacobian jacobian(model, root_joints);
   jacobian.Evaluate(ApplyErrors(model, robot.delta), robot.q, robot.loads);
   const Eigen::MatrixXd J = jacobian.Dense();
   for (int i = 0; i < model.parameter_count(); ++i) {
@@ -212,7 +218,8 @@ TEST_P(ElasticRandomRobots, DerivativesAgreeWithDifferences) {
     Eigen::VectorXd forward = robot.delta, backward = robot.delta;
     forward[i] += step;
     backward[i] -= step;
-    const Eigen::VectorXd slope = (Points(robot, forward) - Points(robot, backward)) / (2.0 * step);
+    const Eigen::VectorXd slope =
+        (Points(robot, forward, root_joints) - Points(robot, backward, root_joints)) / (2.0 * step);
     const double size = compliance ? robot.loads.lpNorm<Eigen::Infinity>() : 1.0;
     const Eigen::Index rows = 3 * model.marker_count();
     EXPECT_LT((J.col(i) - slope.head(rows)).norm(), 3e-9 * size) << model.parameters[i].name;
@@ -230,6 +237,14 @@ TEST_P(ElasticRandomRobots, DerivativesAgreeWithDifferences) {
           << model.legs[leg].name << ", " << model.parameters[i].name;
     }
   }
+}
+
+TEST_P(ElasticRandomRobots, DerivativesAgreeWithDifferences) {
+  ExpectDerivatives(ElasticRobot(GetParam()), LoadsOfRootJoints::kConstant);
+}
+
+TEST_P(ElasticRandomRobots, DerivativesWhereLoadsTurnWithWhatRootJointsCarry) {
+  ExpectDerivatives(ElasticRobot(GetParam()), LoadsOfRootJoints::kTurning);
 }
 
 TEST_P(ElasticRandomRobots, LegPosesAreThoseOfTheirLinks) {

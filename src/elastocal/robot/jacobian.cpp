@@ -16,14 +16,20 @@ void SetRotation(Screws& screws, int row, const Vector3d& axis, const Vector3d& 
   screws.row(row) << axis.transpose().array(), point.cross(axis).transpose().array();
 }
 
+void AddRotation(Screws& screws, int row, const Vector3d& axis, const Vector3d& point) {
+  screws.row(row).head<3>() += axis.transpose().array();
+  screws.row(row).tail<3>() += point.cross(axis).transpose().array();
+}
+
 void SetTranslation(Screws& screws, int row, const Vector3d& direction) {
   screws.row(row) << 0.0, 0.0, 0.0, direction.transpose().array();
 }
 
 }  // namespace
 
-GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model)
+GeneralizedJacobian::GeneralizedJacobian(const ErrorModel& model, LoadsOfRootJoints root_joints)
     : model_(model),
+      root_joints_(root_joints),
       first_parameter_(model.tree.joints.size(), -1),
       compliances_(model.tree.joints.size(), 0),
       corrections_(model.tree.joints.size(), 0),
@@ -167,6 +173,33 @@ void GeneralizedJacobian::SetRootCompliance(int row, int axis,
   SetRotation(screws_, row, moment[axis] * axes.col(axis), frames_[0].p);
 }
 
+/// Adds to the rotations among a root joint's constants that its loads turn as well.
+void GeneralizedJacobian::TurnLoads(int joint, const Geometry::JointConstants& constants,
+                                    const MdhFrame& twisted, const JointLoads& loads) {
+  const auto turn_about_root = [&](int row, const Vector3d& axis) {
+    if (loads.about_root.cols() == 0) return;
+    const Vector3d moment = loads.about_root.col(joint);
+    const Vector3d& compliance = constants.root_compliance;
+    const Vector3d turn = compliance.cwiseProduct(axis.cross(moment));
+    AddRotation(screws_, row, frames_[0].R * (LeftJacobian(compliance.cwiseProduct(moment)) * turn),
+                frames_[0].p);
+  };
+  int row = first_parameter_[joint];
+  if (model_.placements[joint].general) {
+    turn_about_root(row, constants.z_pre);
+    row += 2;
+  }
+  if (model_.placements[joint].parallel) turn_about_root(row++, constants.y_beta);
+  turn_about_root(row, constants.R_parent_twisted.col(0));
+  row += 2;
+  turn_about_root(row, constants.R_parent_twisted.col(2));
+  if (model_.tree.joints[joint].type != JointType::kRevolute) return;
+  const Vector3d load = loads.col(joint), by_theta(-load.y(), load.x(), 0.0);
+  const Eigen::Matrix3d axes = twisted.R * LeftJacobian(constants.compliance.cwiseProduct(load));
+  AddRotation(screws_, row, axes * constants.compliance.cwiseProduct(by_theta),
+              twisted.p + constants.centre * twisted.R.col(2));
+}
+
 void GeneralizedJacobian::SetCorrections(int joint, int row, const MdhFrame& deflected,
                                          const JointLoads& loads) {
   const bool revolute = model_.tree.joints[joint].type == JointType::kRevolute;
@@ -220,12 +253,11 @@ void GeneralizedJacobian::AddLoadCorrections(int joint, const Geometry::JointCon
     const auto correction = static_cast<std::size_t>(model_.parameters[first + i].correction);
     const Vector3d step =
         axes * constants.compliance.cwiseProduct(loads.by_correction[correction].col(joint));
-    auto row = screws_.row(rows_of(joint + 1) + i);
+    const int row = rows_of(joint + 1) + i;
     if (revolute) {
-      row.head<3>() += step.transpose().array();
-      row.tail<3>() += centre.cross(step).transpose().array();
+      AddRotation(screws_, row, step, centre);
     } else {
-      row.tail<3>() += step.transpose().array();
+      screws_.row(row).tail<3>() += step.transpose().array();
     }
   }
 }
@@ -289,6 +321,10 @@ void GeneralizedJacobian::EvaluateScrews(const Geometry& geometry, const Eigen::
     if (compliances_[joint] > 0) SetCompliances(joint, row, constants, twisted, acting);
     if (load_corrections_ > 0) AddLoadCorrections(joint, constants, twisted, acting, loads);
     SetCorrections(joint, row + compliances_[joint], deflected, loads);
+    if (root_joints_ == LoadsOfRootJoints::kTurning && acting.cols() > 0 &&
+        model_.tree.joints[joint].parent_body == 0) {
+      TurnLoads(joint, constants, twisted, acting);
+    }
   };
   EvaluateMdhFrames(model_, geometry, q, acting, frames_, visit);
   if (!linkage_rows_.empty()) SetLinkages(geometry, q);
@@ -317,13 +353,6 @@ void GeneralizedJacobian::EvaluateMarker(int marker) {
     Run(row_z + at, segment.size) = ax * py - ay * px + screws.col(5);
     at += segment.size;
   }
-}
-
-Transform GeneralizedJacobian::WaistPose() const {
-  Transform T_ref_waist = Transform::Identity();
-  T_ref_waist.linear() = frames_[0].R;
-  T_ref_waist.translation() = frames_[0].p;
-  return T_ref_waist;
 }
 
 void GeneralizedJacobian::EvaluateLeg(int leg) {

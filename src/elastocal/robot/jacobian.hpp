@@ -22,8 +22,14 @@ namespace elastocal {
 /// laid out once; Evaluate allocates nothing.
 class GeneralizedJacobian {
  public:
+  enum class LoadsOfRootJoints {
+    kConstant,
+    kTurning,  ///< with what the joint carries: TurnedLoads
+  };
+
   /// Keeps a reference: the model must outlive it.
-  explicit GeneralizedJacobian(const ErrorModel& model);
+  explicit GeneralizedJacobian(const ErrorModel& model,
+                               LoadsOfRootJoints root_joints = LoadsOfRootJoints::kConstant);
 
   /// Positions and derivatives for one posture.
   void Evaluate(const Geometry& geometry, const Eigen::VectorXd& q, const JointLoads& loads = {});
@@ -53,7 +59,12 @@ class GeneralizedJacobian {
 
   /// Pose of the root link in the reference frame, and its motion by T0: 6 x 6, screws as in
   /// LegScrews.
-  Transform WaistPose() const;
+  Transform WaistPose() const {
+    Transform T_ref_waist = Transform::Identity();
+    T_ref_waist.linear() = frames_[0].R;
+    T_ref_waist.translation() = frames_[0].p;
+    return T_ref_waist;
+  }
   Eigen::Matrix<double, 6, 6> WaistScrews() const {
     return screws_.topRows<kWaistParameterCount>().matrix().transpose();
   }
@@ -97,6 +108,8 @@ class GeneralizedJacobian {
                          const Eigen::Matrix3Xd& about_root, int joint);
   void SetCompliances(int joint, int row, const Geometry::JointConstants& constants,
                       const MdhFrame& twisted, const JointLoads& loads);
+  void TurnLoads(int joint, const Geometry::JointConstants& constants, const MdhFrame& twisted,
+                 const JointLoads& loads);
   void SetCorrections(int joint, int row, const MdhFrame& deflected, const JointLoads& loads);
   Segment LinkageSegment(int linkage, const std::vector<int>& path);
   void SetLinkages(const Geometry& geometry, const Eigen::VectorXd& q);
@@ -110,6 +123,7 @@ class GeneralizedJacobian {
   void EvaluateLeg(int leg);
 
   const ErrorModel& model_;
+  LoadsOfRootJoints root_joints_;
   std::vector<int> first_parameter_;                // by joint
   std::vector<int> compliances_;                    // by joint: how many it has
   std::vector<int> corrections_;                    // likewise

@@ -196,6 +196,33 @@ JointLoads CorrectedLoads(const Geometry& geometry, const JointLoads& loads) {
   return corrected;
 }
 
+JointLoads TurnedLoads(const ErrorModel& model, const Geometry& before, const Geometry& after,
+                       const JointLoads& loads) {
+  JointLoads turned = loads;
+  if (loads.cols() == 0) return turned;
+  const auto about_z = [](double angle) {
+    return Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
+  };
+  for (const int k : model.active_joints) {
+    const Joint& joint = model.tree.joints[k];
+    if (joint.parent_body != 0) continue;
+    const Geometry::JointConstants& from = before.joints[k];
+    const Geometry::JointConstants& to = after.joints[k];
+    const Eigen::Matrix3d own = about_z(to.theta - from.theta);
+    if (joint.type == JointType::kRevolute) {
+      turned.col(k) = own * loads.col(k);
+      for (Eigen::Matrix3Xd& derivative : turned.by_correction) {
+        if (derivative.cols() > 0) derivative.col(k) = own * derivative.col(k);
+      }
+    }
+    if (loads.about_root.cols() > 0) {
+      turned.about_root.col(k) =
+          to.R_parent_twisted * own * from.R_parent_twisted.transpose() * loads.about_root.col(k);
+    }
+  }
+  return turned;
+}
+
 Vector3d MarkerInBody(const ErrorModel& model, const Geometry& geometry, const JointLoads& loads,
                       int marker) {
   Vector3d position = geometry.p_joint_marker[marker];

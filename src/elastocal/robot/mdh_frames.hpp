@@ -38,6 +38,14 @@ inline MdhFrame BentRoot(const Geometry::JointConstants& constants, const Eigen:
   return {root.R * RotationFromVector(constants.root_compliance.cwiseProduct(moment)), root.p};
 }
 
+/// Loads that were found with the robot's constants `before`, where they are `after`: those of
+/// joints on the root link stay as they are in the axes of what the joint carries. That stands
+/// where it did in the room when the root link's frame is displaced and nothing else (gauge.hpp),
+/// and with it the load; fixed in the root link's axes, the loads would seem to tell where that
+/// frame is.
+JointLoads TurnedLoads(const ErrorModel& model, const Geometry& before, const Geometry& after,
+                       const JointLoads& loads);
+
 /// What corrections add to the position of a joint, rad or m.
 inline double PositionCorrection(const ErrorModel& model, const Geometry& geometry,
                                  const JointLoads& loads, int joint) {

@@ -55,7 +55,7 @@ static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
   }
   for (c = 0; c < robot->coordinates; ++c) memory->stopped[c] = EC_FINE;
   for (k = 0; k < robot->branches; ++k) memory->search[k].left = 0.0;
-  for (k = 0; k < robot->joints; ++k) memory->good_torque[k] = NAN;
+  for (k = 0; k < robot->joints; ++k) memory->good_torque[k] = nan("");
   memory->good_support = 0;
   memory->has_good_q = 0;
   memory->is_bound = memory->is_settled = memory->had_torque = 0;
