@@ -37,7 +37,7 @@ std::string PoseAttributes(const Transform& T) {
          Attribute("quat", Numbers(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
 }
 
-/// Writes the bodies, walking over the tree from the body that is fixed or floats.
+/// Writes the bodies, walking over the tree from the waist, which is fixed or floats.
 class MjcfWriter {
  public:
   MjcfWriter(const TrueRobot& robot, const std::vector<int>& support, const PhysicsOptions& options,
@@ -55,17 +55,6 @@ class MjcfWriter {
     return Attribute("friction", Number(options_.floor_friction) + " 0.01 0.001");
   }
 
-  /// Writes a sole that is fixed to the world, and everything that it carries.
-  void WriteFromSole(int sole, const Transform& T_world_sole) {
-    const Link& link = FootLink(sole);
-    text += "<body" + Attribute("name", "s" + std::to_string(sole)) + PoseAttributes(T_world_sole) +
-            ">\n";
-    OpenBody(link.body, link.T_body_link.inverse());
-    LinkSprings(FootSprings(sole), link.T_body_link.translation(), Transform::Identity());
-    Contents(link.body, -1, sole);
-    text += "</body>\n";
-  }
-
   /// Writes the tables, far below.
   void WriteTables() {
     for (std::size_t i = 0; i < plates_.size(); ++i) {
@@ -79,7 +68,7 @@ class MjcfWriter {
   void WriteFromWaist(const Transform& T_world_waist, bool floating) {
     OpenBody(0, T_world_waist);
     if (floating) text += "<freejoint name=\"float\"/>\n";
-    Contents(0, -1, -1);
+    Contents(0);
   }
 
  private:
@@ -103,25 +92,21 @@ class MjcfWriter {
   /// Opens the far half of an elastic link, on the side of joint k. It is a body of its own,
   /// because MuJoCo allows at most six degrees of freedom between two bodies. The near half has the
   /// link's weight.
-  void OpenHalf(int k, const Transform& T_from_half) {
-    text += "<body" + Attribute("name", "h" + std::to_string(k)) + PoseAttributes(T_from_half) +
+  void OpenHalf(int k) {
+    text += "<body" + Attribute("name", "h" + std::to_string(k)) +
             "><inertial pos=\"0 0 0\" mass=\"1e-6\" diaginertia=\"1e-7 1e-7 1e-7\"/>\n";
   }
 
-  /// Writes the inertia of a body, then everything that is connected to it, except the joint
-  /// `from_joint` or the sole `from_sole` from which the walk comes. Closes the body.
-  void Contents(int body, int from_joint, int from_sole) {
+  /// Writes the inertia of a body, then everything that it carries. Closes the body.
+  void Contents(int body) {
     Inertial(body);
     Plates(body);
     for (std::size_t s = 0; s < support_.size(); ++s) {
-      if (FootLink(static_cast<int>(s)).body == body && static_cast<int>(s) != from_sole) {
-        WriteSole(static_cast<int>(s));
-      }
+      if (FootLink(static_cast<int>(s)).body == body) WriteSole(static_cast<int>(s));
     }
     for (int k = 0; k < static_cast<int>(tree_.joints.size()); ++k) {
-      if (JointAt(k).parent_body == body && k != from_joint) Outwards(k);
+      if (JointAt(k).parent_body == body) Outwards(k);
     }
-    if (body > 0 && from_joint != body - 1) Inwards(body - 1);
     text += "</body>\n";
   }
 
@@ -131,46 +116,29 @@ class MjcfWriter {
     const Transform T_parent_child = JointPlacement(k);
     const bool halved = robot_.link_compliance[static_cast<std::size_t>(k)].any();
     if (halved) {
-      OpenHalf(k, Transform::Identity());
+      OpenHalf(k);
       LinkSprings(CarrierSprings(k), T_parent_child.translation(), Transform::Identity());
     }
     OpenBody(k + 1, T_parent_child);
-    JointSpring(k, joint.axis, Eigen::Vector3d::Zero());
-    Motor(k, joint.axis, Eigen::Vector3d::Zero());
-    Contents(k + 1, k, -1);
+    JointSpring(k, joint.axis);
+    Motor(k, joint.axis);
+    Contents(k + 1);
     if (halved) text += "</body>\n";
   }
 
-  /// Walks from the body that joint k moves to the one that carries it. Seen from this side, the
-  /// joint's axis is reversed.
-  void Inwards(int k) {
-    const Joint& joint = JointAt(k);
-    const Transform T_parent_child = JointPlacement(k);
-    const Eigen::Vector3d axis = -(T_parent_child.linear() * joint.axis);
-    const bool halved = robot_.link_compliance[static_cast<std::size_t>(k)].any();
-    if (halved) {
-      OpenHalf(k, T_parent_child.inverse());
-    } else {
-      OpenBody(joint.parent_body, T_parent_child.inverse());
-    }
-    Motor(k, axis, T_parent_child.translation());
-    JointSpring(k, axis, T_parent_child.translation());
-    if (halved) {
-      OpenBody(joint.parent_body, Transform::Identity());
-      LinkSprings(CarrierSprings(k), T_parent_child.translation(), Transform::Identity());
-    }
-    Contents(joint.parent_body, k, -1);
-    if (halved) text += "</body>\n";
-  }
-
-  /// Writes a further foot on the floor.
+  /// Writes a foot on the floor. One that is held by a constraint is heavy: the lighter a body is,
+  /// the more does MuJoCo let its constraints give way.
   void WriteSole(int sole) {
     const Link& link = FootLink(sole);
     text += "<body" + Attribute("name", "s" + std::to_string(sole)) +
             PoseAttributes(link.T_body_link) + ">\n";
     LinkSprings(FootSprings(sole), link.T_body_link.translation(), link.T_body_link.inverse());
-    text += "<inertial pos=\"0 0 0\" mass=\"0.1\" diaginertia=\"1e-4 1e-4 1e-4\"/>\n";
-    if (StandsFreely(support_, options_)) {
+    const bool free = StandsFreely(support_, options_);
+    text += std::string("<inertial pos=\"0 0 0\" ") +
+            (free ? R"(mass="0.1" diaginertia="1e-4 1e-4 1e-4")"
+                  : R"(mass="1000" diaginertia="100 100 100")") +
+            "/>\n";
+    if (free) {
       text += "<geom" + Shape(SoleOf(support_[static_cast<std::size_t>(sole)], options_)) +
               " mass=\"0\"" + Friction() + "/>\n";
     }
@@ -245,14 +213,14 @@ class MjcfWriter {
             "/>\n";
   }
 
-  void Motor(int k, const Eigen::Vector3d& axis, const Eigen::Vector3d& anchor) {
+  void Motor(int k, const Eigen::Vector3d& axis) {
     const bool slides = JointAt(k).type == JointType::kPrismatic;
     constexpr double kLargestSag = 0.01;  // rad or m, by gravity: robots may carry tonnes
     const double stiffness =
         std::max(slides ? options_.sliding_servo_stiffness : options_.servo_stiffness,
                  torques_[k] / kLargestSag);
     const double omega = options_.servo_frequency;
-    AddJoint("m" + std::to_string(k), slides, axis, anchor,
+    AddJoint("m" + std::to_string(k), slides, axis, Eigen::Vector3d::Zero(),
              {stiffness, 2.0 * stiffness / omega, stiffness / (omega * omega)});
   }
 
@@ -266,9 +234,9 @@ class MjcfWriter {
               stiffness * inertia_time * inertia_time});
   }
 
-  void JointSpring(int k, const Eigen::Vector3d& axis, const Eigen::Vector3d& anchor) {
-    Spring("e" + std::to_string(k), JointAt(k).type == JointType::kPrismatic, axis, anchor,
-           robot_.compliance[k]);
+  void JointSpring(int k, const Eigen::Vector3d& axis) {
+    Spring("e" + std::to_string(k), JointAt(k).type == JointType::kPrismatic, axis,
+           Eigen::Vector3d::Zero(), robot_.compliance[k]);
   }
 
   struct NamedSprings {
@@ -367,15 +335,12 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
     }
   }
   std::string constraints;
-  if (support.empty()) {
-    writer.WriteFromWaist(model.T_world_waist, false);
-  } else if (stands_freely) {
+  if (stands_freely) {
     writer.text += R"(<geom type="plane" size="5 5 0.1")" + writer.Friction() + "/>\n";
-    writer.WriteFromWaist(model.T_world_waist, true);
   } else {
-    writer.WriteFromSole(0, model.T_world_foot[0]);
-    for (std::size_t s = 1; s < support.size(); ++s) constraints += Weld(s, model.T_world_foot[s]);
+    for (std::size_t s = 0; s < support.size(); ++s) constraints += Weld(s, model.T_world_foot[s]);
   }
+  writer.WriteFromWaist(model.T_world_waist, !support.empty());
   writer.WriteTables();
   const bool contact = stands_freely || !plates.empty();
   model.xml = Header(options, contact) + writer.text + "</worldbody>\n<equality>\n" + constraints +

@@ -11,7 +11,7 @@ namespace elastocal {
 
 /// How a robot stands.
 enum class Standing {
-  kWelded,  ///< its soles are part of the floor (see StandsFreely)
+  kWelded,  ///< its soles are held to the floor (see StandsFreely)
   kFree,    ///< its soles lie on the floor by contact and friction, and it may fall
 };
 
@@ -51,11 +51,10 @@ struct PhysicalPlate {
 /// - An elastic link has three slides and three hinges half way to the joint k that it carries,
 ///   `x<k>_0..5`, or to the sole, `y<i>_0..5`.
 /// - Bodies are called `b<index>`, far halves of elastic links `h<k>` (towards joint k), and soles
-/// on
-///   which the robot stands `s<i>` (i: index into `support`).
-/// - With Standing::kWelded, the tree is rooted at the first sole, which is fixed to the world
-///   exactly, and reversed up to the waist; a weld constraint holds a second sole. Where the
-///   robot stands freely, the root is the waist with a floating joint, and the soles are boxes or
+///   on which the robot stands `s<i>` (i: index into `support`).
+/// - The root of the tree is the waist, with a floating joint: branches are shortest from there,
+///   and MuJoCo's time grows with the square of their length. With Standing::kWelded, weld
+///   constraints hold the soles to a micrometre; where the robot stands freely, they are boxes or
 ///   balls on the floor. Without support, the waist is fixed.
 ///
 /// Springs are stiff (1e5 N.m/rad) for the small bodies that they carry. MuJoCo integrates damping
