@@ -6,6 +6,8 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "elastocal/calibration/placed_misfit.hpp"
 #include "elastocal/math/interruption.hpp"
@@ -78,36 +80,45 @@ class OddSearch {
   }
 
  private:
+  /// By a part of the table, with the distance of each posture and their median in that part, m.
+  struct PlacedByPart {
+    PlacedNominal robot;
+    std::vector<double> distance;
+    double median = 0.0;
+  };
+
   void Place() {
     const int count = recording_.posture_count();
-    int fewest = count;
     const double least = std::min(kOddDistance, kOddShare * RobotSize(model_.tree));
     const std::pair<int, int> parts[] = {
         {0, count}, {0, count / 2}, {count / 2, count}, {0, count / 4}, {count - count / 4, count}};
+    std::vector<PlacedByPart> placements;
     for (const auto& [begin, end] : parts) {
       if (end - begin < kFewestSoundPostures) continue;
-      std::vector<int> rows;
-      for (int i = begin; i < end; ++i) rows.push_back(i);
-      const auto placed = PlaceNominal(model_, SelectPostures(recording_, rows));
+      std::vector<int> rows(Size(end - begin));
+      std::iota(rows.begin(), rows.end(), begin);
+      auto placed = PlaceNominal(model_, SelectPostures(recording_, rows));
       if (!placed) continue;
-      std::vector<double> distance, within;
-      for (int i = 0; i < count; ++i) distance.push_back(placed->Distance(recording_, i));
-      for (const int i : rows) within.push_back(distance[Size(i)]);
-      const double median = Median(within);
-      if (!(median < kSoundDistance)) continue;
-      const double far = std::max(least, kOddRatio * median);
+      PlacedByPart one{std::move(*placed), {}, 0.0};
+      for (int i = 0; i < count; ++i) one.distance.push_back(one.robot.Distance(recording_, i));
+      one.median =
+          Median(std::vector<double>(one.distance.begin() + begin, one.distance.begin() + end));
+      placements.push_back(std::move(one));
+    }
+    double median = kSoundDistance;
+    for (const PlacedByPart& one : placements) median = std::min(median, one.median);
+    far_ = std::max(least, kOddRatio * median);
+    int fewest = count - std::max(kFewestSoundPostures, count / 4) + 1;
+    for (PlacedByPart& one : placements) {
       std::vector<int> odd;
       for (int i = 0; i < count; ++i) {
-        if (distance[Size(i)] > far) odd.push_back(i);
+        if (one.distance[Size(i)] > far_) odd.push_back(i);
       }
       if (static_cast<int>(odd.size()) >= fewest) continue;
-      if (count - static_cast<int>(odd.size()) < std::max(kFewestSoundPostures, count / 4))
-        continue;
       fewest = static_cast<int>(odd.size());
       odd_ = std::move(odd);
-      far_ = far;
-      distance_ = std::move(distance);
-      placed_ = placed;
+      distance_ = std::move(one.distance);
+      placed_ = std::move(one.robot);
     }
   }
 

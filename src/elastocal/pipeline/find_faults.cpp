@@ -328,13 +328,18 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   if (!(contrast.ratio() > kSuspicious)) return {};
   const std::string mistake = MistakeInHeldOut(project, held_out, comparison, held_out_table);
   if (!mistake.empty()) return {mistake};
-  const Recording all = JoinTrials(recording, EvenlyThinned(held_out, recording.posture_count()));
+  const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
+  Recording all = JoinTrials(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.
   CalibrationOptions roughly = project.calibration;
   roughly.outliers = OutlierPolicy::kKeep;
   roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
   const CalibrationResult together =
       Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
+  // Within each trial they tell how fast joints moved.
+  all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
+  all.time_s << recording.time_s, thinned.time_s;
+  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
   const std::vector<RecordingFault> faults =
       FindRecordingFaults(together, all, project.calibration);
   if (!faults.empty()) {

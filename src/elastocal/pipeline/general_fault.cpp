@@ -24,11 +24,14 @@ namespace {
 
 constexpr std::size_t kMostTogether = 4;
 constexpr int kMostFits = 8;
-constexpr int kSweeps = 2;              // in which each size is estimated beside the others
-constexpr double kLargestStep = 0.3;    // of a gain at once: further off, a derivative says little
+constexpr int kSweeps = 2;            // in which each size is estimated beside the others
+constexpr double kLargestStep = 0.3;  // of a gain at once: further off, a derivative says little
+// No robot whose errors are estimated leaves more, m and as a share of its size.
+constexpr double kMostLeftByFaults = 0.02, kMostLeftOfSize = 0.008;
 constexpr double kFewestSds = 6.0;      // of a fault beside the others
 constexpr int kSamePlace = 2;           // postures
-constexpr std::size_t kSeveral = 3;     // joints that begin to be off at the same place
+constexpr std::size_t kFewHomed = 2;    // of other robots, more joints differ
+constexpr std::size_t kSeveral = 2;     // joints that begin to be off at the same place
 constexpr double kClearlyBetter = 0.8;  // times the error that one joint leaves
 constexpr double kAsWell = 1.1;         // times the error that joints leave
 
@@ -116,9 +119,10 @@ class FaultExplanation {
   }
 
   /// What is found in a recording. Of motors of rods, only the first one is known how to be undone.
-  std::vector<RecordingFault> FaultsIn(const Recording& recording, bool with_drift) const {
-    std::vector<RecordingFault> found =
-        FindRecordingFaults(Fit(recording), recording, general_.options);
+  std::vector<RecordingFault> FaultsIn(const Recording& recording, bool with_drift) {
+    const CalibrationResult fit = Fit(recording);
+    left_ = MarkerError(fit, recording, general_.options);
+    std::vector<RecordingFault> found = FindRecordingFaults(fit, recording, general_.options);
     std::erase_if(found, [&](const RecordingFault& one) {
       return one.linkage >= 0 || (one.kind == FaultKind::kJointDrift && !with_drift);
     });
@@ -143,7 +147,8 @@ class FaultExplanation {
         return;
       }
       if (found.empty()) {
-        complete_ = true;
+        const double most = kMostLeftOfSize * RobotSize(project_.tree);
+        complete_ = left_ < std::min(kMostLeftByFaults, most);
         return;
       }
       next = found.front();
@@ -201,9 +206,18 @@ class FaultExplanation {
     std::string found;
     ErrorModel best_model;
     Recording best;
-    const auto [begin, end] = StretchOf(first);
+    int found_at = 0;
     const int count = general_.recording.posture_count();
-    for (const LabelCluster& cluster : SeenClusters(project_, general_.recording)) {
+    const std::vector<LabelCluster> clusters = SeenClusters(project_, general_.recording);
+    std::vector<std::pair<int, int>> stretches;
+    for (const RecordingFault& one : faults_) {
+      if (one.kind == first.kind) stretches.push_back(StretchOf(one));
+    }
+    std::sort(stretches.begin(), stretches.end());
+    stretches.erase(std::unique(stretches.begin(), stretches.end()), stretches.end());
+    for (std::size_t k = 0; k < clusters.size() * stretches.size(); ++k) {
+      const LabelCluster& cluster = clusters[k / stretches.size()];
+      const auto [begin, end] = stretches[k % stretches.size()];
       std::vector<int> markers = cluster.markers;
       std::erase_if(markers, [&, from = begin, to = end](int m) {
         return !SeenWithin(m, from, to) || !(SeenWithin(m, 0, from) || SeenWithin(m, to, count));
@@ -222,6 +236,7 @@ class FaultExplanation {
       if (!(left < least)) continue;
       least = left;
       found = cluster.name;
+      found_at = begin;
       best_model = std::move(model);
       best = std::move(split);
     }
@@ -234,7 +249,7 @@ class FaultExplanation {
     return fmt::format(
         "cluster {}: its markers seem to be elsewhere on their link from {} on (knocked, or glued "
         "on again?). Calibrate the postures before and after apart",
-        found, DescribePosture(general_.recording, begin));
+        found, DescribePosture(general_.recording, found_at));
   }
 
   BaseParameters BaseOf(const ErrorModel& model) const {
@@ -283,7 +298,7 @@ class FaultExplanation {
       joints = std::move(there);
       first = &one;
     }
-    if (joints.size() < (complete_ ? kSeveral : kSeveral - 1)) return "";
+    if (joints.size() < kSeveral) return "";
     std::vector<std::string> sizes;
     for (const RecordingFault& one : joints) {
       const LoggedPosition logged = LoggedPositionOf(project_.tree, one.linkage, one.coordinate);
@@ -294,16 +309,29 @@ class FaultExplanation {
     const bool of_trial = first->trial >= 0 && !IsInPartOfTrial(*first, general_.recording);
     return fmt::format(
         "positions of several joints are off {} ({}): another robot, or joints that were homed "
-        "anew? Calibrate what was recorded before and after apart",
+        "anew? Calibrate what was recorded before and after apart{}",
         of_trial ? "in trial " + general_.recording.trials[Size(first->trial)].name
                  : "from " + DescribePosture(general_.recording, first->posture) + " on",
-        fmt::join(sizes, ", "));
+        fmt::join(sizes, ", "), IfHomed(joints));
+  }
+
+  /// What corrects them, where all that was found are they.
+  std::string IfHomed(const std::vector<RecordingFault>& joints) const {
+    if (!complete_ || joints.size() < faults_.size() || joints.size() > kFewHomed) return "";
+    std::string names;
+    for (const RecordingFault& one : joints) {
+      const auto name = NameOfCorrection(one, project_.tree, general_.recording);
+      if (!name) return "";
+      names += " " + *name;
+    }
+    return " (if they were homed anew, --accept" + names + " corrects them)";
   }
 
   const GeneralFault& general_;
   const Project& project_;
   std::vector<RecordingFault> faults_;
-  bool complete_ = false;  ///< nothing is found beside them
+  bool complete_ = false;  ///< nothing is found beside them, and they explain the recording
+  double left_ = 0.0;      ///< by the last fit, m
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
 /// wrong: the fault is undone, the robot fitted again, and what is left searched as before, until
 /// nothing is found. Several faults are said together, each by its size beside the others. Where a
 /// cluster that is elsewhere on its link from there on explains as much as several joints do, it is
-/// the cluster; three joints that are off from the same posture or in the same trial are another
+/// the cluster; joints that are off from the same posture or in the same trial are another
 /// robot or a new zero of all; and where four faults do not explain the recording, the sentence
 /// says that, and recommends no correction.
 std::string ExplainFault(const GeneralFault& general, const Project& project);

@@ -36,7 +36,8 @@ constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated le
 constexpr double kLeftOfMisfit = 0.7;
 constexpr double kLeftByOneOfSeveral = 0.9;
 constexpr double kLeftByToldPositions = 0.3;  // of one joint, told by the markers
-constexpr double kLeftWhereNoRobot = 0.5;     // where the offsets with the mistake are no robot's
+constexpr double kUntold = std::numeric_limits<double>::infinity();
+constexpr double kLeftWhereNoRobot = 0.5;  // where the offsets with the mistake are no robot's
 // ... and of the robot with joint offsets:
 constexpr double kLeftOfOffsets = 0.5;
 constexpr double kLeftByNoRobot = 0.98;  // where neither the offsets with nor without it are one's
@@ -336,7 +337,7 @@ class PlainSearch {
 
   /// The same by the offsets alone: the typical distance says little of a part of the table.
   std::vector<Alternative> ConfirmedByOffsets(std::vector<Alternative> steps,
-                                              double left = 0.0) const {
+                                              double left = kUntold) const {
     if (steps.empty()) return {};
     const OffsetsFit with = FitOffsets(given_), without = FitOffsets(steps.back());
     if (!std::isfinite(with.error) || !(without.error < kMostLeft)) return {};
