@@ -133,6 +133,64 @@ TEST_F(PlainMistakes, TwoAreNamedBesideEachOther) {
 }
 
 // Rows without a partner are left out: what is tried next is of the shorter table.
+// Where a half of the table is sound, that half places the robot.
+TEST_F(PlainMistakes, InAPartOfTheTable) {
+  const auto& tree = project_.tree;
+  const auto name = [&](int c) { return tree.joints[Size(tree.coordinate_joint[Size(c)])].name; };
+  Recording wrong = recorded_;
+  wrong.q.col(1).tail(12) *= -1.0;
+  ExpectNamed(Find(wrong), name(1) + ": the sign of its positions is reversed",
+              "in postures 19 to 30");
+  wrong = recorded_;
+  const Eigen::VectorXd kept = wrong.q.col(1).tail(18);
+  wrong.q.col(1).tail(18) = wrong.q.col(3).tail(18);
+  wrong.q.col(3).tail(18) = kept;
+  ExpectNamed(Find(wrong), name(1) + " and " + name(3) + ": their positions are exchanged",
+              "in postures 13 to 30");
+  wrong = recorded_;
+  for (const int i : {2, 9, 17, 25}) wrong.q(i, 2) += M_PI;
+  ExpectNamed(Find(wrong), name(2) + ": its positions are off by half a turn",
+              "in postures 3, 10, 18, 26");
+  wrong = recorded_;
+  for (const int i : {2, 9, 17, 25}) wrong.q(i, 2) = 0.0;
+  ExpectNamed(Find(wrong), name(2) + ": its column says the same", "in postures 3, 10, 18, 26");
+  wrong = recorded_;
+  for (const int i : {2, 9, 17, 25}) wrong.markers.row(i) = recorded_.markers.row(i - 1);
+  ExpectNamed(Find(wrong), "the markers are those of the row before", "in postures 3, 10, 18, 26");
+}
+
+TEST_F(PlainMistakes, OneColumnThatIsNotItsOwnAndAFrameOfTheOtherHand) {
+  const auto& tree = project_.tree;
+  Recording wrong = recorded_;
+  wrong.q.col(1).tail(29) = recorded_.q.col(1).head(29);
+  ExpectNamed(Find(wrong),
+              tree.joints[Size(tree.coordinate_joint[1])].name +
+                  ": its positions are those of the row before",
+              "");
+  wrong = recorded_;
+  wrong.q.col(3) += recorded_.q.col(2);
+  ExpectNamed(Find(wrong),
+              tree.joints[Size(tree.coordinate_joint[3])].name + ": its positions hold those of " +
+                  tree.joints[Size(tree.coordinate_joint[2])].name + " as well, added",
+              "");
+  wrong = recorded_;
+  for (int m = 0; m < wrong.marker_count(); ++m) wrong.markers.col(3 * m + 1) *= -1.0;
+  ExpectNamed(Find(wrong), "the markers are in a left-handed frame", "");
+}
+
+// Neither of two signs need show by itself; columns that went round are two exchanges.
+TEST_F(PlainMistakes, TwoThatShowOnlyTogether) {
+  Recording wrong = recorded_;
+  wrong.q.col(1) = recorded_.q.col(2);
+  wrong.q.col(2) = recorded_.q.col(3);
+  wrong.q.col(3) = recorded_.q.col(1);
+  const std::vector<std::string> found = Find(wrong);
+  ASSERT_EQ(found.size(), 2u) << First(found);
+  for (const std::string& one : found) {
+    EXPECT_NE(one.find("(--accept exchange:"), std::string::npos) << one;
+  }
+}
+
 TEST_F(PlainMistakes, RowsThatAreShifted) {
   for (const int rows : {-2, -1, 1, 2, 3}) {
     Recording wrong = recorded_;

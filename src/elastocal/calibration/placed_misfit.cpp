@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/calibration/placed_misfit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -25,15 +26,22 @@ struct Sighting {
   bool left_out = false;  ///< where the root is placed
 };
 
+ErrorModel AtOrigin(ErrorModel model) {
+  model.T_ref_waist = Transform::Identity();
+  return model;
+}
+
+Geometry Nominal(const ErrorModel& model) {
+  return ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
+}
+
 /// The nominal robot among the markers that were measured.
 class PlacedRobot {
  public:
   PlacedRobot(const ErrorModel& model, const Recording& recording)
       : free_root_(recording.free_root) {
-    ErrorModel at_origin = model;
-    at_origin.T_ref_waist = Transform::Identity();
-    const Geometry geometry =
-        ApplyErrors(at_origin, Eigen::VectorXd::Zero(at_origin.parameter_count()));
+    const ErrorModel at_origin = AtOrigin(model);
+    const Geometry geometry = Nominal(at_origin);
     const int stride = 1 + (recording.posture_count() - 1) / kMostPlaced;
     for (int i = 0; i < recording.posture_count(); i += stride) {
       InterruptionPoint();
@@ -52,12 +60,19 @@ class PlacedRobot {
     }
   }
 
-  double Misfit() {
+  void Place() {
     for (int turn = 0; turn < kTurns; ++turn) {
       PlaceRoot();
       PlaceMarkers();
       LeaveOutFarSightings();
     }
+  }
+
+  const std::optional<Transform>& root() const { return roots_.front(); }
+  const std::vector<Eigen::Vector3d>& places() const { return places_; }
+
+  double Misfit() {
+    Place();
     std::vector<std::vector<double>> distances(places_.size());
     for (const Sighting& one : sightings_) {
       if (const auto distance = DistanceOf(one)) distances[Size(one.marker)].push_back(*distance);
@@ -139,6 +154,32 @@ double TypicalDistance(const std::vector<std::vector<double>>& by_marker) {
     ++count;
   }
   return count == 0 ? 0.0 : std::sqrt(squares / count);
+}
+
+double PlacedNominal::Distance(const Recording& recording, int posture) const {
+  const std::vector<Transform> bodies =
+      BodyTransforms(model, geometry, recording.q.row(posture).transpose());
+  double squares = 0.0, furthest = 0.0;
+  int count = 0;
+  for (int m = 0; m < recording.marker_count(); ++m) {
+    if (!Seen(recording, posture, m)) continue;
+    const int body = model.tree.links[Size(model.markers[Size(m)].link)].body;
+    const Eigen::Vector3d at = T_ref_root * (bodies[Size(body)] * places[Size(m)]);
+    const double square = (at - MarkerPosition(recording, posture, m)).squaredNorm();
+    squares += square;
+    furthest = std::max(furthest, square);
+    ++count;
+  }
+  return count < 2 ? std::sqrt(squares) : std::sqrt((squares - furthest) / (count - 1));
+}
+
+std::optional<PlacedNominal> PlaceNominal(const ErrorModel& model, const Recording& recording) {
+  PlacedRobot robot(model, recording);
+  robot.Place();
+  if (!robot.root()) return std::nullopt;
+  PlacedNominal placed{AtOrigin(model), {}, *robot.root(), robot.places()};
+  placed.geometry = Nominal(placed.model);
+  return placed;
 }
 
 double PlacedMisfit(const ErrorModel& model, const Recording& recording) {

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "elastocal/math/transform.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/robot/error_model.hpp"
+#include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
 
@@ -18,5 +23,19 @@ double TypicalDistance(const std::vector<std::vector<double>>& by_marker);
 /// nothing is estimated of them, so that a mistake in the table is not taken for one. Of a long
 /// table some postures are taken, evenly spread. 0 without markers.
 double PlacedMisfit(const ErrorModel& model, const Recording& recording);
+
+/// The nominal robot where the markers of a posture table have it.
+struct PlacedNominal {
+  ErrorModel model;  ///< its root link at the origin
+  Geometry geometry;
+  Transform T_ref_root;
+  std::vector<Eigen::Vector3d> places;  ///< of the markers, in their bodies' frames
+
+  /// How far the markers of a posture are from it, root mean square without the furthest one, m.
+  double Distance(const Recording& recording, int posture) const;
+};
+
+/// Places it as PlacedMisfit does; nothing where markers do not place it. Not for a free root.
+std::optional<PlacedNominal> PlaceNominal(const ErrorModel& model, const Recording& recording);
 
 }  // namespace elastocal

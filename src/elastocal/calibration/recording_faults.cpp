@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/variances.hpp"
-#include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/measurement/moments.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/robot/move_motors.hpp"
 
@@ -25,15 +24,18 @@ constexpr int kTrialSplits = 6;  // of a trial, after which one may begin that e
 
 /// Sizes from which a fault is none that a good robot and good cameras may have.
 double LeastSize(FaultKind kind, bool slides) {
+  if (kind == FaultKind::kJointLag) return 0.005;
   if (kind == FaultKind::kJointGain) return 0.005;
-  if (kind == FaultKind::kCameraScale) return 0.0015;
+  if (kind == FaultKind::kCameraScale || kind == FaultKind::kCameraAxis) return 0.0015;
   return slides ? 1e-3 : 0.25 * M_PI / 180.0;
 }
 
 /// Sizes beyond which a fault is none: where a joint moves no marker, rounding would explain
 /// anything with a size large enough.
 double LargestSize(FaultKind kind, bool slides) {
+  if (kind == FaultKind::kJointLag) return 2.0;
   if (kind == FaultKind::kJointGain) return 1.0;
+  if (kind == FaultKind::kCameraAxis) return 0.1;
   if (kind == FaultKind::kCameraScale) return 0.5;
   return slides ? 1.0 : M_PI;
 }
@@ -42,8 +44,9 @@ using Blocks = std::vector<Eigen::VectorXd>;
 
 class FaultSearch {
  public:
+  /// `only`: the fault that is looked for; none: all.
   FaultSearch(const CalibrationResult& result, const Recording& recording,
-              const CalibrationOptions& options)
+              const CalibrationOptions& options, const RecordingFault* only = nullptr)
       : result_(result),
         recording_(recording),
         options_(options),
@@ -69,6 +72,10 @@ class FaultSearch {
     }
     const NormalEquations equations(body);
     const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
+    if (only != nullptr) {
+      Measure(equations, covariance, *only);
+      return;
+    }
     for (const int coordinate : Coordinates()) TryJoint(equations, covariance, coordinate);
     const std::vector<Linkage>& linkages = result.model.tree.linkages;
     for (std::size_t k = 0; k < linkages.size(); ++k) {
@@ -130,10 +137,11 @@ class FaultSearch {
     Eigen::VectorXd factor;
   };
 
-  template <typename Factor>
-  Trial MakeTrial(const RecordingFault& fault, const Factor& factor) const {
+  Trial MakeTrial(const RecordingFault& fault) const {
     Trial trial{fault, Eigen::VectorXd(recording_.posture_count())};
-    for (int i = 0; i < recording_.posture_count(); ++i) trial.factor[i] = factor(i);
+    for (int i = 0; i < recording_.posture_count(); ++i) {
+      trial.factor[i] = FactorOf(fault, recording_, i);
+    }
     return trial;
   }
 
@@ -154,44 +162,87 @@ class FaultSearch {
     return squares;
   }
 
-  void Try(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
-           const Blocks& derivative, const std::vector<Trial>& trials, bool slides) {
+  /// All of them, by what the fit leaves.
+  std::vector<RecordingFault> Measured(const NormalEquations& equations,
+                                       const Eigen::MatrixXd& covariance, const Blocks& derivative,
+                                       const std::vector<Trial>& trials) const {
     Eigen::MatrixXd factors(recording_.posture_count(), static_cast<Eigen::Index>(trials.size()));
     for (std::size_t k = 0; k < trials.size(); ++k) {
       factors.col(static_cast<Eigen::Index>(k)) = trials[k].factor;
     }
     const auto additions = equations.Add(derivative, posture_, factors, covariance);
+    std::vector<RecordingFault> measured;
     for (std::size_t k = 0; k < trials.size(); ++k) {
       RecordingFault fault = trials[k].fault;
       // What has to be added to the recording is what it lacks.
       fault.size = -additions[k].value;
       fault.sd = std::sqrt(additions[k].variance * std::max(1.0, result_.posterior.cluster_factor));
       fault.share = additions[k].gain / squares_;
+      measured.push_back(fault);
+    }
+    return measured;
+  }
+
+  void Try(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+           const Blocks& derivative, const std::vector<Trial>& trials, bool slides) {
+    const std::vector<RecordingFault> measured =
+        Measured(equations, covariance, derivative, trials);
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      const RecordingFault& fault = measured[k];
       const bool certain = std::abs(fault.size) > kLeastSds * fault.sd;
       const bool matters = std::abs(fault.size) > LeastSize(fault.kind, slides) &&
                            std::abs(fault.size) < LargestSize(fault.kind, slides);
       if (!certain || !matters) continue;
       const bool explains =
           fault.share > kLeastExplained ||
-          additions[k].gain > kLeastOfChains * SquaresOfChains(derivative, trials[k].factor);
+          fault.share * squares_ > kLeastOfChains * SquaresOfChains(derivative, trials[k].factor);
       if (explains) found_.push_back(fault);
     }
   }
 
-  void TryJoint(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
-                int coordinate) {
+  Blocks ByPositions(int coordinate) const {
     Recording changed = recording_;
     changed.q.col(coordinate).array() += kStep;
-    const Blocks derivative = Derivative(changed);
+    return Derivative(changed);
+  }
+
+  Blocks ByAxis(int axis) const {
+    Recording changed = recording_;
+    for (int m = 0; m < recording_.marker_count(); ++m) {
+      changed.markers.col(3 * m + axis) *= 1.0 + kStep;
+    }
+    return Derivative(changed);
+  }
+
+  Blocks ByScale() const {
+    Recording changed = recording_;
+    changed.markers *= 1.0 + kStep;
+    return Derivative(changed);
+  }
+
+  void Measure(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+               const RecordingFault& fault) {
+    const Blocks derivative = fault.kind == FaultKind::kCameraAxis ? ByAxis(fault.axis)
+                              : fault.kind == FaultKind::kCameraScale
+                                  ? ByScale()
+                                  : ByPositions(fault.coordinate);
+    found_ = Measured(equations, covariance, derivative, {MakeTrial(fault)});
+  }
+
+  void TryJoint(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+                int coordinate) {
+    const Blocks derivative = ByPositions(coordinate);
     const std::vector<Joint>& joints = result_.model.tree.joints;
-    const auto joint = std::find_if(joints.begin(), joints.end(), [&](const Joint& candidate) {
-      return candidate.coordinate == coordinate;
-    });
-    const bool slides = joint->type == JointType::kPrismatic;
+    const int joint = result_.model.tree.coordinate_joint[coordinate];
+    const bool slides = joints[joint].type == JointType::kPrismatic;
     RecordingFault fault;
     fault.coordinate = coordinate;
-    Try(equations, covariance, derivative,
-        {MakeTrial(fault, [&](int i) { return recording_.q(i, coordinate); })}, slides);
+    Try(equations, covariance, derivative, {MakeTrial(fault)}, slides);
+    if (HasMotion(recording_)) {
+      RecordingFault lag = fault;
+      lag.kind = FaultKind::kJointLag;
+      Try(equations, covariance, derivative, {MakeTrial(lag)}, slides);
+    }
     TryOffsets(equations, covariance, derivative, fault, slides);
   }
 
@@ -220,12 +271,13 @@ class FaultSearch {
   void TryOffsets(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
                   const Blocks& derivative, const RecordingFault& of, bool slides) {
     std::vector<Trial> trials;
-    const auto add = [&](int trial, int posture, const auto& factor) {
+    const auto add = [&](int trial, int posture, int end = 0) {
       RecordingFault fault = of;
       fault.kind = FaultKind::kJointOffset;
       fault.trial = trial;
       fault.posture = posture;
-      trials.push_back(MakeTrial(fault, factor));
+      fault.end = end;
+      trials.push_back(MakeTrial(fault));
     };
     const auto try_all = [&] {
       Try(equations, covariance, derivative, trials, slides);
@@ -236,7 +288,12 @@ class FaultSearch {
     const auto add_split = [&](int split) {
       // Nearly all postures, or nearly none: an error of the robot, or one bad posture.
       if (split < kLeastSide || split > count - kLeastSide) return;
-      add(-1, split, [&](int i) { return i >= split ? 1.0 : 0.0; });
+      add(-1, split);
+    };
+    const auto best_since = [&](std::size_t before) {
+      return *std::max_element(
+          found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
+          [](const RecordingFault& a, const RecordingFault& b) { return a.share < b.share; });
     };
     // Every so many splits, and then all between the best of them and its neighbours.
     const auto try_splits = [&](int begin, int end, int step, const auto& add_at) {
@@ -244,10 +301,7 @@ class FaultSearch {
       for (int split = begin + step; split < end; split += step) add_at(split);
       try_all();
       if (found_.size() == before) return;
-      const auto best = std::max_element(
-          found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
-          [](const RecordingFault& a, const RecordingFault& b) { return a.share < b.share; });
-      const int around = best->posture;
+      const int around = best_since(before).posture;
       for (int off = 1; off < step; ++off) {
         add_at(around - off);
         add_at(around + off);
@@ -255,33 +309,68 @@ class FaultSearch {
       try_all();
     };
     try_splits(0, count, stride, add_split);
+    if (recording_.trials.empty()) {
+      TryStretches(count, stride, add, try_all, best_since);
+      if (of.linkage < 0) {
+        RecordingFault drift = of;
+        drift.kind = FaultKind::kJointDrift;
+        trials.push_back(MakeTrial(drift));
+        try_all();
+      }
+    }
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);
       if (first == recording_.trial.end()) continue;
       const int begin = static_cast<int>(first - recording_.trial.begin());
       const int end = begin + static_cast<int>(std::count(first, recording_.trial.end(), trial));
-      add(trial, begin, [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; });
+      add(trial, begin);
       try_all();
       if (end == count) continue;  // to the end of the trial is to the end of the recording
       try_splits(begin, end, std::max(1, (end - begin) / kTrialSplits), [&](int split) {
         if (split < begin + kLeastSide || split > end - kLeastSide) return;
-        add(trial, split, [&](int i) { return i >= split && i < end ? 1.0 : 0.0; });
+        add(trial, split);
       });
     }
   }
 
-  /// Of one trial. A scale of all of them is what a robot with other lengths shows as well.
+  /// An offset from a posture to another one: a joint that slipped and was set right again.
+  template <typename Add, typename TryAll, typename BestSince>
+  void TryStretches(int count, int stride, const Add& add, const TryAll& try_all,
+                    const BestSince& best_since) const {
+    const auto add_stretch = [&](int begin, int end) {
+      const bool long_enough = end - begin >= kLeastSide;
+      if (begin >= kLeastSide && end <= count - kLeastSide && long_enough) add(-1, begin, end);
+    };
+    std::size_t before = found_.size();
+    for (int begin = stride; begin < count; begin += stride) {
+      for (int end = begin + stride; end < count; end += stride) add_stretch(begin, end);
+    }
+    try_all();
+    if (found_.size() == before) return;
+    for (const bool of_end : {false, true, false, true}) {
+      const RecordingFault around = best_since(before);
+      before = found_.size();
+      for (int off = -stride; off <= stride; ++off) {
+        add_stretch(around.posture + (of_end ? 0 : off), around.end + (of_end ? off : 0));
+      }
+      try_all();
+      if (found_.size() == before) return;
+    }
+  }
+
+  /// Of one axis of the cameras, and of one trial. A scale of all of them is what a robot with
+  /// other lengths shows as well.
   void TryScale(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Try(equations, covariance, ByAxis(axis),
+          {MakeTrial({.kind = FaultKind::kCameraAxis, .axis = axis})}, false);
+    }
     if (recording_.trials.size() < 2) return;
-    Recording changed = recording_;
-    changed.markers *= 1.0 + kStep;
-    const Blocks derivative = Derivative(changed);
     std::vector<Trial> trials;
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
-      trials.push_back(MakeTrial({.kind = FaultKind::kCameraScale, .trial = trial},
-                                 [&](int i) { return recording_.trial[i] == trial ? 1.0 : 0.0; }));
+      trials.push_back(MakeTrial({.kind = FaultKind::kCameraScale, .trial = trial}));
     }
-    Try(equations, covariance, derivative, trials, false);
+    Try(equations, covariance, ByScale(), trials, false);
   }
 
   const CalibrationResult& result_;
@@ -303,34 +392,9 @@ std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
   return FaultSearch(result, recording, options).found();
 }
 
-bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording) {
-  return fault.trial >= 0 && fault.posture > 0 &&
-         recording.trial[fault.posture - 1] == recording.trial[fault.posture];
-}
-
-std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
-                          const Recording& recording) {
-  const bool joint = fault.kind != FaultKind::kCameraScale;
-  const LoggedPosition of = joint ? LoggedPositionOf(tree, fault.linkage, fault.coordinate)
-                                  : LoggedPosition{"camera positions"};
-  std::string text = of.name;
-  const bool slides = of.slides;
-  char number[80];
-  if (fault.kind == FaultKind::kJointOffset) {
-    const double unit = slides ? 1e-3 : M_PI / 180.0;
-    std::snprintf(number, sizeof number, ": its positions are off by %.3f +- %.3f %s",
-                  fault.size / unit, fault.sd / unit, slides ? "mm" : "deg");
-  } else {
-    std::snprintf(number, sizeof number, "%s %.4f +- %.4f times the true ones",
-                  joint ? ": its positions are" : " are", 1.0 + fault.size, fault.sd);
-  }
-  text += number;
-  if (IsInPartOfTrial(fault, recording)) {
-    return text + " from " + DescribePosture(recording, fault.posture) + " to the end of the trial";
-  }
-  if (fault.trial >= 0) return text + " in trial " + recording.trials[fault.trial].name;
-  return fault.posture > 0 ? text + " from " + DescribePosture(recording, fault.posture) + " on"
-                           : text;
+RecordingFault MeasureFault(const RecordingFault& fault, const CalibrationResult& result,
+                            const Recording& recording, const CalibrationOptions& options) {
+  return FaultSearch(result, recording, options, &fault).found().front();
 }
 
 }  // namespace elastocal

@@ -2,12 +2,14 @@
 #include "elastocal/io/joint_log.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/io/recorded_files.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/test_files.hpp"
 
@@ -136,6 +138,23 @@ TEST(JointLog, SuspectsDegrees) {
   EXPECT_NO_THROW(ReadLog("t,elbow_joint,rail_joint\n1,12.5,0.5\n"));
   ExpectLogError("t,elbow_joint,rail_joint\n1,12.5,450\n",
                  {"j.csv:2: ", "'rail_joint'", "450", "millimetres; metres were expected"});
+}
+
+// A log that counts from -pi to pi jumps by a turn where the joint goes on; a sliding joint may be
+// anywhere, and what happened while rows were lost nobody knows.
+TEST(JointLog, TurnsAreUnwrapped) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "elastocal_wrapped_log.csv";
+  std::ofstream(file) << "t,elbow_joint,rail_joint\n1,3.0,0.0\n1.01,-3.1,4.0\n1.02,-3.0,0.0\n"
+                         "1.03,3.1,0.0\n9.0,-3.1,0.0\n";
+  const JointLog log = ReadJointFile(file, {}, LogProject());
+  std::filesystem::remove(file);
+  const double turn = 2.0 * M_PI;
+  Eigen::VectorXd elbow(5), rail(5);
+  elbow << 3.0, turn - 3.1, turn - 3.0, 3.1, -3.1;
+  rail << 0.0, 4.0, 0.0, 0.0, 0.0;
+  EXPECT_LT((log.positions.col(0) - elbow).norm(), 1e-12) << log.positions;
+  EXPECT_LT((log.positions.col(1) - rail).norm(), 1e-12);
 }
 
 TEST(JointLog, RefusesARecordingWithoutEnd) {

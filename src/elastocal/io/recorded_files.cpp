@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/motor_columns.hpp"
@@ -131,7 +132,30 @@ MarkerFile ReadMarkerFile(const fs::path& file, const ReaderOptions& options,
   return markers;
 }
 
-JointLog ReadJointFile(const fs::path& file, const ReaderOptions& options, const Project& project) {
+namespace {
+
+/// Positions of turning joints that jump by a turn between two samples, as a log does that counts
+/// from -pi to pi, go on instead. Faster than this no joint turns.
+void UnwrapTurns(const RobotTree& tree, JointLog& log) {
+  constexpr double kLongestStep = 0.2;  // s
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  for (std::size_t k = 0; k < log.names.size(); ++k) {
+    const auto joint = std::find_if(tree.joints.begin(), tree.joints.end(),
+                                    [&](const Joint& one) { return one.name == log.names[k]; });
+    if (joint == tree.joints.end() || joint->type == JointType::kPrismatic) continue;
+    auto column = log.positions.col(static_cast<Eigen::Index>(k));
+    double turns = 0.0, before = column[0];
+    for (Eigen::Index i = 1; i < column.size(); ++i) {
+      const double step = column[i] - before;
+      before = column[i];
+      const bool one_sample = log.time_s[i] - log.time_s[i - 1] < kLongestStep;
+      if (one_sample && std::abs(step) > 0.5 * kTurn) turns -= std::round(step / kTurn);
+      column[i] += kTurn * turns;
+    }
+  }
+}
+
+JointLog ReadAnyLog(const fs::path& file, const ReaderOptions& options, const Project& project) {
   const ByteSource source = ByteSource::Open(file);
   if (!RecogniseRecording(source)) return ReadJointLog(file, project);
   const RecordingFile read = ReadRecordingFile(source, options);
@@ -140,6 +164,14 @@ JointLog ReadJointFile(const fs::path& file, const ReaderOptions& options, const
                      "): there are no joint positions in it: " + read.why_no_joints);
   }
   return TakeJoints(*read.joints, project);
+}
+
+}  // namespace
+
+JointLog ReadJointFile(const fs::path& file, const ReaderOptions& options, const Project& project) {
+  JointLog log = ReadAnyLog(file, options, project);
+  if (log.sample_count() > 0) UnwrapTurns(project.tree, log);
+  return log;
 }
 
 namespace {

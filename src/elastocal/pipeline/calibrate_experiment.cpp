@@ -21,6 +21,7 @@
 #include "elastocal/pipeline/plain_mistakes.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/pipeline/repeated_trials.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
@@ -224,6 +225,9 @@ CalibrationRun CalibrateExperiment(const Project& given,
                                                   run.cross_validation.metrics[kind].rmse_3d);
     if (!worse.empty()) run.warnings.push_back(worse);
   }
+  const RepeatedTrials repeated = FindRepeatedTrials(measured);
+  Append(repeated.estimated_twice, run.warnings);
+  Append(repeated.judged_by_estimated, run.faults);
   if (measured.validation.posture_count() > 0) {
     run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);
     if (run.faults.empty()) {

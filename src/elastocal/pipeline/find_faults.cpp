@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -12,7 +13,9 @@
 #include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/up_check.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/general_fault.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/pipeline/stated_corrections.hpp"
 #include "elastocal/pipeline/up_by_loads.hpp"
@@ -20,41 +23,6 @@
 
 namespace elastocal {
 namespace {
-
-/// "; if its scale is right, look at ..." where other joints follow the one of a gain; else empty.
-std::string Followers(const RecordingFault& fault, const RobotTree& tree) {
-  const bool joint = fault.coordinate >= 0 && fault.linkage < 0;
-  if (fault.kind != FaultKind::kJointGain || !joint || fault.trial >= 0) return "";
-  std::string names;
-  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
-    const bool own = tree.coordinate_joint[Size(fault.coordinate)] == static_cast<int>(k);
-    if (own || !IsMovedBy(tree.joints[k], fault.coordinate)) continue;
-    names += (names.empty() ? "" : ", ") + tree.joints[k].name;
-  }
-  return names.empty() ? ""
-                       : "; if its scale is right, look at the factors by which " + names +
-                             " follow it (couplings of the project, mimic of the URDF)";
-}
-
-/// "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME corrects it)"
-std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
-                           const Recording& recording) {
-  const std::string text = DescribeFault(fault, tree, recording);
-  const std::optional<std::string> name = NameOfCorrection(fault, tree, recording);
-  const auto& of = tree.coordinate_joint;
-  const bool slides = fault.kind == FaultKind::kJointGain && fault.coordinate >= 0 &&
-                      tree.joints[Size(of[Size(fault.coordinate)])].type == JointType::kPrismatic;
-  if (name && slides && fault.trial < 0) {
-    const double scale = 1.0 / (1.0 + fault.size);
-    return fmt::format(
-        "{} (--accept {} corrects it; if its scale is right, the cameras' is {:.4f} times the true "
-        "one, which --accept scale={:.5f} corrects: measure a known length)",
-        text, *name, scale, scale);
-  }
-  const std::string followers = Followers(fault, tree);
-  return name ? fmt::format("{} (--accept {} corrects it{})", text, *name, followers)
-              : text + followers;
-}
 
 /// Gains of sliding joints are what a wrong scale of the cameras looks like: several that are alike
 /// are one, and of one that the other lengths bear out both are said. Nothing for other faults.
@@ -99,6 +67,7 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
 
 constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
 constexpr double kContradicted = 10.0;
+constexpr double kLeftByMistake = 0.3;  // of the error on held-out trials
 constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
 /// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
 /// be as good in motion, which statics does not describe.
@@ -127,12 +96,6 @@ std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result)
   return faults;
 }
 
-/// The fault that explains most, and the recording that its postures are of.
-struct GeneralFault {
-  RecordingFault fault;
-  Recording recording;
-};
-
 /// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
 /// for without the knocks, too.
 std::optional<GeneralFault> FindGeneralFault(const Project& project,
@@ -140,21 +103,41 @@ std::optional<GeneralFault> FindGeneralFault(const Project& project,
                                              Measurements as_recorded, const RecordedModel& robot,
                                              const Recording& recording,
                                              const CalibrationResult& result) {
+  GeneralFault general{{}, robot.model, robot.base, recording, result.kind, project.calibration};
   std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
-  const Recording* of = &recording;
   if (!robot.knocks.empty()) {
-    const RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
+    RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
     const CalibrationResult without = Calibrate(plain.model, as_recorded.calibration, plain.base,
                                                 result.kind, project.calibration);
     std::vector<RecordingFault> found =
         FindRecordingFaults(without, as_recorded.calibration, project.calibration);
     if (!found.empty()) {
       faults = std::move(found);
-      of = &as_recorded.calibration;
+      general.model = std::move(plain.model);
+      general.base = std::move(plain.base);
+      general.recording = std::move(as_recorded.calibration);
     }
   }
   if (faults.empty()) return std::nullopt;
-  return GeneralFault{faults.front(), *of};
+  general.fault = faults.front();
+  return general;
+}
+
+bool IsFarOff(const std::vector<RecordingFault>& gears) {
+  constexpr double kFarOffGear = 0.1;  // beyond it, a linear estimate is none
+  return std::any_of(gears.begin(), gears.end(),
+                     [](const RecordingFault& gear) { return std::abs(gear.size) > kFarOffGear; });
+}
+
+/// The general fault of a robot without the causes that it seemed to have.
+std::optional<GeneralFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
+                                              const Measurements& as_recorded, ModelKind kind) {
+  project.elasticity.extra.clear();
+  Measurements plain = as_recorded;
+  const RecordedModel robot = MakeRecordedModel(project, seed, plain, KnockSearch::kNone);
+  const CalibrationResult fit =
+      Calibrate(robot.model, plain.calibration, robot.base, kind, project.calibration);
+  return FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
 }
 
 /// What undoes a wrong scale: `scale=1.00200` in all trials, else `scale:TRIAL=1.00200` in each.
@@ -237,6 +220,35 @@ Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, M
   return largest;
 }
 
+/// A mistake in the log or labels of held-out trials that the calibrated robot proves; else empty.
+std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
+                             const ModelComparison& comparison, const ErrorTable& table) {
+  const auto mean = [&](const ErrorTable& of) {
+    const auto found = of.mean_rmse_3d.find(comparison.largest_kind());
+    return found == of.mean_rmse_3d.end() ? std::numeric_limits<double>::infinity() : found->second;
+  };
+  const double before = mean(table);
+  const auto error_of = [&](const Recording& corrected) {
+    try {
+      return mean(JudgeOnTrials(comparison, corrected, project.calibration).table);
+    } catch (const InputError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  };
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project, held_out, before, error_of, {}, kLeftByMistake);
+  if (mistakes.empty()) return "";
+  std::string what, names;
+  for (const RecordingMistake& one : mistakes) {
+    what += (what.empty() ? "" : "; ") + one.what;
+    names += " " + one.name;
+  }
+  return fmt::format(
+      "in trials for validation {}; without that the calibrated robot errs by {:.3g} mm on them, "
+      "with it by {:.3g} mm (--accept{} corrects it)",
+      what, 1e3 * mistakes.back().after, 1e3 * before, names);
+}
+
 /// At most `count` postures. Motions are sampled far more densely than postures are held.
 Recording EvenlyThinned(const Recording& recording, int count) {
   const int step = (recording.posture_count() + count - 1) / count;
@@ -274,10 +286,11 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
   };
   if (wrong_scales.empty() && !scale_is_known) {
     if (const auto scale = FindWrongScale(comparison.largest(), project.calibration)) {
-      // The scale of one trial is spread over the lengths that the trial tells.
+      // The scale of one trial, or axis, is spread over the lengths that it tells.
       const auto found = general();
-      const bool of_a_trial = found && found->fault.kind == FaultKind::kCameraScale;
-      faults.push_back(of_a_trial ? FaultAndRemedy(found->fault, project.tree, found->recording)
+      const bool of_cameras = found && (found->fault.kind == FaultKind::kCameraScale ||
+                                        found->fault.kind == FaultKind::kCameraAxis);
+      faults.push_back(of_cameras          ? ExplainFault(*found, project)
                        : of_slides.empty() ? Describe(*scale)
                                            : of_slides);
     }
@@ -289,6 +302,10 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     return {Describe(*up, recording)};
   }
   if (!of_slides.empty() && !scale_is_known) return {of_slides};
+  if (IsFarOff(gears)) {
+    const auto found = FindWithoutCauses(project, seed, as_recorded, comparison.largest().kind);
+    if (found) return {ExplainFault(*found, project)};
+  }
   for (const RecordingFault& gear : gears) {
     faults.push_back(FaultAndRemedy(gear, project.tree, recording));
   }
@@ -299,7 +316,7 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
       scale_is_known ? ""
                      : ScaleOfSlides({found->fault}, comparison.largest(), project.calibration);
   if (!of_slide.empty()) return {of_slide};
-  return {FaultAndRemedy(found->fault, project.tree, found->recording)};
+  return {ExplainFault(*found, project)};
 }
 
 std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
@@ -309,18 +326,27 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
   const Contrast contrast = LargestContrast(fitted, held_out_table, comparison.largest().kind);
   if (!(contrast.ratio() > kSuspicious)) return {};
-  const Recording all = JoinTrials(recording, EvenlyThinned(held_out, recording.posture_count()));
+  const std::string mistake = MistakeInHeldOut(project, held_out, comparison, held_out_table);
+  if (!mistake.empty()) return {mistake};
+  const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
+  Recording all = JoinTrials(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.
   CalibrationOptions roughly = project.calibration;
   roughly.outliers = OutlierPolicy::kKeep;
   roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
   const CalibrationResult together =
       Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
+  // Within each trial they tell how fast joints moved.
+  all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
+  all.time_s << recording.time_s, thinned.time_s;
+  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
   const std::vector<RecordingFault> faults =
       FindRecordingFaults(together, all, project.calibration);
   if (!faults.empty()) {
+    const GeneralFault general{
+        faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
     return {"trials for calibration and for validation contradict each other: " +
-            FaultAndRemedy(faults.front(), project.tree, all)};
+            ExplainFault(general, project)};
   }
   if (!(contrast.ratio() > kContradicted)) return {};
   char text[200];

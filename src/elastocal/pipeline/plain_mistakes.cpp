@@ -17,11 +17,14 @@
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/log_check.hpp"
 #include "elastocal/calibration/moved_frame.hpp"
+#include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/placed_misfit.hpp"
 #include "elastocal/calibration/told_positions.hpp"
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/log_alternatives.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 
 namespace elastocal {
@@ -33,7 +36,8 @@ constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated le
 constexpr double kLeftOfMisfit = 0.7;
 constexpr double kLeftByOneOfSeveral = 0.9;
 constexpr double kLeftByToldPositions = 0.3;  // of one joint, told by the markers
-constexpr double kLeftWhereNoRobot = 0.5;     // where the offsets with the mistake are no robot's
+constexpr double kUntold = std::numeric_limits<double>::infinity();
+constexpr double kLeftWhereNoRobot = 0.5;  // where the offsets with the mistake are no robot's
 // ... and of the robot with joint offsets:
 constexpr double kLeftOfOffsets = 0.5;
 constexpr double kLeftByNoRobot = 0.98;  // where neither the offsets with nor without it are one's
@@ -118,12 +122,14 @@ class PlainSearch {
 
   /// Mistakes, each beside those before it; empty: none.
   std::vector<Alternative> Run() {
-    for (const auto& search : {&PlainSearch::FindInTable, &PlainSearch::FindExchange,
-                               &PlainSearch::FindWrongFollower, &PlainSearch::FindLostColumn}) {
+    for (const auto& search :
+         {&PlainSearch::FindInTable, &PlainSearch::FindExchange, &PlainSearch::FindWrongFollower,
+          &PlainSearch::FindLostColumn, &PlainSearch::FindOtherColumn, &PlainSearch::FindPair}) {
       std::vector<Alternative> found = Confirmed((this->*search)());
       if (!found.empty()) return found;
     }
-    return FindMovedRoot();
+    std::vector<Alternative> odd = ConfirmedByOffsets(FindOdd());
+    return odd.empty() ? FindMovedRoot() : odd;
   }
 
  private:
@@ -249,6 +255,42 @@ class PlainSearch {
     return found;
   }
 
+  std::vector<Alternative> FindOtherColumn() const {
+    if (misfit_ < kMostLeft) return {};
+    std::vector<Alternative> found;
+    double least = kLeftOfMisfit * misfit_;
+    for (LogAlternative& one :
+         OtherColumns(given_.recording, project_.tree, given_.model.active_joints)) {
+      const double left = MisfitOf(given_.model, one.recording);
+      if (!(left < least)) continue;
+      least = left;
+      found = {{std::move(one.what), "", given_.model, std::move(one.recording)}};
+    }
+    return found;
+  }
+
+  std::vector<Alternative> FindPair() const {
+    if (misfit_ < kMostLeft) return {};
+    std::vector<Alternative> found;
+    for (LogAlternative& one : BestPair(given_.recording, project_.tree, [&](const Recording& of) {
+           return MisfitOf(given_.model, of);
+         })) {
+      found.push_back(
+          {std::move(one.what), std::move(one.name), given_.model, std::move(one.recording)});
+    }
+    return found;
+  }
+
+  /// Mistakes in a part of the table.
+  std::vector<Alternative> FindOdd() const {
+    std::vector<Alternative> found;
+    for (OddPostures& one : FindOddPostures(given_.model, given_.recording,
+                                            SeenClusters(project_, given_.recording))) {
+      found.push_back({std::move(one.what), "", given_.model, std::move(one.corrected)});
+    }
+    return found;
+  }
+
   /// A root link that was taken to stand still, and does not. In each posture, its pose explains
   /// errors of the robot as well: all of them are estimated before it is said to move.
   std::vector<Alternative> FindMovedRoot() const {
@@ -290,6 +332,13 @@ class PlainSearch {
     if (steps.empty()) return {};
     const double left = MisfitOf(steps.back().model, steps.back().recording);
     if (left > kLeftOfMisfit * misfit_) return {};
+    return ConfirmedByOffsets(std::move(steps), left);
+  }
+
+  /// The same by the offsets alone: the typical distance says little of a part of the table.
+  std::vector<Alternative> ConfirmedByOffsets(std::vector<Alternative> steps,
+                                              double left = kUntold) const {
+    if (steps.empty()) return {};
     const OffsetsFit with = FitOffsets(given_), without = FitOffsets(steps.back());
     if (!std::isfinite(with.error) || !(without.error < kMostLeft)) return {};
     // Offsets of half a turn, and zeros of motors, explain much or all, with values that no robot

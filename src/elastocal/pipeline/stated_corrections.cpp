@@ -223,7 +223,10 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
     if (trial.empty()) return std::nullopt;
     return fmt::format("scale:{}={:.5f}", trial, 1.0 + fault.size);
   }
-  if (fault.coordinate < 0) return std::nullopt;
+  if (fault.coordinate < 0 || fault.kind == FaultKind::kJointDrift ||
+      fault.kind == FaultKind::kJointLag) {
+    return std::nullopt;
+  }
   const LoggedPosition logged = LoggedPositionOf(tree, fault.linkage, fault.coordinate);
   const std::string where = trial.empty() ? "" : "@" + trial;
   if (fault.kind == FaultKind::kJointGain) {
@@ -232,8 +235,12 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
   if (trial.empty()) {
     if (recording.trial.empty()) {
       if (fault.posture < 1) return std::nullopt;
-      return fmt::format("offset:{}:{}={:.4f}", logged.name, fault.posture + 1,
-                         fault.size / UnitOf(logged));
+      const auto from = [&](int posture, double size) {
+        return fmt::format("offset:{}:{}={:.4f}", logged.name, posture + 1, size / UnitOf(logged));
+      };
+      std::string names = from(fault.posture, fault.size);
+      if (fault.end > 0) names += " " + from(fault.end, -fault.size);
+      return names;
     }
     return NamesFromPosture(fault, logged, recording);
   }

@@ -114,6 +114,12 @@ TEST_F(StatedCorrections, OfATableAnOffsetIsFromAPostureOn) {
   measured_.validation = {};
   const RecordingFault fault{FaultKind::kJointOffset, Coordinate(), -1, 1, 0.1 * M_PI};
   EXPECT_EQ(NameOfCorrection(fault, project_.tree, table), "offset:turret_joint:2=18.0000");
+  RecordingFault other = fault;
+  other.end = 2;
+  EXPECT_EQ(NameOfCorrection(other, project_.tree, table),
+            "offset:turret_joint:2=18.0000 offset:turret_joint:3=-18.0000");
+  other.kind = FaultKind::kJointDrift;
+  EXPECT_FALSE(NameOfCorrection(other, project_.tree, table).has_value());
   EXPECT_EQ(Apply("offset:turret_joint:2=18"),
             "18 deg were taken from the positions of turret_joint from posture 2 on");
   const Eigen::Vector3d expected(1.0, 1.0 - 0.1 * M_PI, 1.0 - 0.1 * M_PI);

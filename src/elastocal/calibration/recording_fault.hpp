@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+
+namespace elastocal {
+
+/// What may be wrong with a recording as a whole, beyond single markers.
+enum class FaultKind {
+  kJointGain,    ///< a joint's positions are a multiple of the true ones
+  kJointOffset,  ///< a joint's positions are off by a constant from a posture on
+  kJointDrift,   ///< of a table: they drift steadily from the first to the last posture
+  kJointLag,     ///< of motions: they are those of some time before
+  kCameraScale,  ///< the cameras' positions in one trial are a multiple of the true ones
+  kCameraAxis,   ///< the cameras' coordinates along one of their axes are, in all postures
+};
+
+/// A fault that explains much of what the fit leaves.
+struct RecordingFault {
+  FaultKind kind = FaultKind::kJointGain;
+  int coordinate = -1;  ///< of the joints that are logged together, of the robot tree
+  int trial = -1;       ///< the only one that it is in; -1: all
+  int posture = 0;      ///< the first one that it is in
+  double size = 0.0;    ///< gain less 1; offset, or drift in all, rad or m; s; scale less 1
+  double sd = 0.0;      ///< of `size`, as wide as the postures scatter
+  double share = 0.0;   ///< of the sum of squared residuals that it explains
+  int linkage = -1;     ///< of the tree: `coordinate` is a motor of it; -1: of q
+  int end = 0;          ///< of a table: the one after the last that it is in; 0: it lasts
+  int axis = -1;        ///< of the cameras' frame: 0, 1 or 2
+};
+
+/// How much of its size (of a gain, times the position) a fault has in a posture.
+double FactorOf(const RecordingFault& fault, const Recording& recording, int posture);
+
+/// The recording without it. Not for motors of rods.
+Recording WithoutFault(const Recording& recording, const RecordingFault& fault);
+
+/// Whether the fault is from a posture to the end of its trial: an encoder that was homed anew
+/// after the trial.
+bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording);
+
+/// "arm_left_4_joint: its positions are off by 1.02 +- 0.03 deg from trial b, posture 1 on".
+std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
+                          const Recording& recording);
+
+}  // namespace elastocal

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/recording_fault.hpp"
+#include "elastocal/project/project.hpp"
+
+namespace elastocal {
+
+/// The fault that explains most of what a fit leaves, and what was fitted.
+struct GeneralFault {
+  RecordingFault fault;
+  ErrorModel model;
+  BaseParameters base;
+  Recording recording;
+  ModelKind kind = ModelKind::kGeometric;
+  CalibrationOptions options;
+};
+
+/// "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME corrects it)"
+std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
+                           const Recording& recording);
+
+/// The same, once it is known whether it is the only one. What explains most need not be what is
+/// wrong: the fault is undone, the robot fitted again, and what is left searched as before, until
+/// nothing is found. Several faults are said together, each by its size beside the others. Where a
+/// cluster that is elsewhere on its link from there on explains as much as several joints do, it is
+/// the cluster; joints that are off from the same posture or in the same trial are another
+/// robot or a new zero of all; and where four faults do not explain the recording, the sentence
+/// says that, and recommends no correction.
+std::string ExplainFault(const GeneralFault& general, const Project& project);
+
+}  // namespace elastocal

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/robot/robot_tree.hpp"
+
+namespace elastocal {
+
+/// A posture table, once a mistake is undone.
+struct LogAlternative {
+  std::string what;  ///< the mistake, in words
+  std::string name;  ///< what `--accept` calls it; empty: nothing
+  Recording recording;
+};
+
+/// The table with the positions of one of `joints` taken from the row before or after, for each
+/// that moved; less, or plus, those of its neighbour; and with markers of the opposite hand.
+std::vector<LogAlternative> OtherColumns(const Recording& recording, const RobotTree& tree,
+                                         const std::vector<int>& joints);
+
+/// Of all pairs of mistakes of the log (PossibleLogMistakes; of many joints, signs alone) the one
+/// that leaves the least `misfit`, one beside the other. Neither need show by itself, and three
+/// columns that went round are two exchanges. Empty where there is none, or too many.
+std::vector<LogAlternative> BestPair(const Recording& recording, const RobotTree& tree,
+                                     const std::function<double(const Recording&)>& misfit);
+
+}  // namespace elastocal

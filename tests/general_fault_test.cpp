@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of faults that a fit leaves, when they are not one simple fault.
+#include "elastocal/pipeline/general_fault.hpp"
+
+#include <gtest/gtest.h>
+
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/elastocal.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// An arm with errors, and 48 postures of it.
+class GeneralFaults : public testing::Test {
+ protected:
+  static Recording Record(const ErrorModel& model, const std::vector<int>& kept,
+                          std::uint64_t robot) {
+    const Eigen::VectorXd errors = DrawErrors(model, kept,
+                                              {{ParameterKind::kTheta, 0.5 * kDegree},
+                                               {ParameterKind::kAlpha, 0.2 * kDegree},
+                                               {ParameterKind::kR, 0.5e-3},
+                                               {ParameterKind::kD, 0.5e-3}},
+                                              robot);
+    return MakeSyntheticRecording(model, errors, {.postures = 48, .seed = 3});
+  }
+
+  int CoordinateOf(const std::string& name) const {
+    for (const Joint& joint : project_.tree.joints) {
+      if (joint.name == name) return joint.coordinate;
+    }
+    return -1;
+  }
+
+  void Turn(const std::string& joint, int begin, int end, double degrees) {
+    recorded_.q.col(CoordinateOf(joint)).segment(begin, end - begin).array() += degrees * kDegree;
+  }
+
+  /// Empty: nothing is found.
+  std::string Said() const {
+    const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
+    const auto found = FindRecordingFaults(fit, recorded_, project_.calibration);
+    if (found.empty()) return "";
+    return ExplainFault({found.front(), model_, base_, recorded_, kKind, project_.calibration},
+                        project_);
+  }
+
+  static constexpr ModelKind kKind = ModelKind::kGeometric;
+  Project project_ = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  ErrorModel model_ = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  BaseParameters base_ = FindBaseParameters(model_, project_.identifiability);
+  Recording recorded_ = Record(model_, base_.kept, 1);
+};
+
+void ExpectIn(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+// The first guess is one slip of more than either, somewhere near the second one.
+TEST_F(GeneralFaults, AJointThatSlipsTwiceIsSaidToSlipTwice) {
+  EXPECT_EQ(Said(), "");
+  Turn("elbow_joint", 16, 48, 0.7);
+  Turn("elbow_joint", 33, 48, 0.7);
+  const std::string said = Said();
+  ExpectIn(said, "offset:elbow_joint:17=0.");
+  ExpectIn(said, " offset:elbow_joint:34=0.");
+}
+
+TEST_F(GeneralFaults, AJointThatSlipsAndIsSetRightIsOffInBetween) {
+  Turn("shoulder_joint", 15, 27, 1.2);
+  const std::string said = Said();
+  ExpectIn(said, "from posture 16 to posture 27 (--accept offset:shoulder_joint:16=1.");
+  ExpectIn(said, " offset:shoulder_joint:28=-1.");
+}
+
+TEST_F(GeneralFaults, AnEncoderThatDriftsIsNoSlip) {
+  const int c = CoordinateOf("turret_joint");
+  recorded_.q.col(c) += Eigen::VectorXd::LinSpaced(48, 0.0, 1.0 * kDegree);
+  const std::string said = Said(), begin = "turret_joint: its positions drift by ";
+  ASSERT_EQ(said.find(begin), 0u) << said;
+  EXPECT_NEAR(std::stod(said.substr(begin.size())), 1.0, 0.15) << said;  // sd 0.06
+}
+
+// A derivative at the wrong gain is far from the gain.
+TEST_F(GeneralFaults, AGainOfHalfIsFoundAsHalf) {
+  recorded_.q.col(CoordinateOf("elbow_joint")) *= 0.5;
+  const std::string said = Said(), begin = "elbow_joint: its positions are ";
+  ASSERT_EQ(said.find(begin), 0u) << said;
+  EXPECT_NEAR(std::stod(said.substr(begin.size())), 0.5, 0.005) << said;  // sd 0.0009
+}
+
+TEST_F(GeneralFaults, AnotherRobotIsNoSlipOfAJoint) {
+  const Recording other = Record(model_, base_.kept, 7);
+  recorded_.markers.bottomRows(20) = other.markers.bottomRows(20);
+  const std::string said = Said();
+  ExpectIn(said, "positions of several joints are off from posture 2");
+  EXPECT_EQ(said.find("--accept"), std::string::npos) << said;
+}
+
+TEST_F(GeneralFaults, AKnockedClusterIsNoSlipOfAJoint) {
+  ErrorModel knocked = model_;
+  for (Marker& marker : knocked.markers) {
+    if (marker.name.rfind("TOOL", 0) == 0) {
+      marker.p_link_marker = Eigen::AngleAxisd(0.07, Eigen::Vector3d(0.6, 0.5, -0.6).normalized()) *
+                                 marker.p_link_marker +
+                             Eigen::Vector3d(6e-3, -5e-3, 4e-3);
+    }
+  }
+  const Recording other = Record(knocked, base_.kept, 1);
+  recorded_.markers.bottomRows(28) = other.markers.bottomRows(28);
+  ExpectIn(Said(), "cluster TOOL: its markers seem to be elsewhere on their link from posture 2");
+}
+
+// A robot's lengths have no direction of the room.
+TEST_F(GeneralFaults, AScaleOfOneAxisOfTheCameras) {
+  for (int m = 0; m < recorded_.marker_count(); ++m) recorded_.markers.col(3 * m + 2) *= 1.01;
+  ExpectIn(Said(), "camera positions along z are 1.0");
+}
+
+}  // namespace
+}  // namespace elastocal
