@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "elastocal/drafting/draft.hpp"
@@ -11,9 +12,17 @@
 
 namespace elastocal {
 
-/// The draft of a robot of the repository.
-inline ProjectDraft DraftFile(const std::string& file) {
+/// The draft of a robot of the repository, which takes seconds under the sanitizers.
+inline ProjectDraft DraftFileAnew(const std::string& file) {
   return DraftProject(ReadFile(SourceFile(file)), file, {});
+}
+
+/// The same, once in a program.
+inline const ProjectDraft& DraftFile(const std::string& file) {
+  static std::map<std::string, ProjectDraft> drafts;
+  const auto found = drafts.find(file);
+  return found != drafts.end() ? found->second
+                               : drafts.emplace(file, DraftFileAnew(file)).first->second;
 }
 
 /// The draft as its reader sees it.

@@ -78,7 +78,7 @@ TEST(Draft, ClustersAreFatTrianglesOfDifferentSides) {
 }
 
 TEST(Draft, SpheresCoverTheShapesOfTalosWithin15Millimetres) {
-  const ProjectDraft draft = DraftFile("models/talos/talos.urdf");
+  const ProjectDraft& draft = DraftFile("models/talos/talos.urdf");
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(draft.tree.coordinate_count());
   const auto poses = LinkTransforms(draft.tree, zero);
   for (const BodyShape& body : draft.shapes.bodies) {
@@ -157,7 +157,7 @@ TEST(Draft, MeshesAreShapesLikeOthers) {
   const std::string urdf = TalosOfMeshes(folder);
   MeshPlaces places;
   places.urdf = folder.Write("meshes.urdf", urdf);
-  const ProjectDraft boxes = DraftFile("models/talos/talos.urdf");
+  const ProjectDraft& boxes = DraftFile("models/talos/talos.urdf");
   const ProjectDraft meshes = DraftProject(urdf, "meshes.urdf", {}, places);
   EXPECT_EQ(meshes.shapes.meshes, 23);  // those for collisions
   ASSERT_EQ(meshes.soles.size(), 2U);
@@ -369,7 +369,7 @@ TEST(Draft, SaysWhereTheSrdfBreaksLimitsOfTheUrdf) {
 
 TEST(Draft, TheSameTextGivesTheSameDraft) {
   const std::string first = FormatDraft(DraftFile("tests/robots/mini_humanoid.urdf"), "a");
-  EXPECT_EQ(first, FormatDraft(DraftFile("tests/robots/mini_humanoid.urdf"), "a"));
+  EXPECT_EQ(first, FormatDraft(DraftFileAnew("tests/robots/mini_humanoid.urdf"), "a"));
 }
 
 TEST(Draft, OtherPeoplesRobotsCanBeReadBack) {
