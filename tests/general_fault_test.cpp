@@ -114,6 +114,17 @@ TEST_F(GeneralFaults, AKnockedClusterIsNoSlipOfAJoint) {
   ExpectIn(Said(), "cluster TOOL: its markers seem to be elsewhere on their link from posture 2");
 }
 
+// The first fit is bent by the slip; its size is that of a fit in which it is undone. What a
+// cluster's own displacement explains, which has more numbers, is compared with that.
+TEST_F(GeneralFaults, TheSizeOfALargeSlipIsThatOfTheLastFit) {
+  Turn("flange_joint", 20, 48, 8.0);
+  const std::string said = Said(), begin = "flange_joint: its positions are off by ", sign = " +- ";
+  ASSERT_EQ(said.find(begin), 0u) << said;
+  const double sd = std::stod(said.substr(said.find(sign) + sign.size()));
+  EXPECT_LT(sd, 0.1) << said;
+  EXPECT_NEAR(std::stod(said.substr(begin.size())), 8.0, 3.0 * sd) << said;
+}
+
 // A robot's lengths have no direction of the room.
 TEST_F(GeneralFaults, AScaleOfOneAxisOfTheCameras) {
   for (int m = 0; m < recorded_.marker_count(); ++m) recorded_.markers.col(3 * m + 2) *= 1.01;

@@ -57,7 +57,7 @@ class FaultExplanation {
       : general_(general), project_(project) {
     Collect(general.fault, true);
     if (faults_.size() > 1 && Drifts()) TryWithoutDrift();
-    if (complete_ && faults_.size() > 1) EstimateTogether();
+    if (complete_ && faults_.front().linkage < 0) EstimateTogether();
   }
 
   std::string Describe() const {
