@@ -132,8 +132,9 @@ option(ELASTOCAL_SLOW_TESTS "Build the slow tests; they add nothing under the sa
 # elastocal_test(NAME [SLOW] SOURCES file... [LIBS library...])
 #
 # A GoogleTest program. Each of its cases is a test of ctest, so that two cores share them; in Debug
-# builds, where starting a program takes long, the whole program is one test. It can find the
-# repository's files and the shared data by tests/test_files.hpp.
+# builds, where starting a program takes long, the whole program is one test. Suites whose names end in
+# Study try many robots or samples for a figure; like SLOW programs they run in release only. A test
+# can find the repository's files and the shared data by tests/test_files.hpp.
 function(elastocal_test name)
   cmake_parse_arguments(ARG "SLOW" "" "SOURCES;LIBS" ${ARGN})
   if(ARG_SLOW AND NOT ELASTOCAL_SLOW_TESTS)
@@ -147,7 +148,11 @@ function(elastocal_test name)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   if(CMAKE_BUILD_TYPE STREQUAL Debug)
-    add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
+    set(cases)
+    if(NOT ELASTOCAL_SLOW_TESTS)
+      set(cases --gtest_filter=-*Study.*)
+    endif()
+    add_test(NAME ${name} COMMAND ${name} --gtest_brief=1 ${cases})
     set_tests_properties(${name} PROPERTIES TIMEOUT 1200)
   else()
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)

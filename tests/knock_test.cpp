@@ -208,58 +208,42 @@ Eigen::MatrixXd HeldOutDistances(const KnockExperiment& experiment, const Record
   return folds.distances[full];
 }
 
-// The same robot, postures and noise with knocks and without.
-class KnockFolds : public testing::Test {
- protected:
-  static const KnockExperiment& Experiment() {
-    static const KnockExperiment experiment(16);
-    return experiment;
-  }
-  static const Eigen::MatrixXd& Clean() {
-    static const Eigen::MatrixXd clean = HeldOutDistances(Experiment(), Experiment().Clean(), 0);
-    return clean;
-  }
-  static Eigen::MatrixXd WithKnockAt(int posture) {
-    Recording recording = Experiment().Clean();
-    Experiment().Push("LHAND", posture, recording);
-    return HeldOutDistances(Experiment(), recording, 1);
-  }
-  /// Whether posture i is between the last posture before a knock and the first one after it that
-  /// its fold is estimated from.
-  bool Between(int i, int knock) const {
-    int before = knock - 1;
-    int after = knock;
-    while (fold_of_[before] == fold_of_[i]) --before;
-    while (fold_of_[after] == fold_of_[i]) ++after;
-    return before < i && i < after;
-  }
-
-  const std::vector<int>& hand_ = Experiment().Cluster("LHAND").markers;
-  const std::vector<int> fold_of_ = DealFolds(Experiment().Clean(), {.folds = 5});
-};
-
-// Each fold finds the knock by itself, and predicts the cluster before and after it as if it had
-// not been; not in postures around it, which could be on either side.
-TEST_F(KnockFolds, EachFindsTheKnockInItsOwnTrainingPostures) {
-  const int middle = kPostures + kPostures / 2;
-  const Eigen::MatrixXd distances = WithKnockAt(middle);
-  EXPECT_TRUE(Between(middle, middle));
-  for (int m : hand_) {
-    for (int i = kPostures; i < 2 * kPostures; ++i) {
-      EXPECT_EQ(std::isnan(distances(i, m)), Between(i, middle)) << i;
-      if (Between(i, middle)) continue;
-      EXPECT_NEAR(distances(i, m), Clean()(i, m), 1e-3) << i;  // a half of the push is 2.5 mm
-    }
-  }
+/// Whether posture i is between the last posture before a knock and the first one after it that its
+/// fold is estimated from.
+bool Between(const std::vector<int>& fold_of, int i, int knock) {
+  int before = knock - 1;
+  int after = knock;
+  while (fold_of[before] == fold_of[i]) --before;
+  while (fold_of[after] == fold_of[i]) ++after;
+  return before < i && i < after;
 }
 
-// Only three postures follow the knock, as few as it can be found from: a fold that holds one of
-// them does not know of it, and errs by it. Folds to which all postures had told it would not.
-TEST_F(KnockFolds, ErrByAKnockThatTheirTrainingPosturesDoNotShow) {
-  const int knock = 2 * kPostures - 3;  // the hand is seen until the end of this trial only
-  const Eigen::MatrixXd distances = WithKnockAt(knock);
-  for (int m : hand_) {
-    for (int i = knock; i < knock + 3; ++i) EXPECT_GT(distances(i, m), Clean()(i, m) + 2e-3) << i;
+// The same robot, postures and noise without a knock, with one in the middle, and with one that
+// only three postures follow, as few as it can be found from. Each fold finds the knock by itself.
+TEST(Knock, FoldsErrOnlyByAKnockThatTheirTrainingPosturesDoNotShow) {
+  const KnockExperiment experiment(16);
+  const std::vector<int> fold_of = DealFolds(experiment.Clean(), {.folds = 5});
+  const auto with_knock_at = [&](int posture) {
+    Recording recording = experiment.Clean();
+    experiment.Push("LHAND", posture, recording);
+    return HeldOutDistances(experiment, recording, 1);
+  };
+  const Eigen::MatrixXd clean = HeldOutDistances(experiment, experiment.Clean(), 0);
+  const int middle = kPostures + kPostures / 2;
+  const int late = 2 * kPostures - 3;  // the hand is seen until the end of this trial only
+  const Eigen::MatrixXd knocked = with_knock_at(middle), knocked_late = with_knock_at(late);
+  EXPECT_TRUE(Between(fold_of, middle, middle));
+  for (int m : experiment.Cluster("LHAND").markers) {
+    // Before and after it as if it had not been; not in postures around it, which could be on
+    // either side.
+    for (int i = kPostures; i < 2 * kPostures; ++i) {
+      EXPECT_EQ(std::isnan(knocked(i, m)), Between(fold_of, i, middle)) << i;
+      if (Between(fold_of, i, middle)) continue;
+      EXPECT_NEAR(knocked(i, m), clean(i, m), 1e-3) << i;  // a half of the push is 2.5 mm
+    }
+    // A fold that holds one of the three does not know of the knock, and errs by it. Folds to which
+    // all postures had told it would not.
+    for (int i = late; i < late + 3; ++i) EXPECT_GT(knocked_late(i, m), clean(i, m) + 2e-3) << i;
   }
 }
 

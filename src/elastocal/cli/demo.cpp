@@ -141,9 +141,10 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   simulations.Finish(options.common.Silent());
   exit_code = RunShown(calibrate, options);
   if (exit_code != kFine) return exit_code;
-  return RunShown({"simulate", project, "--deploy", options.output, "--motion", in("sine.csv"),
-                   "-o", options.output, "--seed", seed_text},
-                  options);
+  Words deploy = {"simulate",     project, "--deploy",     options.output, "--motion",
+                  in("sine.csv"), "-o",    options.output, "--seed",       seed_text};
+  if (options.count > 0) deploy.insert(deploy.end(), {"--stabiliser", "with"});
+  return RunShown(deploy, options);
 }
 
 /// The last line: what to look at.
@@ -178,7 +179,8 @@ void AddDemo(CLI::App& app, Action& action) {
   command
       ->add_option(
           "--count", options->count,
-          "Postures of each chain, designed and random; default: as many as it takes, and 20 "
+          "Postures of each chain, designed and random, for a shorter demo that shows the "
+          "calibration at work with a stabiliser only; default: as many as it takes, and 20 "
           "(--quick: 60 in all)")
       ->check(CLI::Range(4, 10000));
   command->add_flag("--quick", options->quick,

@@ -35,8 +35,10 @@ std::string DescribeExecutions(const std::vector<Execution>& executions) {
   }
   std::string refused;
   for (const Execution& one : executions) {
-    if (one.refused.empty() || one.stabilised) continue;
-    refused += fmt::format("{} was not played: {}\n", DeployName(one.as), one.refused);
+    if (one.refused.empty()) continue;
+    const std::string line =
+        fmt::format("{} was not played: {}\n", DeployName(one.as), one.refused);
+    if (refused.find(line) == std::string::npos) refused += line;  // with and without a stabiliser
   }
   return refused + "Distance from the plan, root mean square (and largest)\n" + table.Render() +
          "shift: of the root link by the stabiliser; zmp: least distance of the zero-moment point "

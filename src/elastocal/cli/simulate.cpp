@@ -35,6 +35,7 @@ struct SimulateCommand {
   int threads = 2, count = 0;
   std::string deploy;           ///< folder of a calibration that is put to use
   std::vector<std::string> as;  ///< how; empty: in all ways
+  std::string stabiliser = "both";
   std::optional<std::uint64_t> robot_seed;
   bool nominal = false, free = false, matched = false, force = false;
   std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
@@ -106,6 +107,7 @@ int Deploy(const SimulateCommand& command) {
       options.as.push_back(as);
     }
   }
+  if (command.stabiliser != "both") options.stabilised = {command.stabiliser == "with"};
   const bool quiet = command.common.Silent();
   const StoredCalibration stored = ReadCalibration(calibration.calibration);
   const std::vector<Execution> executions =
@@ -222,6 +224,13 @@ void AddSimulate(CLI::App& app, Action& action) {
                    "compensated; default: each in turn")
       ->needs(deploy)
       ->transform(CLI::IsMember({"nominal", "urdf", "compensated"}, CLI::ignore_case));
+  command
+      ->add_option("--stabiliser", options->stabiliser,
+                   "Whether the robots of --deploy are balanced by what feet and inertial unit "
+                   "feel: with, without, or both, which takes twice as long")
+      ->needs(deploy)
+      ->transform(CLI::IsMember({"with", "without", "both"}, CLI::ignore_case))
+      ->capture_default_str();
   command->add_option("--threads", options->threads, "Trials played at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -372,7 +372,7 @@ TEST(Draft, TheSameTextGivesTheSameDraft) {
   EXPECT_EQ(first, FormatDraft(DraftFileAnew("tests/robots/mini_humanoid.urdf"), "a"));
 }
 
-TEST(Draft, OtherPeoplesRobotsCanBeReadBack) {
+TEST(DraftStudy, OtherPeoplesRobotsCanBeReadBack) {
   const std::vector<std::pair<std::string, std::string>> robots = {
       {"talos/talos_full_v2.urdf", "talos/talos.srdf"},
       {"simple_humanoid/simple_humanoid.urdf", "simple_humanoid/simple_humanoid.srdf"},

@@ -41,7 +41,7 @@ TEST(StandingDraft, AQuadrupedStandsOnBalls) {
 }
 
 // As of Berkeley's small humanoid.
-TEST(StandingDraft, TheRootLinkMayBeAFrameOnTheFloor) {
+TEST(StandingDraftStudy, TheRootLinkMayBeAFrameOnTheFloor) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   const ProjectDraft usual = DraftProject(urdf, "talos.urdf", {});
   urdf.insert(urdf.find("<link"), R"(<link name="floor"/><joint name="up" type="fixed">
@@ -60,7 +60,7 @@ TEST(StandingDraft, TheRootLinkMayBeAFrameOnTheFloor) {
 }
 
 // As of ANYmal: joints that count turns, and feet that are not under the hips when the legs hang.
-TEST(StandingDraft, LegsBendAsFarAsStandingNeeds) {
+TEST(StandingDraftStudy, LegsBendAsFarAsStandingNeeds) {
   std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
   for (const char* limits : {R"(lower="-1.2" upper="2.6")", R"(lower="-2.6" upper="0.1")"}) {
     ASSERT_NE(urdf.find(limits), std::string::npos);
@@ -89,7 +89,7 @@ TEST(StandingDraft, LegsBendAsFarAsStandingNeeds) {
 }
 
 // As of REEM-C, Fourier N1 and Draco 3, whose motors need 91 to 95 % of their efforts on one foot.
-TEST(StandingDraft, MotionsUseNearlyAllOfMotorsThatNeedIt) {
+TEST(StandingDraftStudy, MotionsUseNearlyAllOfMotorsThatNeedIt) {
   const std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
   const auto draft_with = [&](double effort) {
     return DraftProject(std::regex_replace(urdf, std::regex("effort=\"60\""),

@@ -70,7 +70,7 @@ PlayOptions SlowMotion(std::uint64_t seed) {
 }
 
 // Errors of the robot take the speeds off by milliseconds.
-TEST(RefineClock, IsHardlyDisturbedByErrorsOfTheRobot) {
+TEST(RefineClockStudy, IsHardlyDisturbedByErrorsOfTheRobot) {
   double by_speed = 0.0;
   double by_positions = 0.0;
   double standardised = 0.0;

@@ -274,12 +274,13 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
     commands[i].q = FeedForward(commands[i].q, planned.time_s, physics.servo_frequency,
                                 2.0 / physics.servo_frequency - physics.time_step_s);
   });
-  std::vector<Execution> executions(2 * options.as.size());
+  const std::size_t runs = options.stabilised.size();  // of each robot
+  std::vector<Execution> executions(runs * options.as.size());
   const auto play = [&](std::size_t i) {
     Execution& execution = executions[i];
-    execution.as = options.as[i / 2];
-    execution.stabilised = i % 2 == 0;
-    execution.refused = commands[i / 2].refused;
+    execution.as = options.as[i / runs];
+    execution.stabilised = options.stabilised[i % runs];
+    execution.refused = commands[i / runs].refused;
     if (!execution.refused.empty()) return;
     Stabiliser stabiliser(project.tree, project.soles);
     PlanWatch watch(project, robot, planned);
@@ -287,12 +288,12 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
         robot, project.soles, planned, physics,
         {.stabiliser = execution.stabilised ? &stabiliser : nullptr,
          .R_world_root_at_rest = CalibratedMounting(project, planned, execution.as),
-         .commanded = &commands[i / 2].q,
+         .commanded = &commands[i / runs].q,
          .watch = [&](Eigen::Index sample, const Eigen::VectorXd& posture,
                       const VirtualRobot& body) { watch.Look(sample, posture, body); }});
     watch.Store(execution);
-    // One robot of each knowledge is enough to look at: the one whose balance is controlled.
-    if (execution.stabilised) execution.playback = watch.playback();
+    // One run of each robot is enough to look at.
+    if (i % runs == 0) execution.playback = watch.playback();
   };
   ForAll(executions.size(), options.threads, play, progress);
   return executions;

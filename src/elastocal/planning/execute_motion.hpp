@@ -44,21 +44,23 @@ struct Execution {
   PlaceError landing;  ///< of a swinging foot 50 ms before the plan sets it down
   PlaceError waist;    ///< the root link
   PlaceError centre_of_mass;
-  /// Of the stabilised robots: five pictures a second, fewer where they would be more than 2000.
+  /// Of the first run of each robot, the stabilised one where there is one: five pictures a second,
+  /// fewer where they would be more than 2000.
   Playback playback = {};
 };
 
 struct DeployOptions {
   std::vector<DeployAs> as = {DeployAs::kNominal, DeployAs::kUrdf, DeployAs::kCompensated};
+  std::vector<bool> stabilised = {true, false};  ///< each robot with a stabiliser and without
   TruthOptions truth = {};  ///< the robot's errors: those of the robot that was calibrated
   PhysicsOptions physics = {};
   int threads = 2;  ///< robots at a time; the result does not depend on it
 };
 
 /// Plays a planned motion on one robot with errors that stands free, once for each way to know it,
-/// with and without a stabiliser. All controllers hold the positions that they command against the
-/// load (their servos integrate) and feed forward what their servos lag behind. Progress counts
-/// runs.
+/// with and without a stabiliser where the options ask for both. All controllers hold the positions
+/// that they command against the load (their servos integrate) and feed forward what their servos
+/// lag behind. Progress counts runs.
 ///
 /// Throws InputError for a motion without time or support, or with samples on no foot, and for a
 /// calibration of another robot.

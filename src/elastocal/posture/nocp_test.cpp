@@ -109,7 +109,7 @@ TEST(Nocp, SameSeedSamePostures) {
   }
 }
 
-TEST(Nocp, BeatsTheOtherAlgorithms) {
+TEST(NocpStudy, BeatsTheOtherAlgorithms) {
   LegProblem leg;
   NocpOptions options = Quick();
   options.plateau.tolerance = -1.0;
@@ -153,7 +153,7 @@ TEST(FindPlateau, TakesTwoStillAdditionsInTurn) {
   EXPECT_EQ(FindPlateau({0.0, 0.0, 0.0}, 1e-3), -1);                   // no information yet
 }
 
-TEST(CertifyBound, HoldsForEverySetThatOtherSeedsFind) {
+TEST(CertifyBoundStudy, HoldsForEverySetThatOtherSeedsFind) {
   LegProblem leg;
   const DesignResult design = Nocp(leg.problem, 2, Quick(8));
   const Certificate certificate = CertifyBound(leg.problem, design.set, QuickCertificate());
