@@ -131,5 +131,33 @@ TEST_F(GeneralFaults, AScaleOfOneAxisOfTheCameras) {
   ExpectIn(Said(), "camera positions along z are 1.0");
 }
 
+TEST_F(GeneralFaults, CamerasWhoseAxesAreNotSquare) {
+  for (int m = 0; m < recorded_.marker_count(); ++m) {
+    recorded_.markers.col(3 * m + 1) += 0.006 * recorded_.markers.col(3 * m + 2);
+  }
+  ExpectIn(Said(), "the cameras' axes are not square: y is off by 0.006");
+}
+
+TEST_F(GeneralFaults, CamerasWhoseScaleChangesOutwards) {
+  const RecordingFault bend{.kind = FaultKind::kCameraBend};
+  recorded_.markers += 0.01 * CameraDisplacements(bend, recorded_);
+  ExpectIn(Said(), "the cameras' space is distorted: their scale at the outermost marker is 1.0");
+}
+
+// The log has where the robot was sent, the markers where it was before it came to rest.
+TEST_F(GeneralFaults, ATableThatWasMeasuredBeforeRest) {
+  for (int i = 1; i < 48; ++i) {
+    recorded_.q.row(i) = (recorded_.q.row(i) - 0.015 * recorded_.q.row(i - 1)) / 0.985;
+  }
+  ExpectIn(Said(), "the joints: positions are ahead of the markers by 1.5");
+}
+
+TEST_F(GeneralFaults, OneJointThatIsLoggedLate) {
+  const int c = CoordinateOf("flange_joint");
+  const Eigen::VectorXd column = recorded_.q.col(c);
+  recorded_.q.col(c).tail(47) -= 0.05 * (column.tail(47) - column.head(47));
+  ExpectIn(Said(), "flange_joint: positions are behind the markers by ");
+}
+
 }  // namespace
 }  // namespace elastocal

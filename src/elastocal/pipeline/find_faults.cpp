@@ -288,8 +288,8 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     if (const auto scale = FindWrongScale(comparison.largest(), project.calibration)) {
       // The scale of one trial, or axis, is spread over the lengths that it tells.
       const auto found = general();
-      const bool of_cameras = found && (found->fault.kind == FaultKind::kCameraScale ||
-                                        found->fault.kind == FaultKind::kCameraAxis);
+      const bool of_cameras =
+          found && (found->fault.kind == FaultKind::kCameraScale || IsInCameraSpace(found->fault));
       faults.push_back(of_cameras          ? ExplainFault(*found, project)
                        : of_slides.empty() ? Describe(*scale)
                                            : of_slides);
