@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/coarse_positions.hpp"
+#include "elastocal/calibration/prediction.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
@@ -157,6 +159,26 @@ TEST_F(GeneralFaults, OneJointThatIsLoggedLate) {
   const Eigen::VectorXd column = recorded_.q.col(c);
   recorded_.q.col(c).tail(47) -= 0.05 * (column.tail(47) - column.head(47));
   ExpectIn(Said(), "flange_joint: positions are behind the markers by ");
+}
+
+// A robot that was sent to round numbers is recorded as well by them as by any others.
+TEST_F(GeneralFaults, ARoundedColumnIsOneWhosePositionsAreElsewhere) {
+  const int c = CoordinateOf("elbow_joint");
+  const auto found = [&] {
+    const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
+    return FindCoarsePositions(fit, recorded_, project_.calibration, {});
+  };
+  EXPECT_TRUE(found().empty());
+  const Eigen::VectorXd rounded = (recorded_.q.col(c) / kDegree).array().round() * kDegree;
+  recorded_.q.col(c) = rounded;
+  const auto coarse = found();
+  ASSERT_EQ(coarse.size(), 1u);
+  EXPECT_EQ(coarse[0].coordinate, c);
+  EXPECT_NEAR(coarse[0].step, kDegree, 1e-9);
+  EXPECT_NEAR(coarse[0].off, kDegree / std::sqrt(12.0), 0.1 * kDegree);  // 48 of them: sd 0.02
+  const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
+  recorded_.markers = Predict(model_, fit.delta, recorded_, project_.calibration).positions;
+  EXPECT_TRUE(found().empty());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/camera_scale.hpp"
+#include "elastocal/calibration/coarse_positions.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/up_check.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -302,6 +303,11 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     return {Describe(*up, recording)};
   }
   if (!of_slides.empty() && !scale_is_known) return {of_slides};
+  for (const CoarsePositions& one : FindCoarsePositions(comparison.largest(), recording,
+                                                        project.calibration, as_recorded.trials)) {
+    if (IsTooCoarse(one, project.tree)) faults.push_back(Describe(one, project.tree));
+  }
+  if (!faults.empty()) return faults;
   if (IsFarOff(gears)) {
     const auto found = FindWithoutCauses(project, seed, as_recorded, comparison.largest().kind);
     if (found) return {ExplainFault(*found, project)};
