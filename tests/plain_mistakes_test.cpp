@@ -69,6 +69,17 @@ TEST_F(PlainMistakes, NoneOfACleanTableWhateverItsOffsets) {
   }
 }
 
+// In half of the postures: no part of the table places the robot as it is.
+TEST_F(PlainMistakes, PositionsModuloHalfATurn) {
+  for (Joint& joint : project_.tree.joints) {
+    if (joint.name != "flange_joint") continue;
+    auto column = recorded_.q.col(joint.coordinate);
+    for (double& q : column) q -= M_PI * std::round(q / M_PI);
+  }
+  const std::string found = First(Find(recorded_));
+  EXPECT_EQ(found.find("flange_joint: its positions are off by half a turn in "), 0u) << found;
+}
+
 TEST_F(PlainMistakes, SignsAndExchangesOfAnyJoints) {
   const auto& tree = project_.tree;
   const auto name = [&](int c) { return tree.joints[Size(tree.coordinate_joint[Size(c)])].name; };

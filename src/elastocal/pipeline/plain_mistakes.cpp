@@ -124,7 +124,8 @@ class PlainSearch {
   std::vector<Alternative> Run() {
     for (const auto& search :
          {&PlainSearch::FindInTable, &PlainSearch::FindExchange, &PlainSearch::FindWrongFollower,
-          &PlainSearch::FindLostColumn, &PlainSearch::FindOtherColumn, &PlainSearch::FindPair}) {
+          &PlainSearch::FindLostColumn, &PlainSearch::FindHalfTurn, &PlainSearch::FindOtherColumn,
+          &PlainSearch::FindPair}) {
       std::vector<Alternative> found = Confirmed((this->*search)());
       if (!found.empty()) return found;
     }
@@ -251,6 +252,25 @@ class PlainSearch {
                     ": its positions are the same in all rows, and the markers show that it moved "
                     "(a column that was not logged?)",
                 "", given_.model, std::move(told)}};
+    }
+    return found;
+  }
+
+  /// A joint whose positions are logged within half a turn, though it turns further.
+  std::vector<Alternative> FindHalfTurn() const {
+    if (given_.recording.free_root) return {};
+    std::vector<Alternative> found;
+    double least = kLeftOfMisfit * misfit_;
+    for (const int k : given_.model.active_joints) {
+      const Joint& joint = project_.tree.joints[Size(k)];
+      if (joint.mimic || IsMovedByRods(project_.tree, k)) continue;
+      HalfTurns half = FindHalfTurns(given_.model, given_.recording, joint.coordinate);
+      if (half.postures.empty() || !(MisfitOf(given_.model, half.turned) < least)) continue;
+      least = MisfitOf(given_.model, half.turned);
+      found = {{fmt::format("{}: its positions are off by half a turn in {} of {} postures (logged "
+                            "modulo half a turn?)",
+                            joint.name, half.postures.size(), half.turned.posture_count()),
+                "", given_.model, std::move(half.turned)}};
     }
     return found;
   }
