@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/coarse_positions.hpp"
+#include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
@@ -179,6 +180,22 @@ TEST_F(GeneralFaults, ARoundedColumnIsOneWhosePositionsAreElsewhere) {
   const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
   recorded_.markers = Predict(model_, fit.delta, recorded_, project_.calibration).positions;
   EXPECT_TRUE(found().empty());
+}
+
+// Far less than the nominal robot errs by.
+TEST_F(GeneralFaults, AJointThatIsElsewhereInFewRows) {
+  const std::vector<LabelCluster> none;
+  const auto odd = [&] {
+    const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
+    return FindOddPostures(model_, recorded_, none, &fit.delta);
+  };
+  EXPECT_TRUE(odd().empty());
+  for (const int i : {7, 18, 30, 41}) Turn("flange_joint", i, i + 1, 5.0);
+  EXPECT_TRUE(FindOddPostures(model_, recorded_, none).empty());
+  const auto found = odd();
+  ASSERT_EQ(found.size(), 1u);
+  ExpectIn(found[0].what, "flange_joint: its positions are wrong");
+  ExpectIn(found[0].what, "in postures 8, 19, 31, 42");
 }
 
 }  // namespace
