@@ -21,9 +21,8 @@ constexpr int kFewestSoundPostures = 8;    // postures by which a robot is place
 constexpr double kOddDistance = 0.015;     // m
 constexpr double kOddShare = 0.015;        // of the robot's size, where that is less
 constexpr double kOddRatio = 3.0;          // times the median of those that it is placed by
-constexpr double kOddOfCalibrated = 1e-3;  // m
-constexpr double kOddRatioOfCalibrated = 4.0;
-constexpr double kSoundDistance = 0.05;  // m, of that median: the robot is placed
+constexpr double kOddOfCalibrated = 5e-4;  // m
+constexpr double kSoundDistance = 0.05;    // m, of that median: the robot is placed
 constexpr double kLeftOfOdd = 0.5;
 constexpr int kFewestOddPostures = 3;
 constexpr double kLeastShareOfOdd = 0.6;  // of the odd postures
@@ -111,7 +110,7 @@ class OddSearch {
     }
     double median = kSoundDistance;
     for (const PlacedByPart& one : placements) median = std::min(median, one.median);
-    far_ = std::max(least, (errors_ != nullptr ? kOddRatioOfCalibrated : kOddRatio) * median);
+    far_ = std::max(least, kOddRatio * median);
     int fewest = count - std::max(kFewestSoundPostures, count / 4) + 1;
     for (PlacedByPart& one : placements) {
       std::vector<int> odd;

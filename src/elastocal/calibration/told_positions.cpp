@@ -123,7 +123,7 @@ HalfTurns FindHalfTurns(const ErrorModel& model, const Recording& recording, int
   const bool within = range > kLeastOfHalfTurn * std::numbers::pi && range <= std::numbers::pi;
   const bool further =
       joint.limits.upper - joint.limits.lower > kMoreThanHalfTurn * std::numbers::pi;
-  if (joint.type == JointType::kPrismatic || !within || !further) return {};
+  if (recording.free_root || joint.type == JointType::kPrismatic || !within || !further) return {};
   const Recording told = WithToldPositions(model, recording, coordinate);
   HalfTurns found{{}, recording};
   int neither = 0;

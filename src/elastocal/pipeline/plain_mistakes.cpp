@@ -30,8 +30,9 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestPlaced = 8;    // of few, anything is explained
-constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated leaves more
+constexpr int kFewestPlaced = 8;  // of few, anything is explained
+// No robot whose errors are estimated leaves more, m and of its size:
+constexpr double kMostLeft = 0.02, kMostOfSize = 0.01;
 // What is left at most once a mistake is undone, of the placed nominal robot:
 constexpr double kLeftOfMisfit = 0.7;
 constexpr double kLeftByOneOfSeveral = 0.9;
@@ -91,7 +92,6 @@ Alternative Thinned(Alternative robot) {
   return robot;
 }
 
-/// Nothing where it cannot be fitted.
 std::optional<CalibrationResult> Fit(const Alternative& robot, ModelKind kind,
                                      const Project& project) {
   IdentifiabilityOptions identifiability = project.identifiability;
@@ -118,7 +118,8 @@ class PlainSearch {
   PlainSearch(const Project& project, const Recording& recording)
       : project_(project),
         given_{"", "", ModelOf(project, recording), recording},
-        misfit_(MisfitOf(given_.model, recording)) {}
+        misfit_(MisfitOf(given_.model, recording)),
+        least_(std::min(kMostLeft, kMostOfSize * RobotSize(project.tree))) {}
 
   /// Mistakes, each beside those before it; empty: none.
   std::vector<Alternative> Run() {
@@ -236,7 +237,7 @@ class PlainSearch {
   /// A joint that moved, and whose column says the same in all rows: the markers tell where it was.
   /// That explains a part of any mistake, so it has to explain most.
   std::vector<Alternative> FindLostColumn() const {
-    if (given_.recording.free_root || misfit_ < kMostLeft) return {};
+    if (given_.recording.free_root || misfit_ < least_) return {};
     const RobotTree& tree = project_.tree;
     std::vector<Alternative> found;
     double least = kLeftByToldPositions * misfit_;
@@ -258,7 +259,6 @@ class PlainSearch {
 
   /// A joint whose positions are logged within half a turn, though it turns further.
   std::vector<Alternative> FindHalfTurn() const {
-    if (given_.recording.free_root) return {};
     std::vector<Alternative> found;
     double least = kLeftOfMisfit * misfit_;
     for (const int k : given_.model.active_joints) {
@@ -276,7 +276,7 @@ class PlainSearch {
   }
 
   std::vector<Alternative> FindOtherColumn() const {
-    if (misfit_ < kMostLeft) return {};
+    if (misfit_ < least_) return {};
     std::vector<Alternative> found;
     double least = kLeftOfMisfit * misfit_;
     for (LogAlternative& one :
@@ -290,7 +290,7 @@ class PlainSearch {
   }
 
   std::vector<Alternative> FindPair() const {
-    if (misfit_ < kMostLeft) return {};
+    if (misfit_ < least_) return {};
     std::vector<Alternative> found;
     for (LogAlternative& one : BestPair(given_.recording, project_.tree, [&](const Recording& of) {
            return MisfitOf(given_.model, of);
@@ -379,6 +379,7 @@ class PlainSearch {
   const Project& project_;
   Alternative given_;
   double misfit_;  ///< m
+  double least_;   ///< misfit of a mistake that is looked for, m
 };
 
 }  // namespace
