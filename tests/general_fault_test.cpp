@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/coarse_positions.hpp"
+#include "elastocal/calibration/odd_postures.hpp"
+#include "elastocal/calibration/prediction.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
@@ -129,6 +132,70 @@ TEST_F(GeneralFaults, TheSizeOfALargeSlipIsThatOfTheLastFit) {
 TEST_F(GeneralFaults, AScaleOfOneAxisOfTheCameras) {
   for (int m = 0; m < recorded_.marker_count(); ++m) recorded_.markers.col(3 * m + 2) *= 1.01;
   ExpectIn(Said(), "camera positions along z are 1.0");
+}
+
+TEST_F(GeneralFaults, CamerasWhoseAxesAreNotSquare) {
+  for (int m = 0; m < recorded_.marker_count(); ++m) {
+    recorded_.markers.col(3 * m + 1) += 0.006 * recorded_.markers.col(3 * m + 2);
+  }
+  ExpectIn(Said(), "the cameras' axes are not square: y is off by 0.006");
+}
+
+TEST_F(GeneralFaults, CamerasWhoseScaleChangesOutwards) {
+  const RecordingFault bend{.kind = FaultKind::kCameraBend};
+  recorded_.markers += 0.01 * CameraDisplacements(bend, recorded_);
+  ExpectIn(Said(), "the cameras' space is distorted: their scale at the outermost marker is 1.0");
+}
+
+// The log has where the robot was sent, the markers where it was before it came to rest.
+TEST_F(GeneralFaults, ATableThatWasMeasuredBeforeRest) {
+  for (int i = 1; i < 48; ++i) {
+    recorded_.q.row(i) = (recorded_.q.row(i) - 0.015 * recorded_.q.row(i - 1)) / 0.985;
+  }
+  ExpectIn(Said(), "the joints: positions are ahead of the markers by 1.5");
+}
+
+TEST_F(GeneralFaults, OneJointThatIsLoggedLate) {
+  const int c = CoordinateOf("flange_joint");
+  const Eigen::VectorXd column = recorded_.q.col(c);
+  recorded_.q.col(c).tail(47) -= 0.05 * (column.tail(47) - column.head(47));
+  ExpectIn(Said(), "flange_joint: positions are behind the markers by ");
+}
+
+// A robot that was sent to round numbers is recorded as well by them as by any others.
+TEST_F(GeneralFaults, ARoundedColumnIsOneWhosePositionsAreElsewhere) {
+  const int c = CoordinateOf("elbow_joint");
+  const auto found = [&] {
+    const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
+    return FindCoarsePositions(fit, recorded_, project_.calibration, {});
+  };
+  EXPECT_TRUE(found().empty());
+  const Eigen::VectorXd rounded = (recorded_.q.col(c) / kDegree).array().round() * kDegree;
+  recorded_.q.col(c) = rounded;
+  const auto coarse = found();
+  ASSERT_EQ(coarse.size(), 1u);
+  EXPECT_EQ(coarse[0].coordinate, c);
+  EXPECT_NEAR(coarse[0].step, kDegree, 1e-9);
+  EXPECT_NEAR(coarse[0].off, kDegree / std::sqrt(12.0), 0.1 * kDegree);  // 48 of them: sd 0.02
+  const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
+  recorded_.markers = Predict(model_, fit.delta, recorded_, project_.calibration).positions;
+  EXPECT_TRUE(found().empty());
+}
+
+// Far less than the nominal robot errs by.
+TEST_F(GeneralFaults, AJointThatIsElsewhereInFewRows) {
+  const std::vector<LabelCluster> none;
+  const auto odd = [&] {
+    const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
+    return FindOddPostures(model_, recorded_, none, &fit.delta);
+  };
+  EXPECT_TRUE(odd().empty());
+  for (const int i : {7, 18, 30, 41}) Turn("flange_joint", i, i + 1, 5.0);
+  EXPECT_TRUE(FindOddPostures(model_, recorded_, none).empty());
+  const auto found = odd();
+  ASSERT_EQ(found.size(), 1u);
+  ExpectIn(found[0].what, "flange_joint: its positions are wrong");
+  ExpectIn(found[0].what, "in postures 8, 19, 31, 42");
 }
 
 }  // namespace

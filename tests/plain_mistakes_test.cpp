@@ -2,12 +2,14 @@
 // Mistakes in tables of markers, and in projects, that show before anything is estimated.
 #include "elastocal/pipeline/plain_mistakes.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/moved_frame.hpp"
+#include "elastocal/calibration/told_positions.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
@@ -67,6 +69,28 @@ TEST_F(PlainMistakes, NoneOfACleanTableWhateverItsOffsets) {
     Record(sd);
     EXPECT_EQ(First(Find(recorded_)), "") << sd;
   }
+}
+
+// Of a small arm with half of its postures wrong, no part of the table places it as it is; here the
+// markers tell each of them.
+TEST_F(PlainMistakes, PositionsModuloHalfATurn) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const auto flange = std::find_if(project_.tree.joints.begin(), project_.tree.joints.end(),
+                                   [](const Joint& joint) { return joint.name == "flange_joint"; });
+  const int c = flange->coordinate;
+  EXPECT_TRUE(FindHalfTurns(model, recorded_, c).postures.empty());
+  const Recording sound = recorded_;
+  std::vector<int> off;
+  for (int i = 0; i < recorded_.posture_count(); ++i) {
+    const double halves = std::round(recorded_.q(i, c) / M_PI);
+    if (halves != 0.0) off.push_back(i);
+    recorded_.q(i, c) -= halves * M_PI;
+  }
+  const HalfTurns found = FindHalfTurns(model, recorded_, c);
+  EXPECT_EQ(found.postures, off);
+  EXPECT_LT((found.turned.q - sound.q).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(First(Find(recorded_)).find("flange_joint: its positions are off by half a turn in "),
+            0u);
 }
 
 TEST_F(PlainMistakes, SignsAndExchangesOfAnyJoints) {

@@ -13,7 +13,8 @@
 namespace elastocal {
 
 /// A cluster of markers that was displaced as a whole during the experiment, against the link that
-/// carries it. Distances within the cluster stay, so that only the model of the robot can tell.
+/// carries it. Distances within the cluster stay, so that only the model of the robot can tell. Or
+/// one marker of it (FindMovedMarkers).
 struct Knock {
   std::string cluster;
   /// Those seen on both sides of it, which become two (SplitMarkers). Of the recording, as split by

@@ -17,11 +17,12 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestSoundPostures = 8;  // postures by which a robot is placed
-constexpr double kOddDistance = 0.015;   // m
-constexpr double kOddShare = 0.015;      // of the robot's size, where that is less
-constexpr double kOddRatio = 3.0;        // times the median of those that it is placed by
-constexpr double kSoundDistance = 0.05;  // m, of that median: the robot is placed
+constexpr int kFewestSoundPostures = 8;    // postures by which a robot is placed
+constexpr double kOddDistance = 0.015;     // m
+constexpr double kOddShare = 0.015;        // of the robot's size, where that is less
+constexpr double kOddRatio = 3.0;          // times the median of those that it is placed by
+constexpr double kOddOfCalibrated = 5e-4;  // m
+constexpr double kSoundDistance = 0.05;    // m, of that median: the robot is placed
 constexpr double kLeftOfOdd = 0.5;
 constexpr int kFewestOddPostures = 3;
 constexpr double kLeastShareOfOdd = 0.6;  // of the odd postures
@@ -53,8 +54,8 @@ std::string ListOfPostures(const std::vector<int>& postures) {
 class OddSearch {
  public:
   OddSearch(const ErrorModel& model, const Recording& recording,
-            const std::vector<LabelCluster>& clusters)
-      : model_(model), recording_(recording), clusters_(clusters) {
+            const std::vector<LabelCluster>& clusters, const Eigen::VectorXd* errors)
+      : model_(model), recording_(recording), clusters_(clusters), errors_(errors) {
     Place();
   }
 
@@ -89,7 +90,9 @@ class OddSearch {
 
   void Place() {
     const int count = recording_.posture_count();
-    const double least = std::min(kOddDistance, kOddShare * RobotSize(model_.tree));
+    const double least = errors_ != nullptr
+                             ? kOddOfCalibrated
+                             : std::min(kOddDistance, kOddShare * RobotSize(model_.tree));
     const std::pair<int, int> parts[] = {
         {0, count}, {0, count / 2}, {count / 2, count}, {0, count / 4}, {count - count / 4, count}};
     std::vector<PlacedByPart> placements;
@@ -97,7 +100,7 @@ class OddSearch {
       if (end - begin < kFewestSoundPostures) continue;
       std::vector<int> rows(Size(end - begin));
       std::iota(rows.begin(), rows.end(), begin);
-      auto placed = PlaceNominal(model_, SelectPostures(recording_, rows));
+      auto placed = PlaceNominal(model_, SelectPostures(recording_, rows), errors_);
       if (!placed) continue;
       PlacedByPart one{std::move(*placed), {}, 0.0};
       for (int i = 0; i < count; ++i) one.distance.push_back(one.robot.Distance(recording_, i));
@@ -300,6 +303,7 @@ class OddSearch {
   const ErrorModel& model_;
   const Recording& recording_;
   const std::vector<LabelCluster>& clusters_;
+  const Eigen::VectorXd* errors_;
   std::optional<PlacedNominal> placed_;
   std::vector<int> odd_;
   std::vector<double> distance_;
@@ -309,9 +313,10 @@ class OddSearch {
 }  // namespace
 
 std::vector<OddPostures> FindOddPostures(const ErrorModel& model, const Recording& recording,
-                                         const std::vector<LabelCluster>& clusters) {
+                                         const std::vector<LabelCluster>& clusters,
+                                         const Eigen::VectorXd* errors) {
   if (!recording.trials.empty() || recording.free_root) return {};
-  return OddSearch(model, recording, clusters).Run();
+  return OddSearch(model, recording, clusters, errors).Run();
 }
 
 }  // namespace elastocal

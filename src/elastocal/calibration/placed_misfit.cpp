@@ -31,17 +31,19 @@ ErrorModel AtOrigin(ErrorModel model) {
   return model;
 }
 
-Geometry Nominal(const ErrorModel& model) {
+Geometry GeometryBy(const ErrorModel& model, const Eigen::VectorXd* errors) {
+  if (errors != nullptr) return ApplyErrors(model, *errors);
   return ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
 }
 
 /// The nominal robot among the markers that were measured.
 class PlacedRobot {
  public:
-  PlacedRobot(const ErrorModel& model, const Recording& recording)
+  PlacedRobot(const ErrorModel& model, const Recording& recording,
+              const Eigen::VectorXd* errors = nullptr)
       : free_root_(recording.free_root) {
     const ErrorModel at_origin = AtOrigin(model);
-    const Geometry geometry = Nominal(at_origin);
+    const Geometry geometry = GeometryBy(at_origin, errors);
     const int stride = 1 + (recording.posture_count() - 1) / kMostPlaced;
     for (int i = 0; i < recording.posture_count(); i += stride) {
       InterruptionPoint();
@@ -173,12 +175,13 @@ double PlacedNominal::Distance(const Recording& recording, int posture) const {
   return count < 2 ? std::sqrt(squares) : std::sqrt((squares - furthest) / (count - 1));
 }
 
-std::optional<PlacedNominal> PlaceNominal(const ErrorModel& model, const Recording& recording) {
-  PlacedRobot robot(model, recording);
+std::optional<PlacedNominal> PlaceNominal(const ErrorModel& model, const Recording& recording,
+                                          const Eigen::VectorXd* errors) {
+  PlacedRobot robot(model, recording, errors);
   robot.Place();
   if (!robot.root()) return std::nullopt;
   PlacedNominal placed{AtOrigin(model), {}, *robot.root(), robot.places()};
-  placed.geometry = Nominal(placed.model);
+  placed.geometry = GeometryBy(placed.model, errors);
   return placed;
 }
 

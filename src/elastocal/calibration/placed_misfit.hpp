@@ -36,6 +36,8 @@ struct PlacedNominal {
 };
 
 /// Places it as PlacedMisfit does; nothing where markers do not place it. Not for a free root.
-std::optional<PlacedNominal> PlaceNominal(const ErrorModel& model, const Recording& recording);
+/// `errors`: of a calibrated robot, whose joints do not give way; null: the nominal one.
+std::optional<PlacedNominal> PlaceNominal(const ErrorModel& model, const Recording& recording,
+                                          const Eigen::VectorXd* errors = nullptr);
 
 }  // namespace elastocal

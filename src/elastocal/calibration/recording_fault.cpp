@@ -27,7 +27,38 @@ double VelocityOf(int coordinate, const Recording& recording, int posture) {
   return (recording.q(after, coordinate) - recording.q(before, coordinate)) / time;
 }
 
+/// Whether a posture is held, and was reached from the one before.
+bool IsReached(const Recording& recording, int posture) {
+  if (posture < 1 || recording.trials.empty()) return posture > 0;
+  const int trial = recording.trial[posture];
+  return recording.trial[posture - 1] == trial && !recording.trials[trial].of_motion();
+}
+
 }  // namespace
+
+double LeastSize(FaultKind kind, bool slides) {
+  if (kind == FaultKind::kJointLag) return 0.005;
+  if (kind == FaultKind::kJointGain) return 0.005;
+  if (kind == FaultKind::kUnfinished) return 0.003;
+  if (kind == FaultKind::kCameraScale || IsInCameraSpace({kind})) return 0.0015;
+  return slides ? 1e-3 : 0.25 * M_PI / 180.0;
+}
+
+double LargestSize(FaultKind kind, bool slides) {
+  if (kind == FaultKind::kJointLag) return 2.0;
+  if (kind == FaultKind::kJointGain || kind == FaultKind::kUnfinished) return 1.0;
+  if (IsInCameraSpace({kind})) return 0.1;
+  if (kind == FaultKind::kCameraScale) return 0.5;
+  return slides ? 1.0 : M_PI;
+}
+
+Eigen::MatrixXd MovesOf(const Recording& recording) {
+  Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(recording.q.rows(), recording.q.cols());
+  for (int i = 1; i < recording.posture_count(); ++i) {
+    if (IsReached(recording, i)) moves.row(i) = recording.q.row(i) - recording.q.row(i - 1);
+  }
+  return moves;
+}
 
 double FactorOf(const RecordingFault& fault, const Recording& recording, int posture) {
   if (fault.kind == FaultKind::kJointDrift) {
@@ -36,21 +67,72 @@ double FactorOf(const RecordingFault& fault, const Recording& recording, int pos
   if (fault.kind == FaultKind::kJointLag) {
     return -VelocityOf(fault.coordinate, recording, posture);
   }
+  if (fault.kind == FaultKind::kUnfinished && fault.coordinate >= 0) {
+    const int c = fault.coordinate;
+    return IsReached(recording, posture) ? recording.q(posture, c) - recording.q(posture - 1, c)
+                                         : 0.0;
+  }
   const bool in_trial = fault.trial < 0 || recording.trial[posture] == fault.trial;
   const bool within = posture >= fault.posture && (fault.end == 0 || posture < fault.end);
   if (!in_trial || !within) return 0.0;
   return fault.kind == FaultKind::kJointGain ? recording.q(posture, fault.coordinate) : 1.0;
 }
 
+bool IsInCameraSpace(const RecordingFault& fault) {
+  return fault.kind == FaultKind::kCameraAxis || fault.kind == FaultKind::kCameraShear ||
+         fault.kind == FaultKind::kCameraBend;
+}
+
+Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording& recording) {
+  const Eigen::MatrixXd& markers = recording.markers;
+  if (fault.kind == FaultKind::kCameraScale) return markers;
+  Eigen::MatrixXd displacements = Eigen::MatrixXd::Zero(markers.rows(), markers.cols());
+  if (fault.kind != FaultKind::kCameraBend) {
+    const int by = fault.kind == FaultKind::kCameraShear ? fault.by_axis : fault.axis;
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      displacements.col(3 * m + fault.axis) = markers.col(3 * m + by);
+    }
+    return displacements;
+  }
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  double count = 0.0, most = 0.0;
+  const auto each_seen = [&](const auto& visit) {
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      for (int m = 0; m < recording.marker_count(); ++m) {
+        if (Seen(recording, i, m)) visit(i, m);
+      }
+    }
+  };
+  each_seen([&](int i, int m) {
+    middle += MarkerPosition(recording, i, m);
+    ++count;
+  });
+  middle /= std::max(1.0, count);
+  each_seen([&](int i, int m) {
+    most = std::max(most, (MarkerPosition(recording, i, m) - middle).squaredNorm());
+  });
+  each_seen([&](int i, int m) {
+    const Eigen::Vector3d from = MarkerPosition(recording, i, m) - middle;
+    displacements.block<1, 3>(i, 3 * m) = (from.squaredNorm() / most * from).transpose();
+  });
+  return displacements;
+}
+
 Recording WithoutFault(const Recording& recording, const RecordingFault& fault) {
   Recording without = recording;
+  if (fault.kind == FaultKind::kUnfinished && fault.coordinate < 0) {
+    without.q -= fault.size * MovesOf(recording);
+    return without;
+  }
+  if (IsInCameraSpace(fault)) {
+    const bool factor = fault.kind == FaultKind::kCameraAxis;
+    without.markers -=
+        fault.size / (factor ? 1.0 + fault.size : 1.0) * CameraDisplacements(fault, recording);
+    return without;
+  }
   for (int i = 0; i < recording.posture_count(); ++i) {
     const double factor = FactorOf(fault, recording, i);
-    if (fault.kind == FaultKind::kCameraAxis) {
-      for (int m = 0; m < recording.marker_count(); ++m) {
-        without.markers(i, 3 * m + fault.axis) /= 1.0 + fault.size;
-      }
-    } else if (fault.kind == FaultKind::kCameraScale) {
+    if (fault.kind == FaultKind::kCameraScale) {
       without.markers.row(i) /= 1.0 + fault.size * factor;
     } else if (fault.kind == FaultKind::kJointGain) {
       if (fault.trial < 0 || recording.trial[i] == fault.trial) {
@@ -76,6 +158,33 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
                   "camera positions along %c are %.4f +- %.4f times the true ones, unlike those "
                   "along the other axes",
                   "xyz"[fault.axis], 1.0 + fault.size, fault.sd);
+    return sentence;
+  }
+  if (fault.kind == FaultKind::kUnfinished) {
+    char sentence[200];
+    const std::string of =
+        fault.coordinate < 0 ? "the joints" : LoggedPositionOf(tree, -1, fault.coordinate).name;
+    std::snprintf(
+        sentence, sizeof sentence,
+        ": positions are %s the markers by %.2f +- %.2f %% of each move from the posture "
+        "before (%s)",
+        fault.size > 0.0 ? "ahead of" : "behind", 100.0 * std::abs(fault.size), 100.0 * fault.sd,
+        fault.size > 0.0 ? "measured before the robot came to rest, or commanded positions?"
+                         : "a log that is late?");
+    return of + sentence;
+  }
+  if (IsInCameraSpace(fault)) {
+    char sentence[200];
+    if (fault.kind == FaultKind::kCameraShear) {
+      std::snprintf(sentence, sizeof sentence,
+                    "the cameras' axes are not square: %c is off by %.4f +- %.4f times %c",
+                    "xyz"[fault.axis], fault.size, fault.sd, "xyz"[fault.by_axis]);
+    } else {
+      std::snprintf(sentence, sizeof sentence,
+                    "the cameras' space is distorted: their scale at the outermost marker is %.4f "
+                    "+- %.4f times that in the middle",
+                    1.0 + fault.size, fault.sd);
+    }
     return sentence;
   }
   const bool joint = fault.kind != FaultKind::kCameraScale;

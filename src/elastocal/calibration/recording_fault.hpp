@@ -13,9 +13,12 @@ enum class FaultKind {
   kJointGain,    ///< a joint's positions are a multiple of the true ones
   kJointOffset,  ///< a joint's positions are off by a constant from a posture on
   kJointDrift,   ///< of a table: they drift steadily from the first to the last posture
+  kUnfinished,   ///< positions are ahead by a share of the move from the posture before
   kJointLag,     ///< of motions: they are those of some time before
   kCameraScale,  ///< the cameras' positions in one trial are a multiple of the true ones
   kCameraAxis,   ///< the cameras' coordinates along one of their axes are, in all postures
+  kCameraShear,  ///< ... are off by a multiple of those along another axis
+  kCameraBend,   ///< the cameras' scale changes with the square of the distance from the middle
 };
 
 /// A fault that explains much of what the fit leaves.
@@ -24,16 +27,38 @@ struct RecordingFault {
   int coordinate = -1;  ///< of the joints that are logged together, of the robot tree
   int trial = -1;       ///< the only one that it is in; -1: all
   int posture = 0;      ///< the first one that it is in
-  double size = 0.0;    ///< gain less 1; offset, or drift in all, rad or m; s; scale less 1
-  double sd = 0.0;      ///< of `size`, as wide as the postures scatter
-  double share = 0.0;   ///< of the sum of squared residuals that it explains
-  int linkage = -1;     ///< of the tree: `coordinate` is a motor of it; -1: of q
-  int end = 0;          ///< of a table: the one after the last that it is in; 0: it lasts
-  int axis = -1;        ///< of the cameras' frame: 0, 1 or 2
+  double size =
+      0.0;  ///< gain less 1; offset, or drift in all, rad or m; s; scale less 1;
+            ///< share of the move; shear; scale at the outermost marker less that in the middle
+  double sd = 0.0;     ///< of `size`, as wide as the postures scatter
+  double share = 0.0;  ///< of the sum of squared residuals that it explains
+  int linkage = -1;    ///< of the tree: `coordinate` is a motor of it; -1: of q
+  int end = 0;         ///< of a table: the one after the last that it is in; 0: it lasts
+  int axis = -1;       ///< of the cameras' frame: 0, 1 or 2
+  int by_axis = -1;    ///< of a shear: the one whose coordinate displaces those along `axis`
 };
 
 /// How much of its size (of a gain, times the position) a fault has in a posture.
 double FactorOf(const RecordingFault& fault, const Recording& recording, int posture);
+
+/// Sizes from which a fault is none that a good robot and good cameras may have. `slides`: of a
+/// joint that does.
+double LeastSize(FaultKind kind, bool slides);
+
+/// Sizes beyond which a fault is none: where a joint moves no marker, rounding would explain
+/// anything with a size large enough.
+double LargestSize(FaultKind kind, bool slides);
+
+/// From the held posture before in the same trial or table, of all joints: postures x coordinates;
+/// in motions 0.
+Eigen::MatrixXd MovesOf(const Recording& recording);
+
+/// Whether it is in the space that the cameras measure, the same in all postures.
+bool IsInCameraSpace(const RecordingFault& fault);
+
+/// By how much a fault of the cameras displaces the markers for each unit of its size, m: as
+/// Recording::markers.
+Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording& recording);
 
 /// The recording without it. Not for motors of rods.
 Recording WithoutFault(const Recording& recording, const RecordingFault& fault);

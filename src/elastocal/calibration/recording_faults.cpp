@@ -22,24 +22,6 @@ constexpr int kLeastSide = 3;    // postures before and after it
 constexpr int kSplits = 12;      // of the recording, after which an offset of a joint may begin
 constexpr int kTrialSplits = 6;  // of a trial, after which one may begin that ends with the trial
 
-/// Sizes from which a fault is none that a good robot and good cameras may have.
-double LeastSize(FaultKind kind, bool slides) {
-  if (kind == FaultKind::kJointLag) return 0.005;
-  if (kind == FaultKind::kJointGain) return 0.005;
-  if (kind == FaultKind::kCameraScale || kind == FaultKind::kCameraAxis) return 0.0015;
-  return slides ? 1e-3 : 0.25 * M_PI / 180.0;
-}
-
-/// Sizes beyond which a fault is none: where a joint moves no marker, rounding would explain
-/// anything with a size large enough.
-double LargestSize(FaultKind kind, bool slides) {
-  if (kind == FaultKind::kJointLag) return 2.0;
-  if (kind == FaultKind::kJointGain) return 1.0;
-  if (kind == FaultKind::kCameraAxis) return 0.1;
-  if (kind == FaultKind::kCameraScale) return 0.5;
-  return slides ? 1.0 : M_PI;
-}
-
 using Blocks = std::vector<Eigen::VectorXd>;
 
 class FaultSearch {
@@ -83,6 +65,7 @@ class FaultSearch {
         TryMotor(equations, covariance, {static_cast<int>(k), static_cast<int>(rod)});
       }
     }
+    TryUnfinished(equations, covariance);
     TryScale(equations, covariance);
     std::stable_sort(
         found_.begin(), found_.end(),
@@ -206,26 +189,28 @@ class FaultSearch {
     return Derivative(changed);
   }
 
-  Blocks ByAxis(int axis) const {
+  Blocks ByCameras(const RecordingFault& fault) const {
     Recording changed = recording_;
-    for (int m = 0; m < recording_.marker_count(); ++m) {
-      changed.markers.col(3 * m + axis) *= 1.0 + kStep;
-    }
+    changed.markers += kStep * CameraDisplacements(fault, recording_);
     return Derivative(changed);
   }
 
-  Blocks ByScale() const {
+  Blocks ByMoves() const {
     Recording changed = recording_;
-    changed.markers *= 1.0 + kStep;
+    changed.q += kStep * MovesOf(recording_);
     return Derivative(changed);
+  }
+
+  /// Of all joints: a robot that came to rest later than it was measured.
+  void TryUnfinished(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    Try(equations, covariance, ByMoves(), {MakeTrial({.kind = FaultKind::kUnfinished})}, false);
   }
 
   void Measure(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
                const RecordingFault& fault) {
-    const Blocks derivative = fault.kind == FaultKind::kCameraAxis ? ByAxis(fault.axis)
-                              : fault.kind == FaultKind::kCameraScale
-                                  ? ByScale()
-                                  : ByPositions(fault.coordinate);
+    const Blocks derivative = fault.coordinate >= 0                  ? ByPositions(fault.coordinate)
+                              : fault.kind == FaultKind::kUnfinished ? ByMoves()
+                                                                     : ByCameras(fault);
     found_ = Measured(equations, covariance, derivative, {MakeTrial(fault)});
   }
 
@@ -237,7 +222,9 @@ class FaultSearch {
     const bool slides = joints[joint].type == JointType::kPrismatic;
     RecordingFault fault;
     fault.coordinate = coordinate;
-    Try(equations, covariance, derivative, {MakeTrial(fault)}, slides);
+    RecordingFault unfinished = fault;
+    unfinished.kind = FaultKind::kUnfinished;
+    Try(equations, covariance, derivative, {MakeTrial(fault), MakeTrial(unfinished)}, slides);
     if (HasMotion(recording_)) {
       RecordingFault lag = fault;
       lag.kind = FaultKind::kJointLag;
@@ -358,19 +345,24 @@ class FaultSearch {
     }
   }
 
-  /// Of one axis of the cameras, and of one trial. A scale of all of them is what a robot with
-  /// other lengths shows as well.
+  /// Of the cameras' space, and of one trial. A scale of all trials is what a robot with other
+  /// lengths shows as well.
   void TryScale(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    std::vector<RecordingFault> of_cameras = {{.kind = FaultKind::kCameraBend}};
     for (int axis = 0; axis < 3; ++axis) {
-      Try(equations, covariance, ByAxis(axis),
-          {MakeTrial({.kind = FaultKind::kCameraAxis, .axis = axis})}, false);
+      of_cameras.push_back({.kind = FaultKind::kCameraAxis, .axis = axis});
+      of_cameras.push_back(
+          {.kind = FaultKind::kCameraShear, .axis = axis, .by_axis = (axis + 1) % 3});
+    }
+    for (const RecordingFault& fault : of_cameras) {
+      Try(equations, covariance, ByCameras(fault), {MakeTrial(fault)}, false);
     }
     if (recording_.trials.size() < 2) return;
     std::vector<Trial> trials;
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       trials.push_back(MakeTrial({.kind = FaultKind::kCameraScale, .trial = trial}));
     }
-    Try(equations, covariance, ByScale(), trials, false);
+    Try(equations, covariance, ByCameras({.kind = FaultKind::kCameraScale}), trials, false);
   }
 
   const CalibrationResult& result_;

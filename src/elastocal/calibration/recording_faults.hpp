@@ -15,11 +15,12 @@ namespace elastocal {
 /// a posture on (twelve of them, then all near the best one), in one trial alone or from a posture
 /// to the end of its trial (six of each, then all near the best one), of a table from a posture to
 /// another one and as a steady drift, in motions a lag, the scale of the cameras along one of their
-/// axes, and that in one of several trials (a scale of all of them looks like a robot all of whose
-/// lengths are off). Only faults that no good robot has are returned, the one that explains most
-/// first: of a size that matters (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain
-/// (six standard deviations) and a part of what is left (6 %, of a clean ergoCub 4 %; or half of
-/// what is left of the chains that it is in).
+/// axes, a shear of two, a scale that changes from the middle outwards, and that in one of several
+/// trials (a scale of all of them looks like a robot all of whose lengths are off). Only faults
+/// that no good robot has are returned, the one that explains most first: of a size that matters
+/// (gain 0.5 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain (six standard deviations) and a
+/// part of what is left (6 %, of a clean ergoCub 4 %; or half of what is left of the chains that it
+/// is in).
 std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
                                                 const Recording& recording,
                                                 const CalibrationOptions& options);

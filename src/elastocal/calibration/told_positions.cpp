@@ -2,9 +2,11 @@
 #include "elastocal/calibration/told_positions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "elastocal/math/interruption.hpp"
@@ -19,6 +21,10 @@ constexpr int kPlacings = 10;          // of place and positions
 constexpr int kRangeSteps = 24;        // over the joint's range
 constexpr int kStepHalvings = 8;       // of a step
 constexpr double kLongestSlide = 1.0;  // m
+constexpr double kAsTold = 0.5;        // rad
+constexpr double kMostUntold = 0.2;    // of the postures, neither as logged nor half a turn off
+constexpr std::size_t kFewestHalfTurns = 3;
+constexpr double kLeastOfHalfTurn = 0.7, kMoreThanHalfTurn = 1.1;  // range of a column, and limits
 
 class ToldPositions {
  public:
@@ -108,6 +114,30 @@ class ToldPositions {
 
 Recording WithToldPositions(const ErrorModel& model, const Recording& recording, int coordinate) {
   return ToldPositions(model, recording, coordinate).Find();
+}
+
+HalfTurns FindHalfTurns(const ErrorModel& model, const Recording& recording, int coordinate) {
+  const Joint& joint = model.tree.joints[Size(model.tree.coordinate_joint[Size(coordinate)])];
+  const auto column = recording.q.col(coordinate);
+  const double range = column.maxCoeff() - column.minCoeff();
+  const bool within = range > kLeastOfHalfTurn * std::numbers::pi && range <= std::numbers::pi;
+  const bool further =
+      joint.limits.upper - joint.limits.lower > kMoreThanHalfTurn * std::numbers::pi;
+  if (recording.free_root || joint.type == JointType::kPrismatic || !within || !further) return {};
+  const Recording told = WithToldPositions(model, recording, coordinate);
+  HalfTurns found{{}, recording};
+  int neither = 0;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const double off = std::remainder(told.q(i, coordinate) - column[i], 2.0 * std::numbers::pi);
+    if (std::abs(off) > std::numbers::pi - kAsTold) {
+      found.postures.push_back(i);
+      found.turned.q(i, coordinate) += std::copysign(std::numbers::pi, told.q(i, coordinate));
+    } else if (std::abs(off) > kAsTold) {
+      ++neither;
+    }
+  }
+  const bool many = kMostUntold * recording.posture_count() < neither;
+  return many || found.postures.size() < kFewestHalfTurns ? HalfTurns{} : std::move(found);
 }
 
 }  // namespace elastocal

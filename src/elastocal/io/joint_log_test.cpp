@@ -157,6 +157,15 @@ TEST(JointLog, TurnsAreUnwrapped) {
   EXPECT_LT((log.positions.col(1) - rail).norm(), 1e-12);
 }
 
+TEST(JointLog, OneThatCountsModuloHalfATurnIsRefused) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "elastocal_half_turns.csv";
+  std::ofstream(file) << "t,elbow_joint,rail_joint\n1,1.55,0.0\n1.01,-1.56,4.0\n1.02,-1.5,0.0\n";
+  ExpectInputError([&] { ReadJointFile(file, {}, LogProject()); },
+                   {"half_turns.csv", "'elbow_joint'", "half a turn", "1.01"});
+  std::filesystem::remove(file);
+}
+
 TEST(JointLog, RefusesARecordingWithoutEnd) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "endless.csv";
   std::ofstream stream(file, std::ios::binary);

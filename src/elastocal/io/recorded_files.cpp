@@ -134,6 +134,14 @@ MarkerFile ReadMarkerFile(const fs::path& file, const ReaderOptions& options,
 
 namespace {
 
+/// Whether a joint seems to turn by half a turn faster than any does. A lost sample is often 0.
+bool IsHalfTurn(double before, double after, double seconds) {
+  constexpr double kNear = 0.1, kFastest = 50.0;  // rad, rad/s
+  const double step = std::abs(after - before);
+  return std::abs(step - std::numbers::pi) < kNear && step > kFastest * seconds && before != 0.0 &&
+         after != 0.0;
+}
+
 /// Positions of turning joints that jump by a turn between two samples, as a log does that counts
 /// from -pi to pi, go on instead. Faster than this no joint turns.
 void UnwrapTurns(const RobotTree& tree, JointLog& log) {
@@ -147,6 +155,13 @@ void UnwrapTurns(const RobotTree& tree, JointLog& log) {
     double turns = 0.0, before = column[0];
     for (Eigen::Index i = 1; i < column.size(); ++i) {
       const double step = column[i] - before;
+      if (IsHalfTurn(before, column[i], log.time_s[i] - log.time_s[i - 1])) {
+        throw InputError(log.source + ": joint '" + log.names[k] +
+                         "' jumps by half a turn between two samples at " +
+                         std::to_string(log.time_s[i]) +
+                         " s: does it count modulo half a turn? Positions that go on, or modulo a "
+                         "whole turn, were expected");
+      }
       before = column[i];
       const bool one_sample = log.time_s[i] - log.time_s[i - 1] < kLongestStep;
       if (one_sample && std::abs(step) > 0.5 * kTurn) turns -= std::round(step / kTurn);

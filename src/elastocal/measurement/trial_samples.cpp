@@ -10,6 +10,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/clock_by_positions.hpp"
 #include "elastocal/measurement/clock_mistake.hpp"
+#include "elastocal/measurement/column_step.hpp"
 #include "elastocal/measurement/log_mistake.hpp"
 #include "elastocal/measurement/posture_frames.hpp"
 #include "elastocal/measurement/seen_from.hpp"
@@ -32,6 +33,10 @@ class TrialSampler {
 
   void Run(const std::vector<int>& markers, MarkerTrajectories trajectories) {
     coordinates_ = LoggedCoordinates(robot_.tree, log_);
+    for (Eigen::Index c = 0; c < log_.positions.cols(); ++c) {
+      const double step = StepOf(log_.positions.col(c));
+      if (step > 0.0) summary().steps[coordinates_[c]] = step;
+    }
     TakeMarkers(markers, std::move(trajectories));
     if (markers_.empty()) return Refuse("none of its markers is in the marker file");
     CheckTorques();

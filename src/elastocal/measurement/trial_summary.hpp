@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +27,8 @@ struct BadTorqueSensor {
 struct TrialSummary {
   Trial trial;
   std::string markers_source, joints_source;  ///< files, for messages
-  std::string refused;  ///< why nothing of the trial is used; empty: it is used
+  std::string refused;               ///< why nothing of the trial is used; empty: it is used
+  std::map<int, double> steps = {};  ///< in which the log has positions, by coordinate (StepOf)
   double rate_hz = 0.0;
   int frame_count = 0;
   ClockFit clock;

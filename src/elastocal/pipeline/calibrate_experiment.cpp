@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
 
+#include "elastocal/calibration/coarse_positions.hpp"
 #include "elastocal/calibration/gauge.hpp"
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/files/output_files.hpp"
@@ -188,6 +189,12 @@ CalibrationRun CalibrateExperiment(const Project& given,
     run.faults = FindFaults(project, options.seed, as_recorded, robot, recording, run.comparison);
   }
 
+  if (run.faults.empty()) {
+    for (const CoarsePositions& one :
+         FindCoarsePositions(run.comparison.largest(), recording, settings, as_recorded.trials)) {
+      run.warnings.push_back(Describe(one, project.tree));
+    }
+  }
   run.common_scale = EstimateCommonScale(run.comparison.largest(), settings);
   if (run.faults.empty() && run.common_scale && IsDoubtful(*run.common_scale) &&
       !ScaleIsKnown(as_recorded.trials)) {

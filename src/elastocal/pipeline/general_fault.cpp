@@ -75,9 +75,7 @@ class FaultExplanation {
       if (name) names.push_back(*name);
     }
     if (!complete_) {
-      return "something differs between the postures that no few faults explain; nearest to it "
-             "come: " +
-             text;
+      return kUnexplained + std::string(" that no few faults explain; nearest to it come: ") + text;
     }
     if (names.size() < faults_.size()) return text;
     return fmt::format("{} (--accept {} corrects them)", text, fmt::join(names, " "));
@@ -98,7 +96,7 @@ class FaultExplanation {
 
   static bool IsSame(const RecordingFault& a, const RecordingFault& b) {
     return a.kind == b.kind && a.coordinate == b.coordinate && a.trial == b.trial &&
-           a.posture == b.posture && a.end == b.end && a.axis == b.axis;
+           a.posture == b.posture && a.end == b.end && a.axis == b.axis && a.by_axis == b.by_axis;
   }
 
   static double Sum(const RecordingFault& fault, double more) {

@@ -23,6 +23,9 @@ struct GeneralFault {
 std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
                            const Recording& recording);
 
+/// How ExplainFault begins where a few faults do not explain the recording.
+inline constexpr const char* kUnexplained = "something differs between the postures";
+
 /// The same, once it is known whether it is the only one. What explains most need not be what is
 /// wrong: the fault is undone, the robot fitted again, and what is left searched as before, until
 /// nothing is found. Several faults are said together, each by its size beside the others. Where a

@@ -30,8 +30,9 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestPlaced = 8;    // of few, anything is explained
-constexpr double kMostLeft = 0.02;  // m: no robot whose errors are estimated leaves more
+constexpr int kFewestPlaced = 8;  // of few, anything is explained
+// No robot whose errors are estimated leaves more, m and of its size:
+constexpr double kMostLeft = 0.02, kMostOfSize = 0.01;
 // What is left at most once a mistake is undone, of the placed nominal robot:
 constexpr double kLeftOfMisfit = 0.7;
 constexpr double kLeftByOneOfSeveral = 0.9;
@@ -91,7 +92,6 @@ Alternative Thinned(Alternative robot) {
   return robot;
 }
 
-/// Nothing where it cannot be fitted.
 std::optional<CalibrationResult> Fit(const Alternative& robot, ModelKind kind,
                                      const Project& project) {
   IdentifiabilityOptions identifiability = project.identifiability;
@@ -118,13 +118,15 @@ class PlainSearch {
   PlainSearch(const Project& project, const Recording& recording)
       : project_(project),
         given_{"", "", ModelOf(project, recording), recording},
-        misfit_(MisfitOf(given_.model, recording)) {}
+        misfit_(MisfitOf(given_.model, recording)),
+        least_(std::min(kMostLeft, kMostOfSize * RobotSize(project.tree))) {}
 
   /// Mistakes, each beside those before it; empty: none.
   std::vector<Alternative> Run() {
     for (const auto& search :
          {&PlainSearch::FindInTable, &PlainSearch::FindExchange, &PlainSearch::FindWrongFollower,
-          &PlainSearch::FindLostColumn, &PlainSearch::FindOtherColumn, &PlainSearch::FindPair}) {
+          &PlainSearch::FindLostColumn, &PlainSearch::FindHalfTurn, &PlainSearch::FindOtherColumn,
+          &PlainSearch::FindPair}) {
       std::vector<Alternative> found = Confirmed((this->*search)());
       if (!found.empty()) return found;
     }
@@ -235,7 +237,7 @@ class PlainSearch {
   /// A joint that moved, and whose column says the same in all rows: the markers tell where it was.
   /// That explains a part of any mistake, so it has to explain most.
   std::vector<Alternative> FindLostColumn() const {
-    if (given_.recording.free_root || misfit_ < kMostLeft) return {};
+    if (given_.recording.free_root || misfit_ < least_) return {};
     const RobotTree& tree = project_.tree;
     std::vector<Alternative> found;
     double least = kLeftByToldPositions * misfit_;
@@ -255,8 +257,26 @@ class PlainSearch {
     return found;
   }
 
+  /// A joint whose positions are logged within half a turn, though it turns further.
+  std::vector<Alternative> FindHalfTurn() const {
+    std::vector<Alternative> found;
+    double least = kLeftOfMisfit * misfit_;
+    for (const int k : given_.model.active_joints) {
+      const Joint& joint = project_.tree.joints[Size(k)];
+      if (joint.mimic || IsMovedByRods(project_.tree, k)) continue;
+      HalfTurns half = FindHalfTurns(given_.model, given_.recording, joint.coordinate);
+      if (half.postures.empty() || !(MisfitOf(given_.model, half.turned) < least)) continue;
+      least = MisfitOf(given_.model, half.turned);
+      found = {{fmt::format("{}: its positions are off by half a turn in {} of {} postures (logged "
+                            "modulo half a turn?)",
+                            joint.name, half.postures.size(), half.turned.posture_count()),
+                "", given_.model, std::move(half.turned)}};
+    }
+    return found;
+  }
+
   std::vector<Alternative> FindOtherColumn() const {
-    if (misfit_ < kMostLeft) return {};
+    if (misfit_ < least_) return {};
     std::vector<Alternative> found;
     double least = kLeftOfMisfit * misfit_;
     for (LogAlternative& one :
@@ -270,7 +290,7 @@ class PlainSearch {
   }
 
   std::vector<Alternative> FindPair() const {
-    if (misfit_ < kMostLeft) return {};
+    if (misfit_ < least_) return {};
     std::vector<Alternative> found;
     for (LogAlternative& one : BestPair(given_.recording, project_.tree, [&](const Recording& of) {
            return MisfitOf(given_.model, of);
@@ -359,6 +379,7 @@ class PlainSearch {
   const Project& project_;
   Alternative given_;
   double misfit_;  ///< m
+  double least_;   ///< misfit of a mistake that is looked for, m
 };
 
 }  // namespace

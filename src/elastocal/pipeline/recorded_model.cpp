@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/calibration/moved_markers.hpp"
 #include "elastocal/calibration/placing_markers.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/parameter_names.hpp"
 
@@ -120,6 +122,14 @@ std::vector<Knock> FindKnocksBesideElasticity(const Project& project,
 }
 
 std::string DescribeKnock(const Knock& knock, const Recording& recording) {
+  if (recording.trials.empty()) {
+    return fmt::format(
+        "marker {}: its distances to the other markers of cluster {} change by up to {:.1f} mm "
+        "from "
+        "{} on: was it glued on again? It is taken as two markers",
+        recording.marker_names[Size(knock.markers.front())], knock.cluster, 1e3 * knock.distance,
+        DescribePosture(recording, knock.posture));
+  }
   return fmt::format(
       "cluster {}: the data before and after disagree by {:.1f} mm (up to {}; from {} on): was "
       "it knocked? Its markers are taken as two sets",
@@ -155,8 +165,10 @@ RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint6
   if (free_root) CheckFreeRoot(result.model, recording);
   result.contradictory = CheckTorques(result.model, project.calibration, measured);
   result.base = FindBaseParameters(result.model, options);
-  if (!recording.trials.empty() && search == KnockSearch::kAll) {
-    result.knocks = FindKnocksBesideElasticity(project, options, recording, result);
+  if (search == KnockSearch::kAll) {
+    result.knocks = recording.trials.empty()
+                        ? FindMovedMarkers(recording, SeenClusters(project, recording))
+                        : FindKnocksBesideElasticity(project, options, recording, result);
   }
   if (!result.knocks.empty()) {
     for (const Knock& knock : result.knocks) {

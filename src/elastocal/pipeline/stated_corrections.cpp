@@ -224,7 +224,7 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
     return fmt::format("scale:{}={:.5f}", trial, 1.0 + fault.size);
   }
   if (fault.coordinate < 0 || fault.kind == FaultKind::kJointDrift ||
-      fault.kind == FaultKind::kJointLag) {
+      fault.kind == FaultKind::kJointLag || fault.kind == FaultKind::kUnfinished) {
     return std::nullopt;
   }
   const LoggedPosition logged = LoggedPositionOf(tree, fault.linkage, fault.coordinate);
