@@ -249,6 +249,21 @@ TEST_F(ArmProgram, ChecksTablesOfATrackerInSeveralFiles) {
   EXPECT_EQ(own.exit_code, 3) << "the file is no posture file";
 }
 
+TEST_F(ArmProgram, DiagnosesTablesOfATrackerInSeveralFiles) {
+  const std::string project = (folder_.path() / "project.yaml").string();
+  const std::string out = (folder_.path() / "calibrated").string();
+  const std::string tables = Table(q_.topRows(15), "a.csv").string() + " " +
+                             Table(q_.bottomRows(15), "b.csv", 15).string();
+  ASSERT_EQ(RunProgram("calibrate " + project + " --recording " + tables + " -o " + out).exit_code,
+            0);
+  const ProgramResult found = RunProgram("diagnose " + out + " --json -");
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  const nlohmann::json json = nlohmann::json::parse(found.out);
+  EXPECT_EQ(json["postures"], kPostures);
+  EXPECT_TRUE(json.contains("held_out_sds"));
+  EXPECT_FALSE(json["candidates"].empty());
+}
+
 TEST_F(Program, CheckTakesOneRecordingOfMarkers) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const ProgramResult two = RunProgram("check " + project_ + " --calibration " + out_ +

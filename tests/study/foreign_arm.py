@@ -60,12 +60,14 @@ def from_rpy(rpy):
 class Arm:
     """The nominal arm; errors are attributes."""
 
-    def __init__(self):
-        self.places = [(from_rpy(joint[3]), np.array(joint[2], float)) for joint in JOINTS]
-        self.axes = [np.array(joint[4], float) for joint in JOINTS]
-        self.offset, self.compliance = np.zeros(7), np.zeros(7)
+    def __init__(self, joints=None, bodies=None, markers=None):
+        self.joints, self.bodies = joints or JOINTS, bodies or BODY
+        self.places = [(from_rpy(joint[3]), np.array(joint[2], float)) for joint in self.joints]
+        self.axes = [np.array(joint[4], float) for joint in self.joints]
+        self.offset, self.compliance = np.zeros(len(self.joints)), np.zeros(len(self.joints))
+        self.masses = np.array([joint[7] for joint in self.joints], float)
         self.gravity = np.array([0, 0, -9.81])  # in the base
-        self.markers = PLACES
+        self.markers = PLACES if markers is None else markers
 
     @classmethod
     def real(cls, seed):
@@ -104,31 +106,31 @@ class Arm:
 
     def loads(self, frames):
         """Moments of the weights about the axes, N.m."""
-        loads = np.zeros(7)
+        loads = np.zeros(len(frames))
         for k, (turn, place) in enumerate(frames):
             axis = turn @ self.axes[k]
-            for m in range(k, 7):
-                centre = frames[m][1] + frames[m][0] @ np.array(JOINTS[m][8])
-                loads[k] += axis @ np.cross(centre - place, JOINTS[m][7] * self.gravity)
+            for m in range(k, len(frames)):
+                centre = frames[m][1] + frames[m][0] @ np.array(self.joints[m][8])
+                loads[k] += axis @ np.cross(centre - place, self.masses[m] * self.gravity)
         return loads
 
     def stands(self, encoders):
         """Frames of the links with what the joints give way."""
-        bent = np.zeros(7)
+        bent = np.zeros(len(self.joints))
         for _ in range(4):
             bent = self.compliance * self.loads(self.frames(encoders + self.offset + bent))
         return self.frames(encoders + self.offset + bent)
 
     def seen(self, encoders):
-        """Markers in the base, 9 x 3."""
+        """Markers in the base, markers x 3."""
         frames = self.stands(encoders)
-        return np.array([frames[b][1] + frames[b][0] @ p for b, p in zip(BODY, self.markers)])
+        return np.array([frames[b][1] + frames[b][0] @ p for b, p in zip(self.bodies, self.markers)])
 
 
-def urdf():
+def urdf(joints=None):
     text = '<robot name="foreign_arm"><link name="base"/>'
     parent = "base"
-    for name, link, place, rpy, axis, most, effort, mass, centre in JOINTS:
+    for name, link, place, rpy, axis, most, effort, mass, centre in joints or JOINTS:
         words = lambda numbers: " ".join(f"{x:.9g}" for x in numbers)
         moment = 0.004 * mass
         text += (f'<link name="{link}"><inertial><origin xyz="{words(centre)}"/><mass value="{mass}"/><inertia '
@@ -140,9 +142,9 @@ def urdf():
     return text + "</robot>\n"
 
 
-def project(up):
-    text = f"robot: {{urdf: arm.urdf}}\nchains: [{{name: arm, tip: link7}}]\nrecording: {{up: {up}}}\nmarkers:\n  clusters:\n"
-    for cluster, (body, places) in CLUSTERS.items():
+def project(up, clusters=None, tip="link7"):
+    text = f"robot: {{urdf: arm.urdf}}\nchains: [{{name: arm, tip: {tip}}}]\nrecording: {{up: {up}}}\nmarkers:\n  clusters:\n"
+    for cluster, (body, places) in (clusters or CLUSTERS).items():
         at = [[round(1e3 * x, 3) for x in place] for place in places]
         text += f"    - {{name: {cluster}, link: link{body + 1}, positions_mm: {at}}}\n"
     return text

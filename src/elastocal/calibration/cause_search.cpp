@@ -75,7 +75,10 @@ class Search {
       }
       if (best < 0) break;
       taken.push_back(causes_[static_cast<std::size_t>(best)]);
-      if (chosen != nullptr) chosen->push_back(findings[static_cast<std::size_t>(best)]);
+      if (chosen != nullptr) {
+        chosen->push_back(findings[static_cast<std::size_t>(best)]);
+        chosen->back().rivals = RivalsOf(chosen->back(), findings);
+      }
     }
     return taken;
   }
@@ -84,8 +87,23 @@ class Search {
 
  private:
   bool Helps(const CauseFinding& finding) const {
-    return finding.p_adjusted < options_.level &&
-           finding.mean_gain > std::max(finding.gain_sd, options_.least_gain * mean_error_);
+    return finding.p_adjusted < options_.level && finding.mean_gain > finding.gain_sd;
+  }
+
+  /// Causes that explain what is left almost as well: the likelihoods differ by less than a factor
+  /// of 20.
+  std::vector<std::string> RivalsOf(const CauseFinding& best,
+                                    const std::vector<CauseFinding>& findings) const {
+    constexpr double kAlike = 6.0;  // of twice the logarithm
+    const auto explained = [](const CauseFinding& finding) {
+      return finding.score * static_cast<double>(finding.parameters.size());
+    };
+    std::vector<std::string> rivals;
+    for (const CauseFinding& finding : findings) {
+      if (finding.cause == best.cause || finding.p_adjusted >= options_.level) continue;
+      if (explained(finding) > explained(best) - kAlike) rivals.push_back(finding.cause);
+    }
+    return rivals;
   }
 
   CauseFinding Test(const BaseFit& fit, int cause) const {
@@ -226,7 +244,6 @@ class Search {
     };
     error_ = rms(0);
     const Eigen::MatrixXd errors = squares(postures_, Eigen::all).cwiseSqrt();
-    mean_error_ = errors.col(0).mean();
     const auto count = static_cast<double>(postures_.size());
     for (std::size_t k = 0; k < findings.size(); ++k) {
       const Eigen::ArrayXd gains = errors.col(0) - errors.col(static_cast<Eigen::Index>(k) + 1);
@@ -244,7 +261,7 @@ class Search {
   std::uint64_t seed_;
   std::vector<int> causes_;              // of the findings in hand
   std::vector<Eigen::MatrixXd> beside_;  // by posture
-  double error_ = 0.0, mean_error_ = 0.0;
+  double error_ = 0.0;
 };
 
 /// The search repeated without each fold, judged on it.

@@ -23,14 +23,15 @@ struct CauseFinding {
   /// Root mean square of the displacement of markers by an effect that would have been found nine
   /// times in ten, as far as nothing else explains it, m; and that effect, SI (of one parameter).
   double visible = 0.0, visible_effect = 0.0;
+  /// Of one that was taken: causes that would have explained almost as much in its place.
+  std::vector<std::string> rivals = {};
 };
 
 struct CauseSearchOptions {
   int folds = 10;
   int deals = 3;  ///< of the postures to folds, over which held-out errors are averaged
   double level = 0.05;
-  double least_gain = 0.02;  ///< of the mean error
-  int most = 5;              ///< causes
+  int most = 5;  ///< causes
   std::uint64_t seed = 1;
 };
 

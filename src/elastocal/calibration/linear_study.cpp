@@ -12,8 +12,6 @@
 namespace elastocal {
 namespace {
 
-constexpr double kAtZero = 1e-9;  // of a compliance, in the unit of the solver
-
 /// The fit that a result came from, in the parameters of the wide model.
 Fit WideFit(const ErrorModel& wide, const CalibrationResult& result) {
   std::map<std::string, double> values;
@@ -100,7 +98,7 @@ class StudyMaker {
     first_.assign(1, 0);
     for (int size : body.parameter_blocks) first_.push_back(first_.back() + size);
     std::vector<char> kept(column_.size(), 1);
-    for (int entry : body.nonnegative) kept[entry] = x[entry] > kAtZero ? 1 : 0;
+    for (int entry : body.nonnegative) kept[entry] = x[entry] > kComplianceAtZero ? 1 : 0;
     for (int block : body.nuisance_blocks) {
       std::fill(kept.begin() + first_[block], kept.begin() + first_[block + 1], 0);
     }
@@ -113,22 +111,10 @@ class StudyMaker {
         column_[entry] = study_.base++;
       }
     }
-    for (int entry : candidate_entries) AddCandidate(entry);
-  }
-
-  void AddCandidate(int entry) {
-    const Parameter& parameter = model_.parameters[free_[static_cast<std::size_t>(entry)]];
-    const auto number = static_cast<int>(study_.corrections.size());
-    column_[static_cast<std::size_t>(entry)] = study_.base + number;
-    study_.corrections.push_back(free_[static_cast<std::size_t>(entry)]);
-    study_.scale.push_back(ParameterScale(parameter));
-    const std::string& cause = model_.elasticity.corrections[parameter.correction].cause;
-    auto at = std::find(study_.causes.begin(), study_.causes.end(), cause);
-    if (at == study_.causes.end()) {
-      study_.of_cause.emplace_back();
-      at = study_.causes.insert(at, cause);
+    for (int entry : candidate_entries) {
+      const auto at = static_cast<std::size_t>(entry);
+      column_[at] = AddStudyColumn(model_, free_[at], study_);
     }
-    study_.of_cause[static_cast<std::size_t>(at - study_.causes.begin())].push_back(number);
   }
 
   int PostureOf(const BodyResiduals& body, int block) const {
@@ -206,6 +192,21 @@ class StudyMaker {
 };
 
 }  // namespace
+
+int AddStudyColumn(const ErrorModel& wide, int parameter, LinearStudy& study) {
+  const Parameter& of = wide.parameters[static_cast<std::size_t>(parameter)];
+  const auto number = static_cast<int>(study.corrections.size());
+  study.corrections.push_back(parameter);
+  study.scale.push_back(ParameterScale(of));
+  const std::string& cause = wide.elasticity.corrections[of.correction].cause;
+  auto at = std::find(study.causes.begin(), study.causes.end(), cause);
+  if (at == study.causes.end()) {
+    study.of_cause.emplace_back();
+    at = study.causes.insert(at, cause);
+  }
+  study.of_cause[static_cast<std::size_t>(at - study.causes.begin())].push_back(number);
+  return study.base + number;
+}
 
 LinearStudy MakeLinearStudy(const ErrorModel& wide, const Recording& recording,
                             const CalibrationResult& result, const CalibrationOptions& options) {

@@ -19,10 +19,12 @@ namespace elastocal {
 /// there.
 struct LinearStudy {
   struct Posture {
-    Eigen::VectorXd residual;   ///< at the estimate
-    Eigen::MatrixXd jacobian;   ///< rows x (base + corrections)
-    Eigen::VectorXd to_metres;  ///< of each row
-    int markers = 0;            ///< seen
+    Eigen::VectorXd residual;  ///< at the estimate
+    Eigen::MatrixXd jacobian;  ///< rows x (base + corrections)
+    /// Of each row: its standard deviation, m. Of observations that are not markers: 1, so that
+    /// errors are in units of their noise.
+    Eigen::VectorXd to_metres;
+    int markers = 0;  ///< seen; of other observations, rows
   };
   std::vector<Posture> postures;  ///< of the recording
   Eigen::MatrixXd other;          ///< information of what belongs to no posture: floor and prior
@@ -36,6 +38,12 @@ struct LinearStudy {
 
   int columns() const { return base + static_cast<int>(corrections.size()); }
 };
+
+/// Adds the column of a correction, which is a parameter of the wide model; returns it.
+int AddStudyColumn(const ErrorModel& wide, int parameter, LinearStudy& study);
+
+/// A compliance that ended here, in the unit of the solver, stays at zero.
+inline constexpr double kComplianceAtZero = 1e-9;
 
 /// `wide`: the model of `result` with corrections that `result` does not have (those that it has
 /// are part of the base). The pose of the waist is taken from `result`.

@@ -26,20 +26,6 @@ MeasuredLoads MeasuredLoadsOf(const ErrorModel& model, const Recording& recordin
 
 namespace {
 
-/// Moment of the weight of all links about the origin of the root link, in its axes, N.m.
-Eigen::Vector3d RootMoment(const ErrorModel& model, const Geometry& geometry,
-                           const Eigen::VectorXd& q, const Eigen::Vector3d& gravity_ref) {
-  const std::vector<Transform> T_ref_link = CalibratedLinkTransforms(model, geometry, q);
-  const Transform T_ref_root = WaistPose(geometry);
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < model.tree.links.size(); ++i) {
-    const Link& link = model.tree.links[i];
-    const Eigen::Vector3d arm = T_ref_link[i] * link.com - T_ref_root.translation();
-    moment += arm.cross(link.mass * gravity_ref);
-  }
-  return T_ref_root.linear().transpose() * moment;
-}
-
 PostureHistory HistoryOf(const Recording& recording, int posture) {
   PostureHistory history;
   if (recording.approach.rows() > 0) history.approach = recording.approach.row(posture).transpose();
@@ -47,16 +33,6 @@ PostureHistory HistoryOf(const Recording& recording, int posture) {
     history.hours = recording.time_s[posture] / 3600.0;
   }
   return history;
-}
-
-/// What the corrections of the model multiply in a posture.
-void AddShapes(const ErrorModel& model, const Geometry& geometry, const Recording& recording,
-               int posture, JointLoads& loads) {
-  PostureHistory history = HistoryOf(recording, posture);
-  const Eigen::VectorXd q = recording.q.row(posture).transpose();
-  history.root_moment = RootMoment(model, geometry, q, recording.gravity);
-  loads.shapes = EvaluateShapes(model.tree, model.elasticity.corrections, q,
-                                CorrectedLoads(geometry, loads).row(2).transpose(), history);
 }
 
 }  // namespace
@@ -74,7 +50,8 @@ std::vector<PostureLoads> ComputeLoads(const ErrorModel& model, const Recording&
                                 MeasuredLoadsOf(model, recording, i, leg), recording.gravity,
                                 options));
     if (!model.elasticity.corrections.empty()) {
-      AddShapes(model, geometry, recording, i, loads.back().joints);
+      AddShapes(model, geometry, recording.q.row(i).transpose(), recording.gravity,
+                HistoryOf(recording, i), loads.back().joints);
     }
     if (report == nullptr) continue;
     if (loads.back().badly_conditioned) report->badly_conditioned.push_back(i);

@@ -24,14 +24,15 @@ struct DiagnoseOptions {
 };
 
 std::string CauseTable(const CauseReport& report, bool all) {
-  TextTable table({"cause", "score", "p adjusted", "held-out gain mm", "mean gain mm"});
+  const std::string unit = report.error_unit();
+  TextTable table({"cause", "score", "p adjusted", "held-out gain " + unit, "mean gain " + unit});
   std::size_t shown = 0;
   for (const CauseFinding& finding : report.search.findings) {
     if (!all && ++shown > kShown) break;
-    const double sd = 1e3 * finding.gain_sd;
+    const double factor = report.error_factor(), sd = factor * finding.gain_sd;
     table.Add({finding.cause, fmt::format("{:.1f}", finding.score),
-               fmt::format("{:.2g}", finding.p_adjusted), RoundedTo(1e3 * finding.gain, sd),
-               fmt::format("{} +- {}", RoundedTo(1e3 * finding.mean_gain, sd), RoundedSd(sd))});
+               fmt::format("{:.2g}", finding.p_adjusted), RoundedTo(factor * finding.gain, sd),
+               fmt::format("{} +- {}", RoundedTo(factor * finding.mean_gain, sd), RoundedSd(sd))});
   }
   return table.Render();
 }

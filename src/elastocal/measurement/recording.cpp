@@ -49,17 +49,22 @@ bool HasFreeRoot(const Recording& recording) {
   return recording.posture_count() > 0;
 }
 
-void NoteApproach(Recording& recording) {
-  recording.approach.setZero(recording.q.rows(), recording.q.cols());
-  for (Eigen::Index i = 1; i < recording.q.rows(); ++i) {
+Eigen::MatrixXd ApproachesOf(const Eigen::MatrixXd& q, const std::vector<int>& part) {
+  Eigen::MatrixXd approach = Eigen::MatrixXd::Zero(q.rows(), q.cols());
+  for (Eigen::Index i = 1; i < q.rows(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (!recording.trial.empty() && recording.trial[at] != recording.trial[at - 1]) continue;
-    for (Eigen::Index c = 0; c < recording.q.cols(); ++c) {
-      const double step = recording.q(i, c) - recording.q(i - 1, c);
+    if (!part.empty() && part[at] != part[at - 1]) continue;
+    for (Eigen::Index c = 0; c < q.cols(); ++c) {
+      const double step = q(i, c) - q(i - 1, c);
       const bool moved = std::abs(step) > kLeastJointStep;
-      recording.approach(i, c) = moved ? std::copysign(1.0, step) : recording.approach(i - 1, c);
+      approach(i, c) = moved ? std::copysign(1.0, step) : approach(i - 1, c);
     }
   }
+  return approach;
+}
+
+void NoteApproach(Recording& recording) {
+  recording.approach = ApproachesOf(recording.q, recording.trial);
 }
 
 Recording SelectPostures(const Recording& recording, const std::vector<int>& postures) {

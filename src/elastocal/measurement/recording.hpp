@@ -90,6 +90,10 @@ bool HasFreeRoot(const Recording& recording);
 /// move came to where it is as before.
 void NoteApproach(Recording& recording);
 
+/// The same of a table: direction of the last motion of each coordinate, rows being reached from
+/// the row before where both are of one part (`part`: by row; empty: one part).
+Eigen::MatrixXd ApproachesOf(const Eigen::MatrixXd& q, const std::vector<int>& part);
+
 /// The given postures of a recording, in the given order.
 Recording SelectPostures(const Recording& recording, const std::vector<int>& postures);
 

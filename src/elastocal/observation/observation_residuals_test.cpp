@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/observation/observed_study.hpp"
 #include "tests/instrumented_biped.hpp"
 
 namespace elastocal {
@@ -84,6 +85,36 @@ TEST(ObservationResiduals, DerivativesOfAllKindsAgreeWithDifferencesOnFeet) {
 TEST(ObservationResiduals, DerivativesOfAllKindsAgreeWithDifferencesWithAFixedRoot) {
   const InstrumentedBiped biped(InstrumentedBiped::kFixed);
   for (std::uint64_t seed : {4u, 5u}) CheckDerivatives(biped, seed);
+}
+
+/// Corrections of joints; with a fixed root also of its suspension and of loads.
+void CheckCorrections(const InstrumentedBiped& biped, std::size_t least, std::uint64_t seed) {
+  Random random(seed);
+  const ObservedValues truth = RandomTruth(biped.model, biped.touches() ? 2 : 0, random);
+  Observations all = biped.Observe(truth, 2, 12, random);
+  all.approach.setOnes(all.q.rows(), all.q.cols());
+  const ObservedRobot wide =
+      WithCorrections(biped.model, {}, all, ObservableCorrections(biped.model));
+  ObservedValues at = ValuesOfWide(wide, biped.model, truth);
+  std::size_t corrections = 0;
+  for (int i = 0; i < wide.robot.parameter_count(); ++i) {
+    const Parameter& parameter = wide.robot.parameters[static_cast<std::size_t>(i)];
+    if (parameter.kind != ParameterKind::kCorrection) continue;
+    at.robot[i] = random.Normal(0.2 * parameter.typical);
+    ++corrections;
+  }
+  EXPECT_GE(corrections, least);
+  const std::vector<JointLoads> loads = ObservedLoads(wide, all, at.robot);
+  const Spread spread = FirstSpread(wide.setup.sources);
+  const std::vector<double> weights(all.all.size(), 1.0);
+  ObservationResiduals residuals(wide, all, loads, spread, weights, {}, at);
+  EXPECT_LT(LargestDifference(residuals), 1e-7) << "seed " << seed;
+}
+
+TEST(ObservationResiduals, DerivativesByCorrectionsAgreeWithDifferences) {
+  const InstrumentedBiped fixed(InstrumentedBiped::kFixed), standing(InstrumentedBiped::kOnFeet);
+  CheckCorrections(fixed, 100, 6);
+  CheckCorrections(standing, 100, 7);
 }
 
 TEST(ObservationResiduals, AreThoseOfTheNominalRobotByHand) {

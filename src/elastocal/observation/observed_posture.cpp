@@ -7,6 +7,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/transform.hpp"
+#include "elastocal/robot/posture_loads.hpp"
 #include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
@@ -136,6 +137,14 @@ std::vector<JointLoads> ObservedLoads(const ObservedRobot& model, const Observat
         feet.push_back({jacobian.LegPose(static_cast<int>(f)), foot.T_floor_foot, foot.share});
       }
       load = SharedSupportLoads(model.robot, geometry, q, links, feet, load);
+    }
+    if (!model.robot.elasticity.corrections.empty()) {
+      if (links.empty()) {
+        load.by_correction = LoadsByCorrections(model.robot, geometry, q, kGravity);
+      }
+      PostureHistory history;
+      if (observations.approach.rows() > 0) history.approach = observations.approach.row(i);
+      AddShapes(model.robot, geometry, q, kGravity, history, load);
     }
     loads.push_back(std::move(load));
   }

@@ -77,8 +77,11 @@ std::vector<CarriedLinks> CountCarried(const ObservedRobot& model) {
 
 ObservedRobot MakeObservedRobot(const RobotTree& tree, const PlacementOptions& placement,
                                 const ObservationSetup& setup, const std::vector<int>& torsion,
-                                const std::vector<int>& bending) {
+                                const std::vector<int>& bending,
+                                const std::vector<Correction>& corrections) {
   Elasticity elasticity{.torsion = torsion, .bending = bending, .base = false};
+  elasticity.stands_on_legs = !setup.feet.empty();
+  elasticity.corrections = corrections;
   for (std::size_t i = 0; i < setup.feet.size(); ++i) {
     elasticity.legs.push_back({"foot_" + std::to_string(i + 1), setup.feet[i].link});
   }
@@ -136,7 +139,9 @@ std::vector<SourceOfParameter> SourcesOfParameters(const ObservedRobot& model) {
   std::vector<SourceOfParameter> sources;
   for (const Parameter& parameter : model.robot.parameters) {
     SourceOfParameter of;
-    if (IsCompliance(parameter.kind)) {
+    if (parameter.kind == ParameterKind::kCorrection) {
+      of.source = -1;
+    } else if (IsCompliance(parameter.kind)) {
       of.source = parameter.kind == ParameterKind::kTorsion ? kTorsion : kBending;
       of.unit = prior.Of(model.robot.tree, parameter);
     } else if (parameter.kind == ParameterKind::kTheta && parameter.joint >= 0) {
@@ -161,7 +166,10 @@ std::vector<int> ParameterOfUnknown(const ObservedRobot& model) {
 
 Observations SelectPostures(const Observations& observations, const std::vector<int>& postures) {
   Observations selected{
-      observations.files, observations.effects, {}, observations.q(postures, Eigen::all), {}};
+      observations.files, observations.effects, {}, observations.q(postures, Eigen::all), {}, {}};
+  if (observations.approach.rows() > 0) {
+    selected.approach = observations.approach(postures, Eigen::all);
+  }
   std::vector<int> now(observations.postures.size(), -1);
   for (int i : postures) {
     now[i] = selected.posture_count();

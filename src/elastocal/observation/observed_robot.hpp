@@ -39,7 +39,8 @@ struct Observations {
   std::vector<std::string> files = {};
   std::vector<SessionEffect> effects = {};
   std::vector<PosturePlace> postures = {};
-  Eigen::MatrixXd q = {};  ///< postures x coordinates of the tree, rad or m
+  Eigen::MatrixXd q = {};         ///< postures x coordinates of the tree, rad or m
+  Eigen::MatrixXd approach = {};  ///< see Recording::approach; no rows: nothing known
   std::vector<Observation> all = {};
 
   int posture_count() const { return static_cast<int>(postures.size()); }
@@ -68,11 +69,13 @@ struct ObservedRobot {
   bool IsPlate(int index) const { return index < static_cast<int>(setup.plates.size()); }
 };
 
-/// `torsion`, `bending`: joints that give way (ErrorModel). Throws InputError for patterns that
-/// match nothing, and for parameters in common of different kinds.
+/// `torsion`, `bending`: joints that give way, and `corrections` of joints, of a root link that is
+/// held still and of loads, which have no prior here (ErrorModel). Throws InputError for patterns
+/// that match nothing, and for parameters in common of different kinds.
 ObservedRobot MakeObservedRobot(const RobotTree& tree, const PlacementOptions& placement,
                                 const ObservationSetup& setup, const std::vector<int>& torsion,
-                                const std::vector<int>& bending);
+                                const std::vector<int>& bending,
+                                const std::vector<Correction>& corrections = {});
 
 /// Leaves out of the estimate the parameters of joints that move no foot and nothing observed.
 void KeepObservedUnknowns(const Observations& observations, ObservedRobot& model);
@@ -80,7 +83,7 @@ void KeepObservedUnknowns(const Observations& observations, ObservedRobot& model
 /// The source of a parameter of the robot's, and the unit in which its deviation counts there (1,
 /// but for compliances: how far joints give way under their largest torque).
 struct SourceOfParameter {
-  int source = kLength;
+  int source = kLength;  ///< -1: it has none
   double unit = 1.0;
 };
 

@@ -24,7 +24,7 @@ int PriorSource(ObservationSetup& setup, const std::string& name, SourceUnit uni
   return AddSource(setup, {name, unit, sd, Role::kFixed});
 }
 
-int NoiseSource(ObservationSetup& setup, const std::string& name, SourceUnit unit, double sd) {
+int AddNoise(ObservationSetup& setup, const std::string& name, SourceUnit unit, double sd) {
   return AddSource(setup, {name, unit, sd, Role::kNoise});
 }
 
@@ -99,7 +99,7 @@ void AddPlate(ObservationSetup& setup, const ContactPlate& plate) {
 
 void AddPlaneDistance(ObservationSetup& setup, const PlaneDistanceSetup& of) {
   const int point = AddMountedPoint(setup, of.name, of.p_link, of.mounting_sd);
-  const int noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
+  const int noise = AddNoise(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
   auto distance = MakeInstrument<PlaneDistance>(of.name, {of.link}, {of.plane, point}, {noise});
   distance->varying = 0;
   setup.instruments.push_back(std::move(distance));
@@ -116,7 +116,7 @@ void AddTrackedPoint(ObservationSetup& setup, const TrackedPointSetup& of) {
   const int point = AddMountedPoint(setup, of.name, of.p_link, of.mounting_sd);
   const int noise = of.noise >= 0
                         ? of.noise
-                        : NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
+                        : AddNoise(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
   auto tracked =
       MakeInstrument<TrackedPoint>(of.name, TrackedLinks(of.link, of.tracker),
                                    {of.tracker.quantity, point}, std::vector<int>(3, noise));
@@ -135,10 +135,10 @@ void AddTrackedBody(ObservationSetup& setup, const TrackedBodySetup& of) {
       throw std::invalid_argument("the covariance of a pose is 6 x 6 and positive definite");
     }
     whitening = factor.matrixL().solve(Eigen::MatrixXd::Identity(6, 6));
-    noise.assign(6, NoiseSource(setup, of.name + ".noise", SourceUnit::kNone, 1.0));
+    noise.assign(6, AddNoise(setup, of.name + ".noise", SourceUnit::kNone, 1.0));
   } else {
-    const int p = NoiseSource(setup, of.name + ".position", SourceUnit::kMetre, of.position_sd);
-    const int r = NoiseSource(setup, of.name + ".rotation", SourceUnit::kRadian, of.rotation_sd);
+    const int p = AddNoise(setup, of.name + ".position", SourceUnit::kMetre, of.position_sd);
+    const int r = AddNoise(setup, of.name + ".rotation", SourceUnit::kRadian, of.rotation_sd);
     noise = {p, p, p, r, r, r};
   }
   auto body = MakeInstrument<TrackedBody>(of.name, TrackedLinks(of.link, of.tracker),
@@ -159,7 +159,7 @@ void AddInertialUnit(ObservationSetup& setup, const InertialUnitSetup& of) {
   unit.sources.push_back(
       AddSource(setup, {of.name + ".scale", SourceUnit::kNone, of.scale_sd, Role::kFixed}));
   const int quantity = AddQuantity(setup, std::move(unit));
-  const int noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kAcceleration, of.noise_sd);
+  const int noise = AddNoise(setup, of.name + ".noise", SourceUnit::kAcceleration, of.noise_sd);
   setup.instruments.push_back(
       MakeInstrument<GravityDirection>(of.name, {of.link}, {quantity}, std::vector<int>(3, noise)));
 }
@@ -173,7 +173,7 @@ void AddWire(ObservationSetup& setup, const WireSetup& of) {
   anchor.origin.translation() = of.p_floor;
   const int fixed = AddQuantity(setup, std::move(anchor));
   const int point = AddMountedPoint(setup, of.name, of.p_link, of.mounting_sd);
-  const int noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
+  const int noise = AddNoise(setup, of.name + ".noise", SourceUnit::kMetre, of.noise_sd);
   auto wire = MakeInstrument<WireLength>(of.name, {of.link}, {fixed, point}, {noise});
   wire->varying = 0;
   setup.instruments.push_back(std::move(wire));
@@ -191,8 +191,8 @@ MountedCamera AddCamera(ObservationSetup& setup, const CameraSetup& of) {
   numbers.sources.resize(4, source(".centre", of.centre_sd));
   numbers.sources.resize(Camera::kNumbers, source(".distortion", of.distortion_sd));
   camera.numbers = AddQuantity(setup, std::move(numbers));
-  camera.noise = NoiseSource(setup, of.name + ".noise", SourceUnit::kPixel, of.noise_sd);
-  camera.shared = NoiseSource(setup, of.name + ".shared", SourceUnit::kPixel, of.noise_sd);
+  camera.noise = AddNoise(setup, of.name + ".noise", SourceUnit::kPixel, of.noise_sd);
+  camera.shared = AddNoise(setup, of.name + ".shared", SourceUnit::kPixel, of.noise_sd);
   return camera;
 }
 

@@ -100,7 +100,12 @@ std::vector<fs::path> RecordedRecordings(const CalibratedRobot& robot) {
   std::vector<fs::path> recordings;
   for (std::size_t i = 2; i < inputs.size(); ++i) {
     const fs::path& input = inputs[i].file;
-    if (input.filename() == "experiment.yaml") recordings.push_back(input.parent_path());
+    if (robot.project.contact) {
+      if (input.extension() == ".yaml") break;  // what `--prior` names follows the tables
+      recordings.push_back(input);
+    } else if (input.filename() == "experiment.yaml") {
+      recordings.push_back(input.parent_path());
+    }
   }
   if (recordings.empty() && inputs.size() > 2) recordings.push_back(inputs[2].file);
   if (recordings.empty() || recordings.front().empty()) {

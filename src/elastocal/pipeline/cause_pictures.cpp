@@ -48,21 +48,13 @@ bool IsDrawnWith(const Correction& a, const Correction& b) {
 
 class Painter {
  public:
-  Painter(const LinearStudy& study, const ErrorModel& wide, const Recording& recording,
-          const CalibrationResult& result, const CalibrationOptions& options)
-      : study_(study), model_(wide), recording_(recording), sums_(study) {
-    model_.T_ref_waist = result.model.T_ref_waist;
-    std::map<std::string, double> values;
-    for (int i = 0; i < result.model.parameter_count(); ++i) {
-      values[result.model.parameters[Nth(i)].name] = result.delta[i];
-    }
-    Eigen::VectorXd delta = Eigen::VectorXd::Zero(wide.parameter_count());
-    for (int i = 0; i < wide.parameter_count(); ++i) {
-      const auto value = values.find(wide.parameters[Nth(i)].name);
-      if (value != values.end()) delta[i] = value->second;
-    }
-    geometry_ = ApplyErrors(model_, delta);
-    loads_ = ComputeLoads(model_, recording, delta, result.placement, options.load);
+  Painter(const LinearStudy& study, const CauseScene& scene)
+      : study_(study),
+        model_(scene.wide),
+        geometry_(scene.geometry),
+        loads_(scene.loads),
+        q_(scene.q),
+        sums_(study) {
     for (const LinearStudy::Posture& posture : study.postures) sums_.Add(posture, 1.0);
   }
 
@@ -134,8 +126,8 @@ class Painter {
       for (int axis = 0; axis < 3; ++axis) {
         const double compliance = geometry_.joints[Nth(joint)].compliance[axis];
         double squares = 0.0;
-        for (const PostureLoads& loads : loads_) {
-          const auto& added = loads.joints.by_correction[Nth(picture.correction)];
+        for (const JointLoads& loads : loads_) {
+          const auto& added = loads.by_correction[Nth(picture.correction)];
           squares += std::pow(compliance * added(axis, joint), 2);
         }
         if (squares <= most) continue;
@@ -153,7 +145,7 @@ class Painter {
   /// By how much one unit of a parameter displaces what the picture shows.
   double ShapeIn(const CausePicture& picture, int parameter, int posture) const {
     const auto correction = model_.parameters[Nth(parameter)].correction;
-    const JointLoads& loads = loads_[Nth(posture)].joints;
+    const JointLoads& loads = loads_[Nth(posture)];
     if (picture.variable != CauseVariable::kAddedLoad) return loads.shapes[correction];
     return picture.compliance * loads.by_correction[Nth(correction)](picture.axis, picture.joint);
   }
@@ -165,16 +157,15 @@ class Painter {
   }
 
   double Variable(const CausePicture& picture, int posture) const {
-    const PostureLoads& loads = loads_[Nth(posture)];
-    const double shape = loads.joints.shapes[picture.correction];
+    const JointLoads& loads = loads_[Nth(posture)];
+    const double shape = loads.shapes[picture.correction];
     switch (picture.variable) {
       case CauseVariable::kPosition:
-        return JointPosition(model_.tree.joints[Nth(picture.joint)],
-                             recording_.q.row(posture).transpose());
+        return JointPosition(model_.tree.joints[Nth(picture.joint)], q_.row(posture).transpose());
       case CauseVariable::kLoad:
-        return loads.joints(2, picture.joint);
+        return loads(2, picture.joint);
       case CauseVariable::kAddedLoad:
-        return loads.joints.by_correction[Nth(picture.correction)](picture.axis, picture.joint);
+        return loads.by_correction[Nth(picture.correction)](picture.axis, picture.joint);
       case CauseVariable::kTime:
         return shape + model_.elasticity.corrections[Nth(picture.correction)].centre;
       default:
@@ -294,22 +285,42 @@ class Painter {
   }
 
   const LinearStudy& study_;
-  ErrorModel model_;
-  const Recording& recording_;
+  const ErrorModel& model_;
+  const Geometry& geometry_;
+  const std::vector<JointLoads>& loads_;
+  const Eigen::MatrixXd& q_;
   StudySums sums_;
-  Geometry geometry_;
-  std::vector<PostureLoads> loads_;
 };
 
 }  // namespace
 
+CauseScene SceneOf(const ErrorModel& wide, const Recording& recording,
+                   const CalibrationResult& result, const CalibrationOptions& options) {
+  std::map<std::string, double> values;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    values[result.model.parameters[Nth(i)].name] = result.delta[i];
+  }
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(wide.parameter_count());
+  for (int i = 0; i < wide.parameter_count(); ++i) {
+    const auto value = values.find(wide.parameters[Nth(i)].name);
+    if (value != values.end()) delta[i] = value->second;
+  }
+  CauseScene scene{.wide = wide, .q = recording.q};
+  ErrorModel placed = wide;
+  placed.T_ref_waist = result.model.T_ref_waist;
+  scene.geometry = ApplyErrors(placed, delta);
+  for (PostureLoads& loads :
+       ComputeLoads(placed, recording, delta, result.placement, options.load)) {
+    scene.loads.push_back(std::move(loads.joints));
+  }
+  return scene;
+}
+
 std::vector<CausePicture> DrawCauses(const LinearStudy& study, const CauseSearch& search,
-                                     const ErrorModel& wide, const Recording& recording,
-                                     const CalibrationResult& result,
-                                     const CalibrationOptions& options, int most) {
+                                     const CauseScene& scene, int most) {
   std::vector<CausePicture> pictures;
   if (search.findings.empty()) return pictures;
-  const Painter painter(study, wide, recording, result, options);
+  const Painter painter(study, scene);
   std::vector<int> taken;
   if (search.accepted) {
     for (const CauseFinding& finding : search.chosen) {

@@ -42,13 +42,22 @@ struct CausePicture {
   Eigen::VectorXd curve_x, curve_y;  ///< the cause as it was estimated
 };
 
+/// The robot in the postures of a study, without the causes.
+struct CauseScene {
+  const ErrorModel& wide;  ///< the model of the study
+  Geometry geometry = {};
+  std::vector<JointLoads> loads = {};  ///< by posture
+  const Eigen::MatrixXd& q;            ///< postures x coordinates
+};
+
+/// That of a recording with markers.
+CauseScene SceneOf(const ErrorModel& wide, const Recording& recording,
+                   const CalibrationResult& result, const CalibrationOptions& options);
+
 /// At most `most` pictures: of the causes that were taken, each beside those before it, then of the
 /// others, the smallest p first, beside the calibration alone. Postures in which the displacement
 /// is known four times worse than in most are left out, and of very many only some are shown.
-/// `wide`, `recording`, `result`, `options`: what the study was made from.
 std::vector<CausePicture> DrawCauses(const LinearStudy& study, const CauseSearch& search,
-                                     const ErrorModel& wide, const Recording& recording,
-                                     const CalibrationResult& result,
-                                     const CalibrationOptions& options, int most = 6);
+                                     const CauseScene& scene, int most = 6);
 
 }  // namespace elastocal

@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/observation/observed_study.hpp"
+#include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 
 namespace elastocal {
@@ -80,6 +82,31 @@ void LeaveOutIdle(const Measurements& measured, std::optional<std::uint64_t> see
 
 }  // namespace
 
+CauseReport StudyObservedCauses(const Project& project, const ObservationTables& tables,
+                                std::optional<std::uint64_t> seed) {
+  const ObservedRobot model = MakeRobotOfProject(project, tables);
+  Observations observations = tables.observations;
+  std::vector<int> files;
+  for (const PosturePlace& place : observations.postures) files.push_back(place.file);
+  observations.approach = ApproachesOf(observations.q, files);
+  const ObservationFit fit = EstimateObserved(model, observations, {}).fit;
+  const ObservedRobot wide =
+      WithCorrections(model, project.placement, observations, ObservableCorrections(model));
+  const LinearStudy study = MakeObservedStudy(wide, model, observations, fit);
+  CauseReport report;
+  report.search = SearchCauses(study, {.seed = seed.value_or(1)});
+  report.parameters = wide.robot.parameters;
+  report.corrections = wide.robot.elasticity.corrections;
+  report.postures = observations.posture_count();
+  report.in_metres = false;
+  CauseScene scene{.wide = wide.robot, .q = observations.q};
+  const Eigen::VectorXd errors = ValuesOfWide(wide, model, fit.values).robot;
+  scene.geometry = ApplyErrors(wide.robot, errors);
+  scene.loads = ObservedLoads(wide, observations, errors);
+  report.pictures = DrawCauses(study, report.search, scene);
+  return report;
+}
+
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed) {
   Project project = given;
@@ -99,7 +126,8 @@ CauseReport StudyCauses(const Project& given, const Measurements& measured,
   report.parameters = wide.parameters;
   report.corrections = wide.elasticity.corrections;
   report.postures = recording.posture_count();
-  report.pictures = DrawCauses(study, report.search, wide, recording, result, project.calibration);
+  report.pictures =
+      DrawCauses(study, report.search, SceneOf(wide, recording, result, project.calibration));
   return report;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastocal/calibration/cause_search.hpp"
+#include "elastocal/io/observation_table.hpp"
 #include "elastocal/pipeline/cause_pictures.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 
@@ -19,6 +20,10 @@ struct CauseReport {
   std::vector<Parameter> parameters;    ///< that CauseFinding::parameters refer to
   std::vector<Correction> corrections;  ///< that these refer to
   int postures = 0;
+  /// Whether errors are in m; else in standard deviations of the noise of what was observed.
+  bool in_metres = true;
+  double error_factor() const { return in_metres ? 1e3 : 1.0; }
+  const char* error_unit() const { return in_metres ? "mm" : "sds"; }
   std::vector<CausePicture> pictures;  ///< of the causes that were taken, and of the best others
 };
 
@@ -26,6 +31,10 @@ struct CauseReport {
 /// the best set. Throws what Calibrate throws.
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed);
+
+/// The same of tables of observations.
+CauseReport StudyObservedCauses(const Project& project, const ObservationTables& tables,
+                                std::optional<std::uint64_t> seed);
 
 /// Sets the extra causes of the project's models as `calibration.extra` says: those named, none,
 /// or those that the held-out error of a table of 15 to 300 postures asks for and that a

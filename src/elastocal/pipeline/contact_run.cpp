@@ -45,26 +45,6 @@ ContactOutcome Estimate(const ObservedRobot& model, const Observations& observat
   return outcome;
 }
 
-/// The robot as the project describes it.
-ObservedRobot MakeRobotOfProject(const Project& project, const ObservationTables& tables) {
-  ObservationSetup setup = tables.setup;
-  setup.hold = project.identifiability.hold;
-  setup.outlier_probability = project.calibration.outlier_probability;
-  const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
-    return patterns ? MatchingJoints(project.tree, *patterns) : std::vector<int>();
-  };
-  try {
-    ObservedRobot model =
-        MakeObservedRobot(project.tree, project.placement, setup,
-                          joints(project.elasticity.torsion), joints(project.elasticity.bending));
-    KeepObservedUnknowns(tables.observations, model);
-    return model;
-  } catch (const InputError& error) {
-    throw InputError(project.file.string() +
-                     ": contact.common or identifiability.hold: " + error.what());
-  }
-}
-
 /// The same model without compliances, and what is known of it; nothing where none is elastic.
 std::optional<ObservedRobot> WithoutCompliances(const ObservedRobot& model,
                                                 const Observations& observations,
@@ -128,6 +108,25 @@ bool TakeElasticity(const Project& project, const ContactRunOptions& options, in
 }
 
 }  // namespace
+
+ObservedRobot MakeRobotOfProject(const Project& project, const ObservationTables& tables) {
+  ObservationSetup setup = tables.setup;
+  setup.hold = project.identifiability.hold;
+  setup.outlier_probability = project.calibration.outlier_probability;
+  const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
+    return patterns ? MatchingJoints(project.tree, *patterns) : std::vector<int>();
+  };
+  try {
+    ObservedRobot model =
+        MakeObservedRobot(project.tree, project.placement, setup,
+                          joints(project.elasticity.torsion), joints(project.elasticity.bending));
+    KeepObservedUnknowns(tables.observations, model);
+    return model;
+  } catch (const InputError& error) {
+    throw InputError(project.file.string() +
+                     ": contact.common or identifiability.hold: " + error.what());
+  }
+}
 
 ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,

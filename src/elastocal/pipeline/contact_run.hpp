@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/progress.hpp"
 #include "elastocal/observation/observation_figures.hpp"
 #include "elastocal/observation/standing_robot.hpp"
@@ -65,6 +66,10 @@ struct ContactRun {
   bool touches_only() const { return model.setup.plates.size() == model.setup.instruments.size(); }
   bool deployable() const { return verdict.objections.empty(); }
 };
+
+/// The robot as the project describes it, for tables of observations. Throws InputError for what
+/// MakeObservedRobot refuses.
+ObservedRobot MakeRobotOfProject(const Project& project, const ObservationTables& tables);
 
 /// Calibrates a robot that touches tables or is measured by instruments while it stands on its feet
 /// or its root link is held still: see EstimateObserved. `recordings`: tables of observations. The

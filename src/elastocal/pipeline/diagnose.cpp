@@ -106,16 +106,27 @@ std::string SizeOf(const CauseReport& report, const CauseFinding& finding) {
   return fmt::format("{:.{}f} +- {:.{}f} {}", factor * value, decimals, sd, decimals, unit);
 }
 
+/// Sets a figure of errors under its name with the unit: mm, or standard deviations of noise.
+void SetError(const CauseReport& report, const std::string& name, double error, Json& json) {
+  json[name + "_" + report.error_unit()] = report.error_factor() * error;
+}
+
+/// "2.66 mm", "1.02 sds of noise".
+std::string ErrorInWords(const CauseReport& report, double error) {
+  return fmt::format("{:.2f} {}", report.error_factor() * error,
+                     report.in_metres ? "mm" : "standard deviations of noise");
+}
+
 Json CandidateJson(const CauseReport& report, const CauseFinding& finding) {
   Json json;
   json["name"] = finding.cause;
   json["score"] = finding.score;
   json["p"] = finding.p;
   json["p_adjusted"] = finding.p_adjusted;
-  json["gain_mm"] = 1e3 * finding.gain;
-  json["mean_gain_mm"] = 1e3 * finding.mean_gain;
-  json["mean_gain_sd_mm"] = 1e3 * finding.gain_sd;
-  json["visible_mm"] = 1e3 * finding.visible;
+  SetError(report, "gain", finding.gain, json);
+  SetError(report, "mean_gain", finding.mean_gain, json);
+  SetError(report, "mean_gain_sd", finding.gain_sd, json);
+  SetError(report, "visible", finding.visible, json);
   for (std::size_t i = 0; i < finding.parameters.size(); ++i) {
     const Parameter& parameter = ParameterOf(report, finding.parameters[i]);
     Json one;
@@ -126,6 +137,7 @@ Json CandidateJson(const CauseReport& report, const CauseFinding& finding) {
     json["estimate"].push_back(std::move(one));
   }
   json["words"] = DescribeCause(report, finding);
+  if (!finding.rivals.empty()) json["rivals"] = finding.rivals;
   return json;
 }
 
@@ -135,17 +147,26 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
                    std::optional<std::uint64_t> seed) {
   const auto start = std::chrono::steady_clock::now();
   CalibratedRobot robot = OpenCalibratedRobot(folder, project_file);
-  CheckHasMarkers(robot.project);
   const std::vector<fs::path> recordings = RecordedRecordings(robot);
   Project& project = robot.project;
-  const Measurements measured = ReadMeasurements(project, recordings);
-  const std::vector<std::string> extra = project.elasticity.extra;
-  project.elasticity = ElasticityOf(robot.calibration, project);
-  project.elasticity.extra = extra;
+  const auto as_calibrated = [&] {
+    const std::vector<std::string> extra = project.elasticity.extra;
+    project.elasticity = ElasticityOf(robot.calibration, project);
+    project.elasticity.extra = extra;
+  };
   Diagnosis diagnosis;
-  diagnosis.report = StudyCauses(project, measured, seed);
+  if (project.contact) {
+    const ObservationTables tables = ReadObservationTables(recordings, project);
+    as_calibrated();
+    diagnosis.report = StudyObservedCauses(project, tables, seed);
+    diagnosis.recording = fmt::format("{}", fmt::join(tables.observations.files, ", "));
+  } else {
+    const Measurements measured = ReadMeasurements(project, recordings);
+    as_calibrated();
+    diagnosis.report = StudyCauses(project, measured, seed);
+    diagnosis.recording = measured.calibration.source;
+  }
   diagnosis.calibration_fingerprint = robot.calibration.fingerprint;
-  diagnosis.recording = measured.calibration.source;
   diagnosis.inputs = robot.inputs;
   diagnosis.inputs.insert(diagnosis.inputs.end(), recordings.begin(), recordings.end());
   diagnosis.seconds =
@@ -159,10 +180,10 @@ std::string DescribeCause(const CauseReport& report, const CauseFinding& finding
   const std::size_t dot = finding.cause.rfind('.');
   std::string what = finding.cause.substr(dot + 1);
   std::replace(what.begin(), what.end(), '_', ' ');
-  return fmt::format("{}: {} of {}, {}; the held-out error {} by {:.2f} mm",
-                     finding.cause.substr(0, dot), what, SizeOf(report, finding),
-                     ByWhat(correction.shape), finding.gain >= 0.0 ? "falls" : "rises",
-                     1e3 * std::abs(finding.gain));
+  return fmt::format("{}: {} of {}, {}; the held-out error {} by {}", finding.cause.substr(0, dot),
+                     what, SizeOf(report, finding), ByWhat(correction.shape),
+                     finding.gain >= 0.0 ? "falls" : "rises",
+                     ErrorInWords(report, std::abs(finding.gain)));
 }
 
 std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
@@ -176,17 +197,22 @@ std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
                     [](const CauseFinding& finding) { return finding.p_adjusted < kLevel; });
   if (search.accepted) {
     sentences.push_back(fmt::format(
-        "{} of {} causes together take the held-out error from {:.2f} to {:.2f} mm (nested folds):",
-        search.chosen.size(), search.findings.size(), 1e3 * search.error,
-        1e3 * search.nested_error));
+        "{} of {} causes together take the held-out error from {:.2f} to {} (nested folds):",
+        search.chosen.size(), search.findings.size(), report.error_factor() * search.error,
+        ErrorInWords(report, search.nested_error)));
     for (const CauseFinding& finding : search.chosen) {
       sentences.push_back("  " + DescribeCause(report, finding));
+      if (finding.rivals.empty()) continue;
+      sentences.push_back(
+          fmt::format("    almost as well explained by {}: the recording does not "
+                      "tell which it is",
+                      fmt::join(finding.rivals, " or ")));
     }
   } else if (significant > 0) {
     sentences.push_back(fmt::format(
-        "{} of {} causes are significant, but none lowers the held-out error of {:.2f} mm by more "
-        "than its uncertainty and 2 %:",
-        significant, search.findings.size(), 1e3 * search.error));
+        "{} of {} causes are significant, but no choice of them lowers the held-out error of {} by "
+        "more than its uncertainty (nested folds):",
+        significant, search.findings.size(), ErrorInWords(report, search.error)));
     for (const CauseFinding& finding : search.findings) {
       if (finding.p_adjusted >= kLevel) break;
       sentences.push_back("  " + DescribeCause(report, finding));
@@ -196,9 +222,10 @@ std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
     for (const CauseFinding& finding : search.findings) visible.push_back(finding.visible);
     std::sort(visible.begin(), visible.end());
     sentences.push_back(fmt::format(
-        "None of {} causes was found. One that moves the markers by {:.2f} mm (root mean square, "
-        "beside what is calibrated) would have been found nine times in ten.",
-        search.findings.size(), 1e3 * visible[visible.size() / 2]));
+        "None of {} causes was found. One that moves {} by {} (root mean square, beside "
+        "what is calibrated) would have been found nine times in ten.",
+        search.findings.size(), report.in_metres ? "the markers" : "what was observed",
+        ErrorInWords(report, visible[visible.size() / 2])));
   }
   return sentences;
 }
@@ -209,12 +236,12 @@ std::string MakeDiagnosisJson(const Diagnosis& diagnosis) {
   json["calibration_fingerprint"] = diagnosis.calibration_fingerprint;
   json["recording"] = diagnosis.recording;
   json["postures"] = diagnosis.report.postures;
-  json["held_out_mm"] = 1e3 * search.error;
+  SetError(diagnosis.report, "held_out", search.error, json);
   json["accepted"] = search.accepted;
   if (!search.chosen.empty()) {
-    json["nested_mm"] = 1e3 * search.nested_error;
-    json["nested_gain_mm"] = 1e3 * search.nested_gain;
-    json["nested_gain_sd_mm"] = 1e3 * search.nested_gain_sd;
+    SetError(diagnosis.report, "nested", search.nested_error, json);
+    SetError(diagnosis.report, "nested_gain", search.nested_gain, json);
+    SetError(diagnosis.report, "nested_gain_sd", search.nested_gain_sd, json);
   }
   json["chosen"] = Json::array();
   for (const CauseFinding& finding : search.chosen) {

@@ -117,8 +117,9 @@ void CheckHasMarkers(const Project& project) {
   throw InputError(
       project.file.string() +
       ": the project has no markers, which this command is about; with contact or instruments "
-      "alone "
-      "there are calibrate, validate, check, compare, design, plan, simulate, export and report");
+      "alone there are calibrate, validate, check, compare, diagnose, design, plan, simulate, "
+      "export "
+      "and report");
 }
 
 void ReadPlacementOptions(const YamlValue& section, PlacementOptions& options) {

@@ -78,7 +78,8 @@ void AddJointCompliances(const ErrorModel& model, int k, std::vector<Parameter>&
 /// Whether the joints that carry the correction's body (of gravity: any) give way to a load.
 bool ActsThroughLoads(const ErrorModel& model, const Correction& correction) {
   const Elasticity& elasticity = model.elasticity;
-  if (!model.legs.empty() || !elasticity.root_bending.empty()) return false;
+  if (elasticity.stands_on_legs && !model.legs.empty()) return false;
+  if (!elasticity.root_bending.empty()) return false;
   const int last = correction.source;
   if (last >= 0 && !Contains(model.active_joints, last)) return false;
   const std::vector<int> joints =

@@ -42,6 +42,8 @@ struct Elasticity {
   /// joint carries, and the joint besides: so does a beam between the two, whose ends turn.
   std::vector<int> root_bending = {};
   std::vector<Leg> legs = {};  ///< that the robot stands on alone, be they elastic or not
+  /// Otherwise `legs` only ends in links that are observed, and the root link is held still.
+  bool stands_on_legs = true;
   bool base = true;          ///< these legs have a lumped compliance from foot to waist, eq. 6 ...
   bool torque_bias = false;  ///< ... and their torque sensors unknown biases
   /// What is not elastic either; each is a parameter where its joint moves a marker. Those of loads

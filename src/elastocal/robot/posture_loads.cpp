@@ -22,6 +22,20 @@ Eigen::VectorXd LegTorques(const SupportLeg& leg, const Eigen::VectorXd& measure
   return torques;
 }
 
+/// Moment of the weight of all links about the origin of the root link, in its axes, N.m.
+Eigen::Vector3d RootMoment(const ErrorModel& model, const Geometry& geometry,
+                           const Eigen::VectorXd& q, const Eigen::Vector3d& gravity_ref) {
+  const std::vector<Transform> T_ref_link = CalibratedLinkTransforms(model, geometry, q);
+  const Transform T_ref_root = WaistPose(geometry);
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < model.tree.links.size(); ++i) {
+    const Link& link = model.tree.links[i];
+    const Eigen::Vector3d arm = T_ref_link[i] * link.com - T_ref_root.translation();
+    moment += arm.cross(link.mass * gravity_ref);
+  }
+  return T_ref_root.linear().transpose() * moment;
+}
+
 void LoadWaist(const ErrorModel& model, const LegPosture& posture, const MeasuredLoads& measured,
                const JointLoads& gravity, const Eigen::Vector3d& gravity_ref,
                const LoadOptions& options, PostureLoads& loads) {
@@ -84,6 +98,13 @@ PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
         -(posture.T_foot_waist.linear().transpose() * loads.waist.tail<3>());
   }
   return loads;
+}
+
+void AddShapes(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
+               const Eigen::Vector3d& gravity_ref, PostureHistory history, JointLoads& loads) {
+  history.root_moment = RootMoment(model, geometry, q, gravity_ref);
+  loads.shapes = EvaluateShapes(model.tree, model.elasticity.corrections, q,
+                                CorrectedLoads(geometry, loads).row(2).transpose(), history);
 }
 
 }  // namespace elastocal

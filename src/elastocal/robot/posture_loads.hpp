@@ -56,4 +56,9 @@ PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
                          const Eigen::VectorXd& q, int leg, const MeasuredLoads& measured,
                          const Eigen::Vector3d& gravity_ref, const LoadOptions& options);
 
+/// Sets what the corrections of the model multiply in a posture (EvaluateShapes). The moment of the
+/// weight on the root link, of `history`, is found here.
+void AddShapes(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
+               const Eigen::Vector3d& gravity_ref, PostureHistory history, JointLoads& loads);
+
 }  // namespace elastocal
