@@ -17,7 +17,7 @@ constexpr double kLeftWithoutSteps = 0.8;
 constexpr double kTimesChance = 3.0, kMostByChance = 0.8;
 constexpr double kLeastOfRounding = 0.5;
 constexpr double kMostOfStep = 0.6;  // that a position is moved
-constexpr int kTurns = 3;            // over the joints
+constexpr int kSweeps = 3;           // over the joints
 
 bool IsSliding(const RobotTree& tree, int coordinate) {
   return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
@@ -66,7 +66,7 @@ std::vector<CoarsePositions> FindCoarsePositions(const CalibrationResult& result
   Recording moved = recording;
   const Eigen::VectorXd given = SquaresOf(result, recording, options);
   Eigen::VectorXd at = given;
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const CoarsePositions& one : coarse) {
       const double h = 0.25 * one.step;
       Recording other = moved;

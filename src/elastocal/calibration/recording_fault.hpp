@@ -27,9 +27,9 @@ struct RecordingFault {
   int coordinate = -1;  ///< of the joints that are logged together, of the robot tree
   int trial = -1;       ///< the only one that it is in; -1: all
   int posture = 0;      ///< the first one that it is in
-  double size =
-      0.0;  ///< gain less 1; offset, or drift in all, rad or m; s; scale less 1;
-            ///< share of the move; shear; scale at the outermost marker less that in the middle
+  /// Gain less 1; offset, or drift in all, rad or m; s; scale less 1; share of the move; shear;
+  /// scale at the outermost marker less that in the middle.
+  double size = 0.0;
   double sd = 0.0;     ///< of `size`, as wide as the postures scatter
   double share = 0.0;  ///< of the sum of squared residuals that it explains
   int linkage = -1;    ///< of the tree: `coordinate` is a motor of it; -1: of q

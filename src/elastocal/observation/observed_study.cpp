@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "elastocal/math/numbers.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -41,7 +43,7 @@ Eigen::MatrixXd SpreadJacobian(const ObservationResiduals& residuals, int block,
   for (const int k : shape.parameter_blocks) {
     const auto of = static_cast<std::size_t>(k);
     for (int c = 0; c < residuals.parameter_blocks[of]; ++c, ++at) {
-      const int column = columns[static_cast<std::size_t>(first[of] + c)];
+      const int column = columns[Size(first[of] + c)];
       if (column >= 0) wide.col(column) += J.col(at);
     }
   }

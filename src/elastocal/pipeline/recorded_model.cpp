@@ -125,8 +125,7 @@ std::string DescribeKnock(const Knock& knock, const Recording& recording) {
   if (recording.trials.empty()) {
     return fmt::format(
         "marker {}: its distances to the other markers of cluster {} change by up to {:.1f} mm "
-        "from "
-        "{} on: was it glued on again? It is taken as two markers",
+        "from {} on: was it glued on again? It is taken as two markers",
         recording.marker_names[Size(knock.markers.front())], knock.cluster, 1e3 * knock.distance,
         DescribePosture(recording, knock.posture));
   }
