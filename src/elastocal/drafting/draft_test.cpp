@@ -56,7 +56,7 @@ TEST(Draft, TalosHasTheLimbsOfItsHandWrittenProject) {
   EXPECT_EQ(drafted.motion.chains[2].mirror, "right_leg");
 }
 
-TEST(Draft, ClustersAreFatTrianglesOfDifferentSides) {
+TEST(DraftStudy, ClustersAreFatTrianglesOfDifferentSides) {
   for (const char* robot :
        {"models/talos/talos.urdf", "tests/robots/mini_humanoid.urdf", "tests/robots/arm6.urdf"}) {
     const ScratchFolder folder;
@@ -152,7 +152,7 @@ std::string TalosOfMeshes(const ScratchFolder& folder) {
   return replaced + urdf;
 }
 
-TEST(Draft, MeshesAreShapesLikeOthers) {
+TEST(DraftStudy, MeshesAreShapesLikeOthers) {
   const ScratchFolder folder;
   const std::string urdf = TalosOfMeshes(folder);
   MeshPlaces places;
@@ -258,7 +258,7 @@ TEST(Draft, CastersAndWhatCarriesNothingElseAreNoLimbs) {
   EXPECT_EQ(LimbsOfPole(caster), (std::vector<std::string>{"left_arm", "right_arm"}));
 }
 
-TEST(Draft, ASoleWithoutALinkIsAddedToTheUrdf) {
+TEST(DraftStudy, ASoleWithoutALinkIsAddedToTheUrdf) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   for (const std::string side : {"left", "right"}) {
     for (const std::string& element :
@@ -367,7 +367,7 @@ TEST(Draft, SaysWhereTheSrdfBreaksLimitsOfTheUrdf) {
   EXPECT_EQ(std::count(all.begin(), all.end(), draft.rest.warnings[0]), 1);
 }
 
-TEST(Draft, TheSameTextGivesTheSameDraft) {
+TEST(DraftStudy, TheSameTextGivesTheSameDraft) {
   const std::string first = FormatDraft(DraftFile("tests/robots/mini_humanoid.urdf"), "a");
   EXPECT_EQ(first, FormatDraft(DraftFileAnew("tests/robots/mini_humanoid.urdf"), "a"));
 }

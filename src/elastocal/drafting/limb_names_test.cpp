@@ -59,7 +59,7 @@ TEST(LimbNames, AHeadSaysSoAndALegToo) {
   EXPECT_EQ(name("yaw", "camera", 3), "head");
 }
 
-TEST(LimbNames, SidesAreThoseOfTheNames) {
+TEST(LimbNamesStudy, SidesAreThoseOfTheNames) {
   // The embedded robot turned about: its root link looks back.
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   urdf = std::regex_replace(urdf, std::regex("left"), "other");

@@ -107,7 +107,7 @@ TEST(StandingDraftStudy, MotionsUseNearlyAllOfMotorsThatNeedIt) {
   EXPECT_EQ(ReadBack(weakest, folder).motion.motion_effort_share, 0.97);
 }
 
-TEST(StandingDraft, RestsWithEachFootLifted) {
+TEST(StandingDraftStudy, RestsWithEachFootLifted) {
   const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
   const std::vector<Eigen::VectorXd> postures = RestingPostures(draft);
   for (const DraftedSole& sole : draft.soles) {

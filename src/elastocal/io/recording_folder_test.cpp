@@ -100,7 +100,10 @@ TEST_F(RecordingFolderTest, TakesTheMarkersThatBelongToATrial) {
   EXPECT_EQ(names({0, 1}, {}), (std::vector<std::string>{"BACK", "HEAD", "LHAND"}));
 }
 
-TEST_F(RecordingFolderTest, GoesOnWithoutATrialThatItRefuses) {
+/// Where a clock cannot be told, every mistake of a log is tried.
+using RecordingFolderStudy = RecordingFolderTest;
+
+TEST_F(RecordingFolderStudy, GoesOnWithoutATrialThatItRefuses) {
   Write("a", {.postures = 12});
   Write("b", {.postures = 8});
   Write("c", {.postures = 8, .seed = 99});
@@ -148,7 +151,7 @@ TEST_F(RecordingFolderTest, MergesFolders) {
       {other.string(), "another axis up"});
 }
 
-TEST_F(RecordingFolderTest, KnowsWhichAxisIsUpAndWhatLagToExpect) {
+TEST_F(RecordingFolderStudy, KnowsWhichAxisIsUpAndWhatLagToExpect) {
   Write("a", {.postures = 12, .lag_s = 1000.0});
   Write("b", {.postures = 8});
   const std::string trials = kTwoTrials;

@@ -12,7 +12,7 @@ namespace {
 
 // The speeds of a leg one of whose joints has the wrong sign are others; where they do not fit any
 // more, the log that would fit tells why.
-TEST(LogMistakes, NamesTheSignAndTheExchangeThatSpoilTheClock) {
+TEST(LogMistakesStudy, NamesTheSignAndTheExchangeThatSpoilTheClock) {
   const ScriptedTrial clean = PlayStanding();
   const auto joints = clean.log.positions.cols();
   int refused = 0;

@@ -129,7 +129,7 @@ TEST(SampleTrial, TellsTheClockOfARobotThatDrivesBetweenItsRests) {
   EXPECT_EQ(Sample(without, {}, trial).summary.refused, "");
 }
 
-TEST(SampleTrial, PositionsTellTheClockWhereSpeedsDoNot) {
+TEST(SampleTrialStudy, PositionsTellTheClockWhereSpeedsDoNot) {
   const ScriptedTrial played = PlayStanding();
   MeasurementOptions options;
   const double sd = Sample(played).summary.clock.sd_s;
