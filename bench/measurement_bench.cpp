@@ -10,10 +10,10 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/measurement/smoothed_log.hpp"
 #include "elastocal/measurement/trial_clock.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 #include "tests/trial_player.hpp"

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

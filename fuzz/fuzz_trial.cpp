@@ -7,10 +7,10 @@
 #include <string>
 
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 
 // A marker file and a joint log, with a line `===` between them, become samples or a refusal.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -149,11 +149,7 @@ TEST_F(PlainLeg, NocpIsNearTheBoundForEverySeedAndAboveCocp) {
   EXPECT_EQ(problem_.column_count(), 42);
   NocpOptions options;
   options.plateau = {.tolerance = -1.0, .max_postures = 24};
-#ifdef __SANITIZE_ADDRESS__
-  constexpr int kSeeds = 1;  // a figure, not a matter of memory: twenty times slower there
-#else
-  constexpr int kSeeds = 10;
-#endif
+  constexpr int kSeeds = 6;
   std::vector<double> nocp;
   Eigen::VectorXd cocp(kSeeds);
   double bound = 0.0;

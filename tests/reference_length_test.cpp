@@ -8,8 +8,8 @@
 
 #include "elastocal/elastocal.hpp"
 #include "elastocal/files/output_files.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 

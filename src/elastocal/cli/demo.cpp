@@ -143,7 +143,7 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   if (exit_code != kFine) return exit_code;
   Words deploy = {"simulate",     project, "--deploy",     options.output, "--motion",
                   in("sine.csv"), "-o",    options.output, "--seed",       seed_text};
-  if (options.count > 0) deploy.insert(deploy.end(), {"--stabiliser", "with"});
+  if (options.count > 0) deploy.insert(deploy.end(), {"--stabiliser", "with", "--until-s", "120"});
   return RunShown(deploy, options);
 }
 
@@ -180,7 +180,8 @@ void AddDemo(CLI::App& app, Action& action) {
       ->add_option(
           "--count", options->count,
           "Postures of each chain, designed and random, for a shorter demo that shows the "
-          "calibration at work with a stabiliser only; default: as many as it takes, and 20 "
+          "calibration at work for two minutes, with a stabiliser only; default: as many as "
+          "it takes, and 20 "
           "(--quick: 60 in all)")
       ->check(CLI::Range(4, 10000));
   command->add_flag("--quick", options->quick,

@@ -36,6 +36,7 @@ struct SimulateCommand {
   std::string deploy;           ///< folder of a calibration that is put to use
   std::vector<std::string> as;  ///< how; empty: in all ways
   std::string stabiliser = "both";
+  double until_s = DeployOptions().until_s;
   std::optional<std::uint64_t> robot_seed;
   bool nominal = false, free = false, matched = false, force = false;
   std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
@@ -108,6 +109,7 @@ int Deploy(const SimulateCommand& command) {
     }
   }
   if (command.stabiliser != "both") options.stabilised = {command.stabiliser == "with"};
+  options.until_s = command.until_s;
   const bool quiet = command.common.Silent();
   const StoredCalibration stored = ReadCalibration(calibration.calibration);
   const std::vector<Execution> executions =
@@ -231,6 +233,12 @@ void AddSimulate(CLI::App& app, Action& action) {
       ->needs(deploy)
       ->transform(CLI::IsMember({"with", "without", "both"}, CLI::ignore_case))
       ->capture_default_str();
+  command
+      ->add_option("--until-s", options->until_s,
+                   "Time of the motion until which the robots of --deploy play it, s; default: to "
+                   "its end")
+      ->needs(deploy)
+      ->check(CLI::Range(1.0, 1e6));
   command->add_option("--threads", options->threads, "Trials played at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/files/output_files.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/recording_writers.hpp"

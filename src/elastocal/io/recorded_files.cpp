@@ -10,11 +10,11 @@
 #include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/named_postures.hpp"
 #include "elastocal/io/posture_checks.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/readers/joint_columns.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"

@@ -151,16 +151,4 @@ std::string Describe(const TrialSummary& summary) {
 
 std::vector<std::string> Findings(const TrialSummary& summary) { return Finder(summary).Find(); }
 
-std::string DescribeUnused(const TrialSummary& summary) {
-  if (!summary.rests) return "";
-  const auto count = [&](UnusedReason reason) { return summary.rests->UnusedCount(reason); };
-  return Format(
-      "not used: %d frames in motion (above %.1f mm/s), %d at rest for too short a time, %d "
-      "outside the "
-      "joint log, %d with too few markers, %d spare",
-      count(UnusedReason::kMoving), 1e3 * summary.rests->threshold_m_per_s,
-      count(UnusedReason::kTooShort), summary.outside_log,
-      count(UnusedReason::kTooFewVisible) - summary.outside_log, count(UnusedReason::kSpare));
-}
-
 }  // namespace elastocal

@@ -62,7 +62,4 @@ std::string Describe(const TrialSummary& summary);
 /// torque sensors, exchanged labels, lost markers, outliers, a log that is too short.
 std::vector<std::string> Findings(const TrialSummary& summary);
 
-/// One line with the number of frames that are not used, by reason.
-std::string DescribeUnused(const TrialSummary& summary);
-
 }  // namespace elastocal

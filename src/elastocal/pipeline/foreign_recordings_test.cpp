@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/recording_writers.hpp"

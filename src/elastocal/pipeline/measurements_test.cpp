@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recording_folder.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"

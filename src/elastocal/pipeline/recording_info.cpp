@@ -11,11 +11,11 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/gaps.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/recording_writers.hpp"

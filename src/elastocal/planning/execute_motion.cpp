@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
@@ -195,6 +196,17 @@ void CheckPlan(const JointMotion& planned) {
   }
 }
 
+/// The samples of the plan until a time.
+JointMotion Until(double time_s, JointMotion planned) {
+  const auto after = std::upper_bound(planned.time_s.begin(), planned.time_s.end(), time_s);
+  const Eigen::Index count = after - planned.time_s.begin();
+  planned.time_s.conservativeResize(count);
+  planned.q.conservativeResize(count, Eigen::NoChange);
+  planned.support.resize(Size(count));
+  planned.line.resize(std::min(planned.line.size(), Size(count)));
+  return planned;
+}
+
 /// What is commanded for the plan, or why nothing can be.
 struct Commanded {
   Eigen::MatrixXd q;
@@ -256,9 +268,11 @@ const char* DeployName(DeployAs as) {
 }
 
 std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibration& calibration,
-                                      const JointMotion& planned, const DeployOptions& options,
+                                      const JointMotion& motion, const DeployOptions& options,
                                       const Progress& progress) {
   constexpr double kHeld = 20.0;  // times stiffer: what integration makes of a servo
+  CheckPlan(motion);
+  const JointMotion planned = Until(options.until_s, motion);
   CheckPlan(planned);
   const DescribedRobot described = DescribeRobot(project);
   const TrueRobot robot = DrawTrueRobot(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,8 @@ struct DeployOptions {
   std::vector<bool> stabilised = {true, false};  ///< each robot with a stabiliser and without
   TruthOptions truth = {};  ///< the robot's errors: those of the robot that was calibrated
   PhysicsOptions physics = {};
+  /// The motion is played to this time of its own.
+  double until_s = std::numeric_limits<double>::infinity();
   int threads = 2;  ///< robots at a time; the result does not depend on it
 };
 
@@ -62,10 +65,10 @@ struct DeployOptions {
 /// that they command against the load (their servos integrate) and feed forward what their servos
 /// lag behind. Progress counts runs.
 ///
-/// Throws InputError for a motion without time or support, or with samples on no foot, and for a
-/// calibration of another robot.
+/// Throws InputError for a motion without time or support, or with samples on no foot, or fewer
+/// than three until `until_s`, and for a calibration of another robot.
 std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibration& calibration,
-                                      const JointMotion& planned, const DeployOptions& options,
+                                      const JointMotion& motion, const DeployOptions& options,
                                       const Progress& progress = {});
 
 /// As JSON, with what the report's page needs to play the robots side by side. `tree`: the nominal

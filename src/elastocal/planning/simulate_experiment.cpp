@@ -11,11 +11,11 @@
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/posture_file.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/waist_truth.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/planning/truth_file.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/robot/physical_inertia.hpp"
 #include "elastocal/tables/text.hpp"
 

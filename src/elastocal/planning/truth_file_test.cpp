@@ -5,9 +5,9 @@
 
 #include "elastocal/files/yaml_value.hpp"
 #include "elastocal/io/joint_log.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/io/waist_truth.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"

@@ -97,9 +97,6 @@ struct WaistDeflection {
   Transform T_foot_waist;
   Matrix6d by_compliance;  ///< motion of the waist by the leg's six compliances
   Matrix6d by_wrench;      ///< motion of the waist by the wrench
-  /// Motion of the waist by the biases of the leg's torque sensors, for a wrench from these
-  /// sensors.
-  Matrix6Xd ByTorqueBias(const LegLoad& load) const { return -by_wrench * load.wrench_by_torque; }
 };
 
 /// `compliance` is ordered as in Geometry::leg_compliance.

@@ -307,7 +307,7 @@ TEST(WaistDeflection, DerivativesAgreeWithDifferences) {
     const Vector6d by_bias = slope(
         [&](double h) { return at(compliance, LoadFromTorques(posture, torques - h * e).wrench); },
         0.1);
-    EXPECT_LT((by_bias - deflection.ByTorqueBias(load).col(i)).norm(), 1e-11) << i;
+    EXPECT_LT((by_bias + deflection.by_wrench * load.wrench_by_torque.col(i)).norm(), 1e-11) << i;
   }
 }
 

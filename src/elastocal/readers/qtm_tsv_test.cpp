@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "elastocal/io/qtm_tsv.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 
 #include <cmath>
 

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "elastocal/files/output_files.hpp"
-#include "elastocal/io/qtm_tsv.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/interruption.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
