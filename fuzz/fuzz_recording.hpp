@@ -22,6 +22,7 @@ inline int FuzzRecording(const std::uint8_t* data, std::size_t size,
     if (size % 3 == 1) options.tf_frame = "room";
     if (size % 3 == 2) options.tf_frame = "cameras";
     if (size % 5 == 1) options.tf_bodies = {"tool"};
+    options.salvage = size % 7 == 1;
     const RecordingFile file = read(ByteSource::OfMemory(bytes, "fuzz"), options);
     if (file.markers) {
       const MarkerTrajectories& markers = *file.markers;

@@ -24,8 +24,8 @@ py::dict ToDict(const MarkerTrajectories& markers, const RecordingFile& file) {
 
 /// What the file holds, under its own names.
 py::dict Read(const Path& path, const std::string& unit, const std::string& topic,
-              const std::string& tf_frame, const Names& tf_bodies) {
-  const ReaderOptions options{unit, topic, tf_frame, tf_bodies};
+              const std::string& tf_frame, const Names& tf_bodies, bool salvage) {
+  const ReaderOptions options{unit, topic, tf_frame, tf_bodies, salvage};
   RecordingFile file = Unlocked([&] { return ReadAnyRecording(path, options); });
   if (file.postures) {
     throw InputError(path.string() +
@@ -50,11 +50,11 @@ py::dict Read(const Path& path, const std::string& unit, const std::string& topi
 }
 
 py::object Info(const Path& file, const std::string& unit, const std::string& topic,
-                const std::string& tf_frame, const Names& tf_bodies) {
+                const std::string& tf_frame, const Names& tf_bodies, bool salvage) {
   constexpr int kPictureColumns = 48;
   return FromJson(Unlocked([&] {
-    return MakeInfoJson(
-        DescribeRecording(file.string(), {unit, topic, tf_frame, tf_bodies}, kPictureColumns));
+    return MakeInfoJson(DescribeRecording(
+        file.string(), {unit, topic, tf_frame, tf_bodies, salvage}, kPictureColumns));
   }));
 }
 
@@ -88,16 +88,18 @@ void WriteTable(const Project& project, const Path& file, const RowMajor& positi
 }  // namespace
 
 void AddRecordings(py::module_& module) {
-  module.def("read", Read, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
-             "tf_frame"_a = "", "tf_bodies"_a = Names(),
-             "Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, "
-             "NaN where not seen, and 'joints' with time_s (samples), positions (samples, joints), "
-             "rad or m, and torques (samples, joints), N.m or N. unit: of lengths, where the file "
-             "does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame: the "
-             "cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all "
-             "that move in it.");
+  module.def(
+      "read", Read, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "", "tf_frame"_a = "",
+      "tf_bodies"_a = Names(), "salvage"_a = false,
+      "Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, "
+      "NaN where not seen, and 'joints' with time_s (samples), positions (samples, joints), "
+      "rad or m, and torques (samples, joints), N.m or N. unit: of lengths, where the file "
+      "does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame: the "
+      "cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all "
+      "that move in it. salvage: reads an MCAP bag that was not closed or was cut off, up to "
+      "where it ends, which 'notes' then say.");
   module.def("info", Info, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
-             "tf_frame"_a = "", "tf_bodies"_a = Names(),
+             "tf_frame"_a = "", "tf_bodies"_a = Names(), "salvage"_a = false,
              "What is in a recording or a posture table: the dict of `elastocal info --json`.");
   module.def("write_table", WriteTable, "project"_a, "file"_a, "positions"_a, "markers"_a,
              py::kw_only(), "marker_names"_a = std::nullopt,

@@ -72,6 +72,13 @@ void AddRobot(py::module_& module) {
            "(joints,), rad or m, or a dict of joints, the others being at 0.");
 
   py::class_<Project>(module, "Project", "A project file with its robot.")
+      .def("__repr__",
+           [](const Project& project) {
+             return "<elastocal.Project '" + project.file.string() + "': robot " +
+                    project.tree.name + ", " + std::to_string(project.tree.coordinate_count()) +
+                    " joints, " + std::to_string(project.chains.size()) + " chains, " +
+                    std::to_string(project.markers.size()) + " markers>";
+           })
       .def(py::init([](const Path& file) { return ReadProject(file); }), "file"_a,
            py::call_guard<LongCall>(), "Reads a project file (YAML; docs/formats.md).")
       .def_property_readonly(

@@ -115,6 +115,22 @@ TEST_F(Batch, TheSameUnderMpirun) {
   }
 }
 
+/// A shell leaves Ctrl-C of what runs in its background ignored; SIGTERM is heard alike.
+TEST_F(Batch, AnInterruptionSaysHowFarItCame) {
+  std::string manifest = ReadFile(manifest_);
+  scratch_.Write("fleet.yaml", manifest.replace(manifest.find("robots: 4"), 9, "robots: 400"));
+  const std::string out = Folder("out"), log = Folder("log");
+  const std::string command = ELASTOCAL_PROGRAM " batch " + manifest_ + " -o " + out +
+                              " --workers 1 2>" + log + " & process=$!; while [ ! -e " + out +
+                              "/arm_1.done.json ] && kill -0 $process; do sleep 0.02; done; kill "
+                              "-TERM $process; wait $process; test $? -eq 143";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  const std::string said = ReadFile(log);
+  EXPECT_NE(said.find("interrupted: "), std::string::npos) << said;
+  EXPECT_NE(said.find(" of 400 tasks are done; the same command does the rest"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out + "/fleet.json"));
+}
+
 TEST_F(Batch, AFailedTaskIsNamedAndTheOthersAreDone) {
   manifest_ = scratch_.Write("fleet.yaml",
                              "project: " + SourceFile("tests/robots/arm6_project.yaml").string() +

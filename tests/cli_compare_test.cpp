@@ -46,6 +46,10 @@ TEST_F(Program, CompareNamesTheJointThatMoved) {
   EXPECT_GT(theta["interval_95"][1], theta["difference"]);
   EXPECT_EQ(theta["significant"], true);
   EXPECT_FALSE(json["not_compared"].empty());
+  // Of the parameters of the joint, the one that changed.
+  const std::size_t mark = result.out.find("* moved");
+  ASSERT_NE(mark, std::string::npos);
+  EXPECT_EQ(result.out.find(" moved", mark + 7), std::string::npos) << result.out;
 }
 
 TEST_F(Program, CompareWithoutCovarianceOrChange) {

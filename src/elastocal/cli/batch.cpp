@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -37,6 +39,35 @@ struct BatchCommand {
   double level = 0.05;
 };
 
+volatile std::sig_atomic_t interrupted = 0;  // 0, or the signal
+
+/// Ctrl-C at a batch; what is done stays done.
+struct BatchInterrupted {
+  int done = 0, all = 0;
+};
+
+/// Lets RunTasks see Ctrl-C, unless somebody (nohup, a shell in the background) has it ignored. A
+/// second one ends the program at once.
+void WatchInterruption() {
+  for (const int number : {SIGINT, SIGTERM}) {
+    struct sigaction action {};
+    sigaction(number, nullptr, &action);
+    if (action.sa_handler == SIG_IGN) continue;
+    action.sa_handler = [](int signal) { interrupted = signal; };
+    action.sa_flags = SA_RESETHAND;
+    sigaction(number, &action, nullptr);
+  }
+}
+
+/// Says how far it has come, and ends as the signal would have ended it.
+[[noreturn]] void EndInterrupted(const BatchInterrupted& at) {
+  spdlog::warn("interrupted: {} of {} tasks are done; the same command does the rest", at.done,
+               at.all);
+  std::signal(interrupted, SIG_DFL);
+  std::raise(interrupted);
+  std::abort();
+}
+
 /// A folder for a batch is empty, or that of an earlier run of a batch.
 void CheckFolder(const fs::path& output) {
   std::error_code error;
@@ -62,6 +93,8 @@ std::vector<std::unique_ptr<TaskSlot>> LocalSlots(int count, const fs::path& out
   return slots;
 }
 
+bool HasResult(const TaskEnd& end) { return end.exit_code == 0 || end.exit_code == 4; }
+
 /// Does what is not done yet; how each task ended.
 std::vector<TaskEnd> DoTasks(const BatchCommand& command, const std::vector<FleetTask>& tasks,
                              MpiRanks* ranks) {
@@ -85,10 +118,18 @@ std::vector<TaskEnd> DoTasks(const BatchCommand& command, const std::vector<Flee
   int done = static_cast<int>(tasks.size() - open.size());
   const auto all = static_cast<int>(tasks.size());
   if (progress) progress(done, all);
-  RunTasks(open, slots, {.ended = [&](int task, const TaskEnd& end) {
-             ends[static_cast<std::size_t>(task)] = end;
-             if (progress) progress(++done, all);
-           }});
+  if (ranks == nullptr) WatchInterruption();
+  int with_result = done;
+  const auto ended = [&](int task, const TaskEnd& end) {
+    ends[static_cast<std::size_t>(task)] = end;
+    with_result += HasResult(end) ? 1 : 0;
+    if (progress) progress(++done, all);
+  };
+  const auto stop = [&] {
+    if (interrupted != 0) throw BatchInterrupted{with_result, all};
+    return false;
+  };
+  RunTasks(open, slots, {.ended = ended, .stop = stop});
   return ends;
 }
 
@@ -134,19 +175,23 @@ std::string DescribeFamily(const FleetReport& report) {
 }
 
 std::string DescribeReport(const FleetReport& report, const fs::path& output) {
-  int fine = 0, refused = 0;
-  std::vector<std::string> failed;
+  int fine = 0;
+  std::vector<std::string> refused, failed;
   double seconds = 0.0;
   for (const SessionOutcome& session : report.sessions) {
     seconds += session.end.seconds;
     const int exit_code = session.end.exit_code;
     fine += exit_code == 0 ? 1 : 0;
-    refused += exit_code == 4 ? 1 : 0;
+    if (exit_code == 4) refused.push_back(session.task->name);
     if (exit_code != 0 && exit_code != 4) failed.push_back(session.task->name);
   }
   std::string text =
       fmt::format("{} tasks: {} to be deployed, {} not, {} failed; {:.0f} s of work\n",
-                  report.sessions.size(), fine, refused, failed.size(), seconds);
+                  report.sessions.size(), fine, refused.size(), failed.size(), seconds);
+  if (!refused.empty()) {
+    text += fmt::format("Not to be deployed (see {}/NAME.log): {}\n", output.string(),
+                        FirstOf(refused, kMostFindings));
+  }
   if (!failed.empty()) {
     text += fmt::format("Failed (see {}/NAME.log): {}\n", output.string(),
                         FirstOf(failed, kMostFindings));
@@ -197,6 +242,8 @@ int Batch(const BatchCommand& command) {
     outputs.Set(output / ".batch", fs::absolute(command.manifest).filename().string() + "\n");
     outputs.Set(command.common.json_file, files.front());
     outputs.Publish();
+  } catch (const BatchInterrupted& at) {
+    EndInterrupted(at);
   } catch (...) {
     if (ranks) ranks->Dismiss();
     throw;
@@ -204,9 +251,8 @@ int Batch(const BatchCommand& command) {
   if (ranks) ranks->Dismiss();
   Print(command.common.Silent(), DescribeReport(*report, output));
   PrintWarnings(report->notes, command.common.verbose);
-  const bool all = std::all_of(
-      report->sessions.begin(), report->sessions.end(),
-      [](const SessionOutcome& one) { return one.end.exit_code == 0 || one.end.exit_code == 4; });
+  const bool all = std::all_of(report->sessions.begin(), report->sessions.end(),
+                               [](const SessionOutcome& one) { return HasResult(one.end); });
   if (!all) spdlog::error("not all tasks have a result; run the same command again for the rest");
   return all ? kFine : kNotConverged;
 }

@@ -54,7 +54,8 @@ std::string ParameterTable(const CalibrationComparison& comparison) {
       table.Add({one.name, unit, RoundedTo(factor * one.a, sd), RoundedTo(factor * one.b, sd),
                  RoundedTo(factor * one.difference, sd), RoundedSd(sd),
                  RoundedInterval(factor * one.difference, factor * one.half_width, sd),
-                 std::string(one.significant() ? "*" : "") + (joint.moved ? " moved" : "")});
+                 std::string(one.significant() ? "*" : "") +
+                     (joint.moved && one.significant() ? " moved" : "")});
     }
   }
   return table.Render();

@@ -130,7 +130,8 @@ void AddRecording(CLI::App& command, RecordingCommand& options) {
   command
       .add_option("recording", options.file,
                   "Recording of cameras or robot: C3D, Vicon CSV, Motive CSV, TRC, Qualisys TSV, "
-                  ".npz, ROS bag (MCAP, db3, bag), joint log; its contents tell which")
+                  ".npz, ROS bag (MCAP, db3, bag, folder of a ROS 2 bag), joint log; its contents "
+                  "tell which")
       ->required()
       ->type_name("FILE");
   command
@@ -148,6 +149,8 @@ void AddRecording(CLI::App& command, RecordingCommand& options) {
       .add_option("--tf-bodies", options.reading.tf_bodies,
                   "Frames of tf that are bodies (default: all that move in the cameras' frame)")
       ->type_name("NAME");
+  command.add_flag("--salvage", options.reading.salvage,
+                   "Read an MCAP bag that was not closed or was cut off, up to where it ends");
 }
 
 }  // namespace

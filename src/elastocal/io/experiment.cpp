@@ -11,6 +11,7 @@
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/project/project_sections.hpp"
+#include "elastocal/readers/byte_source.hpp"
 #include "elastocal/readers/lengths.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -83,7 +84,8 @@ TrialKind ReadKind(const YamlValue& value) {
 fs::path ReadFileName(const YamlValue& value, const fs::path& folder, std::vector<fs::path>& used) {
   const fs::path file = (folder / value.Text()).lexically_normal();
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) value.Fail("there is no file " + file.string());
+  if (!fs::is_regular_file(file, error) && !IsBagFolder(file))
+    value.Fail("there is no file " + file.string());
   if (Contains(used, file)) value.Fail("the file " + file.string() + " is named twice");
   used.push_back(file);
   return file;

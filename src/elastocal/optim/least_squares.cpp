@@ -16,6 +16,8 @@ constexpr double kFirstDamping = 1e-4;  // of the diagonal, after the first step
 constexpr double kLeastDamping = 1e-9;  // below: none
 constexpr double kMostDamping = 1e12;   // no step lowers the cost
 constexpr double kFasterDamping = 10.0;
+constexpr double kPoorGain = 0.25;  // of the expected decrease: the step is too long
+constexpr double kMostLoss = 1.0;   // of the same; beyond, no parabola is trusted
 
 void End(Termination termination, const char* message, LeastSquaresResult& result) {
   result.termination = termination;
@@ -27,6 +29,29 @@ Eigen::VectorXd DampedStep(const NormalEquations& equations, double damping,
   Eigen::MatrixXd information = equations.information();
   information.diagonal() *= 1.0 + damping;
   return BoundedStep(information, equations.gradient(), x(equations.unknowns()), nonnegative);
+}
+
+/// A step from `x`, and the cost where it leads; `problem` is evaluated there. Where the cost falls
+/// by much less than expected, the curvature along the step is not that of the linearised problem
+/// (it may be twice that, and full steps then jump to and fro across the minimum): the step then
+/// ends at the minimum of the parabola through what is known along it, if the cost is lower there.
+Eigen::VectorXd TakeStep(LeastSquaresProblem& problem, const Eigen::VectorXd& x, double cost_before,
+                         const Eigen::VectorXd& step, double slope, double expected, double& cost) {
+  const Eigen::VectorXd full = x + step;
+  problem.Evaluate(full, true);
+  cost = CostOf(problem);
+  const double gain = (cost_before - cost) / expected;
+  if (!(gain < kPoorGain && gain > -kMostLoss)) return full;
+  const double share = 0.5 * slope / (cost - cost_before + slope);
+  const Eigen::VectorXd part = x + share * step;
+  problem.Evaluate(part, true);
+  const double cost_there = CostOf(problem);
+  if (cost_there < cost) {
+    cost = cost_there;
+    return part;
+  }
+  problem.Evaluate(full, true);
+  return full;
 }
 
 }  // namespace
@@ -57,9 +82,9 @@ LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0
         End(Termination::kFailure, "the linearised problem is singular", result);
         return result;
       }
-      const double expected = -equations.gradient().dot(step) -
-                              0.5 * step.dot(equations.information() * step) +
-                              equations.NuisanceDecrease();
+      const double along = -equations.gradient().dot(step);
+      const double expected =
+          along - 0.5 * step.dot(equations.information() * step) + equations.NuisanceDecrease();
       if (!(expected >
             options.function_tolerance * result.final_cost + std::numeric_limits<double>::min())) {
         End(Termination::kConverged, "no step lowers the cost any more", result);
@@ -67,9 +92,10 @@ LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0
       }
       ++result.iterations;
       InterruptionPoint();
-      const Eigen::VectorXd next = result.x + equations.Expand(step);
-      problem.Evaluate(next, true);
-      const double cost = CostOf(problem);
+      double cost = 0.0;
+      const Eigen::VectorXd next =
+          TakeStep(problem, result.x, result.final_cost, equations.Expand(step),
+                   along + 2.0 * equations.NuisanceDecrease(), expected, cost);
       if (cost <= result.final_cost) {
         result.x = next;
         result.final_cost = cost;

@@ -124,7 +124,7 @@ TEST(LeastSquares, FollowsABentValley) {
   EXPECT_LT(result.final_cost, 1e-24);
   EXPECT_GT(result.iterations, 3);
   EXPECT_FALSE(result.message.empty());
-  EXPECT_EQ(problem.evaluations, result.iterations + 1);
+  EXPECT_LT(problem.evaluations, 60);
 }
 
 TEST(LeastSquares, EliminationDoesNotChangeTheAnswer) {
@@ -159,6 +159,30 @@ TEST(LeastSquares, BoundsHold) {
   const LeastSquaresResult result = Solve(problem, Eigen::VectorXd::Constant(1, -3.0));
   EXPECT_EQ(result.termination, Termination::kConverged);
   EXPECT_EQ(result.x[0], 0.0);
+}
+
+/// x and 1 + x^2 / 2: at the minimum, 0, the curvature is twice that of the linearised problem, and
+/// its full steps lead from x to nearly -x.
+class Bowl : public Stored {
+ public:
+  Bowl() {
+    parameter_blocks = {1};
+    residual_blocks = {{.size = 2, .parameter_blocks = {0}}};
+    Resize();
+  }
+  void Evaluate(const Eigen::VectorXd& x, bool) override {
+    residuals_[0] = Eigen::Vector2d(x[0], 1.0 + 0.5 * x[0] * x[0]);
+    jacobians_[0] = Eigen::Vector2d(1.0, x[0]);
+  }
+};
+
+// After 100 full steps x is 0.05.
+TEST(LeastSquares, StepsAcrossTheMinimumAreShortened) {
+  Bowl problem;
+  const LeastSquaresResult result = Solve(problem, Eigen::VectorXd::Constant(1, 0.1));
+  EXPECT_EQ(result.termination, Termination::kConverged);
+  EXPECT_LT(result.iterations, 10);
+  EXPECT_LT(std::abs(result.x[0]), 1e-6);
 }
 
 TEST(LeastSquares, UsedUpIterationsAreNoConvergence) {

@@ -116,6 +116,11 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
 void ExpectNoFolder(const fs::path& recording) {
   std::error_code error;
   if (!fs::is_directory(recording, error)) return;
+  if (IsBagFolder(recording)) {
+    throw InputError(recording.string() +
+                     ": this is the folder of a ROS bag; it needs a folder with experiment.yaml, "
+                     "which names it (docs/formats.md, Recording folder)");
+  }
   throw InputError(recording.string() +
                    ": no experiment.yaml in this folder; expected a recording folder, which has "
                    "one, or the file of a posture table");
@@ -161,7 +166,10 @@ std::vector<fs::path> InputFiles(const Project& project, const std::vector<fs::p
     }
     files.push_back(recording / "experiment.yaml");
     for (const TrialFiles& trial : ReadExperiment(recording, project).trials) {
-      files.insert(files.end(), {trial.markers, trial.joints});
+      for (const fs::path& one : {trial.markers, trial.joints}) {
+        const std::vector<fs::path> read = FilesOfRecording(one);
+        files.insert(files.end(), read.begin(), read.end());
+      }
       if (!trial.truth.empty()) files.push_back(trial.truth);
     }
   }

@@ -145,6 +145,9 @@ TEST_F(MeasurementsTest, OnlyFoldersCanBeTakenTogether) {
   const ScratchFolder empty;
   ExpectInputError([&] { InputFiles(project_, {empty.path()}); },
                    {empty.path().string(), "no experiment.yaml in this folder", "posture table"});
+  empty.Write("metadata.yaml", "");
+  ExpectInputError([&] { InputFiles(project_, {empty.path()}); },
+                   {empty.path().string(), "ROS bag", "needs a folder with experiment.yaml"});
 }
 
 }  // namespace

@@ -204,11 +204,16 @@ ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions
     part = file.joints ? RecordingPart::kJoints : RecordingPart::kMarkers;
   }
   if (part == RecordingPart::kMarkers) {
-    if (file.markers) return {ConvertMarkers(file, up), {}};
+    if (file.markers) return {ConvertMarkers(file, up), file.salvaged};
     throw InputError(path + " (" + file.format +
                      "): there are no markers in it: " + file.why_no_markers);
   }
-  if (file.joints) return ConvertJoints(*file.joints);
+  if (file.joints) {
+    ConvertedRecording converted = ConvertJoints(*file.joints);
+    converted.warnings.insert(converted.warnings.begin(), file.salvaged.begin(),
+                              file.salvaged.end());
+    return converted;
+  }
   throw InputError(path + " (" + file.format +
                    "): there are no joint positions in it: " + file.why_no_joints);
 }

@@ -150,6 +150,8 @@ TEST(BagsTest, OneOfSeveralTopicsIsAskedFor) {
       << both.why_no_joints;
   EXPECT_EQ(ReadBag(bag, {.joints_topic = "/hand_statess"}).joints->names, hand.names);
   EXPECT_FALSE(ReadBag(bag, {.joints_topic = "/no"}).joints.has_value());
+  // Two drivers that publish on one topic.
+  EXPECT_EQ(ReadBag(TwoTopics(log, hand, true)).joints->names.size(), 4u);
 }
 
 /// What a topic of joint states with these messages holds.
@@ -196,21 +198,85 @@ TEST(BagsTest, MessagesMayBeCompressed) {
   ExpectInputError([&] { TakeTopic(messages); }, {"message of '/joint_states'", "zstd"});
 }
 
-TEST(BagsTest, FolderOfABagIsNamed) {
+/// Rows of a log, as a bag.
+std::string PieceOf(const JointLog& log, Eigen::Index begin, Eigen::Index count) {
+  JointLog part = log;
+  part.time_s = log.time_s.segment(begin, count);
+  part.positions = log.positions.middleRows(begin, count);
+  part.torques = log.torques.middleRows(begin, count);
+  return McapBytes(part);
+}
+
+/// As rosbag2 lists the files of a bag that it has split.
+std::string Metadata(const std::string& files) {
+  return "rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: mcap\n"
+         "  relative_file_paths:\n" +
+         files + "  custom_data: ~\n";
+}
+
+TEST(BagsTest, FolderOfABagIsOneRecording) {
+  const JointLog log = SomeLog();
   const ScratchFolder folder;
-  folder.Write("metadata.yaml", "");
+  folder.Write("bag_0.mcap", PieceOf(log, 0, 3));
+  std::string second = PieceOf(log, 3, 5);
+  const std::size_t channel = second.find(Bytes().Text("/joint_states").text) - 4;
+  second[channel] = 9;  // which numbers its topics anew: those of messages follow
+  for (std::size_t at = channel - 9; second[at] == 4 || second[at] == 5;) {
+    if (second[at] == 5) second[at + 9] = 9;
+    at += 9 + static_cast<unsigned char>(second[at + 1]) +
+          256u * static_cast<unsigned char>(second[at + 2]);
+  }
+  folder.Write("bag_1.mcap", second);
+  folder.Write("metadata.yaml", Metadata("    - bag_0.mcap\n    - bag_1.mcap.zstd\n"));
+  const RecordingFile read = ReadRecordingFile(folder.path(), {});
+  EXPECT_EQ(read.joints->time_s, log.time_s);
+  EXPECT_EQ(read.joints->positions, log.positions);
+  EXPECT_EQ(read.joints->torques, log.torques);
+  EXPECT_EQ(read.notes.size(), 1u);  // one topic
+  EXPECT_EQ(FilesOfRecording(folder.path()),
+            (std::vector{folder.path() / "metadata.yaml", folder.path() / "bag_0.mcap",
+                         folder.path() / "bag_1.mcap"}));
+  folder.Write("metadata.yaml", Metadata("    - bag_0.mcap\n    - bag_2.mcap\n"));
+  ExpectInputError([&] { ReadRecordingFile(folder.path(), {}); },
+                   {"metadata.yaml:6", "there is no file", "bag_2.mcap"});
+}
+
+TEST(BagsTest, FolderOfADatabaseIsOneRecording) {
+  const ScratchFolder folder;
+  folder.Write("bag.db3", ReadFile(SourceFile("tests/recordings/bag.db3")));
+  folder.Write("metadata.yaml", Metadata("    - bag.db3\n"));
+  ExpectMadeBag(ReadRecordingFile(folder.path(), {}));
+}
+
+TEST(BagsTest, FolderWithoutMetadataIsNamed) {
+  const ScratchFolder folder;
   folder.Write("bag_1.db3", "");
   ExpectInputError([&] { ReadRecordingFile(folder.path(), {}); }, {"is a folder", "bag_1.db3"});
   folder.Write("bag_0.db3", "");
   ExpectInputError([&] { ReadRecordingFile(folder.path(), {}); },
-                   {"bag_0.db3 and so on", "`ros2 bag convert`"});
+                   {"bag_0.db3 and so on", "`ros2 bag reindex`"});
+}
+
+TEST(BagsTest, WhatIsLeftOfABagIsReadWhereAsked) {
+  const JointLog log = SomeLog();
+  const std::string good = McapBytes(log);
+  for (const std::size_t missing : {45u, 100u}) {  // the end of the data; the last message
+    const std::string cut = good.substr(0, good.size() - missing);
+    const RecordingFile read = ReadBag(cut, {.salvage = true});
+    const Eigen::Index left = missing == 45 ? 8 : 7;
+    EXPECT_EQ(read.joints->time_s, log.time_s.head(left));
+    EXPECT_EQ(read.joints->positions, log.positions.topRows(left));
+    ASSERT_EQ(read.salvaged.size(), 1u);
+    EXPECT_NE(read.notes.front().find("of " + std::to_string(cut.size())), std::string::npos);
+  }
+  EXPECT_TRUE(ReadBag(good, {.salvage = true}).salvaged.empty());
 }
 
 TEST(BagsTest, DamageIsNamedWithItsPlace) {
   const std::string good = McapBytes(SomeLog());
   ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 45)); }, {"bag: byte", "cut off"});
   ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 100)); },
-                   {"bag: byte", "beyond", "`mcap recover`"});
+                   {"bag: byte", "cut off", "--salvage"});
   std::string bad = good;
   bad[bad.find("elbow") - 4] = 100;  // the length of the name
   ExpectInputError([&] { ReadBag(bad); },

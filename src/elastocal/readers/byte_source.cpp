@@ -11,7 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "elastocal/files/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/read_file.hpp"
 
 namespace elastocal {
 namespace {
@@ -24,7 +26,32 @@ constexpr std::size_t kStreamBlock = 1u << 18;
   throw InputError(name + ": cannot be read: " + std::generic_category().message(reason));
 }
 
-/// What to do with a folder that `ros2 bag record` wrote; empty for any other one.
+constexpr const char* kMetadata = "metadata.yaml";
+
+/// The files of a bag, by the metadata.yaml in its folder.
+std::vector<std::filesystem::path> BagPieces(const std::filesystem::path& folder) {
+  const std::filesystem::path metadata = folder / kMetadata;
+  const auto list = YamlValue::Parse(ReadFile(metadata), metadata.string())
+                        .Get("rosbag2_bagfile_information")
+                        .Get("relative_file_paths");
+  std::vector<std::filesystem::path> pieces;
+  std::error_code error;
+  for (const YamlValue& item : list.Items()) {
+    std::filesystem::path piece = folder / item.Text();
+    // Packed as a whole by rosbag2, and unpacked since.
+    if (piece.extension() == ".zstd" && !std::filesystem::exists(piece, error)) {
+      piece.replace_extension();
+    }
+    if (!std::filesystem::is_regular_file(piece, error)) {
+      item.Fail("there is no file " + piece.string());
+    }
+    pieces.push_back(std::move(piece));
+  }
+  if (pieces.empty()) list.Fail("found no file; one or more were expected");
+  return pieces;
+}
+
+/// What to do with a folder of bags that has no metadata.yaml; empty for any other one.
 std::string BagInside(const std::filesystem::path& folder) {
   std::vector<std::string> bags;
   std::error_code error;
@@ -35,12 +62,33 @@ std::string BagInside(const std::filesystem::path& folder) {
   if (bags.empty()) return "";
   const std::string one = ": the bag in it, " + *std::ranges::min_element(bags);
   return bags.size() == 1 ? one
-                          : one + " and so on (a bag in pieces becomes one by `ros2 bag convert`)";
+                          : one +
+                                " and so on (a bag in pieces is read with its metadata.yaml, which "
+                                "`ros2 bag reindex` writes)";
 }
 
 }  // namespace
 
+bool IsBagFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(folder / kMetadata, error);
+}
+
+std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path& recording) {
+  if (!IsBagFolder(recording)) return {recording};
+  std::vector<std::filesystem::path> files = BagPieces(recording);
+  files.insert(files.begin(), recording / kMetadata);
+  return files;
+}
+
 ByteSource ByteSource::Open(const std::filesystem::path& file) {
+  if (IsBagFolder(file)) {
+    std::vector<std::filesystem::path> pieces = BagPieces(file);
+    ByteSource source = Open(pieces.front());
+    source.name_ = file.string();
+    source.pieces_ = std::move(pieces);
+    return source;
+  }
   ByteSource source;
   source.name_ = file.string();
   source.path_ = file;

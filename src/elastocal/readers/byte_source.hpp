@@ -18,7 +18,9 @@ namespace elastocal {
 /// takes no more memory than what is kept of it.
 class ByteSource {
  public:
-  /// Throws InputError naming the file: there is none, it is no regular file, it cannot be read.
+  /// The folder of a bag (IsBagFolder) is the bag in it: its first piece, with all of them in
+  /// `pieces`. Throws InputError naming the file: there is none, it is no regular
+  /// file, it cannot be read.
   static ByteSource Open(const std::filesystem::path& file);
   /// The bytes must outlive the source; `name` stands for the file in messages.
   static ByteSource OfMemory(std::string_view bytes, std::string name);
@@ -28,6 +30,8 @@ class ByteSource {
   /// The path of a file; empty for bytes in memory, which `memory` then has.
   const std::filesystem::path& path() const { return path_; }
   std::string_view memory() const { return memory_; }
+  /// Of the folder of a bag: the files that hold one recording together. Empty for anything else.
+  const std::vector<std::filesystem::path>& pieces() const { return pieces_; }
 
   /// Reads from `offset` on, at most to the end; gives the number of bytes read.
   std::size_t Read(std::uint64_t offset, std::span<char> to) const;
@@ -42,10 +46,24 @@ class ByteSource {
 
   std::string name_;
   std::filesystem::path path_;
+  std::vector<std::filesystem::path> pieces_;
   std::shared_ptr<const int> descriptor_;
   std::string_view memory_;
   std::uint64_t size_ = 0;
 };
+
+/// Whether `ros2 bag record` wrote this folder: it holds a metadata.yaml.
+bool IsBagFolder(const std::filesystem::path& folder);
+
+/// The files that are read of a recording: itself, or what is in the folder of a bag.
+std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path& recording);
+
+/// Calls `read` with each piece of a bag's folder, or with any other source itself.
+template <typename Read>
+void ForEachPiece(const ByteSource& source, const Read& read) {
+  if (source.pieces().empty()) read(source);
+  for (const auto& piece : source.pieces()) read(ByteSource::Open(piece));
+}
 
 /// Such bytes as a text that is read from its beginning to its end. The source must outlive it.
 class SourceStream : private std::streambuf, public std::istream {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <map>
+#include <optional>
 
 #include <zlib.h>
 
@@ -17,24 +18,25 @@ namespace {
 constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kRecordHead = 9;
 constexpr std::string_view kNotClosed =
-    "the bag was not closed, or was cut off; `mcap recover` mends it";
+    "the bag was not closed, or was cut off; `elastocal convert --salvage` takes what is before";
 
 /// Records of MCAP, from the first to the end of the data, chunk by chunk.
 class McapReader {
  public:
-  McapReader(const ByteSource& source, const ReaderOptions& options)
-      : source_(source), messages_(source.name(), options) {}
+  McapReader(const ByteSource& source, RosMessages& messages)
+      : source_(source), messages_(messages) {}
 
-  RecordingFile Read() {
+  /// The byte where the file ends too early, if it does and `salvage` takes that.
+  std::optional<std::uint64_t> Read(bool salvage) {
     std::uint64_t at = kMcapMagic.size();
     while (!done_) {
       std::array<char, kRecordHead> head{};
-      source_.ReadAll(at, head, "a record (" + std::string(kNotClosed) + ")");
+      const bool is_there = source_.Read(at, head) == head.size();
       const auto [kind, length] = Head(head);
-      if (length > source_.size() - at - kRecordHead) {
-        source_.Fail(at, "a record of " + std::to_string(length) +
-                             " bytes goes beyond the end of the file (" + std::string(kNotClosed) +
-                             ")");
+      if (!is_there || length > source_.size() - at - kRecordHead) {
+        if (salvage) return at;
+        source_.Fail(at, "the file ends within the record that begins here (" +
+                             std::string(kNotClosed) + ")");
       }
       if (Needed(kind)) {
         if (length > kLargestChunk) source_.Fail(at, "a record of more than 512 MiB");
@@ -44,7 +46,7 @@ class McapReader {
       }
       at += kRecordHead + length;
     }
-    return messages_.Take();
+    return std::nullopt;
   }
 
  private:
@@ -145,7 +147,7 @@ class McapReader {
   }
 
   const ByteSource& source_;
-  RosMessages messages_;
+  RosMessages& messages_;
   std::map<std::uint64_t, std::string> schemas_;
   std::vector<char> record_, chunk_;
   bool done_ = false;
@@ -156,7 +158,19 @@ class McapReader {
 bool IsMcap(std::string_view head) { return head.starts_with(kMcapMagic); }
 
 RecordingFile ReadMcap(const ByteSource& source, const ReaderOptions& options) {
-  return McapReader(source, options).Read();
+  RosMessages messages(source.name(), options);
+  std::vector<std::string> salvaged;
+  ForEachPiece(source, [&](const ByteSource& piece) {
+    messages.BeginPiece();
+    const auto end = McapReader(piece, messages).Read(options.salvage);
+    if (!end) return;
+    salvaged.push_back(piece.name() + " was not closed, or was cut off: it is read up to byte " +
+                       std::to_string(*end) + " of " + std::to_string(piece.size()));
+  });
+  RecordingFile file = messages.Take();
+  file.notes.insert(file.notes.begin(), salvaged.begin(), salvaged.end());
+  file.salvaged = std::move(salvaged);
+  return file;
 }
 
 }  // namespace elastocal

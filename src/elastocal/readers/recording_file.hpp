@@ -17,6 +17,8 @@ struct ReaderOptions {
   std::string joints_topic = {};  ///< of a bag with several topics of joint states
   std::string tf_frame = {};      ///< of a bag's tf: the cameras' frame
   std::vector<std::string> tf_bodies = {};  ///< frames that are bodies; empty: all that move in it
+  bool salvage =
+      false;  ///< reads an MCAP bag that was not closed or was cut off, up to where it ends
 };
 
 /// What the names of columns say of a table of static postures.
@@ -44,6 +46,7 @@ struct RecordingFile {
   std::optional<NamedPostures> postures;      ///< of a posture table, which has no frames
   std::string why_no_markers, why_no_joints;  ///< for messages, where there are none
   std::vector<std::string> notes;             ///< what was skipped or taken how, a sentence each
+  std::vector<std::string> salvaged;          ///< notes on files that end too early
 };
 
 /// Recognises the format by the bytes, never by the name: C3D, Vicon Nexus CSV, OptiTrack Motive
@@ -53,9 +56,9 @@ struct RecordingFile {
 /// files, UTF-16, web pages.
 std::optional<std::string> RecogniseRecording(const ByteSource& source);
 
-/// Reads such a file. Memory grows with what is kept of it and not with its size. Throws InputError
-/// naming file and byte, or line and column: a format that is not recognised, damage, a unit that
-/// the file does not state or that contradicts the options.
+/// Reads such a file, or the folder of a ROS 2 bag. Memory grows with what is kept of it and not
+/// with its size. Throws InputError naming file and byte, or line and column: a format that is not
+/// recognised, damage, a unit that the file does not state or that contradicts the options.
 RecordingFile ReadRecordingFile(const std::filesystem::path& file, const ReaderOptions& options);
 RecordingFile ReadRecordingFile(const ByteSource& source, const ReaderOptions& options);
 

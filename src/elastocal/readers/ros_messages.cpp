@@ -65,11 +65,17 @@ RosMessages::RosMessages(std::string source, const ReaderOptions& options)
 bool RosMessages::AddTopic(std::uint64_t id, const std::string& name, const std::string& type,
                            RosEncoding encoding) {
   RequireUtf8(name + type, source_);
-  Topic& topic = topics_[id];
-  if (!topic.name.empty() && (topic.name != name || topic.type != type)) {
-    throw InputError(source_ + ": the topics " + Quote(topic.name) + " and " + Quote(name) +
-                     " have the same number");
+  const auto known = std::ranges::find_if(topics_, [&](const Topic& one) {
+    return one.name == name && one.type == type && one.encoding == encoding;
+  });
+  const auto [place, added] =
+      places_.emplace(id, static_cast<std::size_t>(known - topics_.begin()));
+  if (!added && place->second != static_cast<std::size_t>(known - topics_.begin())) {
+    throw InputError(source_ + ": the topics " + Quote(topics_[place->second].name) + " and " +
+                     Quote(name) + " have the same number");
   }
+  if (known != topics_.end()) return known->kind != Kind::kOther;
+  Topic& topic = topics_.emplace_back();
   topic.name = name;
   topic.type = type;
   topic.encoding = encoding;
@@ -87,12 +93,12 @@ bool RosMessages::AddTopic(std::uint64_t id, const std::string& name, const std:
 
 void RosMessages::Add(std::uint64_t id, std::span<const char> message, std::int64_t received_ns,
                       const std::string& place) {
-  const auto found = topics_.find(id);
-  if (found == topics_.end()) {
+  const auto found = places_.find(id);
+  if (found == places_.end()) {
     throw InputError(source_ + ": " + place + "a message of topic number " + std::to_string(id) +
                      ", which is not listed above it");
   }
-  Topic& topic = found->second;
+  Topic& topic = topics_[found->second];
   ++topic.messages;
   const std::string where = source_ + ": " + place + "message of " + Quote(topic.name) + ": ";
   // By `ros2 bag record --compression-mode message`; CDR begins with a zero.
@@ -203,7 +209,7 @@ void RosMessages::TakeTimes(Topic& topic, std::vector<std::string>& notes) const
 
 RecordingFile RosMessages::Take() {
   RecordingFile file;
-  for (auto& [id, topic] : topics_) TakeTimes(topic, file.notes);
+  for (Topic& topic : topics_) TakeTimes(topic, file.notes);
   TakeJoints(file);
   TakePoses(file);
   if (!file.joints || !file.markers) file.markers_start_s.reset();
@@ -213,7 +219,7 @@ RecordingFile RosMessages::Take() {
 void RosMessages::TakeJoints(RecordingFile& file) {
   std::vector<Topic*> topics;
   std::string names;
-  for (auto& [id, topic] : topics_) {
+  for (Topic& topic : topics_) {
     if (topic.kind != Kind::kJointState || topic.groups.empty()) continue;
     topics.push_back(&topic);
     names += (names.empty() ? "" : ", ") + topic.name;
@@ -242,10 +248,10 @@ void RosMessages::TakeJoints(RecordingFile& file) {
 std::vector<BodyTrack> RosMessages::PoseTracks() {
   std::vector<BodyTrack> tracks;
   std::multiset<std::string> short_names;
-  for (const auto& [id, topic] : topics_) {
+  for (const Topic& topic : topics_) {
     if (topic.kind == Kind::kPose) short_names.insert(BodyName(topic.name));
   }
-  for (auto& [id, topic] : topics_) {
+  for (Topic& topic : topics_) {
     if (topic.kind != Kind::kPose || topic.stamps_ns.empty()) continue;
     const std::string name = BodyName(topic.name);
     tracks.push_back({short_names.count(name) == 1 ? name : topic.name, std::move(topic.stamps_ns),

@@ -23,8 +23,11 @@ class RosMessages {
   /// `source` names the bag in messages.
   RosMessages(std::string source, const ReaderOptions& options);
 
+  /// Another file of the same recording follows, which numbers its topics anew.
+  void BeginPiece() { places_.clear(); }
+
   /// A topic under the number `id` of the bag; false where its messages are not needed. Types are
-  /// named as in ROS 1 or ROS 2.
+  /// named as in ROS 1 or ROS 2. What has the name and the type of a topic is that topic.
   bool AddTopic(std::uint64_t id, const std::string& name, const std::string& type,
                 RosEncoding encoding);
 
@@ -72,7 +75,8 @@ class RosMessages {
 
   std::string source_;
   std::string wanted_topic_;
-  std::map<std::uint64_t, Topic> topics_;
+  std::vector<Topic> topics_;
+  std::map<std::uint64_t, std::size_t> places_;  ///< in `topics_`, by the number in the bag
   FrameTransforms transforms_;
   std::vector<char> unpacked_;
 };

@@ -91,16 +91,13 @@ class Database {
   std::unique_ptr<sqlite3, decltype(&sqlite3_close)> database_{nullptr, sqlite3_close};
 };
 
-}  // namespace
-
-bool IsRosbag2Db3(std::string_view head) { return head.starts_with(kSqliteMagic); }
-
-RecordingFile ReadRosbag2Db3(const ByteSource& source, const ReaderOptions& options) {
+/// Adds what one file of a bag holds.
+void ReadDatabase(const ByteSource& source, RosMessages& messages) {
   // A file that was cut off is shorter than its head says; SQLite would notice only later.
   std::array<char, 32> head{};
   source.ReadAll(0, head, "the head of the database");
   const Database database(source);
-  RosMessages messages(source.name(), options);
+  messages.BeginPiece();
   std::string wanted;
   Database::Rows topics(database, "SELECT id, name, type, serialization_format FROM topics");
   while (topics.Next()) {
@@ -118,6 +115,15 @@ RecordingFile ReadRosbag2Db3(const ByteSource& source, const ReaderOptions& opti
     messages.Add(static_cast<std::uint64_t>(rows.Number(1)), rows.Bytes(3), rows.Number(2),
                  "messages, row " + std::to_string(rows.Number(0)) + ": ");
   }
+}
+
+}  // namespace
+
+bool IsRosbag2Db3(std::string_view head) { return head.starts_with(kSqliteMagic); }
+
+RecordingFile ReadRosbag2Db3(const ByteSource& source, const ReaderOptions& options) {
+  RosMessages messages(source.name(), options);
+  ForEachPiece(source, [&](const ByteSource& piece) { ReadDatabase(piece, messages); });
   return messages.Take();
 }
 
