@@ -125,6 +125,13 @@ def _(case):
     return ", ".join(case.joints[:2]), f"{case.joints[0]}.*{case.joints[1]}|{case.joints[1]}.*{case.joints[0]}"
 
 
+@fault(TABLES, "a gain beside a slip")
+def _(case):
+    case.Q[case.joints[0]] *= 1 + case.size(0.015, 0.03)
+    case.Q[case.joints[1]][case.row:] += case.size(0.6, 1.2) * DEGREE
+    return ", ".join(case.joints[:2]), f"{case.joints[0]}.*{case.joints[1]}|{case.joints[1]}.*{case.joints[0]}"
+
+
 @fault(TABLES, "markers of the row before in rows")
 def _(case):
     for x in case.M.values():
