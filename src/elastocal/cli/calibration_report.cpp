@@ -96,8 +96,9 @@ std::string BodyNoiseText(const Noise& noise) {
     for (int g = 0; g < noise.group_count(); ++g) most = std::max(most, noise(g, source));
     return most;
   };
+  constexpr double kLeast = 1e-4, kLeastOfMarker = 0.5;  // m; of the noise of a marker
   const double bodies = largest(NoiseSource::kBodyPosition);
-  if (bodies < 0.5 * largest(NoiseSource::kMarker)) return "";
+  if (bodies < std::max(kLeast, kLeastOfMarker * largest(NoiseSource::kMarker))) return "";
   return fmt::format(
       ", of a body as a whole {:.3g} mm (not at rest, positions that are commanded instead of "
       "measured, loose joints, or more than the model knows)",
