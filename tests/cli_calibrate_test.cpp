@@ -152,6 +152,38 @@ TEST_F(Program, AWrongGainInATableIsNamedAndCorrectedOnRequest) {
 }
 
 // In the fit, five postures err by a third of what they do where they are left out.
+// No residual shows a wrong scale of the cameras; noise that all markers of a body share is no
+// fault with a name.
+TEST_F(Program, AVerdictSaysWhatItRestsOn) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  Random random(1);
+  Eigen::VectorXd truth = truth_;  // whose links tell how far they err themselves
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const Parameter& parameter = model.parameters[static_cast<std::size_t>(i)];
+    const bool length = parameter.joint >= 0 && GroupOf(parameter.kind) == PriorGroup::kLengths;
+    if (length) truth[i] += random.Normal(5e-3);
+  }
+  Recording recording = MakeSyntheticRecording(model, truth, {.postures = 30, .seed = 5});
+  const auto said = [&] {
+    return Calibrate(project_, WriteTable(scratch_, project, recording), "--kfold 0").out;
+  };
+  const std::string scale = "The scale of the cameras is taken as right";
+  const std::string clean = said();
+  EXPECT_NE(clean.find(scale), std::string::npos) << clean;
+  EXPECT_EQ(clean.find("of a body as a whole"), std::string::npos) << clean;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const Eigen::RowVector3d shift = random.NormalVector(3, 6e-4).transpose();
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      if (recording.marker_names[static_cast<std::size_t>(m)].starts_with("TOOL")) {
+        recording.markers.block<1, 3>(i, 3 * m) += shift;
+      }
+    }
+  }
+  const std::string swinging = said();
+  EXPECT_NE(swinging.find("of a body as a whole 0."), std::string::npos) << swinging;
+}
+
 TEST_F(Program, FewPosturesAreJudgedWhereTheyAreLeftOut) {
   const Project project = ReadProject(project_);
   const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);

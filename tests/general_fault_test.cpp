@@ -9,6 +9,9 @@
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
+#include "elastocal/pipeline/find_faults.hpp"
+#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/pipeline/up_by_loads.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/test_files.hpp"
 
@@ -48,7 +51,8 @@ class GeneralFaults : public testing::Test {
     const auto found = FindRecordingFaults(fit, recorded_, project_.calibration);
     if (found.empty()) return "";
     return ExplainFault({found.front(), model_, base_, recorded_, kKind, project_.calibration},
-                        project_);
+                        project_)
+        .text;
   }
 
   static constexpr ModelKind kKind = ModelKind::kGeometric;
@@ -196,6 +200,33 @@ TEST_F(GeneralFaults, AJointThatIsElsewhereInFewRows) {
   ASSERT_EQ(found.size(), 1u);
   ExpectIn(found[0].what, "flange_joint: its positions are wrong");
   ExpectIn(found[0].what, "in postures 8, 19, 31, 42");
+}
+
+// The further from its zero, the further off: in few postures far enough to be odd.
+TEST_F(GeneralFaults, AGainIsNoOddPosture) {
+  recorded_.q.col(CoordinateOf("turret_joint")) *= 0.97;
+  for (const OddPostures& one :
+       FindOddPostures(model_, recorded_, SeenClusters(project_, recorded_))) {
+    ADD_FAILURE() << one.what;
+  }
+  EXPECT_EQ(Said().find("turret_joint: its positions are 0.97"), 0u) << Said();
+}
+
+// With -z up, springs take up a part of a gain beside a slip; both explain all with z up.
+TEST_F(GeneralFaults, AGainBesideASlipIsNoOtherAxisUp) {
+  recorded_.q.col(CoordinateOf("shoulder_joint")) *= 1.025;
+  Turn("elbow_joint", 26, 48, -1.5);
+  Measurements measured;
+  measured.calibration = recorded_;
+  ASSERT_TRUE(FindUpByLoads(project_, {}, measured, 1.0));
+  const ModelComparison comparison =
+      CompareModels(Calibrate(model_, recorded_, base_, kKind, project_.calibration), model_,
+                    recorded_, base_, project_.calibration);
+  const std::vector<std::string> said =
+      FindFaults(project_, {}, measured, {model_, base_}, recorded_, comparison);
+  ASSERT_EQ(said.size(), 1u);
+  ExpectIn(said[0], "gain:shoulder_joint=1.02");
+  ExpectIn(said[0], " offset:elbow_joint:27=-1.");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/pipeline/find_faults.hpp"
+#include "elastocal/pipeline/find_contradictions.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
@@ -194,6 +194,38 @@ TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   Recording together = held_out;
   together.trials[0].chains = {project_.chains[0].name, project_.chains[1].name};
   EXPECT_EQ(contradictions(recording, together).size(), 1u);
+}
+
+// Markers that a knock made two are unknown to the project.
+TEST_F(Pipeline, AFaultBesideAKnockIsNamedByTheHeldOutTrial) {
+  RecordedModel robot{MakeErrorModel(project_.tree, project_.markers, project_.placement), {}};
+  robot.base = FindBaseParameters(robot.model, project_.identifiability);
+  const Eigen::VectorXd truth =
+      DrawErrors(robot.model, robot.base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+  const auto as_trial = [&](const std::string& name, TrialKind kind, std::uint64_t seed) {
+    Recording trial = MakeSyntheticRecording(robot.model, truth, {.postures = 40, .seed = seed});
+    trial.trials = {{name, kind, {project_.chains.front().name}}};
+    trial.trial.assign(40, 0);
+    return trial;
+  };
+  Recording recording = as_trial("swing", TrialKind::kCalibration, 1);
+  Recording held_out = as_trial("check", TrialKind::kRandom, 2);
+  recording.q.col(2).array() += 2.0 * M_PI / 180.0;
+  const MarkerCluster& cluster = project_.clusters.back();
+  robot.knocks = {{.cluster = cluster.name, .markers = cluster.markers, .posture = 20}};
+  SplitMarkers(robot.knocks, robot.model, recording);
+  AddUnseenMarkers(robot.model, held_out);
+  robot.base = FindBaseParameters(robot.model, project_.identifiability);
+  const ModelComparison comparison =
+      CompareModels(Calibrate(robot.model, recording, robot.base, ModelKind::kGeometric, {}),
+                    robot.model, recording, robot.base, {});
+  const std::vector<std::string> found =
+      FindContradictions(project_, robot, recording, held_out, comparison,
+                         JudgeOnTrials(comparison, held_out, {}).table);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find(project_.tree.joints[2].name + ": its positions are off by"),
+            std::string::npos)
+      << found[0];
 }
 
 // A correction that lets a robot explain the recording, if badly, is not taken for the right one.

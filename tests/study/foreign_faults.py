@@ -125,6 +125,13 @@ def _(case):
     return ", ".join(case.joints[:2]), f"{case.joints[0]}.*{case.joints[1]}|{case.joints[1]}.*{case.joints[0]}"
 
 
+@fault(TABLES, "a gain beside a slip")
+def _(case):
+    case.Q[case.joints[0]] *= 1 + case.size(0.015, 0.03)
+    case.Q[case.joints[1]][case.row:] += case.size(0.6, 1.2) * DEGREE
+    return ", ".join(case.joints[:2]), f"{case.joints[0]}.*{case.joints[1]}|{case.joints[1]}.*{case.joints[0]}"
+
+
 @fault(TABLES, "markers of the row before in rows")
 def _(case):
     for x in case.M.values():
@@ -201,7 +208,7 @@ def _(case):
 
 @fault(TABLES, "commanded: a dead band of 2 mrad")
 def _(case):
-    dead = np.random.default_rng(case.seed)
+    dead = np.random.default_rng([case.seed, 1])  # that of the seed alone drew the postures
     case.again(bend=lambda j, q, tau: 0 if j == "rise" else dead.uniform(-2e-3, 2e-3, len(tau[j])))
     return "", "noise|commanded"
 

@@ -28,7 +28,8 @@ constexpr int kFewestOddPostures = 3;
 constexpr double kLeastShareOfOdd = 0.6;  // of the odd postures
 constexpr std::size_t kMostOddKinds = 2;
 constexpr std::size_t kMostListedPostures = 8;
-constexpr int kToldGrid = 48;  // of positions that a joint may have
+constexpr double kLeastOfGain = 0.8;  // of the squares of what the markers show beside the log
+constexpr int kToldGrid = 48;         // of positions that a joint may have
 constexpr int kToldHalvings = 12;
 
 /// One way in which a posture may be wrong: puts right what it can; false where it cannot.
@@ -297,7 +298,27 @@ class OddSearch {
                            return true;
                          }});
     }
-    return Best(changes, current, odd);
+    std::optional<OddPostures> told = Best(changes, current, odd);
+    const bool by_gain =
+        told && std::any_of(changes.begin(), changes.end(), [&](const PostureChange& one) {
+          return told->what.starts_with(one.what) && IsGain(one, current);
+        });
+    return by_gain ? std::nullopt : told;
+  }
+
+  /// Whether the markers show a joint the further off, in all postures, the further it is from
+  /// where it is right.
+  static bool IsGain(const PostureChange& change, const Recording& current) {
+    Recording told = current;
+    for (int i = 0; i < current.posture_count(); ++i) change.undo(current, i, told);
+    Eigen::MatrixXd by = told.q - current.q;
+    by = by.unaryExpr([](double d) { return std::remainder(d, 2.0 * std::numbers::pi); });
+    Eigen::Index c = 0;  // the only one that is told
+    by.colwise().squaredNorm().maxCoeff(&c);
+    const Eigen::VectorXd x = current.q.col(c).array() - current.q.col(c).mean();
+    const Eigen::VectorXd d = by.col(c).array() - by.col(c).mean();
+    const double explained = std::pow(d.dot(x), 2);
+    return explained > kLeastOfGain * x.squaredNorm() * d.squaredNorm() && explained > 0.0;
   }
 
   const ErrorModel& model_;

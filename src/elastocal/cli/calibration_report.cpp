@@ -11,6 +11,7 @@
 #include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/pipeline/find_faults.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -45,6 +46,17 @@ std::string WithoutOutliersText(const CalibrationRun& run) {
   return text;
 }
 
+/// A scale of the cameras is a robot of another size: no residual shows it. What it rests on, where
+/// neither a known length nor the robot's own ones tell it well; else empty.
+std::string ScaleText(const CalibrationRun& run) {
+  constexpr double kWell = 2e-3;
+  if (!run.common_scale || run.common_scale->sd < kWell || ScaleIsKnown(run.trials)) return "";
+  return fmt::format(
+      "  The scale of the cameras is taken as right: no known length was in view, and the robot's "
+      "own lengths tell it to {:.2g} % (sd) only.\n",
+      100.0 * run.common_scale->sd);
+}
+
 /// One sentence for whoever reads no table.
 std::string VerdictText(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) {
@@ -66,13 +78,31 @@ std::string VerdictText(const CalibrationRun& run) {
                           fmt::join(run.extra, ", "));
     }
   }
-  if (run.held_out) return text + ".\n";
+  if (run.held_out) return text + ".\n" + ScaleText(run);
   const bool folded = run.cross_validation.folds > 0;
   return text +
          (folded ? ".\n  On held-out postures" + WithoutOutliersText(run) +
                        ". Before deploying, validate on another recording.\n"
                  : ".\n  In the fit. Before deploying, cross-validate (--kfold 10) and validate "
-                   "on another recording.\n");
+                   "on another recording.\n") +
+         ScaleText(run);
+}
+
+/// Where bodies scatter more than their markers do; else empty. Positions that are commanded, a
+/// robot that swings and what no model has are noise of each posture, and cannot be told apart.
+std::string BodyNoiseText(const Noise& noise) {
+  const auto largest = [&](NoiseSource source) {
+    double most = 0.0;
+    for (int g = 0; g < noise.group_count(); ++g) most = std::max(most, noise(g, source));
+    return most;
+  };
+  constexpr double kLeast = 1e-4, kLeastOfMarker = 0.5;  // m; of the noise of a marker
+  const double bodies = largest(NoiseSource::kBodyPosition);
+  if (bodies < std::max(kLeast, kLeastOfMarker * largest(NoiseSource::kMarker))) return "";
+  return fmt::format(
+      ", of a body as a whole {:.3g} mm (not at rest, positions that are commanded instead of "
+      "measured, loose joints, or more than the model knows)",
+      1e3 * bodies);
 }
 
 std::string Overview(const CalibrationRun& run) {
@@ -82,12 +112,13 @@ std::string Overview(const CalibrationRun& run) {
   return fmt::format(
       "{}: {} postures{}, {} markers, {} equations\n"
       "{} of {} parameters identifiable (theory {}); {} model {} after {} iterations\n"
-      "Noise of a marker coordinate {:.3g} mm\n",
+      "Noise of a marker coordinate {:.3g} mm{}\n",
       result.model.tree.name, run.recording.posture_count(),
       run.trials.empty() ? "" : fmt::format(" ({} of {} trials used)", used, run.trials.size()),
       run.recording.marker_count(), result.equations, run.base.geometric_count,
       result.model.parameter_count(), run.base.theoretical_count, ModelKindName(result.kind),
-      TerminationName(result.termination), result.iterations, 1e3 * result.marker_sd);
+      TerminationName(result.termination), result.iterations, 1e3 * result.marker_sd,
+      BodyNoiseText(result.noise));
 }
 
 /// RMSE and largest distance of each model, of whatever it was judged on.

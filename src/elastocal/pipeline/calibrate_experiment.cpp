@@ -18,6 +18,7 @@
 #include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/pipeline/find_contradictions.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
 #include "elastocal/pipeline/plain_mistakes.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"

@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,18 +12,17 @@
 #include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/up_check.hpp"
-#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/general_fault.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/pipeline/stated_corrections.hpp"
 #include "elastocal/pipeline/up_by_loads.hpp"
-#include "elastocal/validation/held_out.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kLeftByOdd = 0.5;  // of the error of a fit, without them
+constexpr double kLeftByOdd = 0.5;        // of the error of a fit, without them
+constexpr double kLeftBesideGears = 0.8;  // of the error of a fit with wrong gains as gears
 
 /// Gains of sliding joints are what a wrong scale of the cameras looks like: several that are alike
 /// are one, and of one that the other lengths bear out both are said. Nothing for other faults.
@@ -68,14 +64,6 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
       "length first (if the cameras are wrong, {}; else --accept gain:{}={:.5f})",
       1.0 + size, sd, joints, 1.0 + most, 1.0 + scale->size, scale->sd, accept, joints, 1.0 + most);
 }
-
-constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
-constexpr double kContradicted = 10.0;
-constexpr double kLeftByMistake = 0.3;  // of the error on held-out trials
-constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
-/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
-/// be as good in motion, which statics does not describe.
-constexpr double kBestExpected = 0.03;
 
 /// Joints whose gear or lead seems further off than any is made (FindRecordingFaults: 0.5 %): what
 /// was taken for a cause of the robot is a wrong gain in its log.
@@ -181,78 +169,6 @@ std::string DescribeWrongScales(const std::vector<TrialSummary>& trials) {
       ScaleCorrections(wrong, all));
 }
 
-/// A group of chains whose held-out trials the largest model predicts worse than it fits those of
-/// the estimate.
-struct Contrast {
-  std::string group;
-  double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;  // m
-  double ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
-};
-
-/// Whether all chains of a group (TrialGroups) are also in another one.
-bool IsWithin(const std::string& group, const std::string& other) {
-  std::istringstream chains(group);
-  for (std::string chain; std::getline(chains, chain, '+');) {
-    if (("+" + other + "+").find("+" + chain + "+") == std::string::npos) return false;
-  }
-  return true;
-}
-
-/// Over all observations of the groups within `group`: limbs that a held-out trial moves together
-/// may have been measured one after the other.
-double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind kind) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (const ErrorTableRow& row : table.groups) {
-    const auto metrics = row.metrics.find(kind);
-    if (metrics == row.metrics.end() || !IsWithin(row.group, group)) continue;
-    squares += metrics->second.observations * std::pow(metrics->second.rmse_3d, 2);
-    count += metrics->second.observations;
-  }
-  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
-}
-
-Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
-  Contrast largest{"", 1.0, 0.0, 0.0};
-  for (const ErrorTableRow& row : held_out.groups) {
-    const auto metrics = row.metrics.find(kind);
-    const Contrast contrast{row.group, RmseWithin(fitted, row.group, kind),
-                            RmseWithin(fitted, row.group, ModelKind::kUncalibrated),
-                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d};
-    if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
-  }
-  return largest;
-}
-
-/// A mistake in the log or labels of held-out trials that the calibrated robot proves; else empty.
-std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
-                             const ModelComparison& comparison, const ErrorTable& table) {
-  const auto mean = [&](const ErrorTable& of) {
-    const auto found = of.mean_rmse_3d.find(comparison.largest_kind());
-    return found == of.mean_rmse_3d.end() ? std::numeric_limits<double>::infinity() : found->second;
-  };
-  const double before = mean(table);
-  const auto error_of = [&](const Recording& corrected) {
-    try {
-      return mean(JudgeOnTrials(comparison, corrected, project.calibration).table);
-    } catch (const InputError&) {
-      return std::numeric_limits<double>::infinity();
-    }
-  };
-  const std::vector<RecordingMistake> mistakes =
-      FindMistakesBy(project, held_out, before, error_of, {}, kLeftByMistake);
-  if (mistakes.empty()) return "";
-  std::string what, names;
-  for (const RecordingMistake& one : mistakes) {
-    what += (what.empty() ? "" : "; ") + one.what;
-    names += " " + one.name;
-  }
-  return fmt::format(
-      "in trials for validation {}; without that the calibrated robot errs by {:.3g} mm on them, "
-      "with it by {:.3g} mm (--accept{} corrects it)",
-      what, 1e3 * mistakes.back().after, 1e3 * before, names);
-}
-
 /// Mistakes in a few rows of a table which are too small beside what the nominal robot errs by,
 /// each with what corrects none of them: proved by a fit without them.
 std::vector<std::string> OddBesideCalibrated(const Project& project, const RecordedModel& robot,
@@ -272,14 +188,6 @@ std::vector<std::string> OddBesideCalibrated(const Project& project, const Recor
                     one.what, 1e3 * left, 1e3 * after));
   }
   return said;
-}
-
-/// At most `count` postures. Motions are sampled far more densely than postures are held.
-Recording EvenlyThinned(const Recording& recording, int count) {
-  const int step = (recording.posture_count() + count - 1) / count;
-  std::vector<int> kept;
-  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
-  return SelectPostures(recording, kept);
 }
 
 }  // namespace
@@ -315,7 +223,7 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
       const auto found = general();
       const bool of_cameras =
           found && (found->fault.kind == FaultKind::kCameraScale || IsInCameraSpace(found->fault));
-      faults.push_back(of_cameras          ? ExplainFault(*found, project)
+      faults.push_back(of_cameras          ? ExplainFault(*found, project).text
                        : of_slides.empty() ? Describe(*scale)
                                            : of_slides);
     }
@@ -323,8 +231,19 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
   // What a mistake leaves would look like other faults.
   if (!faults.empty()) return faults;
   const double left = MarkerError(comparison.largest(), recording, project.calibration);
+  // Faults of joints load them as another direction of gravity might, and causes take up a part.
+  std::optional<GeneralFault> found;
+  std::optional<FaultsInWords> few;
+  const auto look = [&] {
+    if (few) return;
+    found = gears.empty()
+                ? general()
+                : FindWithoutCauses(project, seed, as_recorded, comparison.largest().kind);
+    few = found ? ExplainFault(*found, project) : FaultsInWords();
+  };
   if (const auto up = FindUpByLoads(project, seed, as_recorded, left)) {
-    return {Describe(*up, recording)};
+    look();
+    if (!few->complete || few->left > up->found) return {Describe(*up, recording)};
   }
   if (!of_slides.empty() && !scale_is_known) return {of_slides};
   for (const CoarsePositions& one : FindCoarsePositions(comparison.largest(), recording,
@@ -332,64 +251,25 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     if (IsTooCoarse(one, project.tree)) faults.push_back(Describe(one, project.tree));
   }
   if (!faults.empty()) return faults;
-  if (IsFarOff(gears)) {
-    const auto found = FindWithoutCauses(project, seed, as_recorded, comparison.largest().kind);
-    if (found) return {ExplainFault(*found, project)};
+  look();
+  if (!gears.empty()) {
+    const bool better = few->complete && few->left < kLeftBesideGears * left;
+    if (found && (better || IsFarOff(gears))) return {few->text};
+    for (const RecordingFault& gear : gears) {
+      faults.push_back(FaultAndRemedy(gear, project.tree, recording));
+    }
+    return faults;
   }
-  for (const RecordingFault& gear : gears) {
-    faults.push_back(FaultAndRemedy(gear, project.tree, recording));
-  }
-  if (!faults.empty()) return faults;
-  const auto found = general();
   if (!found) return OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
   const std::string of_slide =
       scale_is_known ? ""
                      : ScaleOfSlides({found->fault}, comparison.largest(), project.calibration);
   if (!of_slide.empty()) return {of_slide};
-  const std::string text = ExplainFault(*found, project);
-  if (text.starts_with(kUnexplained)) {
+  if (!few->complete) {
     const auto odd = OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
     if (!odd.empty()) return odd;
   }
-  return {text};
-}
-
-std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
-                                            const Recording& recording, const Recording& held_out,
-                                            const ModelComparison& comparison,
-                                            const ErrorTable& held_out_table) {
-  const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
-  const Contrast contrast = LargestContrast(fitted, held_out_table, comparison.largest().kind);
-  if (!(contrast.ratio() > kSuspicious)) return {};
-  const std::string mistake = MistakeInHeldOut(project, held_out, comparison, held_out_table);
-  if (!mistake.empty()) return {mistake};
-  const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
-  Recording all = JoinTrials(recording, thinned);
-  // Trials that contradict each other keep noise and outliers from coming to rest.
-  CalibrationOptions roughly = project.calibration;
-  roughly.outliers = OutlierPolicy::kKeep;
-  roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
-  const CalibrationResult together =
-      Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
-  // Within each trial they tell how fast joints moved.
-  all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
-  all.time_s << recording.time_s, thinned.time_s;
-  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
-  const std::vector<RecordingFault> faults =
-      FindRecordingFaults(together, all, project.calibration);
-  if (!faults.empty()) {
-    const GeneralFault general{
-        faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
-    return {"trials for calibration and for validation contradict each other: " +
-            ExplainFault(general, project)};
-  }
-  if (!(contrast.ratio() > kContradicted)) return {};
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
-                "something differs between the recordings",
-                1e3 * contrast.held_out, 1e3 * contrast.fitted);
-  return {"held-out trials of " + contrast.group + " contradict those of the estimate: " + text};
+  return {few->text};
 }
 
 }  // namespace elastocal

@@ -60,6 +60,9 @@ class FaultExplanation {
     if (complete_ && faults_.front().linkage < 0) EstimateTogether();
   }
 
+  bool complete() const { return complete_; }
+  double left() const { return left_; }
+
   std::string Describe() const {
     const bool single = faults_.size() == 1 && complete_;
     const std::string cluster = MovedCluster(single ? kClearlyBetter : kAsWell);
@@ -75,7 +78,9 @@ class FaultExplanation {
       if (name) names.push_back(*name);
     }
     if (!complete_) {
-      return kUnexplained + std::string(" that no few faults explain; nearest to it come: ") + text;
+      return "something differs between the postures that no few faults explain; nearest to it "
+             "come: " +
+             text;
     }
     if (names.size() < faults_.size()) return text;
     return fmt::format("{} (--accept {} corrects them)", text, fmt::join(names, " "));
@@ -353,8 +358,9 @@ std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
               : text + followers;
 }
 
-std::string ExplainFault(const GeneralFault& general, const Project& project) {
-  return FaultExplanation(general, project).Describe();
+FaultsInWords ExplainFault(const GeneralFault& general, const Project& project) {
+  const FaultExplanation explanation(general, project);
+  return {explanation.Describe(), explanation.complete(), explanation.left()};
 }
 
 }  // namespace elastocal

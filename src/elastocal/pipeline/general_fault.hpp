@@ -23,8 +23,11 @@ struct GeneralFault {
 std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
                            const Recording& recording);
 
-/// How ExplainFault begins where a few faults do not explain the recording.
-inline constexpr const char* kUnexplained = "something differs between the postures";
+struct FaultsInWords {
+  std::string text;
+  bool complete = false;  ///< few faults explain the recording
+  double left = 0.0;      ///< rms distance of the markers from a robot fitted without them, m
+};
 
 /// The same, once it is known whether it is the only one. What explains most need not be what is
 /// wrong: the fault is undone, the robot fitted again, and what is left searched as before, until
@@ -33,6 +36,6 @@ inline constexpr const char* kUnexplained = "something differs between the postu
 /// the cluster; joints that are off from the same posture or in the same trial are another
 /// robot or a new zero of all; and where four faults do not explain the recording, the sentence
 /// says that, and recommends no correction.
-std::string ExplainFault(const GeneralFault& general, const Project& project);
+FaultsInWords ExplainFault(const GeneralFault& general, const Project& project);
 
 }  // namespace elastocal

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
@@ -60,20 +59,6 @@ bool OnlyItExplains(const UpByLoads& found, double rigid, double calibrated) {
          found.found < kLeftOfCalibrated * calibrated;
 }
 
-/// Whether the gain of a joint, with the stated axis up, explains the recording better than
-/// `error`.
-bool GainExplains(const RecordedModel& robot, const Recording& recording,
-                  const CalibrationOptions& options, double error) {
-  for (const RecordingFault& fault :
-       FindRecordingFaults(FitOf(robot, recording, options), recording, options)) {
-    if (fault.kind != FaultKind::kJointGain || fault.trial >= 0) continue;
-    Recording corrected = recording;
-    corrected.q.col(fault.coordinate) /= 1.0 + fault.size;
-    if (ErrorOfFit(robot, corrected, options) < error) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
@@ -108,8 +93,6 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
   }
   const bool far_better = found.found < kLeftOfStated * found.stated;
   if (!far_better && !OnlyItExplains(found, rigid, calibrated)) return std::nullopt;
-  recording.gravity = stated;
-  if (GainExplains(robot, recording, project.calibration, found.found)) return std::nullopt;
   return found;
 }
 

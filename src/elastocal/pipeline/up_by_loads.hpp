@@ -21,8 +21,9 @@ struct UpByLoads {
 /// whose root link is held (a robot on its feet: FindWrongUp) and whose joints carry what statics
 /// say. Found is an axis with which the error of a fit falls to less than 0.6 of that with the
 /// stated one, or to less than that of a rigid robot and of the `calibrated` one [m, with its
-/// causes], while springs explain nothing with the stated axis; not where the gain of a joint, the
-/// stated one being up, leaves less. A rigid robot shows nothing: nothing depends on gravity then.
+/// causes], while springs explain nothing with the stated axis. Faults of joints may look like that
+/// too: that few of them leave more with the stated one, the caller has to see. A rigid robot shows
+/// nothing: nothing depends on gravity then.
 /// `as_recorded`: before markers were split at knocks.
 std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
                                        const Measurements& as_recorded, double calibrated);

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/find_contradictions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/general_fault.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/validation/held_out.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
+constexpr double kContradicted = 10.0;
+constexpr double kLeftByMistake = 0.3;  // of the error on held-out trials
+constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
+/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
+/// be as good in motion, which statics does not describe.
+constexpr double kBestExpected = 0.03;
+
+/// A group of chains whose held-out trials the largest model predicts worse than it fits those of
+/// the estimate.
+struct Contrast {
+  std::string group;
+  double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;  // m
+  double ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
+};
+
+/// Whether all chains of a group (TrialGroups) are also in another one.
+bool IsWithin(const std::string& group, const std::string& other) {
+  std::istringstream chains(group);
+  for (std::string chain; std::getline(chains, chain, '+');) {
+    if (("+" + other + "+").find("+" + chain + "+") == std::string::npos) return false;
+  }
+  return true;
+}
+
+/// Over all observations of the groups within `group`: limbs that a held-out trial moves together
+/// may have been measured one after the other.
+double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind kind) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const ErrorTableRow& row : table.groups) {
+    const auto metrics = row.metrics.find(kind);
+    if (metrics == row.metrics.end() || !IsWithin(row.group, group)) continue;
+    squares += metrics->second.observations * std::pow(metrics->second.rmse_3d, 2);
+    count += metrics->second.observations;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
+  Contrast largest{"", 1.0, 0.0, 0.0};
+  for (const ErrorTableRow& row : held_out.groups) {
+    const auto metrics = row.metrics.find(kind);
+    const Contrast contrast{row.group, RmseWithin(fitted, row.group, kind),
+                            RmseWithin(fitted, row.group, ModelKind::kUncalibrated),
+                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d};
+    if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
+  }
+  return largest;
+}
+
+/// Without the markers that knocks added (SplitMarkers), which the project does not know.
+Recording AsRecorded(const Recording& recording, const std::vector<Knock>& knocks) {
+  Recording own = recording;
+  for (const Knock& knock : knocks) {
+    own.marker_names.resize(own.marker_names.size() - knock.markers.size());
+  }
+  own.markers.conservativeResize(Eigen::NoChange, 3 * own.marker_count());
+  return own;
+}
+
+/// A mistake in the log or labels of held-out trials that the calibrated robot proves; else empty.
+std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
+                             const std::vector<Knock>& knocks, const ModelComparison& comparison,
+                             const ErrorTable& table) {
+  const auto mean = [&](const ErrorTable& of) {
+    const auto found = of.mean_rmse_3d.find(comparison.largest_kind());
+    return found == of.mean_rmse_3d.end() ? std::numeric_limits<double>::infinity() : found->second;
+  };
+  const double before = mean(table);
+  const auto error_of = [&](Recording corrected) {
+    AddUnseenMarkers(comparison.largest().model, corrected);
+    try {
+      return mean(JudgeOnTrials(comparison, corrected, project.calibration).table);
+    } catch (const InputError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  };
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project, AsRecorded(held_out, knocks), before, error_of, {}, kLeftByMistake);
+  if (mistakes.empty()) return "";
+  std::string what, names;
+  for (const RecordingMistake& one : mistakes) {
+    what += (what.empty() ? "" : "; ") + one.what;
+    names += " " + one.name;
+  }
+  return fmt::format(
+      "in trials for validation {}; without that the calibrated robot errs by {:.3g} mm on them, "
+      "with it by {:.3g} mm (--accept{} corrects it)",
+      what, 1e3 * mistakes.back().after, 1e3 * before, names);
+}
+
+/// At most `count` postures. Motions are sampled far more densely than postures are held.
+Recording EvenlyThinned(const Recording& recording, int count) {
+  const int step = (recording.posture_count() + count - 1) / count;
+  std::vector<int> kept;
+  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
+  return SelectPostures(recording, kept);
+}
+
+}  // namespace
+
+std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
+                                            const Recording& recording, const Recording& held_out,
+                                            const ModelComparison& comparison,
+                                            const ErrorTable& held_out_table) {
+  const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
+  const Contrast contrast = LargestContrast(fitted, held_out_table, comparison.largest().kind);
+  if (!(contrast.ratio() > kSuspicious)) return {};
+  const std::string mistake =
+      MistakeInHeldOut(project, held_out, robot.knocks, comparison, held_out_table);
+  if (!mistake.empty()) return {mistake};
+  const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
+  Recording all = JoinTrials(recording, thinned);
+  // Trials that contradict each other keep noise and outliers from coming to rest.
+  CalibrationOptions roughly = project.calibration;
+  roughly.outliers = OutlierPolicy::kKeep;
+  roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
+  const CalibrationResult together =
+      Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
+  // Within each trial they tell how fast joints moved.
+  all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
+  all.time_s << recording.time_s, thinned.time_s;
+  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
+  const std::vector<RecordingFault> faults =
+      FindRecordingFaults(together, all, project.calibration);
+  if (!faults.empty()) {
+    const GeneralFault general{
+        faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
+    return {"trials for calibration and for validation contradict each other: " +
+            ExplainFault(general, project).text};
+  }
+  if (!(contrast.ratio() > kContradicted)) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
+                "something differs between the recordings",
+                1e3 * contrast.held_out, 1e3 * contrast.fitted);
+  return {"held-out trials of " + contrast.group + " contradict those of the estimate: " + text};
+}
+
+}  // namespace elastocal

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/validation/error_table.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+
+namespace elastocal {
+
+/// Where held-out trials contradict those of the estimate. A fault in the only trial that exercises
+/// a joint is one that this trial cannot show: it is fitted as an error of the robot. So where the
+/// largest model errs on the held-out trials of a group of chains by more than three times its
+/// error on the trials of the estimate, all trials are fitted together and the fault that explains
+/// most of what is left is named; from ten times on the contradiction itself is an objection.
+/// Clean recordings stay below three, so nothing more is fitted for them.
+std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
+                                            const Recording& recording, const Recording& held_out,
+                                            const ModelComparison& comparison,
+                                            const ErrorTable& held_out_table);
+
+}  // namespace elastocal
