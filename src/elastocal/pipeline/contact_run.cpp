@@ -11,6 +11,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/observation/observed_study.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/pipeline/contact_faults.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_result.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
@@ -132,6 +133,11 @@ void TakeCauses(const Project& project, const ContactRunOptions& options, int fo
   run.causes = std::move(causes.report);
   run.extra = std::move(causes.extra);
   if (run.extra.empty()) return;
+  if (run.causes && !FindContactFault(run).empty()) {  // of the table: no cause is to hide it
+    run.extra.clear();
+    run.causes->search.accepted = false;
+    return;
+  }
   ObservedRobot with = WithCorrections(
       run.model, project.placement, run.observations,
       CorrectionsOf(ObservableCorrections(project.tree, run.model.setup), run.extra));
