@@ -6,7 +6,11 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/contact_check.hpp"
+#include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/pipeline/diagnose.hpp"
 #include "tests/arm_with_tracker.hpp"
 
@@ -15,17 +19,29 @@ namespace {
 
 class ArmWithCause : public ArmWithTracker {
  protected:
+  static constexpr double kSize = 2e-3;
+
+  /// What an encoder whose disc is off centre shows of the postures.
+  Eigen::MatrixXd Shown() const {
+    Eigen::MatrixXd shown = q_;
+    auto elbow = shown.col(Coordinate("elbow_joint")).array();
+    elbow -= kSize * elbow.sin();
+    return shown;
+  }
+
+  static double ValueOf(const ContactRun& run, const std::string& name) {
+    return run.result.delta[FindParameter(run.result.model.parameters, name)];
+  }
+
   CauseReport Study(const Eigen::MatrixXd& q) const {
-    return StudyObservedCauses(project_, ReadObservationTables({Table(q)}, project_), 1);
+    const ContactStart start = StartContacts(project_, {Table(q)}, {});
+    return StudyObservedCauses(project_, start.model, start.observations,
+                               EstimateObserved(start.model, start.observations, {}).fit, 1);
   }
 };
 
 TEST_F(ArmWithCause, IsToldByItsPoses) {
-  constexpr double kSize = 2e-3;
-  Eigen::MatrixXd shown = q_;
-  auto elbow = shown.col(Coordinate("elbow_joint")).array();
-  elbow -= kSize * elbow.sin();
-  const CauseReport report = Study(shown);
+  const CauseReport report = Study(Shown());
   ASSERT_TRUE(report.search.accepted);
   ASSERT_EQ(report.search.chosen.size(), 1u);
   const CauseFinding& finding = report.search.chosen[0];
@@ -38,6 +54,56 @@ TEST_F(ArmWithCause, IsToldByItsPoses) {
   EXPECT_EQ(report.pictures[0].driver, "elbow_joint");
   const std::string words = DescribeDiagnosis(report)[0];
   EXPECT_NE(words.find("standard deviations of noise (nested folds)"), std::string::npos) << words;
+}
+
+TEST_F(ArmWithCause, IsTakenByTheCalibrationAndKnownOnAnotherDay) {
+  const ContactRun run = Calibrate(Shown());
+  ASSERT_TRUE(run.deployable()) << First(run);
+  EXPECT_EQ(run.extra, std::vector<std::string>{"elbow_joint.eccentricity"});
+  EXPECT_NEAR(ValueOf(run, "elbow_joint.eccentricity_sin"), kSize, 3e-4);
+  ASSERT_TRUE(run.causes.has_value());
+  ASSERT_TRUE(run.rigid_model.has_value());  // a URDF has no place for it
+  EXPECT_TRUE(run.rigid_model->robot.elasticity.corrections.empty());
+  EXPECT_LT(ContactRun::Judged(run.calibrated).rows[0].rms,
+            0.8 * ContactRun::Judged(*run.geometric).rows[0].rms);
+  const nlohmann::json summary = nlohmann::json::parse(MakeContactSummary(run));
+  EXPECT_EQ(summary["extra"][0], "elbow_joint.eccentricity");
+  EXPECT_EQ(summary["contact"]["kfold"]["decided_once"][0], "causes");
+  EXPECT_NE(run.warnings.end(),
+            std::find(run.warnings.begin(), run.warnings.end(), NotApplied(run.extra, false)));
+
+  const std::filesystem::path folder = WriteCalibration(run);
+  const StoredCalibration stored = ReadCalibration(folder / "calibration.yaml");
+  EXPECT_EQ(StoredCauses(project_.tree, stored.joint_errors), run.extra);
+  MoveTracker();
+  const ContactValidation known = ValidateContacts(project_, folder, {Table(Shown())}, true);
+  EXPECT_TRUE(known.better());
+  EXPECT_LT(known.calibrated.rows[0].rms, 1.2e-4);
+  EXPECT_EQ(CheckStatus(CheckContacts(project_, folder, {Table(Shown())}, {})), "unchanged");
+  const ContactRun updated =
+      CalibrateContacts(project_, {Table(Shown())}, {.folds = 0, .prior = folder, .days = 0.0});
+  EXPECT_EQ(updated.extra, run.extra);
+  EXPECT_NEAR(ValueOf(updated, "elbow_joint.eccentricity_sin"), kSize, 3e-4);
+}
+
+TEST_F(ArmWithCause, IsEstimatedOnlyWhereTheProjectLetsIt) {
+  project_.calibration.extra = {.automatic = false, .names = {}};
+  EXPECT_TRUE(Calibrate(Shown()).extra.empty());
+  project_.calibration.extra.names = {"elbow_joint.ecc*", "elbow_joint.gear"};
+  const std::vector<std::string> both = {"elbow_joint.eccentricity", "elbow_joint.gear"};
+  const ContactRun run = Calibrate(Shown());
+  EXPECT_EQ(run.extra, both);
+  EXPECT_FALSE(run.causes.has_value());
+  EXPECT_LT(std::abs(ValueOf(run, "elbow_joint.gear")), 1e-3);
+  project_.calibration.extra.names = {"elbow_joint.bachlash"};
+  EXPECT_THROW(Calibrate(Shown()), InputError);
+}
+
+TEST_F(ArmWithCause, NothingIsTakenWhereNothingIs) {
+  const ContactRun run = Calibrate(q_);
+  EXPECT_TRUE(run.extra.empty());
+  EXPECT_TRUE(run.causes.has_value());
+  EXPECT_FALSE(run.rigid_model.has_value());
 }
 
 TEST_F(ArmWithCause, WhatExplainsAsMuchIsNamedBesideIt) {

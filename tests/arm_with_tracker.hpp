@@ -83,8 +83,9 @@ class ArmWithTracker : public testing::Test {
   }
 
   /// The folder of a calibration from all postures.
-  std::filesystem::path WriteCalibration() const {
-    ContactRun run = Calibrate(q_);
+  std::filesystem::path WriteCalibration() const { return WriteCalibration(Calibrate(q_)); }
+
+  std::filesystem::path WriteCalibration(ContactRun run) const {
     EXPECT_TRUE(run.deployable()) << First(run);
     const std::filesystem::path out = folder_.path() / "out";
     std::filesystem::create_directory(out);

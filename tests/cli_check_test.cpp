@@ -264,6 +264,33 @@ TEST_F(ArmProgram, DiagnosesTablesOfATrackerInSeveralFiles) {
   EXPECT_FALSE(json["candidates"].empty());
 }
 
+// What calibrate was told to correct is no cause.
+TEST_F(ArmProgram, DiagnosesWhatCalibrateCorrected) {
+  const std::string project = (folder_.path() / "project.yaml").string();
+  const auto diagnose = [&](const Eigen::MatrixXd& q, const std::string& name,
+                            const std::string& words) {
+    const std::string out = (folder_.path() / name).string();
+    const std::string table = Table(q, name + ".csv").string();
+    const ProgramResult calibrated =
+        RunProgram("calibrate " + project + " --recording " + table + " -o " + out + words);
+    EXPECT_EQ(calibrated.exit_code, 0) << calibrated.err;
+    const ProgramResult found = RunProgram("diagnose " + out + " --json -");
+    EXPECT_EQ(found.exit_code, 0) << found.err;
+    return nlohmann::json::parse(found.out);
+  };
+  Eigen::MatrixXd reversed = q_;
+  reversed.col(Coordinate("elbow_joint")) *= -1.0;
+  const nlohmann::json sound = diagnose(q_, "sound", "");
+  const nlohmann::json corrected = diagnose(reversed, "wrong", " --accept sign:elbow_joint");
+  EXPECT_EQ(corrected["accepted"], false);
+  EXPECT_NEAR(corrected["held_out_sds"], sound["held_out_sds"], 1e-9);
+
+  const std::string prior = " --prior " + (folder_.path() / "sound").string();
+  const nlohmann::json after = diagnose(q_, "again", prior);
+  EXPECT_GT(std::abs(after["held_out_sds"].get<double>() - sound["held_out_sds"].get<double>()),
+            1e-3);
+}
+
 TEST_F(Program, CheckTakesOneRecordingOfMarkers) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const ProgramResult two = RunProgram("check " + project_ + " --calibration " + out_ +

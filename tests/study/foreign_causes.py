@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """Arms of 0.5 to 1.7 m and a trunk with an arm, which share no code with the program, with one cause of error beyond
-geometry and springs, or none: what `diagnose` names, and how well `calibrate` predicts 60 fresh postures, against the same
-robot without the cause. Seen by markers (60 postures, 0.15 mm of noise), a laser tracker (40 poses), or gauges, which show
+geometry and springs, or none: what `diagnose` names, what `calibrate` takes (`extra: auto`), and how well it predicts 60 fresh
+postures, with that and without (`extra: none`), and the same robot without the cause. Seen by markers (60 postures, 0.15 mm of noise), a laser tracker (40 poses), or gauges, which show
 the heights of three tips over a floor and their distances from two walls (60 postures). Prints a table (Markdown). Needs NumPy.
 
   /usr/bin/python3 tests/study/foreign_causes.py --program build/release/bin/elastocal --work DIR
@@ -242,27 +242,28 @@ def main():
     parser.add_argument("--details", action="store_true", help="a line for each robot")
     options = parser.parse_args()
     study, kind, clean = Study(options.program, options.work), options.seen, {}
-    print("| cause | named first | among those chosen | significant | nothing named | fresh postures, mm: without it | with it | "
-          "`extra: none` |\n|---|---|---|---|---|---|---|---|")
+    print("| cause | named first | among those chosen | significant | nothing named | taken by calibrate | nothing taken | "
+          "fresh postures, mm: without it | with it | `extra: none` |\n|---|---|---|---|---|---|---|---|---|---|")
     for cause in options.causes:
-        counts, errors = np.zeros(5, int), []
+        counts, errors = np.zeros(7, int), []
         for arm in options.arms:
             for seed in range(options.first, options.first + options.seeds):
                 robot = Robot(arm, cause, seed, options.joint)
                 done, folder, error = calibrated(study, kind, robot, seed)
                 chosen, listed = diagnosed(study, folder)
+                taken = json.loads((folder / "summary.json").read_text()).get("extra", [])
                 if (arm, seed) not in clean:
                     clean[arm, seed] = error if cause == "none" else calibrated(study, kind, Robot(arm, "none", seed), seed)[2]
                 row = [clean[arm, seed], error,
                        calibrated(study, kind, robot, seed, "calibration: {extra: none}\n")[2]]
                 want = robot.named()
-                counts += [bool(chosen) and chosen[0] == want, want in chosen, want in listed, not chosen, 1]
+                counts += [bool(chosen) and chosen[0] == want, want in chosen, want in listed, not chosen, want in taken, not taken, 1]
                 errors.append(row)
                 if options.details:
-                    print(f"    {arm} {seed} exit {done.returncode} {want}: {chosen} | {listed[:4]} | "
+                    print(f"    {arm} {seed} exit {done.returncode} {want}: {chosen} | {listed[:4]} | {taken} | "
                           + " ".join(words(row, 3)), flush=True)
         means = words(np.sqrt(np.nanmean(np.square(errors), axis=0)), 3)
-        print(f"| {cause} | " + " | ".join(f"{c} of {counts[4]}" for c in counts[:4]) + " | " + " | ".join(means) + " |", flush=True)
+        print(f"| {cause} | " + " | ".join(f"{c} of {counts[-1]}" for c in counts[:-1]) + " | " + " | ".join(means) + " |", flush=True)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,15 @@ double ErrorOf(const LinearStudy::Posture& posture, const Eigen::VectorXd& resid
                    std::max(1, posture.markers));
 }
 
+/// Whether a mean gain over so many postures is a reason to change the robot: its 95 % interval is
+/// above zero; or, where chance may have made a part of it, it is above its standard error and
+/// matters beside the error that it is gained of.
+bool IsWorth(double gain, double sd, double error, std::size_t postures) {
+  constexpr double kMatters = 0.05;
+  const double freedom = std::max(1.0, static_cast<double>(postures) - 1.0);
+  return gain > StudentQuantile(0.975, freedom) * sd || (gain > sd && gain > kMatters * error);
+}
+
 /// Postures, dealt to folds at random.
 std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random& random) {
   for (std::size_t i = postures.size() - 1; i > 0; --i) {
@@ -87,7 +96,8 @@ class Search {
 
  private:
   bool Helps(const CauseFinding& finding) const {
-    return finding.p_adjusted < options_.level && finding.mean_gain > finding.gain_sd;
+    return finding.p_adjusted < options_.level &&
+           IsWorth(finding.mean_gain, finding.gain_sd, error_, postures_.size());
   }
 
   /// Causes that explain what is left almost as well: the likelihoods differ by less than a factor
@@ -321,7 +331,8 @@ CauseSearch SearchCauses(const LinearStudy& study, const CauseSearchOptions& opt
   result.error = search.error();
   if (!result.chosen.empty()) {
     JudgeNested(study, options, postures, sums, result);
-    result.accepted = result.nested_gain > result.nested_gain_sd;
+    result.accepted =
+        IsWorth(result.nested_gain, result.nested_gain_sd, result.error, postures.size());
   }
   std::stable_sort(result.findings.begin(), result.findings.end(),
                    [](const CauseFinding& a, const CauseFinding& b) { return a.p < b.p; });

@@ -43,12 +43,14 @@ struct CauseSearch {
   /// The same of the whole search: what it would have chosen without the postures that it is judged
   /// on (nested folds), and its gain.
   double nested_error = 0.0, nested_gain = 0.0, nested_gain_sd = 0.0;
-  bool accepted = false;  ///< whether the nested gain is larger than its uncertainty
+  /// Whether the 95 % interval of the nested gain is above zero or, if not, the gain is larger than
+  /// its standard error and than 5 % of the error.
+  bool accepted = false;
 };
 
 /// Tests every cause of the study and takes the best ones, forward, one by one: only such as are
-/// significant over all causes and lower the error of held-out postures by more than its
-/// uncertainty. The error of the search as a whole is found by repeating it in each fold.
+/// significant over all causes and whose gain on held-out postures is worth it, as `accepted` has
+/// it. The error of the search as a whole is found by repeating it in each fold.
 CauseSearch SearchCauses(const LinearStudy& study, const CauseSearchOptions& options = {});
 
 }  // namespace elastocal

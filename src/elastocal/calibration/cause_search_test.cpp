@@ -60,6 +60,14 @@ TEST(SearchCauses, NamesWhatExplainsAlmostAsMuch) {
   EXPECT_EQ(search.chosen[0].rivals, expected);
 }
 
+// Significant, but what it gains may be chance: by a smaller part of twice its standard error.
+TEST(SearchCauses, TakesNothingOfWhichTheGainIsDoubtful) {
+  const CauseSearch search = SearchCauses(MakeStudy(0.45));
+  EXPECT_LT(search.findings[0].p_adjusted, 0.05);
+  EXPECT_GT(search.findings[0].mean_gain, search.findings[0].gain_sd);
+  EXPECT_FALSE(search.accepted);
+}
+
 TEST(SearchCauses, TakesNothingFromNoise) {
   EXPECT_TRUE(SearchCauses(MakeStudy(0.0)).chosen.empty());
 }

@@ -14,16 +14,8 @@ namespace {
 
 /// The fit that a result came from, in the parameters of the wide model.
 Fit WideFit(const ErrorModel& wide, const CalibrationResult& result) {
-  std::map<std::string, double> values;
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    values[result.model.parameters[i].name] = result.delta[i];
-  }
   Fit fit;
-  fit.delta.setZero(wide.parameter_count());
-  for (int i = 0; i < wide.parameter_count(); ++i) {
-    const auto value = values.find(wide.parameters[i].name);
-    if (value != values.end()) fit.delta[i] = value->second;
-  }
+  fit.delta = ErrorsByName(wide, NamedErrors(result.model, result.delta));
   fit.placement = result.placement;
   fit.noise = result.noise;
   fit.prior_scale = result.prior_scale;

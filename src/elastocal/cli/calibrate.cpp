@@ -64,8 +64,9 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
                            .days = options.days,
                            .progress = TerminalSteps("reading and fitting", options.common.quiet)});
   const auto files = MakeCalibrationFiles(project, run);
-  const std::string no_report = SetResults(
-      folder, files, MakeRunRecord("calibrate", options.common, inputs_read.get()), outputs);
+  RunRecord record = MakeRunRecord("calibrate", options.common, inputs_read.get());
+  record.assumptions = {options.accept, options.prior, options.days};
+  const std::string no_report = SetResults(folder, files, record, outputs);
   outputs.Set(options.common.json_file, files.at("summary.json"));
   outputs.Publish();
 

@@ -17,6 +17,7 @@
 #include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -91,6 +92,20 @@ std::string OffsetText(const CalibrationResult& result) {
   return text.empty() ? "  none\n" : text;
 }
 
+/// Causes beyond geometry and springs that the model has, with their estimates.
+std::string CausesText(const ContactRun& run) {
+  std::string text = "Beyond geometry and springs\n";
+  for (int i = 0; i < run.result.model.parameter_count(); ++i) {
+    const Parameter& parameter = run.result.model.parameters[i];
+    if (parameter.kind != ParameterKind::kCorrection) continue;
+    const double sd = InUserUnits(parameter, run.result.sd[i]);
+    text += fmt::format("  {} {} +- {} {} ({})\n", parameter.name,
+                        RoundedTo(InUserUnits(parameter, run.result.delta[i]), sd), RoundedSd(sd),
+                        UserUnit(parameter), StatusName(run.result.status[i]));
+  }
+  return text;
+}
+
 std::string DescribeContactRun(const ContactRun& run) {
   const bool folded = run.calibrated.held_out.folds > 0;
   const TouchErrors& before = ContactRun::Judged(run.uncalibrated).all;
@@ -129,6 +144,7 @@ std::string DescribeContactRun(const ContactRun& run) {
                          ContactRun::Judged(run.calibrated));
   const std::string compliance = ComplianceText(run.result);
   if (!compliance.empty()) text += "\nCompliance\n" + compliance;
+  if (!run.extra.empty()) text += "\n" + CausesText(run);
   text += "\nJoint offsets that are not zero\n" + OffsetText(run.result) + "\n";
   for (const std::string& remark : run.verdict.remarks) text += "Remark: " + remark + "\n";
   return text;
@@ -169,8 +185,9 @@ int RunContactCalibration(const CalibrateOptions& options, const Project& projec
                          .days = options.days,
                          .progress = of_folds});
   const auto files = MakeContactFiles(project, run);
-  const std::string no_report = SetResults(
-      folder, files, MakeRunRecord("calibrate", options.common, inputs_read.get()), outputs);
+  RunRecord record = MakeRunRecord("calibrate", options.common, inputs_read.get());
+  record.assumptions = {options.accept, options.prior, options.days};
+  const std::string no_report = SetResults(folder, files, record, outputs);
   outputs.Set(options.common.json_file, files.at("summary.json"));
   outputs.Publish();
 

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "elastocal/cli/commands.hpp"
-#include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
@@ -29,10 +28,11 @@ std::string CauseTable(const CauseReport& report, bool all) {
   std::size_t shown = 0;
   for (const CauseFinding& finding : report.search.findings) {
     if (!all && ++shown > kShown) break;
-    const double factor = report.error_factor(), sd = factor * finding.gain_sd;
-    table.Add({finding.cause, fmt::format("{:.1f}", finding.score),
-               fmt::format("{:.2g}", finding.p_adjusted), RoundedTo(factor * finding.gain, sd),
-               fmt::format("{} +- {}", RoundedTo(factor * finding.mean_gain, sd), RoundedSd(sd))});
+    const double factor = report.error_factor();
+    table.Add(
+        {finding.cause, fmt::format("{:.1f}", finding.score),
+         fmt::format("{:.2g}", finding.p_adjusted), fmt::format("{:.2g}", factor * finding.gain),
+         fmt::format("{:.2g} +- {:.2g}", factor * finding.mean_gain, factor * finding.gain_sd)});
   }
   return table.Render();
 }

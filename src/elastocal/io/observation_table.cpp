@@ -297,6 +297,7 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
     for (std::string& warning : read[f].warnings) tables.warnings.push_back(std::move(warning));
   }
   AddDetections(detections, project, PosturesOfFrames(read), tables);
+  NoteApproach(observations);
   if (observations.all.empty()) {
     throw InputError(observations.files.front() +
                      ": in no row does an instrument show anything or a plate touch");

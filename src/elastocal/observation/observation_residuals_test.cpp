@@ -93,8 +93,8 @@ void CheckCorrections(const InstrumentedBiped& biped, std::size_t least, std::ui
   const ObservedValues truth = RandomTruth(biped.model, biped.touches() ? 2 : 0, random);
   Observations all = biped.Observe(truth, 2, 12, random);
   all.approach.setOnes(all.q.rows(), all.q.cols());
-  const ObservedRobot wide =
-      WithCorrections(biped.model, {}, all, ObservableCorrections(biped.model));
+  const ObservedRobot wide = WithCorrections(
+      biped.model, {}, all, ObservableCorrections(biped.model.robot.tree, biped.model.setup));
   ObservedValues at = ValuesOfWide(wide, biped.model, truth);
   std::size_t corrections = 0;
   for (int i = 0; i < wide.robot.parameter_count(); ++i) {

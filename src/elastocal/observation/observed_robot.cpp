@@ -6,6 +6,7 @@
 
 #include "elastocal/calibration/options.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/measurement/recording.hpp"
 
 namespace elastocal {
 namespace {
@@ -140,7 +141,8 @@ std::vector<SourceOfParameter> SourcesOfParameters(const ObservedRobot& model) {
   for (const Parameter& parameter : model.robot.parameters) {
     SourceOfParameter of;
     if (parameter.kind == ParameterKind::kCorrection) {
-      of.source = -1;
+      of.source = kCause;
+      of.unit = parameter.typical;
     } else if (IsCompliance(parameter.kind)) {
       of.source = parameter.kind == ParameterKind::kTorsion ? kTorsion : kBending;
       of.unit = prior.Of(model.robot.tree, parameter);
@@ -162,6 +164,12 @@ std::vector<int> ParameterOfUnknown(const ObservedRobot& model) {
     if (unknown >= 0 && first[unknown] < 0) first[unknown] = i;
   }
   return first;
+}
+
+void NoteApproach(Observations& observations) {
+  std::vector<int> files;
+  for (const PosturePlace& place : observations.postures) files.push_back(place.file);
+  observations.approach = ApproachesOf(observations.q, files);
 }
 
 Observations SelectPostures(const Observations& observations, const std::vector<int>& postures) {

@@ -69,8 +69,8 @@ struct ObservedRobot {
   bool IsPlate(int index) const { return index < static_cast<int>(setup.plates.size()); }
 };
 
-/// `torsion`, `bending`: joints that give way, and `corrections` of joints, of a root link that is
-/// held still and of loads, which have no prior here (ErrorModel). Throws InputError for patterns
+/// `torsion`, `bending`: joints that give way; `corrections`: of joints, of a root link that is
+/// held still and of loads (ObservableCorrections). Throws InputError for patterns
 /// that match nothing, and for parameters in common of different kinds.
 ObservedRobot MakeObservedRobot(const RobotTree& tree, const PlacementOptions& placement,
                                 const ObservationSetup& setup, const std::vector<int>& torsion,
@@ -81,9 +81,10 @@ ObservedRobot MakeObservedRobot(const RobotTree& tree, const PlacementOptions& p
 void KeepObservedUnknowns(const Observations& observations, ObservedRobot& model);
 
 /// The source of a parameter of the robot's, and the unit in which its deviation counts there (1,
-/// but for compliances: how far joints give way under their largest torque).
+/// but for compliances: how far joints give way under their largest torque; and corrections: their
+/// typical size).
 struct SourceOfParameter {
-  int source = kLength;  ///< -1: it has none
+  int source = kLength;
   double unit = 1.0;
 };
 
@@ -92,6 +93,9 @@ std::vector<SourceOfParameter> SourcesOfParameters(const ObservedRobot& model);
 
 /// By unknown of the robot the first of its parameters.
 std::vector<int> ParameterOfUnknown(const ObservedRobot& model);
+
+/// Fills `approach` from the order of the rows of each file, as NoteApproach of a Recording.
+void NoteApproach(Observations& observations);
 
 /// The observations in some postures, which keep their order.
 Observations SelectPostures(const Observations& observations, const std::vector<int>& postures);

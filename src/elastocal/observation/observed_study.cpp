@@ -2,7 +2,6 @@
 #include "elastocal/observation/observed_study.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "elastocal/math/numbers.hpp"
 
@@ -10,16 +9,18 @@ namespace elastocal {
 namespace {
 
 /// Where the entries of x stand among the columns of a study; -1: a compliance at zero.
-std::vector<int> PlaceColumns(const ObservedRobot& wide, const ObservationResiduals& residuals,
-                              const Eigen::VectorXd& x, LinearStudy& study) {
+std::vector<int> PlaceColumns(const ObservedRobot& wide, const ObservedRobot& model,
+                              const ObservationResiduals& residuals, const Eigen::VectorXd& x,
+                              LinearStudy& study) {
   std::vector<int> columns(static_cast<std::size_t>(x.size()), 0);
   for (const int entry : residuals.nonnegative) {
     if (x[entry] <= kComplianceAtZero) columns[static_cast<std::size_t>(entry)] = -1;
   }
+  const auto known = NamedErrors(model.robot, Eigen::VectorXd::Zero(model.robot.parameter_count()));
   std::vector<std::pair<std::size_t, int>> candidates;  // entry, parameter
   for (int i = 0; i < wide.robot.parameter_count(); ++i) {
     if (wide.robot.parameters[i].kind != ParameterKind::kCorrection) continue;
-    if (wide.unknown[i] < 0) continue;
+    if (wide.unknown[i] < 0 || known.contains(wide.robot.parameters[i].name)) continue;
     candidates.emplace_back(residuals.RobotEntry(wide.unknown[i]), i);
     columns[candidates.back().first] = -1;
   }
@@ -63,9 +64,10 @@ void Append(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
 
 }  // namespace
 
-std::vector<Correction> ObservableCorrections(const ObservedRobot& model) {
-  std::vector<Correction> corrections = PossibleCorrections(model.robot.tree, std::nullopt);
-  if (!model.setup.feet.empty()) {
+std::vector<Correction> ObservableCorrections(const RobotTree& tree,
+                                              const ObservationSetup& setup) {
+  std::vector<Correction> corrections = PossibleCorrections(tree, std::nullopt);
+  if (!setup.feet.empty()) {
     std::erase_if(corrections,
                   [](const Correction& of) { return TargetOf(of) != CorrectionTarget::kJoint; });
   }
@@ -85,16 +87,8 @@ ObservedRobot WithCorrections(const ObservedRobot& model, const PlacementOptions
 
 ObservedValues ValuesOfWide(const ObservedRobot& wide, const ObservedRobot& model,
                             const ObservedValues& values) {
-  std::map<std::string, double> by_name;
-  for (int i = 0; i < model.robot.parameter_count(); ++i) {
-    by_name[model.robot.parameters[i].name] = values.robot[i];
-  }
   ObservedValues of_wide = values;
-  of_wide.robot.setZero(wide.robot.parameter_count());
-  for (int i = 0; i < wide.robot.parameter_count(); ++i) {
-    const auto found = by_name.find(wide.robot.parameters[i].name);
-    if (found != by_name.end()) of_wide.robot[i] = found->second;
-  }
+  of_wide.robot = ErrorsByName(wide.robot, NamedErrors(model.robot, values.robot));
   return of_wide;
 }
 
@@ -106,13 +100,11 @@ LinearStudy MakeObservedStudy(const ObservedRobot& wide, const ObservedRobot& mo
   const Eigen::VectorXd x = residuals.Start();
   residuals.Evaluate(x, true);
   LinearStudy study;
-  const std::vector<int> columns = PlaceColumns(wide, residuals, x, study);
+  const std::vector<int> columns = PlaceColumns(wide, model, residuals, x, study);
   std::vector<int> first = {0};
   for (const int size : residuals.parameter_blocks) first.push_back(first.back() + size);
   study.postures.resize(observations.postures.size());
   study.other.setZero(study.columns(), study.columns());
-  // The solver's unit of a correction is its typical size, the standard deviation of its prior.
-  study.other.diagonal().tail(study.columns() - study.base).setOnes();
   study.other_gradient.setZero(study.columns());
   for (int block = 0; block < static_cast<int>(residuals.residual_blocks.size()); ++block) {
     if (!residuals.residual_blocks[static_cast<std::size_t>(block)].active) continue;

@@ -32,6 +32,7 @@ std::vector<Source> CommonSources() {
   set(kAngle, "angle", radian, prior[ParameterKind::kAlpha]);
   set(kTorsion, "torsion", SourceUnit::kNone, 1.0);
   set(kBending, "bending", SourceUnit::kNone, 1.0);
+  set(kCause, "causes", SourceUnit::kNone, 1.0);
   set(kUnknownPlace, "unknown_place", metre, 1.0, Source::Role::kFixed);
   set(kUnknownTurn, "unknown_turn", radian, 1.0, Source::Role::kFixed);
   set(kRootTilt, "root_tilt", radian, kDegreeOfArc, Source::Role::kFixed);

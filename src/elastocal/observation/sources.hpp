@@ -43,6 +43,7 @@ enum CommonSource {
   kAngle,          ///< all other angles of the robot: how axes are tilted, rad
   kTorsion,        ///< compliances about (along) joints' axes, in units of their prior
   kBending,        ///< compliances across them, likewise
+  kCause,          ///< corrections (causes beyond springs), likewise
   kUnknownPlace,   ///< where something is that nobody knows: 1 m
   kUnknownTurn,    ///< how something is turned that nobody knows: 1 rad
   kRootTilt,       ///< tilt against level of a root link that is held still: 1 degree

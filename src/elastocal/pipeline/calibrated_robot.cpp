@@ -11,7 +11,6 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/report/json_reader.hpp"
-#include "elastocal/report/run_record.hpp"
 #include "elastocal/tables/read_file.hpp"
 
 namespace elastocal {
@@ -30,28 +29,35 @@ struct RecordedInput {
   std::string sha256;
 };
 
+ordered_json Member(const ordered_json& json, const char* key) {
+  return json.is_object() && json.contains(key) ? json.at(key) : ordered_json::object();
+}
+
+std::string TextOf(const ordered_json& json, const char* key) {
+  const ordered_json value = Member(json, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+/// The record of `calibrate`; an empty object where there is none.
+ordered_json RecordedRun(const fs::path& runs) {
+  return Member(ParseJsonObject(runs.string(), ReadFile(runs)), "calibrate");
+}
+
+/// A file that a record names, from here: relative names start where calibrate was typed.
+fs::path FileOf(const ordered_json& run, const fs::path& file) {
+  std::error_code error;
+  const fs::path there = TextOf(run, "folder") / file;
+  return file.is_relative() && !file.empty() && fs::exists(there, error) ? there : file;
+}
+
 /// The inputs of the calibration in a folder: project, URDF, then recordings. None where the record
 /// has none.
 std::vector<RecordedInput> RecordedInputs(const fs::path& runs) {
-  const ordered_json all = ParseJsonObject(runs.string(), ReadFile(runs));
-  const ordered_json none = ordered_json::object();
-  const auto member = [&](const ordered_json& json, const char* key) {
-    return json.is_object() && json.contains(key) ? json.at(key) : none;
-  };
-  const auto text = [&](const ordered_json& json, const char* key) {
-    const ordered_json value = member(json, key);
-    return value.is_string() ? value.get<std::string>() : std::string();
-  };
-  const ordered_json run = member(all, "calibrate");
-  const fs::path folder = text(run, "folder");
+  const ordered_json run = RecordedRun(runs);
   std::vector<RecordedInput> inputs;
-  const ordered_json list = member(run, "inputs");
+  const ordered_json list = Member(run, "inputs");
   for (const ordered_json& input : list) {
-    fs::path file = text(input, "file");
-    std::error_code error;
-    const fs::path there = folder / file;  // relative names start where calibrate was typed
-    if (file.is_relative() && !file.empty() && fs::exists(there, error)) file = there;
-    inputs.push_back({file, text(input, "sha256")});
+    inputs.push_back({FileOf(run, TextOf(input, "file")), TextOf(input, "sha256")});
   }
   return inputs;
 }
@@ -122,6 +128,18 @@ std::vector<fs::path> RecordedRecordings(const CalibratedRobot& robot) {
     if (HasChanged(inputs[i])) throw InputError(name + ": has changed since the calibration");
   }
   return recordings;
+}
+
+Assumptions RecordedAssumptions(const CalibratedRobot& robot) {
+  const ordered_json run = RecordedRun(FolderOf(robot.calibration.source) / "runs.json");
+  Assumptions told;
+  const ordered_json accept = Member(run, "accept"), days = Member(run, "days");
+  for (const ordered_json& name : accept) {
+    if (name.is_string()) told.accept.push_back(name.get<std::string>());
+  }
+  told.prior = FileOf(run, TextOf(run, "prior")).string();
+  if (days.is_number()) told.days = days.get<double>();
+  return told;
 }
 
 std::vector<fs::path> RecordedFiles(const CalibratedRobot& robot) {

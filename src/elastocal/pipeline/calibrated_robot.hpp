@@ -6,6 +6,7 @@
 
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/project/project.hpp"
+#include "elastocal/report/run_record.hpp"
 
 namespace elastocal {
 
@@ -27,6 +28,10 @@ CalibratedRobot OpenCalibratedRobot(const std::filesystem::path& given,
 /// trials. Throws InputError where there is no such record, or a recording is not there or has
 /// changed since (by its checksum).
 std::vector<std::filesystem::path> RecordedRecordings(const CalibratedRobot& robot);
+
+/// What it was told beside them, as runs.json has it; nothing where a record of an earlier version
+/// does not say so.
+Assumptions RecordedAssumptions(const CalibratedRobot& robot);
 
 /// All that the record of the calibration names as its inputs, whether it is there or not; nothing
 /// where there is no record that can be read. No output may replace them.

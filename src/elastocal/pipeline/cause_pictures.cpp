@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 
 #include "elastocal/calibration/cause_fit.hpp"
@@ -296,15 +295,7 @@ class Painter {
 
 CauseScene SceneOf(const ErrorModel& wide, const Recording& recording,
                    const CalibrationResult& result, const CalibrationOptions& options) {
-  std::map<std::string, double> values;
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    values[result.model.parameters[Nth(i)].name] = result.delta[i];
-  }
-  Eigen::VectorXd delta = Eigen::VectorXd::Zero(wide.parameter_count());
-  for (int i = 0; i < wide.parameter_count(); ++i) {
-    const auto value = values.find(wide.parameters[Nth(i)].name);
-    if (value != values.end()) delta[i] = value->second;
-  }
+  const Eigen::VectorXd delta = ErrorsByName(wide, NamedErrors(result.model, result.delta));
   CauseScene scene{.wide = wide, .q = recording.q};
   ErrorModel placed = wide;
   placed.T_ref_waist = result.model.T_ref_waist;

@@ -9,7 +9,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/observation/observed_study.hpp"
-#include "elastocal/pipeline/contact_run.hpp"
+#include "elastocal/pipeline/contact_result.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 
 namespace elastocal {
@@ -44,15 +44,10 @@ std::vector<std::string> CausesMatching(const std::vector<std::string>& causes,
   return matching;
 }
 
-/// Of the project's extra causes, the one that is least in a calibration with all of them, if that
-/// is within its uncertainty: another cause, or a spring, explains what it was found by.
-std::optional<std::string> IdleCause(const Project& project, const Measurements& measured,
-                                     std::optional<std::uint64_t> seed) {
-  constexpr double kPlain = 2.0;  // standard deviations
-  Measurements own = measured;
-  const RecordedModel robot = MakeRecordedModel(project, seed, own, KnockSearch::kNone);
-  const CalibrationResult result = Calibrate(robot.model, own.calibration, robot.base,
-                                             ModelKinds(robot.model).back(), project.calibration);
+/// Of the causes of a calibration with all of them, the one that is least, if it is within its
+/// uncertainty: another cause, or a spring, explains what it was found by.
+std::optional<std::string> IdleCause(const CalibrationResult& result) {
+  constexpr double kPlain = 2.0;       // standard deviations
   std::map<std::string, double> size;  // the most of a cause's parameters
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const int correction = result.model.parameters[static_cast<std::size_t>(i)].correction;
@@ -67,31 +62,31 @@ std::optional<std::string> IdleCause(const Project& project, const Measurements&
   return least->first;
 }
 
-/// Leaves out causes one by one until each is more than its uncertainty.
-void LeaveOutIdle(const Measurements& measured, std::optional<std::uint64_t> seed, Project& project,
-                  CauseSearch& search) {
-  std::vector<std::string>& extra = project.elasticity.extra;
+/// The causes that the search took, less those that a calibration with all of them does not find:
+/// they are left out one by one, also of the search.
+template <typename CalibrateWith>
+std::vector<std::string> TakeChosen(const CalibrateWith& calibrate_with, CauseSearch& search) {
+  std::vector<std::string> extra;
+  if (!search.accepted) return extra;
+  for (const CauseFinding& finding : search.chosen) extra.push_back(finding.cause);
   while (!extra.empty()) {
-    const std::optional<std::string> idle = IdleCause(project, measured, seed);
-    if (!idle) return;
-    if (std::erase(extra, *idle) == 0) return;
+    const std::optional<std::string> idle = IdleCause(calibrate_with(extra));
+    if (!idle || std::erase(extra, *idle) == 0) return extra;
     std::erase_if(search.chosen, [&](const CauseFinding& one) { return one.cause == *idle; });
   }
   search.accepted = false;
+  return extra;
 }
+
+bool MayChoose(int postures) { return postures >= kFewestPostures && postures <= kLargestTable; }
 
 }  // namespace
 
-CauseReport StudyObservedCauses(const Project& project, const ObservationTables& tables,
+CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& model,
+                                const Observations& observations, const ObservationFit& fit,
                                 std::optional<std::uint64_t> seed) {
-  const ObservedRobot model = MakeRobotOfProject(project, tables);
-  Observations observations = tables.observations;
-  std::vector<int> files;
-  for (const PosturePlace& place : observations.postures) files.push_back(place.file);
-  observations.approach = ApproachesOf(observations.q, files);
-  const ObservationFit fit = EstimateObserved(model, observations, {}).fit;
-  const ObservedRobot wide =
-      WithCorrections(model, project.placement, observations, ObservableCorrections(model));
+  const ObservedRobot wide = WithCorrections(model, project.placement, observations,
+                                             ObservableCorrections(project.tree, model.setup));
   const LinearStudy study = MakeObservedStudy(wide, model, observations, fit);
   CauseReport report;
   report.search = SearchCauses(study, {.seed = seed.value_or(1)});
@@ -141,23 +136,43 @@ std::optional<CauseReport> ChooseCauses(const Measurements& measured,
     project.elasticity.extra = CausesMatching(PossibleCauses(project, recording), asked.names);
     return std::nullopt;
   }
-  const int postures = recording.posture_count();
-  if (!recording.trials.empty() || postures < kFewestPostures || postures > kLargestTable) {
-    return std::nullopt;
-  }
+  if (!recording.trials.empty() || !MayChoose(recording.posture_count())) return std::nullopt;
   CauseReport report;
   try {
     report = StudyCauses(project, measured, seed);
   } catch (const InputError&) {  // too few equations: the estimate will say so
     return std::nullopt;
   }
-  if (report.search.accepted) {
-    for (const CauseFinding& finding : report.search.chosen) {
-      project.elasticity.extra.push_back(finding.cause);
-    }
-    LeaveOutIdle(measured, seed, project, report.search);
-  }
+  const auto calibrate_with = [&](const std::vector<std::string>& extra) {
+    Project with = project;
+    with.elasticity.extra = extra;
+    Measurements own = measured;
+    const RecordedModel robot = MakeRecordedModel(with, seed, own, KnockSearch::kNone);
+    return Calibrate(robot.model, own.calibration, robot.base, ModelKinds(robot.model).back(),
+                     with.calibration);
+  };
+  project.elasticity.extra = TakeChosen(calibrate_with, report.search);
   return report;
+}
+
+ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot& model,
+                                    const Observations& observations, const ObservationFit& fit) {
+  const ExtraCauses& asked = project.calibration.extra;
+  const std::vector<Correction> possible = ObservableCorrections(project.tree, model.setup);
+  ObservedCauses causes;
+  if (!asked.automatic) {
+    causes.extra = CausesMatching(CausesOf(possible), asked.names);
+    return causes;
+  }
+  if (!MayChoose(observations.posture_count())) return causes;
+  causes.report = StudyObservedCauses(project, model, observations, fit, std::nullopt);
+  const auto calibrate_with = [&](const std::vector<std::string>& extra) {
+    const ObservedRobot with =
+        WithCorrections(model, project.placement, observations, CorrectionsOf(possible, extra));
+    return ResultOfContacts(with, EstimateObserved(with, observations, {}).fit, 0);
+  };
+  causes.extra = TakeChosen(calibrate_with, causes.report->search);
+  return causes;
 }
 
 std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time) {

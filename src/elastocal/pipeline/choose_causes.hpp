@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "elastocal/calibration/cause_search.hpp"
-#include "elastocal/io/observation_table.hpp"
+#include "elastocal/observation/observation_fit.hpp"
 #include "elastocal/pipeline/cause_pictures.hpp"
 #include "elastocal/pipeline/measurements.hpp"
 
@@ -32,8 +32,9 @@ struct CauseReport {
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed);
 
-/// The same of tables of observations.
-CauseReport StudyObservedCauses(const Project& project, const ObservationTables& tables,
+/// The same of tables of observations, beside what `model` has: `fit` is that of `model`.
+CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& model,
+                                const Observations& observations, const ObservationFit& fit,
                                 std::optional<std::uint64_t> seed);
 
 /// Sets the extra causes of the project's models as `calibration.extra` says: those named, none,
@@ -42,6 +43,16 @@ CauseReport StudyObservedCauses(const Project& project, const ObservationTables&
 /// way.
 std::optional<CauseReport> ChooseCauses(const Measurements& measured,
                                         std::optional<std::uint64_t> seed, Project& project);
+
+/// The same of tables of observations, where `fit` is that of `model`: the causes, and what was
+/// found on the way. The same tables give the same causes. Throws InputError for names of
+/// `calibration.extra` that these tables cannot show.
+struct ObservedCauses {
+  std::vector<std::string> extra;
+  std::optional<CauseReport> report;
+};
+ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot& model,
+                                    const Observations& observations, const ObservationFit& fit);
 
 /// Extra causes that a stored calibration has, by the names of its parameters; not those of its
 /// recording alone (drift).

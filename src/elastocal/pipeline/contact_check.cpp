@@ -211,7 +211,8 @@ class AlternativeSearch {
   bool Holds(const Observations& observations) const {
     ContactCheck other = run_;
     other.observations = observations;
-    other.calibrated = FiguresOf(other, StoredErrors(earlier_.stored, run_.model.robot));
+    other.calibrated =
+        FiguresOf(other, ErrorsByName(run_.model.robot, earlier_.stored.joint_errors));
     other.check = OpenJoints(run_.model, known_, observations, project_, options_).check;
     return !other.check.changed() && other.FarRows(other.calibrated).empty();
   }
@@ -275,7 +276,7 @@ ContactCheck CheckContacts(const Project& project, const std::filesystem::path& 
   const Eigen::VectorXd nominal = Eigen::VectorXd::Zero(run.model.robot.parameter_count());
   run.uncalibrated = FiguresOf(run, nominal);
   const std::vector<Eigen::VectorXd> left =
-      LeftBy(run, StoredErrors(earlier.stored, run.model.robot));
+      LeftBy(run, ErrorsByName(run.model.robot, earlier.stored.joint_errors));
   run.calibrated = MakeFigures(run.model, run.observations, left);
   for (const RowErrors& row : run.calibrated.rows) {
     run.left_before.push_back(NoiseOf(run.model, row, earlier.contacts.calibrated.spread));

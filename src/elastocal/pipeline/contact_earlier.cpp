@@ -6,6 +6,7 @@
 
 #include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/observation/observed_study.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_result.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
@@ -40,9 +41,10 @@ ObservedRobot MakeStoredRobot(const StoredCalibration& stored, const Project& pr
   const ElasticityChoice elasticity = ElasticityOf(stored, project);
   ObservationSetup alone = setup;
   alone.common.clear();
-  ObservedRobot model = MakeObservedRobot(project.tree, project.placement, alone,
-                                          JointsOf(elasticity.torsion, project.tree),
-                                          JointsOf(elasticity.bending, project.tree));
+  ObservedRobot model = MakeObservedRobot(
+      project.tree, project.placement, alone, JointsOf(elasticity.torsion, project.tree),
+      JointsOf(elasticity.bending, project.tree),
+      CorrectionsOf(ObservableCorrections(project.tree, setup), elasticity.extra));
   if (stored.nominal != NominalFingerprint(model.robot)) {
     throw InputError(stored.source + ": made for robot '" + stored.robot +
                      "' with other nominal geometry than " + project.urdf.string() +
@@ -50,15 +52,6 @@ ObservedRobot MakeStoredRobot(const StoredCalibration& stored, const Project& pr
   }
   CheckParameters(stored, model.robot, {});
   return model;
-}
-
-Eigen::VectorXd StoredErrors(const StoredCalibration& stored, const ErrorModel& robot) {
-  Eigen::VectorXd errors = Eigen::VectorXd::Zero(robot.parameter_count());
-  for (int i = 0; i < robot.parameter_count(); ++i) {
-    const auto found = stored.joint_errors.find(robot.parameters[i].name);
-    if (found != stored.joint_errors.end()) errors[i] = found->second;
-  }
-  return errors;
 }
 
 EarlierContacts ReadEarlierContacts(const std::filesystem::path& calibration,

@@ -13,15 +13,12 @@
 
 namespace elastocal {
 
-/// The robot of a stored calibration as it stands in tables: elastic where that found it elastic;
-/// what is in common says nothing about values that are known. Throws InputError for a calibration
+/// The robot of a stored calibration as it stands in tables: elastic where that found it elastic,
+/// and with its causes beyond springs, as far as tables show them (ObservableCorrections); what is
+/// in common says nothing about values that are known. Throws InputError for a calibration
 /// of another robot.
 ObservedRobot MakeStoredRobot(const StoredCalibration& stored, const Project& project,
                               const ObservationSetup& setup);
-
-/// The stored errors of the robot's parameters; those it does not have are of joints that nothing
-/// observed moved: zero.
-Eigen::VectorXd StoredErrors(const StoredCalibration& stored, const ErrorModel& robot);
 
 /// An earlier calibration of a robot that touches tables or is measured by instruments.
 struct EarlierContacts {
@@ -42,7 +39,7 @@ EarlierContacts ReadEarlierContacts(const std::filesystem::path& calibration,
 EarlierContacts ReadPriorOfContacts(const std::filesystem::path& calibration,
                                     const Project& project);
 
-/// The robot as it stands in new tables, elastic where the earlier calibration found it elastic.
+/// The robot as it stands in new tables, as MakeStoredRobot has it.
 /// What it found to vary is the first guess, and counts as ten numbers. Throws InputError for a
 /// calibration of another robot.
 ObservedRobot MakeRobotAfterEarlier(const EarlierContacts& earlier, const Project& project,

@@ -6,8 +6,10 @@
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/contact_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
+#include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
+#include "elastocal/pipeline/diagnose.hpp"
 #include "elastocal/pipeline/robot_views.hpp"
 
 namespace elastocal {
@@ -53,6 +55,11 @@ std::string MakeContactSummary(const ContactRun& run) {
   json["model"] = ModelKindName(run.result.kind);
   json["contact"] = ContactJson(run);
   json["parameters"] = ParameterList(run.result);
+  if (!run.extra.empty()) json["extra"] = run.extra;
+  if (run.causes) {
+    json["diagnosis"] = DescribeDiagnosis(*run.causes);
+    json["diagnosis_pictures"] = CausePicturesJson(*run.causes);
+  }
   json["iterations"] = run.result.iterations;
   json["warnings"] = run.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

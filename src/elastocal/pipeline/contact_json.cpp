@@ -215,6 +215,8 @@ nlohmann::ordered_json ContactJson(const ContactRun& run) {
   if (run.calibrated.held_out.folds > 0) {
     json["kfold"] = FiguresJson(run.model, run.calibrated.held_out.figures);
     json["kfold"]["folds"] = run.calibrated.held_out.folds;
+    json["kfold"]["decided_once"] = Json::array();
+    if (run.causes && !run.extra.empty()) json["kfold"]["decided_once"].push_back("causes");
     json["kfold"]["uncalibrated"] = FiguresJson(run.model, run.uncalibrated.held_out.figures);
     json["kfold"]["of_touches"] = ObservationList(run, true);
     if (!run.touches_only()) json["kfold"]["of_others"] = ObservationList(run, false);

@@ -9,8 +9,9 @@
 
 #include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/observation/observed_study.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
-#include "elastocal/pipeline/contact_earlier.hpp"
+#include "elastocal/pipeline/contact_faults.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_result.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
@@ -45,16 +46,20 @@ ContactOutcome Estimate(const ObservedRobot& model, const Observations& observat
   return outcome;
 }
 
-/// The same model without compliances, and what is known of it; nothing where none is elastic.
-std::optional<ObservedRobot> WithoutCompliances(const ObservedRobot& model,
-                                                const Observations& observations,
-                                                const Project& project,
-                                                const std::optional<EarlierContacts>& earlier) {
-  const auto elastic = [](const Parameter& parameter) { return IsCompliance(parameter.kind); };
+/// The same model without compliances and causes, and what is known of it; nothing where it has
+/// neither.
+std::optional<ObservedRobot> WithGeometryOnly(const ObservedRobot& model,
+                                              const Observations& observations,
+                                              const Project& project,
+                                              const std::optional<EarlierContacts>& earlier) {
   const std::vector<Parameter>& parameters = model.robot.parameters;
+  const auto elastic = [](const Parameter& parameter) { return IsElastic(parameter.kind); };
+  const auto compliance = [](const Parameter& parameter) { return IsCompliance(parameter.kind); };
   if (std::none_of(parameters.begin(), parameters.end(), elastic)) return std::nullopt;
   ObservationSetup setup = model.setup;
-  setup.hold.emplace_back("*.compliance_*");
+  if (std::any_of(parameters.begin(), parameters.end(), compliance)) {
+    setup.hold.emplace_back("*.compliance_*");
+  }
   const Elasticity& elasticity = model.robot.elasticity;
   ObservedRobot rigid = MakeObservedRobot(project.tree, project.placement, setup,
                                           elasticity.torsion, elasticity.bending);
@@ -80,10 +85,23 @@ std::optional<ObservedRobot> WithTorsion(const ObservedRobot& rigid,
   for (std::size_t k = 0; k < project.tree.joints.size(); ++k) {
     joints.push_back(static_cast<int>(k));
   }
-  ObservedRobot elastic =
-      MakeObservedRobot(project.tree, project.placement, rigid.setup, joints, {});
+  ObservedRobot elastic = MakeObservedRobot(project.tree, project.placement, rigid.setup, joints,
+                                            {}, rigid.robot.elasticity.corrections);
   KeepObservedUnknowns(observations, elastic);
   return elastic;
+}
+
+/// Takes a wider model in place of the one so far. What was estimated first is the geometry alone.
+void Take(ObservedRobot wider, ContactOutcome outcome, ContactRun& run) {
+  ContactOutcome narrow = std::exchange(run.calibrated, std::move(outcome));
+  ObservedRobot before = std::exchange(run.model, std::move(wider));
+  const std::vector<Parameter>& parameters = before.robot.parameters;
+  if (std::any_of(parameters.begin(), parameters.end(),
+                  [](const Parameter& parameter) { return IsElastic(parameter.kind); })) {
+    return;
+  }
+  run.geometric = std::move(narrow);
+  run.rigid_model = std::move(before);
 }
 
 /// Where nobody says whether joints give way, left-out postures do: elastic joints enter where they
@@ -99,12 +117,54 @@ bool TakeElasticity(const Project& project, const ContactRunOptions& options, in
   if (!(gain > kPlainly) || outcome.estimate.fit.termination != Termination::kConverged) {
     return false;
   }
-  run.geometric = std::exchange(run.calibrated, std::move(outcome));
-  run.rigid_model = std::exchange(run.model, std::move(*elastic));
+  Take(std::move(*elastic), std::move(outcome), run);
   run.warnings.emplace_back(
       "joints are taken as elastic about their axes, which predicts postures that were left out "
       "better; elasticity in the project says otherwise where it is known");
   return true;
+}
+
+/// Causes beyond geometry and springs, beside what the model has so far (ChooseObservedCauses).
+/// Those that the program chose must also hold where everything is estimated anew.
+void TakeCauses(const Project& project, const ContactRunOptions& options, int folds,
+                ContactRun& run) {
+  ObservedCauses causes =
+      ChooseObservedCauses(project, run.model, run.observations, run.calibrated.estimate.fit);
+  run.causes = std::move(causes.report);
+  run.extra = std::move(causes.extra);
+  if (run.extra.empty()) return;
+  if (run.causes && !FindContactFault(run).empty()) {  // of the table: no cause is to hide it
+    run.extra.clear();
+    run.causes->search.accepted = false;
+    return;
+  }
+  ObservedRobot with = WithCorrections(
+      run.model, project.placement, run.observations,
+      CorrectionsOf(ObservableCorrections(project.tree, run.model.setup), run.extra));
+  ContactOutcome outcome = Estimate(with, run.observations, true, options, folds);
+  const bool fails =
+      outcome.estimate.fit.termination != Termination::kConverged ||
+      (folds > 0 && !(GainInSds(with, run.observations, run.calibrated.held_out.left,
+                                outcome.held_out.left, outcome.estimate.fit.spread) > 0.0));
+  if (run.causes && fails) {
+    run.extra.clear();
+    run.causes->search.accepted = false;
+    return;
+  }
+  Take(std::move(with), std::move(outcome), run);
+}
+
+/// Springs and causes that the data ask for. A large cause hides springs, and a spring that is
+/// missing looks like a cause: where causes but no springs were found, springs are looked for
+/// beside them and, if there are any, causes once more.
+void ChooseBeyondGeometry(const Project& project, const ContactRunOptions& options, int folds,
+                          ContactRun& run) {
+  const bool springs = TakeElasticity(project, options, folds, run);
+  TakeCauses(project, options, folds, run);
+  if (springs || run.extra.empty() || !TakeElasticity(project, options, folds, run)) return;
+  run.model = WithCorrections(run.model, project.placement, run.observations, {});
+  run.calibrated = Estimate(run.model, run.observations, true, options, folds);
+  TakeCauses(project, options, folds, run);
 }
 
 }  // namespace
@@ -128,35 +188,50 @@ ObservedRobot MakeRobotOfProject(const Project& project, const ObservationTables
   }
 }
 
-ContactRun CalibrateContacts(const Project& project,
-                             const std::vector<std::filesystem::path>& recordings,
-                             const ContactRunOptions& options) {
-  std::optional<EarlierContacts> earlier;
+ContactStart StartContacts(const Project& project,
+                           const std::vector<std::filesystem::path>& recordings,
+                           const ContactRunOptions& options) {
+  ContactStart start;
+  std::optional<EarlierContacts>& earlier = start.earlier;
   if (!options.prior.empty()) earlier = ReadPriorOfContacts(options.prior, project);
   const bool feet_known = earlier && earlier->of_contacts;
   ObservationTables tables =
       ReadObservationTables(recordings, project, feet_known ? &earlier->contacts.feet : nullptr);
-  ContactRun run;
-  run.warnings = std::move(tables.warnings);
-  run.recording = JoinNames(tables.observations.files);
-  run.zero_offsets = options.zero_offsets;
-  run.model = earlier ? MakeRobotAfterEarlier(*earlier, project, tables)
-                      : MakeRobotOfProject(project, tables);
-  run.observations = std::move(tables.observations);
-  for (const std::string& what : CorrectObservations(options.accept, run.model, run.observations)) {
-    run.warnings.push_back("corrected on request: " + what);
+  start.warnings = std::move(tables.warnings);
+  start.model = earlier ? MakeRobotAfterEarlier(*earlier, project, tables)
+                        : MakeRobotOfProject(project, tables);
+  start.observations = std::move(tables.observations);
+  for (const std::string& what :
+       CorrectObservations(options.accept, start.model, start.observations)) {
+    start.warnings.push_back("corrected on request: " + what);
   }
-  const int postures = run.observations.posture_count();
+  const int postures = start.observations.posture_count();
   if (postures < kFewestObservedPostures) {
-    throw InputError(run.recording + ": " + std::to_string(postures) + " postures; at least " +
-                     std::to_string(kFewestObservedPostures) + " were expected");
+    throw InputError(JoinNames(start.observations.files) + ": " + std::to_string(postures) +
+                     " postures; at least " + std::to_string(kFewestObservedPostures) +
+                     " were expected");
   }
   if (earlier) {
-    for (std::string& text :
-         StartFromEarlierContacts(*earlier, run.observations, project, options.days, run.model)) {
-      run.warnings.push_back(std::move(text));
+    for (std::string& text : StartFromEarlierContacts(*earlier, start.observations, project,
+                                                      options.days, start.model)) {
+      start.warnings.push_back(std::move(text));
     }
   }
+  return start;
+}
+
+ContactRun CalibrateContacts(const Project& project,
+                             const std::vector<std::filesystem::path>& recordings,
+                             const ContactRunOptions& options) {
+  ContactStart start = StartContacts(project, recordings, options);
+  const std::optional<EarlierContacts>& earlier = start.earlier;
+  ContactRun run;
+  run.recording = JoinNames(start.observations.files);
+  run.zero_offsets = options.zero_offsets;
+  run.model = std::move(start.model);
+  run.observations = std::move(start.observations);
+  run.warnings = std::move(start.warnings);
+  const int postures = run.observations.posture_count();
   run.closure = CheckClosure(run.model, run.observations.q);
   int folds = options.folds.value_or(std::min(kUsualFolds, postures));
   run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
@@ -168,7 +243,11 @@ ContactRun CalibrateContacts(const Project& project,
     }
   }
   run.calibrated = Estimate(run.model, run.observations, true, options, folds);
-  const bool chosen = !earlier && TakeElasticity(project, options, folds, run);
+  if (earlier) {
+    run.extra = CausesOf(run.model.robot.elasticity.corrections);
+  } else if (!run.mistakes || run.mistakes->empty()) {
+    ChooseBeyondGeometry(project, options, folds, run);
+  }
   const ObservationFit& fit = run.calibrated.estimate.fit;
   const auto left = [&](const ContactOutcome& outcome) {
     return folds > 0 ? outcome.held_out.left
@@ -180,7 +259,9 @@ ContactRun CalibrateContacts(const Project& project,
   for (const Observation& of : run.observations.all) {
     equations += run.model.instrument(of.instrument).size();
   }
-  if (!chosen) run.rigid_model = WithoutCompliances(run.model, run.observations, project, earlier);
+  if (!run.geometric) {
+    run.rigid_model = WithGeometryOnly(run.model, run.observations, project, earlier);
+  }
   if (run.rigid_model && !run.geometric) {  // a figure beside the result: ten folds will do
     run.geometric =
         Estimate(*run.rigid_model, run.observations, true, options, std::min(kUsualFolds, folds));
@@ -195,6 +276,7 @@ ContactRun CalibrateContacts(const Project& project,
                                   run.in_urdf ? *run.in_urdf : run.result, options.zero_offsets);
     run.warnings.insert(run.warnings.end(), run.urdf->warnings.begin(), run.urdf->warnings.end());
   }
+  if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra, false));
   for (std::string& outlier :
        DescribeOutliers(run.model, run.observations, run.calibrated.estimate)) {
     run.warnings.push_back(std::move(outlier));

@@ -12,6 +12,8 @@
 #include "elastocal/math/progress.hpp"
 #include "elastocal/observation/observation_figures.hpp"
 #include "elastocal/observation/standing_robot.hpp"
+#include "elastocal/pipeline/choose_causes.hpp"
+#include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/validation/verdict.hpp"
 
@@ -29,6 +31,21 @@ struct ContactRunOptions {
   Progress progress = {};
 };
 
+/// What an estimate from tables begins with: the observations with the accepted mistakes corrected,
+/// and the robot as the project or an earlier calibration describes it.
+struct ContactStart {
+  std::optional<EarlierContacts> earlier;
+  Observations observations;
+  ObservedRobot model;
+  std::vector<std::string> warnings;
+};
+
+/// Reads the tables; of the options `accept`, `prior` and `days` count. Throws as CalibrateContacts
+/// does.
+ContactStart StartContacts(const Project& project,
+                           const std::vector<std::filesystem::path>& recordings,
+                           const ContactRunOptions& options);
+
 /// An estimate with its errors in and out of sample.
 struct ContactOutcome {
   ObservedEstimate estimate;
@@ -43,8 +60,10 @@ struct ContactRun {
   ObservedRobot model;
   ContactOutcome uncalibrated;  ///< quantities beside the robot and sessions only
   ContactOutcome calibrated;
-  /// Where joints are elastic: the robot without compliances. The URDF has its geometry, because a
-  /// URDF has no springs.
+  std::vector<std::string> extra;     ///< causes beyond geometry and springs that the model has
+  std::optional<CauseReport> causes;  ///< how they were chosen, where they were
+  /// Where joints are elastic or there are such causes: the robot without. The URDF has its
+  /// geometry, because a URDF has no place for them.
   std::optional<ContactOutcome> geometric;
   std::optional<ObservedRobot> rigid_model;  ///< that of `geometric`
   /// Mistakes in the tables, which are sought where the nominal robot is off by more than robots

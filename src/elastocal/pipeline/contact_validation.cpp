@@ -94,7 +94,7 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   const std::vector<Eigen::VectorXd> before = PredictStored(
       run, contacts.uncalibrated, Eigen::VectorXd::Zero(run.model.robot.parameter_count()));
   const std::vector<Eigen::VectorXd> after =
-      PredictStored(run, contacts.calibrated, StoredErrors(stored, run.model.robot));
+      PredictStored(run, contacts.calibrated, ErrorsByName(run.model.robot, stored.joint_errors));
   run.uncalibrated = MakeFigures(run.model, run.observations, before);
   run.calibrated = MakeFigures(run.model, run.observations, after);
   run.gain_in_sds =

@@ -11,7 +11,9 @@
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/pipeline/recording_mistakes.hpp"
 
 namespace elastocal {
 namespace {
@@ -111,10 +113,22 @@ void SetError(const CauseReport& report, const std::string& name, double error, 
   json[name + "_" + report.error_unit()] = report.error_factor() * error;
 }
 
-/// "2.66 mm", "1.02 sds of noise".
+const char* UnitInWords(const CauseReport& report) {
+  return report.in_metres ? "mm" : "standard deviations of noise";
+}
+
+/// "2.66 mm", "1.02 standard deviations of noise".
 std::string ErrorInWords(const CauseReport& report, double error) {
-  return fmt::format("{:.2f} {}", report.error_factor() * error,
-                     report.in_metres ? "mm" : "standard deviations of noise");
+  return fmt::format("{:.2f} {}", report.error_factor() * error, UnitInWords(report));
+}
+
+/// "from 2.66 to 2.30 mm": their difference has two significant digits or more.
+std::string FallInWords(const CauseReport& report, double before, double after) {
+  const double factor = report.error_factor(), fall = factor * std::abs(before - after);
+  const int decimals =
+      fall > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(fall))), 2, 6) : 2;
+  return fmt::format("from {:.{}f} to {:.{}f} {}", factor * before, decimals, factor * after,
+                     decimals, UnitInWords(report));
 }
 
 Json CandidateJson(const CauseReport& report, const CauseFinding& finding) {
@@ -155,13 +169,18 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
     project.elasticity.extra = extra;
   };
   Diagnosis diagnosis;
+  const Assumptions told = RecordedAssumptions(robot);
   if (project.contact) {
-    const ObservationTables tables = ReadObservationTables(recordings, project);
     as_calibrated();
-    diagnosis.report = StudyObservedCauses(project, tables, seed);
-    diagnosis.recording = fmt::format("{}", fmt::join(tables.observations.files, ", "));
+    const ContactStart begin = StartContacts(
+        project, recordings, {.accept = told.accept, .prior = told.prior, .days = told.days});
+    diagnosis.report =
+        StudyObservedCauses(project, begin.model, begin.observations,
+                            EstimateObserved(begin.model, begin.observations, {}).fit, seed);
+    diagnosis.recording = fmt::format("{}", fmt::join(begin.observations.files, ", "));
   } else {
-    const Measurements measured = ReadMeasurements(project, recordings);
+    Measurements measured = ReadMeasurements(project, recordings);
+    AcceptMistakes(project, told.accept, measured);
     as_calibrated();
     diagnosis.report = StudyCauses(project, measured, seed);
     diagnosis.recording = measured.calibration.source;
@@ -180,10 +199,10 @@ std::string DescribeCause(const CauseReport& report, const CauseFinding& finding
   const std::size_t dot = finding.cause.rfind('.');
   std::string what = finding.cause.substr(dot + 1);
   std::replace(what.begin(), what.end(), '_', ' ');
-  return fmt::format("{}: {} of {}, {}; the held-out error {} by {}", finding.cause.substr(0, dot),
-                     what, SizeOf(report, finding), ByWhat(correction.shape),
-                     finding.gain >= 0.0 ? "falls" : "rises",
-                     ErrorInWords(report, std::abs(finding.gain)));
+  return fmt::format("{}: {} of {}, {}; the held-out error {} by {:.2g} {}",
+                     finding.cause.substr(0, dot), what, SizeOf(report, finding),
+                     ByWhat(correction.shape), finding.gain >= 0.0 ? "falls" : "rises",
+                     report.error_factor() * std::abs(finding.gain), UnitInWords(report));
 }
 
 std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
@@ -197,9 +216,8 @@ std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
                     [](const CauseFinding& finding) { return finding.p_adjusted < kLevel; });
   if (search.accepted) {
     sentences.push_back(fmt::format(
-        "{} of {} causes together take the held-out error from {:.2f} to {} (nested folds):",
-        search.chosen.size(), search.findings.size(), report.error_factor() * search.error,
-        ErrorInWords(report, search.nested_error)));
+        "{} of {} causes together take the held-out error {} (nested folds):", search.chosen.size(),
+        search.findings.size(), FallInWords(report, search.error, search.nested_error)));
     for (const CauseFinding& finding : search.chosen) {
       sentences.push_back("  " + DescribeCause(report, finding));
       if (finding.rivals.empty()) continue;
@@ -210,8 +228,8 @@ std::vector<std::string> DescribeDiagnosis(const CauseReport& report) {
     }
   } else if (significant > 0) {
     sentences.push_back(fmt::format(
-        "{} of {} causes are significant, but no choice of them lowers the held-out error of {} by "
-        "more than its uncertainty (nested folds):",
+        "{} of {} causes are significant, but no choice of them lowers the held-out error of {} so "
+        "far that it is worth it (nested folds):",
         significant, search.findings.size(), ErrorInWords(report, search.error)));
     for (const CauseFinding& finding : search.findings) {
       if (finding.p_adjusted >= kLevel) break;

@@ -18,7 +18,9 @@ struct Diagnosis {
   double seconds = 0.0;
 };
 
-/// Studies the recording that the calibration in a folder was made from (runs.json beside it).
+/// Studies the recording that the calibration in a folder was made from (runs.json beside it), with
+/// the mistakes corrected that it was told to correct; of tables of observations also beside the
+/// earlier calibration that it began with.
 /// Throws InputError where that, the project or the recording is not there or has changed.
 Diagnosis Diagnose(const std::filesystem::path& folder, const std::filesystem::path& project,
                    std::optional<std::uint64_t> seed);

@@ -200,6 +200,7 @@ std::vector<std::string> CorrectObservations(const std::vector<std::string>& acc
     if (!done.insert(name).second) RefuseName(name, "given twice");
     undone.push_back(ApplyName(name, model, observations));
   }
+  if (!undone.empty()) NoteApproach(observations);
   return undone;
 }
 

@@ -74,6 +74,11 @@ std::string UpdateRuns(const std::string& runs, const RunRecord& record) {
     item["inputs"].push_back(
         {{"file", input.file}, {"bytes", input.bytes}, {"sha256", input.sha256}});
   }
+  if (record.assumptions) {
+    item["accept"] = record.assumptions->accept;
+    item["prior"] = record.assumptions->prior;
+    item["days"] = record.assumptions->days;
+  }
   json[record.command] = std::move(item);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -16,6 +16,13 @@ struct InputRecord {
   std::string sha256;
 };
 
+/// What a calibration was told beside its inputs.
+struct Assumptions {
+  std::vector<std::string> accept = {};  ///< mistakes that were corrected
+  std::string prior = {};                ///< an earlier calibration; empty: none
+  double days = 1.0;                     ///< since then
+};
+
 /// How a result came about: enough to get it again.
 struct RunRecord {
   std::string command;                ///< "calibrate"
@@ -24,6 +31,7 @@ struct RunRecord {
   std::optional<std::uint64_t> seed;  ///< none: the project's, or the default
   std::vector<InputRecord> inputs;
   std::string folder = {};  ///< in which it was typed: relative names start there
+  std::optional<Assumptions> assumptions = {};  ///< of `calibrate`
 };
 
 /// Size and checksum of files, in their order; those that cannot be read, or are larger than 4 GiB,

@@ -262,4 +262,19 @@ ErrorModel SelectMarkers(const ErrorModel& model, const std::vector<std::string>
   return result;
 }
 
+std::map<std::string, double> NamedErrors(const ErrorModel& model, const Eigen::VectorXd& errors) {
+  std::map<std::string, double> named;
+  for (int i = 0; i < model.parameter_count(); ++i) named[model.parameters[i].name] = errors[i];
+  return named;
+}
+
+Eigen::VectorXd ErrorsByName(const ErrorModel& model, const std::map<std::string, double>& named) {
+  Eigen::VectorXd errors = Eigen::VectorXd::Zero(model.parameter_count());
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const auto found = named.find(model.parameters[i].name);
+    if (found != named.end()) errors[i] = found->second;
+  }
+  return errors;
+}
+
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -84,5 +85,13 @@ ErrorModel MakeErrorModel(RobotTree tree, std::vector<Marker> markers,
 /// stay. Throws InputError with the nearest known name for an unknown name, and
 /// std::invalid_argument for a name given twice.
 ErrorModel SelectMarkers(const ErrorModel& model, const std::vector<std::string>& names);
+
+/// Errors by the names of their parameters.
+std::map<std::string, double> NamedErrors(const ErrorModel& model, const Eigen::VectorXd& errors);
+
+/// For each parameter of the model the error of its name; 0 where there is none. So the errors of
+/// one model of a robot become those of a wider one: ErrorsByName(wide, NamedErrors(model,
+/// errors)).
+Eigen::VectorXd ErrorsByName(const ErrorModel& model, const std::map<std::string, double>& named);
 
 }  // namespace elastocal
