@@ -17,8 +17,8 @@ struct ReaderOptions {
   std::string joints_topic = {};  ///< of a bag with several topics of joint states
   std::string tf_frame = {};      ///< of a bag's tf: the cameras' frame
   std::vector<std::string> tf_bodies = {};  ///< frames that are bodies; empty: all that move in it
-  bool salvage =
-      false;  ///< reads an MCAP bag that was not closed or was cut off, up to where it ends
+  /// An MCAP bag that was not closed or was cut off is read up to where it ends.
+  bool salvage = false;
 };
 
 /// What the names of columns say of a table of static postures.
