@@ -106,9 +106,9 @@ TEST_F(Batch, ThePriorOfAFleetServesTheNextRobot) {
 TEST_F(Batch, TheSameUnderMpirun) {
   if (std::system("mpirun --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "there is no mpirun";
   ASSERT_EQ(Run("alone").exit_code, 0);
-  const std::string command =
-      "mpirun --allow-run-as-root --oversubscribe -n 2 " ELASTOCAL_PROGRAM " batch " + manifest_ +
-      " -o " + Folder("ranks") + " -q >" + Folder("mpirun.log") + " 2>&1";
+  const std::string command = "mpirun --allow-run-as-root --oversubscribe -n 2 " + ProgramFile() +
+                              " batch " + manifest_ + " -o " + Folder("ranks") + " -q >" +
+                              Folder("mpirun.log") + " 2>&1";
   ASSERT_EQ(std::system(command.c_str()), 0) << ReadFile(Folder("mpirun.log"));
   for (const char* file : {"prior/covariance.csv", "family.csv", "arm_4/covariance.csv"}) {
     EXPECT_EQ(Read("alone", file), Read("ranks", file)) << file;
@@ -120,7 +120,7 @@ TEST_F(Batch, AnInterruptionSaysHowFarItCame) {
   std::string manifest = ReadFile(manifest_);
   scratch_.Write("fleet.yaml", manifest.replace(manifest.find("robots: 4"), 9, "robots: 400"));
   const std::string out = Folder("out"), log = Folder("log");
-  const std::string command = ELASTOCAL_PROGRAM " batch " + manifest_ + " -o " + out +
+  const std::string command = ProgramFile() + " batch " + manifest_ + " -o " + out +
                               " --workers 1 2>" + log + " & process=$!; while [ ! -e " + out +
                               "/arm_1.done.json ] && kill -0 $process; do sleep 0.02; done; kill "
                               "-TERM $process; wait $process; test $? -eq 143";

@@ -132,7 +132,7 @@ TEST_F(Program, AFullDiskLeavesTheEarlierResults) {
   const std::string urdf = ReadFile(out_ + "/arm6_calibrated.urdf");
   const std::string err = (scratch_.path() / "err").string();
   // No file may be longer than 30 blocks: the page does not fit any more.
-  const std::string command = "ulimit -f 30; " ELASTOCAL_PROGRAM " calibrate " + project_ +
+  const std::string command = "ulimit -f 30; " + ProgramFile() + " calibrate " + project_ +
                               " --recording " + recording_ + " -o " + out_ + " 2> " + err +
                               " > /dev/null";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
@@ -142,7 +142,7 @@ TEST_F(Program, AFullDiskLeavesTheEarlierResults) {
   for (const auto& entry : std::filesystem::directory_iterator(out_)) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
   }
-  const std::string full = ELASTOCAL_PROGRAM " inspect " + project_ + " > /dev/full 2> " + err;
+  const std::string full = ProgramFile() + " inspect " + project_ + " > /dev/full 2> " + err;
   EXPECT_EQ(WEXITSTATUS(std::system(full.c_str())), 3);
 }
 

@@ -54,7 +54,7 @@ pid_t Start(const std::string& arguments) {
   const int nowhere = open("/dev/null", O_RDWR);
   for (int descriptor = 0; descriptor < 3; ++descriptor) dup2(nowhere, descriptor);
   std::istringstream stream(arguments);
-  std::vector<std::string> words = {ELASTOCAL_PROGRAM};
+  std::vector<std::string> words = {ProgramFile()};
   for (std::string word; stream >> word;) words.push_back(word);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -142,7 +142,7 @@ TEST_F(Report, TheRecordIsReadFromAnyFolder) {
   std::filesystem::copy(project_, scratch_.path() / "arm6_project.yaml");
   std::filesystem::copy(SourceFile("tests/robots/arm6.urdf"), scratch_.path() / "arm6.urdf");
   const std::string recording = std::filesystem::path(recording_).filename().string();
-  const std::string go = "cd " + scratch_.path().string() + " && " ELASTOCAL_PROGRAM;
+  const std::string go = "cd " + scratch_.path().string() + " && " + ProgramFile();
   ASSERT_EQ(std::system(
                 (go + " calibrate arm6_project.yaml --recording " + recording + " -o typed --quiet")
                     .c_str()),

@@ -21,12 +21,18 @@ std::string Contents(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::string ProgramFile() { return ELASTOCAL_PROGRAM; }
+
+std::filesystem::path GeneratedFile(const std::string& name) {
+  return std::filesystem::path(ELASTOCAL_GENERATED) / name;
+}
+
 ProgramResult RunProgram(const std::string& arguments) {
   const ScratchFolder scratch;
   const auto out = scratch.path() / "out";
   const auto err = scratch.path() / "err";
-  const std::string command = std::string(ELASTOCAL_PROGRAM) + " " + arguments + " >" +
-                              out.string() + " 2>" + err.string() + " </dev/null";
+  const std::string command =
+      ProgramFile() + " " + arguments + " >" + out.string() + " 2>" + err.string() + " </dev/null";
   const int status = std::system(command.c_str());
   ProgramResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace elastocal {
@@ -10,6 +11,12 @@ struct ProgramResult {
   int exit_code = -1;
   std::string out, err;
 };
+
+/// The built `elastocal`.
+std::string ProgramFile();
+
+/// What the build generates from its definitions: the manual page, the completions of shells.
+std::filesystem::path GeneratedFile(const std::string& name);
 
 /// Runs the built `elastocal` with these arguments, as a shell would.
 ProgramResult RunProgram(const std::string& arguments);

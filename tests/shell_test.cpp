@@ -19,9 +19,7 @@ namespace {
 const std::vector<std::string> kCommands = {"inspect",  "calibrate", "validate", "compare", "demo",
                                             "simulate", "design",    "assess",   "report",  "plan"};
 
-std::string Generated(const std::string& file) {
-  return ReadFile(std::filesystem::path(ELASTOCAL_GENERATED) / file);
-}
+std::string Generated(const std::string& file) { return ReadFile(GeneratedFile(file)); }
 
 /// All long options that the help of a command shows.
 std::vector<std::string> HelpOptions(const std::string& command) {
@@ -53,7 +51,7 @@ bool IsInstalled(const std::string& program) { return Shell("command -v " + prog
 std::string Completed(const std::string& words, const std::string& here = ".") {
   const ScratchFolder scratch;
   const std::string script =
-      scratch.Write("complete.sh", ". '" ELASTOCAL_GENERATED "/elastocal'\ncd '" + here +
+      scratch.Write("complete.sh", ". '" + GeneratedFile("elastocal").string() + "'\ncd '" + here +
                                        "'\nCOMP_WORDS=(" + words +
                                        ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_elastocal\n"
                                        "echo \"${COMPREPLY[*]}\"\n");
@@ -92,7 +90,7 @@ TEST(Shell, EveryOptionIsInManualAndCompletions) {
 }
 
 TEST(Shell, ManualPageHasNoFaults) {
-  const std::string page = ELASTOCAL_GENERATED "/elastocal.1";
+  const std::string page = GeneratedFile("elastocal.1");
   if (!IsInstalled("groff")) GTEST_SKIP() << "no groff";
   const auto [faults, fine] = Shell("groff -man -ww -z -Tascii " + page);
   EXPECT_TRUE(fine);
@@ -123,7 +121,7 @@ TEST(Shell, BashCompletesFiles) {
 
 TEST(Shell, ZshReadsItsCompletion) {
   if (!IsInstalled("zsh")) GTEST_SKIP() << "no zsh";
-  const auto [faults, fine] = Shell("zsh -n " ELASTOCAL_GENERATED "/_elastocal");
+  const auto [faults, fine] = Shell("zsh -n " + GeneratedFile("_elastocal").string());
   EXPECT_TRUE(fine);
   EXPECT_EQ(faults, "");
 }

@@ -26,7 +26,7 @@ std::string RunOnTerminal(const std::string& arguments) {
   int screen = -1;
   const pid_t child = forkpty(&screen, nullptr, nullptr, &size);
   if (child == 0) {
-    const std::string command = std::string(ELASTOCAL_PROGRAM) + " " + arguments;
+    const std::string command = ProgramFile() + " " + arguments;
     execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     _exit(127);
   }

@@ -18,7 +18,7 @@
 namespace elastocal {
 namespace {
 
-TEST(StandingDraft, AQuadrupedStandsOnBalls) {
+TEST(StandingDraftStudy, AQuadrupedStandsOnBalls) {
   const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
   EXPECT_TRUE(draft.stands);
   const ScratchFolder folder;
