@@ -8,6 +8,7 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "tests/program_fixture.hpp"
 

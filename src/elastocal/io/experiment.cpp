@@ -5,6 +5,7 @@
 #include <array>
 
 #include <yaml-cpp/emitter.h>
+#include <yaml-cpp/stlemitter.h>
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/files/yaml_value.hpp"
