@@ -129,7 +129,10 @@ class ArmWithCamera : public ArmWithTracker {
                         bool unit_known = true) const {
     const ObservedRobot model = ModelOf(ProjectWith(kRightMm, kRightMm, false, unit_known));
     Observations spoilt = Seen(model);
-    std::erase_if(spoilt.all, [&](const Observation& of) { return of.measured.size() != size; });
+    bool odd = false;  // one in two tells as much, in half the time
+    std::erase_if(spoilt.all, [&](const Observation& of) {
+      return of.measured.size() != size || (size == 8 && (odd = !odd));
+    });
     for (Observation& of : spoilt.all) spoil(of.measured);
     std::string found;
     for (const std::string& one : FindObservedMistakes(model, spoilt)) {

@@ -43,4 +43,18 @@ inline Eigen::MatrixXd DenseJacobian(LeastSquaresProblem& problem, const Eigen::
   return J;
 }
 
+/// The same by central differences.
+inline Eigen::MatrixXd DifferenceJacobian(LeastSquaresProblem& problem, const Eigen::VectorXd& x,
+                                          double step) {
+  Eigen::MatrixXd J;
+  for (Eigen::Index u = 0; u < x.size(); ++u) {
+    const Eigen::VectorXd aside = step * Eigen::VectorXd::Unit(x.size(), u);
+    const Eigen::VectorXd ahead = AllResiduals(problem, x + aside);
+    const Eigen::VectorXd behind = AllResiduals(problem, x - aside);
+    if (u == 0) J.resize(ahead.size(), x.size());
+    J.col(u) = (ahead - behind) / (2.0 * step);
+  }
+  return J;
+}
+
 }  // namespace elastocal

@@ -188,7 +188,9 @@ TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {
   EXPECT_GT(compared, 100);
 }
 
-/// Held-out distances of the full model, m, as `calibrate --kfold 5` finds them.
+constexpr int kFolds = 3;
+
+/// Held-out distances of the full model, m, as `calibrate --kfold 3` finds them.
 Eigen::MatrixXd HeldOutDistances(const KnockExperiment& experiment, const Recording& recording,
                                  int knocks_of_all) {
   const Project& project = experiment.robot.project;
@@ -200,8 +202,8 @@ Eigen::MatrixXd HeldOutDistances(const KnockExperiment& experiment, const Record
   comparison.kinds = {ModelKind::kFull};
   comparison.results[static_cast<int>(ModelKind::kFull)] =
       Calibrate(robot.model, measured.calibration, robot.base, ModelKind::kFull, {});
-  const CrossValidation folds = CrossValidateExperiment({project, recording, {}, {}}, robot,
-                                                        comparison, {.folds = 5, .threads = 2});
+  const CrossValidation folds = CrossValidateExperiment(
+      {project, recording, {}, {}}, robot, comparison, {.folds = kFolds, .threads = 2});
   const auto full = static_cast<int>(ModelKind::kFull);
   EXPECT_EQ(folds.distances[full].cols(), recording.marker_count());
   EXPECT_LE(folds.metrics_without_outliers[full].observations, folds.metrics[full].observations);
@@ -222,7 +224,7 @@ bool Between(const std::vector<int>& fold_of, int i, int knock) {
 // only three postures follow, as few as it can be found from. Each fold finds the knock by itself.
 TEST(Knock, FoldsErrOnlyByAKnockThatTheirTrainingPosturesDoNotShow) {
   const KnockExperiment experiment(16);
-  const std::vector<int> fold_of = DealFolds(experiment.Clean(), {.folds = 5});
+  const std::vector<int> fold_of = DealFolds(experiment.Clean(), {.folds = kFolds});
   const auto with_knock_at = [&](int posture) {
     Recording recording = experiment.Clean();
     experiment.Push("LHAND", posture, recording);

@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "elastocal/cli/calibration_report.hpp"
 #include "elastocal/cli/calibration_run.hpp"
+#include "elastocal/cli/command_result.hpp"
 #include "elastocal/cli/contact_commands.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
@@ -24,6 +24,29 @@ FoldUnit UnitOf(const std::string& word) {
   return word == "session" ? FoldUnit::kSession : FoldUnit::kPosture;
 }
 
+CommandResult CalibrateByMarkers(const CalibrateOptions& options, const Project& project,
+                                 const std::vector<std::filesystem::path>& recordings,
+                                 CalibrationRun& run) {
+  run =
+      CalibrateExperiment(project, recordings,
+                          {.folds = options.folds,
+                           .fold_unit = UnitOf(options.fold_by),
+                           .threads = options.threads,
+                           .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
+                                                                             : ZeroOffsets::kOrigin,
+                           .seed = options.common.seed,
+                           .accept = options.accept,
+                           .prior = options.prior,
+                           .days = options.days,
+                           .progress = TerminalSteps("reading and fitting", options.common.quiet)});
+  return {.files = MakeCalibrationFiles(project, run),
+          .json = {},
+          .text = DescribeRun(run, options.common.verbose),
+          .warnings = run.warnings,
+          .errors = run.verdict.objections,
+          .fine = run.deployable()};
+}
+
 }  // namespace
 
 int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
@@ -32,10 +55,8 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
                                                       options.recordings.end());
   const Project project = ReadProject(options.project);
-  if (project.contact) {
-    if (options.fold_by != "posture")
-      throw InputError("--fold-by " + options.fold_by + " is about recordings of trials");
-    return RunContactCalibration(options, project);
+  if (project.contact && options.fold_by != "posture") {
+    throw InputError("--fold-by " + options.fold_by + " is about recordings of trials");
   }
   std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   OutputSet outputs;
@@ -51,34 +72,21 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
 
   // Large recordings take a while: their checksums are made on another thread.
   auto inputs_read = std::async(std::launch::async, RecordInputs, inputs);
-  CalibrationRun run =
-      CalibrateExperiment(project, recordings,
-                          {.folds = options.folds,
-                           .fold_unit = UnitOf(options.fold_by),
-                           .threads = options.threads,
-                           .zero_offsets = options.zero_offsets == "encoder" ? ZeroOffsets::kEncoder
-                                                                             : ZeroOffsets::kOrigin,
-                           .seed = options.common.seed,
-                           .accept = options.accept,
-                           .prior = options.prior,
-                           .days = options.days,
-                           .progress = TerminalSteps("reading and fitting", options.common.quiet)});
-  const auto files = MakeCalibrationFiles(project, run);
+  CalibrationRun run;
+  CommandResult result = project.contact ? CalibrateByContacts(options, project, recordings)
+                                         : CalibrateByMarkers(options, project, recordings, run);
+  if (!result.fine) result.errors.emplace_back("no calibrated URDF is written");
   RunRecord record = MakeRunRecord("calibrate", options.common, inputs_read.get());
   record.assumptions = {options.accept, options.prior, options.days};
-  const std::string no_report = SetResults(folder, files, record, outputs);
-  outputs.Set(options.common.json_file, files.at("summary.json"));
+  const std::string no_report = SetResults(folder, result.files, record, outputs);
+  outputs.Set(options.common.json_file, result.files.at("summary.json"));
   outputs.Publish();
 
-  Print(quiet, DescribeRun(run, options.common.verbose));
-  PrintWarnings(run.warnings, options.common.verbose);
-  for (const std::string& objection : run.verdict.objections) spdlog::error("{}", objection);
-  if (!run.deployable()) spdlog::error("no calibrated URDF is written");
+  result.Print(options.common);
   Print(quiet, fmt::format("\nWritten to {}\n", options.output));
   PrintReportPlace(folder, no_report, quiet);
-  const bool deployable = run.deployable();
   if (run_out != nullptr) *run_out = std::move(run);
-  return deployable ? kFine : kNotConverged;
+  return result.exit_code();
 }
 
 void AddCalibrate(CLI::App& app, Action& action) {

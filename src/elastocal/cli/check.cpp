@@ -6,8 +6,8 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "elastocal/cli/command_result.hpp"
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/contact_check.hpp"
 #include "elastocal/cli/figures.hpp"
@@ -25,14 +25,6 @@
 
 namespace elastocal::cli {
 namespace {
-
-struct CheckCommand {
-  CommonOptions common;
-  std::string project, calibration;
-  std::string output;                  ///< posture file; empty: none
-  std::vector<std::string> recording;  ///< one; of tables of observations several
-  CheckOptions check;
-};
 
 std::string PlaceOf(const Recording& recording, Eigen::Index posture) {
   return recording.line.empty()
@@ -119,22 +111,45 @@ std::string DescribeCheck(const CheckRun& run, const CheckCommand& command) {
   return text + DescribeMarkers(check.markers) + DescribeSensitivity(check);
 }
 
-int Check(const CheckCommand& command) {
-  const Project project = ReadProject(command.project);
-  if (project.contact) {
-    if (command.check.joints.new_markers) {
-      throw InputError("check --new-markers: " + project.file.string() +
-                       " has contact or instruments; a project with markers was expected");
-    }
-    return RunContactCheck(
-        {command.common, command.calibration, command.output, command.recording, command.check},
-        project);
+CommandResult CheckByMarkers(const CheckCommand& command, const Project& project) {
+  CheckOptions options = command.check;
+  options.seed = command.common.seed;
+  const CheckRun run =
+      CheckCalibration(project, command.calibration, command.recording.front(), options);
+  const NextPostures next =
+      DesignNextPostures(project, command.calibration, run, options, kNextPostures,
+                         TerminalProgress("designed chain", command.common.Silent()));
+  CommandResult result;
+  if (!next.postures.empty()) {
+    result.files[command.output] = FormatPostureFile(project.tree, next.postures);
   }
-  if (command.recording.size() > 1) {
+  result.json = MakeCheckJson(project, run, next);
+  result.text = DescribeCheck(run, command) + DescribeNext(project, next, command.output);
+  result.warnings = run.warnings;
+  if (!run.converged()) {
+    result.errors.push_back("the fit has not converged: " + run.estimate.message);
+  }
+  result.fine = run.unchanged();
+  return result;
+}
+
+void RefuseOtherKindsOptions(const CheckCommand& command, const Project& project) {
+  if (project.contact && command.check.joints.new_markers) {
+    throw InputError("check --new-markers: " + project.file.string() +
+                     " has contact or instruments; a project with markers was expected");
+  }
+  if (!project.contact && command.recording.size() > 1) {
     throw InputError(
         "check: several recordings; one was expected, or a project with contact or instruments");
   }
-  std::vector<std::filesystem::path> inputs = InputFiles(project, {command.recording.front()});
+}
+
+int Check(const CheckCommand& command) {
+  const std::vector<std::filesystem::path> recordings(command.recording.begin(),
+                                                      command.recording.end());
+  const Project project = ReadProject(command.project);
+  RefuseOtherKindsOptions(command, project);
+  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   const CalibrationFiles files = FindCalibrationFiles(command.calibration);
   inputs.insert(inputs.end(), {files.calibration, files.covariance});
   OutputSet outputs;
@@ -142,24 +157,14 @@ int Check(const CheckCommand& command) {
   outputs.Declare(command.output, "robot: ");
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
-  CheckOptions options = command.check;
-  options.seed = command.common.seed;
-  const CheckRun run =
-      CheckCalibration(project, command.calibration, command.recording.front(), options);
-  const bool quiet = command.common.Silent();
-  const NextPostures next =
-      DesignNextPostures(project, command.calibration, run, options, kNextPostures,
-                         TerminalProgress("designed chain", quiet));
-  if (!next.postures.empty()) {
-    outputs.Set(command.output, FormatPostureFile(project.tree, next.postures));
-  }
-  outputs.Set(command.common.json_file, MakeCheckJson(project, run, next));
-  outputs.Publish();
 
-  Print(quiet, DescribeCheck(run, command) + DescribeNext(project, next, command.output));
-  PrintWarnings(run.warnings, command.common.verbose);
-  if (!run.converged()) spdlog::error("the fit has not converged: {}", run.estimate.message);
-  return run.unchanged() ? kFine : kNotConverged;
+  const CommandResult result =
+      project.contact ? CheckByContacts(command, project) : CheckByMarkers(command, project);
+  for (const auto& [file, text] : result.files) outputs.Set(file, text);
+  outputs.Set(command.common.json_file, result.json);
+  outputs.Publish();
+  result.Print(command.common);
+  return result.exit_code();
 }
 
 }  // namespace

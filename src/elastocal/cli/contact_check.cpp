@@ -4,16 +4,12 @@
 #include <filesystem>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "elastocal/cli/moved_joints_report.hpp"
 #include "elastocal/cli/next_postures_report.hpp"
-#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
-#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
-#include "elastocal/pipeline/measurements.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -55,36 +51,31 @@ std::string ErrorsByInstrument(const ContactCheck& run) {
 
 }  // namespace
 
-int RunContactCheck(const ContactCheckCommand& command, const Project& project) {
-  const bool quiet = command.common.Silent();
+CommandResult CheckByContacts(const CheckCommand& command, const Project& project) {
   const std::vector<std::filesystem::path> recordings(command.recording.begin(),
                                                       command.recording.end());
-  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
-  const CalibrationFiles files = FindCalibrationFiles(command.calibration);
-  inputs.insert(inputs.end(), {files.calibration, files.covariance});
-  OutputSet outputs;
-  outputs.Protect(inputs);
-  outputs.Declare(command.output, "robot: ");
-  DeclareJson(command.common.json_file, outputs);
-  outputs.Prepare();
   const ContactCheck run = CheckContacts(project, command.calibration, recordings, command.check);
   const NextPostures next =
       DesignNextPostures(project, command.calibration, run, command.check, kNextPostures,
-                         TerminalProgress("drew posture", quiet));
+                         TerminalProgress("drew posture", command.common.Silent()));
+  CommandResult result;
   if (!next.postures.empty()) {
-    outputs.Set(command.output, FormatPostureFile(project.tree, next.postures));
+    result.files[command.output] = FormatPostureFile(project.tree, next.postures);
   }
-  outputs.Set(command.common.json_file, MakeCheckJson(project, run, next));
-  outputs.Publish();
-
-  std::string text = Conclusion(run, command.check.joints.level) + "\n";
-  text += fmt::format("{}, {} postures\n", run.recording, run.observations.posture_count());
-  text += ErrorsByInstrument(run);
-  if (!run.check.suspects.empty() || command.common.verbose) text += "\n" + SuspectTable(run.check);
-  Print(quiet, text + DescribeSensitivity(run.check) + DescribeNext(project, next, command.output));
-  PrintWarnings(run.warnings, command.common.verbose);
-  if (!run.converged) spdlog::error("the fit has not converged: variances did not come to rest");
-  return run.unchanged() ? kFine : kNotConverged;
+  result.json = MakeCheckJson(project, run, next);
+  result.text = Conclusion(run, command.check.joints.level) + "\n" +
+                fmt::format("{}, {} postures\n", run.recording, run.observations.posture_count()) +
+                ErrorsByInstrument(run);
+  if (!run.check.suspects.empty() || command.common.verbose) {
+    result.text += "\n" + SuspectTable(run.check);
+  }
+  result.text += DescribeSensitivity(run.check) + DescribeNext(project, next, command.output);
+  result.warnings = run.warnings;
+  if (!run.converged) {
+    result.errors.emplace_back("the fit has not converged: variances did not come to rest");
+  }
+  result.fine = run.unchanged();
+  return result;
 }
 
 }  // namespace elastocal::cli

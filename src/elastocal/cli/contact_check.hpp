@@ -4,20 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/cli/command_result.hpp"
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/pipeline/contact_check.hpp"
 
 namespace elastocal::cli {
 
-struct ContactCheckCommand {
+struct CheckCommand {
   CommonOptions common;
-  std::string calibration;
+  std::string project, calibration;
   std::string output;                  ///< posture file; empty: none
-  std::vector<std::string> recording;  ///< tables of observations and of corners
+  std::vector<std::string> recording;  ///< one; of tables of observations and of corners several
   CheckOptions check;
 };
 
 /// `check` for a project with contact or instruments.
-int RunContactCheck(const ContactCheckCommand& command, const Project& project);
+CommandResult CheckByContacts(const CheckCommand& command, const Project& project);
 
 }  // namespace elastocal::cli

@@ -2,21 +2,15 @@
 #include "elastocal/cli/contact_commands.hpp"
 
 #include <cmath>
-#include <future>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "elastocal/cli/figures.hpp"
-#include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
-#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/contact_validation.hpp"
-#include "elastocal/pipeline/measurements.hpp"
-#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
@@ -152,23 +146,8 @@ std::string DescribeContactRun(const ContactRun& run) {
 
 }  // namespace
 
-int RunContactCalibration(const CalibrateOptions& options, const Project& project) {
-  const bool quiet = options.common.Silent();
-  const std::filesystem::path folder = options.output;
-  const std::vector<std::filesystem::path> recordings(options.recordings.begin(),
-                                                      options.recordings.end());
-  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
-  if (!options.prior.empty()) {
-    const CalibrationFiles earlier = FindCalibrationFiles(options.prior);
-    inputs.insert(inputs.end(), {earlier.calibration, earlier.covariance});
-  }
-  OutputSet outputs;
-  outputs.Protect(inputs);
-  DeclareResults(folder, CalibrationFileNames(project), outputs);
-  DeclareJson(options.common.json_file, outputs);
-  outputs.Prepare();
-
-  auto inputs_read = std::async(std::launch::async, RecordInputs, inputs);
+CommandResult CalibrateByContacts(const CalibrateOptions& options, const Project& project,
+                                  const std::vector<std::filesystem::path>& recordings) {
   const auto progress = TerminalSteps("reading and fitting", options.common.quiet);
   Progress of_folds;
   if (progress) {
@@ -184,61 +163,36 @@ int RunContactCalibration(const CalibrateOptions& options, const Project& projec
                          .prior = options.prior,
                          .days = options.days,
                          .progress = of_folds});
-  const auto files = MakeContactFiles(project, run);
-  RunRecord record = MakeRunRecord("calibrate", options.common, inputs_read.get());
-  record.assumptions = {options.accept, options.prior, options.days};
-  const std::string no_report = SetResults(folder, files, record, outputs);
-  outputs.Set(options.common.json_file, files.at("summary.json"));
-  outputs.Publish();
-
-  Print(quiet, DescribeContactRun(run));
-  PrintWarnings(run.warnings, options.common.verbose);
-  for (const std::string& objection : run.verdict.objections) spdlog::error("{}", objection);
-  if (!run.deployable()) spdlog::error("no calibrated URDF is written");
-  Print(quiet, fmt::format("\nWritten to {}\n", options.output));
-  PrintReportPlace(folder, no_report, quiet);
-  return run.deployable() ? kFine : kNotConverged;
+  return {.files = MakeContactFiles(project, run),
+          .json = {},
+          .text = DescribeContactRun(run),
+          .warnings = run.warnings,
+          .errors = run.verdict.objections,
+          .fine = run.deployable()};
 }
 
-int RunContactValidation(const ContactValidateOptions& options, const Project& project) {
-  const bool quiet = options.common.Silent();
-  const std::filesystem::path folder = options.output;
-  const std::vector<std::filesystem::path> recordings(options.recording.begin(),
-                                                      options.recording.end());
-  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
-  inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
-  OutputSet outputs;
-  outputs.Protect(inputs);
-  if (!folder.empty()) DeclareResults(folder, {"validation.json"}, outputs);
-  DeclareJson(options.common.json_file, outputs);
-  outputs.Prepare();
-
-  const ContactValidation run = ValidateContacts(project, options.calibration, recordings,
-                                                 options.refit_table, options.accept);
-  const std::string json = MakeContactValidationJson(run);
-  outputs.Set(options.common.json_file, json);
-  std::string no_report;
-  if (!folder.empty()) {
-    no_report =
-        SetResults(folder, {{"validation.json", json}},
-                   MakeRunRecord("validate", options.common, RecordInputs(inputs)), outputs);
-  }
-  outputs.Publish();
-
+CommandResult ValidateByContacts(const Project& project, const std::filesystem::path& calibration,
+                                 const std::vector<std::filesystem::path>& recordings,
+                                 bool refit_table, const std::vector<std::string>& accept) {
+  const ContactValidation run =
+      ValidateContacts(project, calibration, recordings, refit_table, accept);
   std::vector<std::string> header = kFigureHeader;
   header.front() = run.surroundings_refitted ? "table registered anew" : "table as it was";
   TextTable table(header);
   AddFigures("uncalibrated", run.model, run.uncalibrated, table);
   AddFigures("calibrated", run.model, run.calibrated, table);
-  Print(quiet, fmt::format("{}, {} postures\n\n", run.recording, run.observations.posture_count()) +
-                   (run.calibrated.all.touches > 0 ? table.Render() : "") +
-                   InstrumentText(run.model, run.uncalibrated, run.calibrated));
-  PrintWarnings(run.warnings, options.common.verbose);
+  CommandResult result;
+  result.json = MakeContactValidationJson(run);
+  result.text =
+      fmt::format("{}, {} postures\n\n", run.recording, run.observations.posture_count()) +
+      (run.calibrated.all.touches > 0 ? table.Render() : "") +
+      InstrumentText(run.model, run.uncalibrated, run.calibrated);
+  result.warnings = run.warnings;
   for (const std::string& objection : run.objections) {
-    spdlog::error("{}: do not deploy", objection);
+    result.errors.push_back(objection + ": do not deploy");
   }
-  if (!folder.empty()) PrintReportPlace(folder, no_report, quiet);
-  return run.better() ? kFine : kNotConverged;
+  result.fine = run.better();
+  return result;
 }
 
 }  // namespace elastocal::cli

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "elastocal/cli/calibration_run.hpp"
+#include "elastocal/cli/command_result.hpp"
 #include "elastocal/project/project.hpp"
 
 namespace elastocal::cli {
 
-/// `calibrate` for a project with contact: prints what touches tell and writes the output folder.
-int RunContactCalibration(const CalibrateOptions& options, const Project& project);
+/// `calibrate` for a project with contact or instruments, whose recordings are tables of
+/// observations.
+CommandResult CalibrateByContacts(const CalibrateOptions& options, const Project& project,
+                                  const std::vector<std::filesystem::path>& recordings);
 
-struct ContactValidateOptions {
-  CommonOptions common;
-  std::string calibration;
-  std::vector<std::string> recording;  ///< tables of observations and of corners
-  std::string output;                  ///< folder; empty: none
-  bool refit_table = false;
-  std::vector<std::string> accept;  ///< mistakes that are corrected first
-};
-
-/// `validate` for such a project.
-int RunContactValidation(const ContactValidateOptions& options, const Project& project);
+/// `validate` for such a project. `accept`: mistakes that are corrected first.
+CommandResult ValidateByContacts(const Project& project, const std::filesystem::path& calibration,
+                                 const std::vector<std::filesystem::path>& recordings,
+                                 bool refit_table, const std::vector<std::string>& accept);
 
 }  // namespace elastocal::cli

@@ -5,8 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "elastocal/cli/command_result.hpp"
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/contact_commands.hpp"
 #include "elastocal/cli/figures.hpp"
@@ -70,42 +70,53 @@ std::string VerdictText(const ValidationRun& run) {
   return text + ".\n\n";
 }
 
-void PrintRun(const ValidationRun& run, const CommonOptions& options) {
-  const bool quiet = options.Silent();
-  Print(quiet, VerdictText(run) +
-                   fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
-                               run.recording.source, run.calibration.recording,
-                               run.recording.posture_count(), run.recording.marker_count()) +
-                   Table(run));
+std::string RunText(const ValidationRun& run) {
+  std::string text = VerdictText(run) +
+                     fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
+                                 run.recording.source, run.calibration.recording,
+                                 run.recording.posture_count(), run.recording.marker_count()) +
+                     Table(run);
   const std::vector<Outlier>& outliers = run.transfer.calibrated.result.outliers;
   for (std::size_t i = 0; i < std::min<std::size_t>(10, outliers.size()); ++i) {
-    Print(quiet,
-          fmt::format("  outlier {}: off by {:.3f} mm\n",
-                      DescribeObservation(run.recording, outliers[i].posture, outliers[i].marker),
-                      1e3 * outliers[i].residual));
+    text += fmt::format("  outlier {}: off by {:.3f} mm\n",
+                        DescribeObservation(run.recording, outliers[i].posture, outliers[i].marker),
+                        1e3 * outliers[i].residual);
   }
-  PrintWarnings(run.warnings, options.verbose);
-  for (const std::string& mistake : run.mistakes) spdlog::error("{}", mistake);
-  if (!run.converged()) spdlog::error("the fit of waist and markers has not converged");
+  return text;
+}
+
+std::vector<std::string> ErrorsOf(const ValidationRun& run) {
+  std::vector<std::string> errors = run.mistakes;
+  if (!run.converged()) errors.emplace_back("the fit of waist and markers has not converged");
   if (!run.plausible()) {
-    spdlog::error(
+    errors.push_back(fmt::format(
         "the calibrated robot errs by {:.3g} mm on {}, where one that was never calibrated should "
         "err by some {:.2g} mm: recording, project and calibration do not belong together",
         1e3 * run.transfer.calibrated.metrics_all.rmse_3d, run.recording.source,
-        1e3 * run.expected_error);
+        1e3 * run.expected_error));
   }
-  if (!run.better()) spdlog::error("calibrated is no better than uncalibrated here: do not deploy");
+  if (!run.better()) {
+    errors.emplace_back("calibrated is no better than uncalibrated here: do not deploy");
+  }
+  return errors;
 }
 
-int Validate(const ValidateOptions& options) {
-  const bool quiet = options.common.Silent();
-  const std::filesystem::path folder = options.output;
-  const Project project = ReadProject(options.project);
+CommandResult ValidateByMarkers(const ValidateOptions& options, const Project& project) {
+  const ValidationRun run = ValidateCalibration(
+      project, options.calibration, options.recording.front(),
+      {.frozen = options.frozen, .seed = options.common.seed, .accept = options.accept});
+  return {.files = {},
+          .json = MakeValidationJson(run),
+          .text = RunText(run),
+          .warnings = run.warnings,
+          .errors = ErrorsOf(run),
+          .fine = run.converged() && run.better() && run.plausible() && run.mistakes.empty()};
+}
+
+void RefuseOtherKindsOptions(const ValidateOptions& options, const Project& project) {
   if (project.contact) {
     if (options.frozen) throw InputError("--frozen is about markers; touches have --refit table");
-    return RunContactValidation({options.common, options.calibration, options.recording,
-                                 options.output, options.refit == "table", options.accept},
-                                project);
+    return;
   }
   if (!options.refit.empty()) throw InputError("--refit table is about touches of a table");
   if (options.recording.size() > 1) {
@@ -113,7 +124,16 @@ int Validate(const ValidateOptions& options) {
                      " files; one recording was expected, because the project has neither contact "
                      "nor instruments");
   }
-  std::vector<std::filesystem::path> inputs = InputFiles(project, {options.recording.front()});
+}
+
+int Validate(const ValidateOptions& options) {
+  const bool quiet = options.common.Silent();
+  const std::filesystem::path folder = options.output;
+  const std::vector<std::filesystem::path> recordings(options.recording.begin(),
+                                                      options.recording.end());
+  const Project project = ReadProject(options.project);
+  RefuseOtherKindsOptions(options, project);
+  std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
   OutputSet outputs;
   outputs.Protect(inputs);
@@ -121,23 +141,22 @@ int Validate(const ValidateOptions& options) {
   DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
 
-  const ValidationRun run = ValidateCalibration(
-      project, options.calibration, options.recording.front(),
-      {.frozen = options.frozen, .seed = options.common.seed, .accept = options.accept});
-  const std::string json = MakeValidationJson(run);
-  outputs.Set(options.common.json_file, json);
+  const CommandResult result = project.contact
+                                   ? ValidateByContacts(project, options.calibration, recordings,
+                                                        options.refit == "table", options.accept)
+                                   : ValidateByMarkers(options, project);
+  outputs.Set(options.common.json_file, result.json);
   std::string no_report;
   if (!folder.empty()) {
     no_report =
-        SetResults(folder, {{"validation.json", json}},
+        SetResults(folder, {{"validation.json", result.json}},
                    MakeRunRecord("validate", options.common, RecordInputs(inputs)), outputs);
   }
   outputs.Publish();
 
-  PrintRun(run, options.common);
+  result.Print(options.common);
   if (!folder.empty()) PrintReportPlace(folder, no_report, quiet);
-  const bool fine = run.converged() && run.better() && run.plausible() && run.mistakes.empty();
-  return fine ? kFine : kNotConverged;
+  return result.exit_code();
 }
 
 }  // namespace

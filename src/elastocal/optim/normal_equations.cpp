@@ -273,6 +273,10 @@ ExplainedRows NormalEquations::ExplainedVariances(const Eigen::MatrixXd& covaria
   return explained;
 }
 
+bool NormalEquations::IsIn(const std::vector<int>& cluster, int block) const {
+  return cluster[block] >= 0 && problem_.residual_blocks[block].active;
+}
+
 Eigen::MatrixXd NormalEquations::Scores(const std::vector<Eigen::VectorXd>& residuals,
                                         const std::vector<int>& cluster, int clusters) const {
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(information_.rows(), clusters);
@@ -282,18 +286,15 @@ Eigen::MatrixXd NormalEquations::Scores(const std::vector<Eigen::VectorXd>& resi
       scores(layout_[block].unknowns[c], cluster[block]) += slope[static_cast<Eigen::Index>(c)];
     }
   };
-  const auto takes_part = [&](int block) {
-    return cluster[block] >= 0 && problem_.residual_blocks[block].active;
-  };
   for (std::size_t block = 0; block < layout_.size(); ++block) {
     const int b = static_cast<int>(block);
-    if (layout_[block].group < 0 && takes_part(b)) add_own(b);
+    if (layout_[block].group < 0 && IsIn(cluster, b)) add_own(b);
   }
   for (const Group& group : groups_) {
     Eigen::VectorXd own = Eigen::VectorXd::Zero(group.size);
     int of = -1;
     for (int block : group.blocks) {
-      if (!takes_part(block)) continue;
+      if (!IsIn(cluster, block)) continue;
       of = cluster[block];
       add_own(block);
       own += NuisanceJacobian(block).transpose() * residuals[block];
@@ -328,11 +329,8 @@ std::vector<NormalEquations::Addition> NormalEquations::Add(
   // The derivative's part in each cluster, the nuisance taken out.
   Eigen::VectorXd score = Eigen::VectorXd::Zero(factors.rows());
   Eigen::VectorXd information = score;
-  const auto takes_part = [&](int block) {
-    return cluster[block] >= 0 && problem_.residual_blocks[block].active;
-  };
   for (int block = 0; block < static_cast<int>(layout_.size()); ++block) {
-    if (!takes_part(block)) continue;
+    if (!IsIn(cluster, block)) continue;
     score[cluster[block]] += derivative[block].dot(problem_.Residual(block));
     information[cluster[block]] += derivative[block].squaredNorm();
   }
@@ -340,7 +338,7 @@ std::vector<NormalEquations::Addition> NormalEquations::Add(
     Eigen::VectorXd own = Eigen::VectorXd::Zero(group.size);
     int of = -1;
     for (int block : group.blocks) {
-      if (!takes_part(block)) continue;
+      if (!IsIn(cluster, block)) continue;
       of = cluster[block];
       own += NuisanceJacobian(block).transpose() * derivative[block];
     }

@@ -110,6 +110,8 @@ class NormalEquations {
   Columns OwnJacobian(int block) const;
   Eigen::MatrixXd OwnGradients(const std::vector<int>& blocks) const;
   Columns NuisanceJacobian(int block) const;
+  /// Whether an active block is one of a cluster, see Scores.
+  bool IsIn(const std::vector<int>& cluster, int block) const;
 
   const LeastSquaresProblem& problem_;
   std::vector<int> unknowns_, position_;  // position_: of an entry of x among the unknowns; -1

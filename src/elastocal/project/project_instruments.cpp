@@ -21,6 +21,15 @@ std::string InstrumentName(const YamlValue& value, const Project& project) {
   return name.Text();
 }
 
+/// An instrument that is about one point of a link.
+template <typename Setup>
+void ReadPointOfLink(const YamlValue& value, const Project& project, Setup& setup) {
+  setup.name = InstrumentName(value, project);
+  setup.link = LinkNamedBy(value.Get("link"), project.tree);
+  setup.p_link = OptionalPoint(value, "point_mm");
+  value.ReadBounded("mounting_sd_mm", setup.mounting_sd, kOneMm);
+}
+
 /// The columns of the instrument added last: those of the key `columns`, or its name with suffixes.
 void TakeColumns(const YamlValue& value, const std::vector<std::string>& suffixes,
                  Project& project) {
@@ -93,11 +102,8 @@ void ReadPose(const YamlValue& value, const NamedTrackers& trackers, Project& pr
 void ReadPosition(const YamlValue& value, const NamedTrackers& trackers, Project& project) {
   value.ExpectKeys({"name", "link", "tracker", "point_mm", "mounting_sd_mm", "columns"});
   TrackedPointSetup point;
-  point.name = InstrumentName(value, project);
-  point.link = LinkNamedBy(value.Get("link"), project.tree);
+  ReadPointOfLink(value, project, point);
   point.tracker = NamedBy(value.Get("tracker"), "tracker", trackers);
-  point.p_link = OptionalPoint(value, "point_mm");
-  value.ReadBounded("mounting_sd_mm", point.mounting_sd, kOneMm);
   AddTrackedPoint(project.contact->setup, point);
   TakeColumns(value, {"_x", "_y", "_z"}, project);
 }
@@ -128,11 +134,8 @@ void ReadPlane(const YamlValue& value, Project& project, NamedPlanes& planes) {
 void ReadDistance(const YamlValue& value, const NamedPlanes& planes, Project& project) {
   value.ExpectKeys({"name", "link", "plane", "point_mm", "mounting_sd_mm", "columns"});
   PlaneDistanceSetup distance;
-  distance.name = InstrumentName(value, project);
-  distance.link = LinkNamedBy(value.Get("link"), project.tree);
+  ReadPointOfLink(value, project, distance);
   distance.plane = NamedBy(value.Get("plane"), "plane", planes);
-  distance.p_link = OptionalPoint(value, "point_mm");
-  value.ReadBounded("mounting_sd_mm", distance.mounting_sd, kOneMm);
   AddPlaneDistance(project.contact->setup, distance);
   TakeColumns(value, {""}, project);
 }
@@ -141,13 +144,10 @@ void ReadWire(const YamlValue& value, Project& project) {
   value.ExpectKeys({"name", "link", "point_mm", "anchor_mm", "anchor_sd_mm", "zero_sd_mm",
                     "mounting_sd_mm", "columns"});
   WireSetup wire;
-  wire.name = InstrumentName(value, project);
-  wire.link = LinkNamedBy(value.Get("link"), project.tree);
-  wire.p_link = OptionalPoint(value, "point_mm");
+  ReadPointOfLink(value, project, wire);
   wire.p_floor = PointFromMm(value.Get("anchor_mm"));
   value.ReadBounded("anchor_sd_mm", wire.anchor_sd, kOneMm);
   value.ReadBounded("zero_sd_mm", wire.zero_sd, kOneMm);
-  value.ReadBounded("mounting_sd_mm", wire.mounting_sd, kOneMm);
   AddWire(project.contact->setup, wire);
   TakeColumns(value, {""}, project);
 }
