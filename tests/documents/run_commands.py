@@ -102,6 +102,13 @@ def commands_of(block: str) -> list[str]:
     return re.findall(r"(?:^|; |&& )(?:elastocal|\$E|build/release/bin/elastocal) ([a-z][^;\n#]*)", joined, re.MULTILINE)
 
 
+def wrong_scripts(block: str, source: Path) -> list[str]:
+    """Scripts of the repository that a block calls and that are not there or cannot be run as it does."""
+    calls = re.findall(r"^\s*(python3 )?((?:tests|scripts)/[\w./]+)", block, re.MULTILINE)
+    return [f"{path} cannot be run" for by_python, path in calls
+            if not os.access(source / path, os.R_OK if by_python else os.X_OK)]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("source", "program", "python", "chain", "ctest"):
@@ -125,6 +132,7 @@ def main() -> int:
                     errors.append(f"{place}: a command in a block that is not marked sh")
                 continue
             errors += [f"{place}: {wrong}" for c in commands_of(block) if (wrong := known.wrong(c))]
+            errors += [f"{place}: {wrong}" for wrong in wrong_scripts(block, args.source)]
             if mark == "covered by" and reason not in tests:
                 errors.append(f"{place}: there is no test {reason}")
             if not mark:
