@@ -99,6 +99,23 @@ TEST_F(GeneralFaults, AGainOfHalfIsFoundAsHalf) {
   EXPECT_NEAR(std::stod(said.substr(begin.size())), 0.5, 0.005) << said;  // sd 0.0009
 }
 
+// A worn encoder: no posture has anything in common with another one.
+TEST_F(GeneralFaults, PositionsOfOneJointThatScatterAreNamed) {
+  const auto scattered = [&] {
+    return FindScatteredPositions(Calibrate(model_, recorded_, base_, kKind, project_.calibration),
+                                  recorded_, project_.calibration);
+  };
+  EXPECT_FALSE(scattered());
+  Random random(5);
+  recorded_.q.col(CoordinateOf("elbow_joint")) += random.NormalVector(48, 0.8 * kDegree);
+  EXPECT_EQ(Said(), "");
+  const auto found = scattered();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->coordinate, CoordinateOf("elbow_joint"));
+  // By the median of 48 draws; the fit follows a part of them.
+  EXPECT_NEAR(found->off, 0.7 * kDegree, 0.35 * kDegree);
+}
+
 TEST_F(GeneralFaults, AnotherRobotIsNoSlipOfAJoint) {
   const Recording other = Record(model_, base_.kept, 7);
   recorded_.markers.bottomRows(20) = other.markers.bottomRows(20);

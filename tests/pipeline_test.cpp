@@ -183,6 +183,22 @@ TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   Recording recording = as_trial("swing", TrialKind::kCalibration, 1);
   const Recording held_out = as_trial("check", TrialKind::kRandom, 2);
   EXPECT_TRUE(contradictions(recording, held_out).empty());
+
+  const std::vector<int>& markers = project_.clusters.back().markers;
+  Recording exchanged = recording;
+  exchanged.markers.middleCols<3>(3 * markers[0])
+      .swap(exchanged.markers.middleCols<3>(3 * markers[1]));
+  const std::vector<std::string> labels = contradictions(exchanged, held_out);
+  ASSERT_EQ(labels.size(), 1u);
+  EXPECT_NE(labels[0].find("seem exchanged in trial swing"), std::string::npos) << labels[0];
+  Recording in_part = held_out;
+  in_part.markers.block(10, 3 * markers[0], 8, 3)
+      .swap(in_part.markers.block(10, 3 * markers[1], 8, 3));
+  const std::vector<std::string> part = contradictions(recording, in_part);
+  ASSERT_EQ(part.size(), 1u);
+  EXPECT_NE(part[0].find("seem exchanged in 8 postures of trial check"), std::string::npos)
+      << part[0];
+
   recording.q.col(2).array() += 2.0 * M_PI / 180.0;
   const std::vector<std::string> found = contradictions(recording, held_out);
   ASSERT_EQ(found.size(), 1u);

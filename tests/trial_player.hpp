@@ -37,6 +37,7 @@ struct PlayOptions {
   double marker_sd = 0.2e-3;  ///< of a coordinate, m
   double torque_sd = 0.1;     ///< N.m
   int standing = 0;           ///< the link that does not move
+  bool one_by_one = false;    ///< joints move one after the other, the last ones first
   std::uint64_t seed = 1;
 };
 
@@ -85,6 +86,9 @@ class PlayedMotion {
         const double middle = 0.5 * (limits.lower + limits.upper);
         const double half = 0.5 * options.range * (limits.upper - limits.lower);
         postures_(i, c) = random.Uniform(middle - half, middle + half);
+        const auto turn = postures_.cols() * i / postures_.rows();
+        const bool waits = options.one_by_one && turn + c != postures_.cols() - 1;
+        if (waits) postures_(i, c) = i == 0 ? middle : postures_(i - 1, c);
       }
     }
   }

@@ -210,6 +210,24 @@ TEST_F(StandingTest, AnOffsetThatEndsWithItsTrialIsNamed) {
   EXPECT_NEAR(found[0].size, 0.05, 0.005);
 }
 
+// A log in another unit or from another gear: what a joint moves, it moves in other trials too.
+TEST_F(StandingTest, AGainInOneTrialIsNoOffset) {
+  Recording recording = Record();
+  const int joint = FindJoint(robot_.project.tree, "torso_1_joint");
+  const int coordinate = robot_.project.tree.joints[joint].coordinate;
+  const std::vector<int> trials = TrialsThatMove(recording, coordinate);
+  ASSERT_GT(trials.size(), 1u);
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (recording.trial[i] == trials[1]) recording.q(i, coordinate) *= 1.03;
+  }
+  const std::vector<RecordingFault> found = FindRecordingFaults(Estimate(recording), recording, {});
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].kind, FaultKind::kJointGain);
+  EXPECT_EQ(found[0].trial, trials[1]);
+  EXPECT_EQ(found[0].coordinate, coordinate);
+  EXPECT_NEAR(found[0].size, 0.03, 0.003);
+}
+
 // Faults of torque sensors are told from the robot's own errors by statics.
 TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   const Recording clean = Record();

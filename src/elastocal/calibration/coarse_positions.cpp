@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "elastocal/calibration/prediction.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/column_step.hpp"
 
 namespace elastocal {
@@ -18,6 +19,10 @@ constexpr double kTimesChance = 3.0, kMostByChance = 0.8;
 constexpr double kLeastOfRounding = 0.5;
 constexpr double kMostOfStep = 0.6;  // that a position is moved
 constexpr int kSweeps = 3;           // over the joints
+constexpr double kScatter = 0.25 * M_PI / 180.0, kScatterSlide = 1e-3;
+constexpr double kLeftWithoutScatter = 0.5;
+constexpr double kOfMedian = 1.4826;  // a normal deviation's sd over its median size
+constexpr int kSteps = 2;             // of Newton's method
 
 bool IsSliding(const RobotTree& tree, int coordinate) {
   return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
@@ -91,6 +96,54 @@ std::vector<CoarsePositions> FindCoarsePositions(const CalibrationResult& result
     return one.off < kLeastOfRounding * one.step / std::sqrt(12.0);
   });
   return coarse;
+}
+
+std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult& result,
+                                                         const Recording& recording,
+                                                         const CalibrationOptions& options) {
+  const int coordinates = 3 * recording.marker_count();
+  const double chance = kTimesChance / std::max(1, coordinates);
+  if (chance > kMostByChance || recording.posture_count() == 0) return std::nullopt;
+  const Eigen::VectorXd given = SquaresOf(result, recording, options);
+  double least = std::min(kLeftWithoutScatter, 1.0 - chance) * given.sum();
+  std::optional<ScatteredPositions> found;
+  for (const int k : result.model.active_joints) {
+    const Joint& joint = result.model.tree.joints[k];
+    if (joint.mimic) continue;
+    const double enough = joint.type == JointType::kPrismatic ? kScatterSlide : kScatter;
+    Recording moved = recording;
+    auto q = moved.q.col(joint.coordinate);
+    Eigen::VectorXd at = given;
+    for (int step = 0; step < kSteps; ++step) {
+      const Eigen::VectorXd was = q;
+      q.array() -= enough;
+      const Eigen::VectorXd before = SquaresOf(result, moved, options);
+      q.array() += 2.0 * enough;
+      const Eigen::VectorXd after = SquaresOf(result, moved, options);
+      for (int i = 0; i < recording.posture_count(); ++i) {
+        q[i] = was[i] + enough * LeastOf(before[i], at[i], after[i]);
+      }
+      at = SquaresOf(result, moved, options);
+    }
+    if (!(at.sum() < least)) continue;
+    const double off =
+        kOfMedian * Median((q - recording.q.col(joint.coordinate)).cwiseAbs().eval());
+    if (off < enough) continue;
+    least = at.sum();
+    found = {joint.coordinate, off, at.sum() / given.sum()};
+  }
+  return found;
+}
+
+std::string Describe(const ScatteredPositions& scattered, const RobotTree& tree) {
+  const bool slides = IsSliding(tree, scattered.coordinate);
+  char text[256];
+  std::snprintf(text, sizeof text,
+                ": its positions scatter by %.2g %s (sd) about where the markers show them, which "
+                "makes %.0f %% of the squared distances: a noisy or loose encoder, or play?",
+                scattered.off / (slides ? 1e-3 : M_PI / 180.0), slides ? "mm" : "deg",
+                100.0 * (1.0 - scattered.left));
+  return tree.joints[tree.coordinate_joint[scattered.coordinate]].name + text;
 }
 
 bool IsTooCoarse(const CoarsePositions& coarse, const RobotTree& tree) {

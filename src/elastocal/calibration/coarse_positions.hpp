@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,5 +36,23 @@ bool IsTooCoarse(const CoarsePositions& coarse, const RobotTree& tree);
 /// "arm_3_joint: its positions come in steps of 1 deg, and the markers show it up to half a step
 /// beside them (0.29 deg rms): ...".
 std::string Describe(const CoarsePositions& coarse, const RobotTree& tree);
+
+/// A joint whose positions are off by another amount in each posture.
+struct ScatteredPositions {
+  int coordinate = -1;
+  double off = 0.0;   ///< standard deviation, by the median size; rad or m
+  double left = 1.0;  ///< share of the squared distances that is left without
+};
+
+/// The joint, of what a fit leaves, that takes most of the squared distances, half and more, when
+/// it is moved in each posture to where it brings the markers nearest: a worn or loose encoder,
+/// whose errors no column, row or trial has in common. Nothing where the usual posture is off by
+/// less than 0.25 degrees or 1 mm, or where so many numbers would take as much of noise.
+std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult& result,
+                                                         const Recording& recording,
+                                                         const CalibrationOptions& options);
+
+/// "arm_3_joint: its positions scatter by 0.9 deg (sd) about where the markers show them, ...".
+std::string Describe(const ScatteredPositions& scattered, const RobotTree& tree);
 
 }  // namespace elastocal

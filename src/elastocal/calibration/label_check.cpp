@@ -177,7 +177,18 @@ class LabelSuspicionSearch {
     before = std::sqrt(before / count);
     after = std::sqrt(after / count);
     if (before < least || after > kFarNearer * before) return;
-    found_.push_back({.trial = trial,
+    const auto known = std::find_if(found_.begin(), found_.end(), [&](const LabelSuspicion& one) {
+      return one.of_a == a.markers && one.of_b == b.markers;
+    });
+    if (known != found_.end()) {
+      known->trials.push_back(trial);
+      if (before - after > known->before - known->after) {
+        known->before = before;
+        known->after = after;
+      }
+      return;
+    }
+    found_.push_back({.trials = {trial},
                       .a = a.name,
                       .b = b.name,
                       .of_a = a.markers,
@@ -194,7 +205,10 @@ class LabelSuspicionSearch {
 
 /// Whether the labels are exchanged in a posture.
 bool IsExchanged(const Recording& recording, const LabelSuspicion& suspicion, int posture) {
-  if (!recording.trials.empty()) return recording.trial[posture] == suspicion.trial;
+  if (!recording.trials.empty()) {
+    return std::binary_search(suspicion.trials.begin(), suspicion.trials.end(),
+                              recording.trial[posture]);
+  }
   return suspicion.postures.empty() ||
          std::binary_search(suspicion.postures.begin(), suspicion.postures.end(), posture);
 }
@@ -221,10 +235,13 @@ Recording WithoutExchange(const Recording& recording, const LabelSuspicion& susp
 }
 
 std::string DescribeSuspicion(const LabelSuspicion& suspicion, const Recording& recording) {
-  const std::string text =
-      "the labels of " + suspicion.a + " and " + suspicion.b + " are exchanged";
+  std::string text = "the labels of " + suspicion.a + " and " + suspicion.b + " are exchanged";
   if (!recording.trials.empty()) {
-    return text + " in trial " + recording.trials[suspicion.trial].name;
+    for (const int trial : suspicion.trials) {
+      text +=
+          (trial == suspicion.trials.front() ? " in trial " : ", ") + recording.trials[trial].name;
+    }
+    return text;
   }
   if (suspicion.postures.empty()) return text;
   return text + " in " + std::to_string(suspicion.postures.size()) + " postures";

@@ -10,10 +10,10 @@
 
 namespace elastocal {
 
-/// Labels that seem exchanged throughout a trial or in postures of a table: those of two clusters,
+/// Labels that seem exchanged throughout trials or in postures of a table: those of two clusters,
 /// or of two markers.
 struct LabelSuspicion {
-  int trial = 0;
+  std::vector<int> trials = {};    ///< ascending
   std::vector<int> postures = {};  ///< of a table, ascending; empty: all
   std::string a, b;                ///< names of the clusters or markers
   std::vector<int> of_a, of_b;     ///< markers of the recording, one by one
@@ -31,10 +31,10 @@ struct LabelSuspicion {
 std::vector<LabelSuspicion> FindLabelSuspicions(const ErrorModel& model, const Recording& recording,
                                                 const std::vector<LabelCluster>& clusters);
 
-/// The recording with these labels exchanged back, in the trial or the table's postures.
+/// The recording with these labels exchanged back, in the trials or the table's postures.
 Recording WithoutExchange(const Recording& recording, const LabelSuspicion& suspicion);
 
-/// "the labels of LFOOT and RFOOT are exchanged in trial a"; of a table "... in 10 postures", or
+/// "the labels of LFOOT and RFOOT are exchanged in trial a, b"; of a table "... in 10 postures", or
 /// nothing more.
 std::string DescribeSuspicion(const LabelSuspicion& suspicion, const Recording& recording);
 

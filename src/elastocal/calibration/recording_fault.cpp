@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/move_motors.hpp"
@@ -76,6 +77,22 @@ double FactorOf(const RecordingFault& fault, const Recording& recording, int pos
   const bool within = posture >= fault.posture && (fault.end == 0 || posture < fault.end);
   if (!in_trial || !within) return 0.0;
   return fault.kind == FaultKind::kJointGain ? recording.q(posture, fault.coordinate) : 1.0;
+}
+
+std::vector<int> TrialsThatMove(const Recording& recording, int coordinate) {
+  constexpr double kMoved = 0.2;  // rad or m
+  std::vector<int> moving;
+  for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (recording.trial[i] != trial) continue;
+      least = std::min(least, recording.q(i, coordinate));
+      most = std::max(most, recording.q(i, coordinate));
+    }
+    if (most - least > kMoved) moving.push_back(trial);
+  }
+  if (moving.size() < 2) moving.clear();
+  return moving;
 }
 
 bool IsInCameraSpace(const RecordingFault& fault) {

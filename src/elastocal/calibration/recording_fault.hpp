@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/robot/robot_tree.hpp"
@@ -52,6 +53,10 @@ double LargestSize(FaultKind kind, bool slides);
 /// From the held posture before in the same trial or table, of all joints: postures x coordinates;
 /// in motions 0.
 Eigen::MatrixXd MovesOf(const Recording& recording);
+
+/// Trials that move a joint by 0.2 rad or m and more; none if there is only one: a gain of its
+/// positions there is one in all.
+std::vector<int> TrialsThatMove(const Recording& recording, int coordinate);
 
 /// Whether it is in the space that the cameras measure, the same in all postures.
 bool IsInCameraSpace(const RecordingFault& fault);

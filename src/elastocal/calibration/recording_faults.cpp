@@ -224,7 +224,11 @@ class FaultSearch {
     fault.coordinate = coordinate;
     RecordingFault unfinished = fault;
     unfinished.kind = FaultKind::kUnfinished;
-    Try(equations, covariance, derivative, {MakeTrial(fault), MakeTrial(unfinished)}, slides);
+    std::vector<Trial> of_moves = {MakeTrial(fault), MakeTrial(unfinished)};
+    for (const int trial : TrialsThatMove(recording_, coordinate)) {
+      of_moves.push_back(MakeTrial({.coordinate = coordinate, .trial = trial}));
+    }
+    Try(equations, covariance, derivative, of_moves, slides);
     if (HasMotion(recording_)) {
       RecordingFault lag = fault;
       lag.kind = FaultKind::kJointLag;

@@ -11,7 +11,8 @@ namespace elastocal {
 /// Looks for the fault that explains most of what a fit has left: each candidate is one more
 /// unknown beside all others (score test), so that it is not confused with what the robot's own
 /// errors explain as well. Candidates are the gain of each joint (but of those that rods
-/// move, whose levers are the robot's own errors), an offset of each joint, or motor of rods, from
+/// move, whose levers are the robot's own errors), also in one of several trials that move it, an
+/// offset of each joint, or motor of rods, from
 /// a posture on (twelve of them, then all near the best one), in one trial alone or from a posture
 /// to the end of its trial (six of each, then all near the best one), of a table from a posture to
 /// another one and as a steady drift, in motions a lag, the scale of the cameras along one of their

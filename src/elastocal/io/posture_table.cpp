@@ -148,6 +148,28 @@ void CloseLinkages(const Project& with_motors, const RobotTree& tree, Recording&
   }
 }
 
+/// For many programs, a marker that they do not see is at exactly 0 0 0. One that is there in all
+/// postures may define the cameras' frame.
+void TakeZerosAsNotSeen(const PostureColumns& columns, const Project& project,
+                        PostureTable& table) {
+  Recording& recording = table.recording;
+  for (std::size_t m = 0; m < columns.markers.size(); ++m) {
+    auto positions = recording.markers.middleCols<3>(3 * static_cast<Eigen::Index>(m));
+    std::vector<Eigen::Index> zeros;
+    for (Eigen::Index i = 0; i < positions.rows(); ++i) {
+      if (positions.row(i).isZero(0.0)) zeros.push_back(i);
+    }
+    const auto count = static_cast<Eigen::Index>(zeros.size());
+    if (count == 0 || count == positions.rows()) continue;
+    positions(zeros, Eigen::all).setConstant(kNaN);
+    const auto first = static_cast<std::size_t>(zeros.front());
+    table.warnings.push_back("marker " + project.markers[columns.markers[m]].name +
+                             ": taken as not seen where it is at exactly 0 0 0 (" +
+                             std::to_string(count) + " postures, the first on line " +
+                             std::to_string(recording.line[first]) + ")");
+  }
+}
+
 /// Names what was recorded. A marker that was never seen counts as not recorded.
 void NameMarkers(const PostureColumns& columns, const Project& project, PostureTable& table) {
   Recording& recording = table.recording;
@@ -192,6 +214,7 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
   recording.gravity = project.recording.gravity;
   ReadPostures(with_motors, columns, table, recording);
   CloseLinkages(with_motors, project.tree, recording);
+  TakeZerosAsNotSeen(columns, project, result);
   NameMarkers(columns, project, result);
   for (int c = 0; c < project.tree.coordinate_count(); ++c) {
     if (columns.coordinates[c] >= 0) continue;

@@ -222,6 +222,22 @@ TEST(PostureTable, RefusesIdenticalMarkers) {
   EXPECT_NO_THROW(ReadTable(header + "1,2,3,1,2,3,0,0,0,0\n4,2,3,4,2,3.1,0,0,0,1\n"));
 }
 
+// As many programs write it; a marker that is there in all postures may define the frame.
+TEST(PostureTable, MarkersAtExactlyZeroAreNotSeen) {
+  const std::string header =
+      "A_x,A_y,A_z,B_x,B_y,B_z,rail_joint,turret_joint,shoulder_joint,"
+      "elbow_joint,finger_right_joint\n";
+  const PostureTable table =
+      ReadTable(header + "1,2,3,0,0,0,0,0,0,0,1\n0,0.0,0.000,0,0,0,0,0,0,0.1,1\n");
+  EXPECT_TRUE(Seen(table.recording, 0, 0));
+  EXPECT_FALSE(Seen(table.recording, 1, 0));
+  EXPECT_TRUE(Seen(table.recording, 1, 1));
+  ASSERT_FALSE(table.warnings.empty());
+  EXPECT_EQ(table.warnings[0],
+            "marker A: taken as not seen where it is at exactly 0 0 0 (1 postures, the first on "
+            "line 3)");
+}
+
 /// Zeros without end, in a few shapes: each is refused by what comes first.
 TEST(PostureTable, RefusesALargeFileOfZeros) {
   const ScratchFolder scratch;

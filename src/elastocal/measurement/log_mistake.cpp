@@ -15,6 +15,7 @@ constexpr double kLeastPeak = 0.9;     // what is right correlates well
 constexpr double kFarBetter = 0.25;    // of what a correlation lacks to one is left
 constexpr double kLeastFrozen_s = 2.0;
 constexpr double kJumpSpreads_s = 1.2;  // the filter spreads the jump at either end
+constexpr double kPartFits = 0.9;       // correlation in a part of the log that is not wrong
 
 /// Joints that move and are between the standing link and a marker.
 std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>& markers,
@@ -89,6 +90,31 @@ SmoothedLog WithoutSpan(const SmoothedLog& log, double begin_s, double end_s) {
   return left;
 }
 
+/// Correlation of the speeds from `begin_s` to `end_s` of the robot's time, each moment's mean over
+/// the markers that are seen then.
+double CorrelationOfPart(const LoggedSpeeds& logged, const Eigen::MatrixXd& measured,
+                         double rate_hz, const ClockFit& clock, double begin_s, double end_s) {
+  std::vector<double> by_log, by_cameras;
+  for (Eigen::Index i = 0; i < logged.time_s.size(); ++i) {
+    if (logged.time_s[i] < begin_s || logged.time_s[i] > end_s) continue;
+    const Eigen::Index frame = std::llround(clock.CameraTime(logged.time_s[i]) * rate_hz);
+    if (frame < 0 || frame >= measured.rows()) continue;
+    const Eigen::ArrayXd seen = measured.row(frame).transpose();
+    const auto count = static_cast<double>(seen.size() - seen.isNaN().count());
+    if (count == 0.0) continue;
+    by_cameras.push_back(seen.isNaN().select(0.0, seen).sum() / count);
+    by_log.push_back(seen.isNaN().select(0.0, logged.speeds.row(i).transpose().array()).sum() /
+                     count);
+  }
+  if (by_log.empty()) return 0.0;
+  const auto size = static_cast<Eigen::Index>(by_log.size());
+  Eigen::ArrayXd a = Eigen::ArrayXd::Map(by_log.data(), size);
+  Eigen::ArrayXd b = Eigen::ArrayXd::Map(by_cameras.data(), size);
+  a -= a.mean();
+  b -= b.mean();
+  return (a * b).sum() / std::sqrt(a.square().sum() * b.square().sum());
+}
+
 }  // namespace
 
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
@@ -117,17 +143,18 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
       if (!best || fit.peak > best->peak) best = {columns[a], columns[b], fit.peak, 0.0, 0.0};
     }
   }
+  const LoggedSpeeds logged = PredictSpeeds(robot, markers, standing, log, coordinates, rate_hz);
   for (const int column : columns) {
-    const auto [begin, end] = LongestStill(log, columns, column);
-    if (end - begin < kLeastFrozen_s) continue;
+    const auto [still_from, still_to] = LongestStill(log, columns, column);
+    if (still_to - still_from < kLeastFrozen_s) continue;
+    const double begin = still_from - kJumpSpreads_s, end = still_to + kJumpSpreads_s;
     const ClockFit fit = EstimateTrialClock(
         speeds, rate_hz,
-        PredictSpeeds(robot, markers, standing,
-                      WithoutSpan(log, begin - kJumpSpreads_s, end + kJumpSpreads_s), coordinates,
-                      rate_hz),
+        PredictSpeeds(robot, markers, standing, WithoutSpan(log, begin, end), coordinates, rate_hz),
         expected_lag_s, options);
     if (fit.state != ClockState::kReliable || fit.peak < least_peak) continue;
-    if (!best || fit.peak > best->peak) best = {column, column, fit.peak, begin, end};
+    if (CorrelationOfPart(logged, speeds, rate_hz, fit, begin, end) > kPartFits) continue;
+    if (!best || fit.peak > best->peak) best = {column, column, fit.peak, still_from, still_to};
   }
   return best;
 }

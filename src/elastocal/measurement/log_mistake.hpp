@@ -21,8 +21,10 @@ struct LogMistake {
 /// lets it be told when undone, with the best correlation: one that is far better than `peak`, that
 /// of the log as it is (a quarter of what it lacks to 1). Or a joint that is logged in exactly
 /// the same place for two seconds or more, in which others move by half a radian, while the rest of
-/// the log tells the clock as well. `speeds` and `logged` as for EstimateTrialClock, `markers` to
-/// `rate_hz` as for PredictSpeeds. Joints that hardly move are passed over.
+/// the log tells the clock as well, by which that part is not what the cameras saw (joints that are
+/// moved one after the other stand still for long). `speeds` and `logged` as for
+/// EstimateTrialClock, `markers` to `rate_hz` as for PredictSpeeds. Joints that hardly move are
+/// passed over.
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
                                          const std::vector<int>& standing, const SmoothedLog& log,
                                          const std::vector<int>& coordinates,

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/measurement/stable_samples.hpp"
 #include "tests/standing_leg_trial.hpp"
 
 namespace elastocal {
@@ -64,6 +65,30 @@ TEST(LogMistakesStudy, NamesTheJointWhoseFrozenLogSpoilsTheClock) {
   std::printf("%d of %d frozen joints that spoil the clock are named\n", named, refused);
   EXPECT_GT(refused, 0);
   EXPECT_GE(named, 0.9 * refused);
+}
+
+// Joints that are moved one after the other stand still for long while others move.
+TEST(LogMistakes, JointsThatMoveOneAfterTheOtherAreNotFrozen) {
+  const MarkedRobot robot = WaistAndLeg();
+  const ScriptedTrial clean = PlayStanding({.postures = 12, .move_s = 1.5, .one_by_one = true});
+  const auto find = [&](const ScriptedTrial& played, double peak) {
+    MarkerTrajectories markers = played.markers;
+    SmoothTrajectories({}, markers);
+    return FindLogMistake(robot, AllMarkers(robot), {kFoot}, SmoothLog(played.log, {}),
+                          {0, 1, 2, 3, 4, 5}, MarkerSpeeds(markers), markers.rate_hz, 0.0, {},
+                          peak);
+  };
+  const auto found = find(clean, 0.999);
+  EXPECT_FALSE(found) << Describe(*found, clean.log.names);
+
+  ScriptedTrial frozen = clean;  // of a joint that moves in the middle
+  const Eigen::Index rows = clean.log.positions.rows();
+  auto part = frozen.log.positions.col(3).segment(rows / 6, rows / 2);
+  part.setConstant(part[0]);
+  const auto mistake = find(frozen, 0.9);
+  ASSERT_TRUE(mistake);
+  EXPECT_EQ(mistake->column, 3);
+  EXPECT_GT(mistake->frozen_to_s, mistake->frozen_from_s);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/general_fault.hpp"
 #include "elastocal/pipeline/recording_mistakes.hpp"
 #include "elastocal/validation/held_out.hpp"
@@ -79,19 +80,22 @@ Recording AsRecorded(const Recording& recording, const std::vector<Knock>& knock
   return own;
 }
 
+/// Of the largest model, m; infinite where nothing is judged.
+double MeanError(const ModelComparison& comparison, const ErrorTable& table) {
+  const auto found = table.mean_rmse_3d.find(comparison.largest_kind());
+  return found == table.mean_rmse_3d.end() ? std::numeric_limits<double>::infinity()
+                                           : found->second;
+}
+
 /// A mistake in the log or labels of held-out trials that the calibrated robot proves; else empty.
 std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
                              const std::vector<Knock>& knocks, const ModelComparison& comparison,
                              const ErrorTable& table) {
-  const auto mean = [&](const ErrorTable& of) {
-    const auto found = of.mean_rmse_3d.find(comparison.largest_kind());
-    return found == of.mean_rmse_3d.end() ? std::numeric_limits<double>::infinity() : found->second;
-  };
-  const double before = mean(table);
+  const double before = MeanError(comparison, table);
   const auto error_of = [&](Recording corrected) {
     AddUnseenMarkers(comparison.largest().model, corrected);
     try {
-      return mean(JudgeOnTrials(comparison, corrected, project.calibration).table);
+      return MeanError(comparison, JudgeOnTrials(comparison, corrected, project.calibration).table);
     } catch (const InputError&) {
       return std::numeric_limits<double>::infinity();
     }
@@ -118,6 +122,82 @@ Recording EvenlyThinned(const Recording& recording, int count) {
   return SelectPostures(recording, kept);
 }
 
+/// Whether the estimate has each of two markers where the project has the other.
+bool AreExchanged(const CalibrationResult& result, int a, int b) {
+  const int first = result.model.parameter_count() - 3 * result.model.marker_count();
+  const auto nominal = [&](int m) { return result.model.markers[Size(m)].p_link_marker; };
+  const auto from = [&](int m, int other) {
+    return (nominal(m) + result.delta.segment<3>(first + 3 * m) - nominal(other)).squaredNorm();
+  };
+  return from(a, b) + from(b, a) < from(a, a) + from(b, b);
+}
+
+std::string TrialsThatSee(const Recording& recording, int a, int b) {
+  std::string names;
+  for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (recording.trial[i] != trial || !Seen(recording, i, a) || !Seen(recording, i, b)) continue;
+      names += (names.empty() ? "" : ", ") + recording.trials[Size(trial)].name;
+      break;
+    }
+  }
+  return names;
+}
+
+/// Two markers of one cluster that have each other's labels in all trials of the estimate that see
+/// them, or in held-out postures; else empty. Each side fits by itself, and where the distances to
+/// the cluster's others are much alike, only the robot tells.
+std::string ExchangeWithinCluster(const Project& project, const Recording& recording,
+                                  const Recording& held_out, const ModelComparison& comparison) {
+  const auto squares_of = [&](const Recording& judged) -> Eigen::ArrayXXd {
+    const HeldOut result = JudgeOnTrials(comparison, judged, project.calibration);
+    const auto& distances =
+        result.predictions[static_cast<std::size_t>(comparison.largest_kind())].distances;
+    return distances.array().isFinite().select(distances.array().square(), 0.0);
+  };
+  const Eigen::ArrayXXd given = squares_of(held_out);
+  const double before = given.sum();
+  double least = kLeftByMistake * kLeftByMistake * before;
+  int a = -1, b = -1;
+  std::vector<int> postures;
+  for (const LabelCluster& cluster : SeenClusters(project, recording)) {
+    for (std::size_t i = 0; i < cluster.markers.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const int one = cluster.markers[j], other = cluster.markers[i];
+        const Eigen::ArrayXd of_pair = given.col(one) + given.col(other);
+        if (before - of_pair.sum() > least) continue;
+        Recording exchanged = held_out;
+        exchanged.markers.middleCols<3>(3 * one).swap(exchanged.markers.middleCols<3>(3 * other));
+        const Eigen::ArrayXXd squares = squares_of(exchanged);
+        const Eigen::ArrayXd left = squares.col(one) + squares.col(other);
+        double gained = 0.0;
+        std::vector<int> nearer;
+        for (int k = 0; k < held_out.posture_count(); ++k) {
+          if (!(left[k] < kLeftByMistake * of_pair[k])) continue;
+          gained += of_pair[k] - left[k];
+          nearer.push_back(k);
+        }
+        if (!(before - gained < least)) continue;
+        least = before - gained;
+        a = one;
+        b = other;
+        postures = nearer;
+      }
+    }
+  }
+  if (a < 0) return "";
+  const bool of_estimate = AreExchanged(comparison.largest(), a, b);
+  const auto count = static_cast<double>((given > 0.0).count());
+  return fmt::format(
+      "the labels of {} and {} seem exchanged in {}: exchanged back, held-out trials are {:.3g} mm "
+      "off the model, as they are {:.3g} mm. Correct the labels and calibrate again",
+      recording.marker_names[Size(a)], recording.marker_names[Size(b)],
+      of_estimate ? "trial " + TrialsThatSee(recording, a, b)
+                  : fmt::format("{} postures of trial {}", postures.size(),
+                                TrialsThatSee(SelectPostures(held_out, postures), a, b)),
+      1e3 * std::sqrt(least / count), 1e3 * std::sqrt(before / count));
+}
+
 }  // namespace
 
 std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
@@ -130,6 +210,8 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   const std::string mistake =
       MistakeInHeldOut(project, held_out, robot.knocks, comparison, held_out_table);
   if (!mistake.empty()) return {mistake};
+  const std::string exchange = ExchangeWithinCluster(project, recording, held_out, comparison);
+  if (!exchange.empty()) return {exchange};
   const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
   Recording all = JoinTrials(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.

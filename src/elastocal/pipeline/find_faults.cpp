@@ -260,7 +260,14 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     }
     return faults;
   }
-  if (!found) return OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
+  if (!found) {
+    faults = OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
+    if (!faults.empty()) return faults;
+    const auto scattered =
+        FindScatteredPositions(comparison.largest(), recording, project.calibration);
+    if (scattered) faults.push_back(Describe(*scattered, project.tree));
+    return faults;
+  }
   const std::string of_slide =
       scale_is_known ? ""
                      : ScaleOfSlides({found->fault}, comparison.largest(), project.calibration);
