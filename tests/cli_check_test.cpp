@@ -264,6 +264,21 @@ TEST_F(ArmProgram, DiagnosesTablesOfATrackerInSeveralFiles) {
   EXPECT_FALSE(json["candidates"].empty());
 }
 
+// A gear is a share; the turn of a slide about its axis is no offset of this joint.
+TEST_F(ArmProgram, EstimatesHaveTheirUnits) {
+  Eigen::MatrixXd shown = q_;
+  shown.col(Coordinate("elbow_joint")) *= 0.997;
+  const ProgramResult found =
+      RunProgram("calibrate " + (folder_.path() / "project.yaml").string() + " --recording " +
+                 Table(shown, "gear.csv").string() + " -o " + (folder_.path() / "gear").string());
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  const std::size_t gear = found.out.find("  elbow_joint.gear 0.3");
+  ASSERT_NE(gear, std::string::npos) << found.out;
+  const std::string line = found.out.substr(gear, found.out.find('\n', gear) - gear);
+  EXPECT_TRUE(line.ends_with(" % (estimated)")) << line;
+  EXPECT_EQ(found.out.find("rail_joint.theta"), std::string::npos) << found.out;
+}
+
 // What calibrate was told to correct is no cause.
 TEST_F(ArmProgram, DiagnosesWhatCalibrateCorrected) {
   const std::string project = (folder_.path() / "project.yaml").string();

@@ -37,6 +37,15 @@ TEST_F(Program, APriorMakesAFewPosturesEnough) {
     return std::nan("");
   };
   EXPECT_NEAR(offset(updated) - offset(out_), 5e-3, 5e-4);
+  // So does what is diagnosed: the same few postures without a prior leave another error.
+  const std::string few = (scratch_.path() / "few").string();
+  RunProgram("calibrate " + project_ + " --recording " + today + " --kfold 0 -o " + few);
+  const auto left = [](const std::string& folder) {
+    const ProgramResult found = RunProgram("diagnose " + folder + " --json -");
+    EXPECT_EQ(found.exit_code, 0) << found.err;
+    return nlohmann::json::parse(found.out)["held_out_mm"].get<double>();
+  };
+  EXPECT_LT(left(updated), 0.95 * left(few)) << left(few);
   const ProgramResult alone =
       RunProgram("calibrate " + project_ + " --recording " + today + " --days 2 -o " + updated);
   EXPECT_EQ(alone.exit_code, 2) << "--days without --prior";

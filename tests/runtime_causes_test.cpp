@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "elastocal/math/rotation_vector.hpp"
 #include "tests/runtime_fixture.hpp"
 
 namespace elastocal {
@@ -98,6 +99,44 @@ TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_LT(Distance(read.link_pose(static_cast<int>(i)), expected[i]), 10.0 * kRounding);
   }
+}
+
+// A held root link whose suspension gives way takes all of the robot along.
+TEST_F(Runtime, SinksAsTheCalibrationFoundItsSuspension) {
+  const Eigen::VectorXd q = Posture(5);
+  const JointLoads first = GravityLoads(robot_.model, geometry_, q, kGravity, 0);
+  const JointLoads loads = GravityLoads(robot_.model, geometry_, q, kGravity, 0, first);
+  const std::vector<Transform> level = CalibratedLinkTransforms(robot_.model, geometry_, q, loads);
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    const Link& link = project_.tree.links[i];
+    moment += (level[i] * link.com).cross(link.mass * kGravity);
+  }
+  stored_.joint_errors["waist.suspension_rx"] = 2e-5;
+  stored_.joint_errors["waist.suspension_ry"] = 3e-5;
+  stored_.joint_errors["waist.suspension_rx_my"] = -1e-5;
+  stored_.joint_errors["waist.suspension_x"] = 5e-6;
+  Transform sunk = Transform::Identity();
+  sunk.translation().x() = 5e-6 * moment.y();
+  sunk.linear() = RotationFromVector(
+      Eigen::Vector3d(2e-5 * moment.x() - 1e-5 * moment.y(), 3e-5 * moment.y(), 0.0));
+  Compensator robot = Make();
+  EXPECT_EQ(robot.Forward(q, kNoTorque, 0), 0u);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    // The moment of the posture before the last of the fixed point: its deflection is left.
+    EXPECT_LT(Distance(robot.link_pose(static_cast<int>(i)), sunk * level[i]), 1e-6);
+    largest = std::max(largest, Distance(sunk * level[i], level[i]));
+  }
+  EXPECT_GT(largest, 2e-4);
+  EXPECT_EQ(robot.Command(q, kNoTorque, 0), 0u);
+  EXPECT_LT(robot.residual_m(), 1e-5);
+  std::stringstream file;
+  WriteRuntimeModel(robot.model(), file);
+  Compensator read(ReadRuntimeModel(file, "file"));
+  read.Forward(q, kNoTorque, 0);
+  robot.Forward(q, kNoTorque, 0);
+  EXPECT_TRUE(read.link_pose(9).isApprox(robot.link_pose(9), kRounding));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
 
 namespace elastocal::cli {
@@ -72,11 +73,7 @@ std::string VerdictText(const CalibrationRun& run) {
     const bool springs = std::any_of(parameters.begin(), parameters.end(),
                                      [](const Parameter& p) { return IsCompliance(p.kind); });
     text += fmt::format(", {} mm with {}", Millimetres(deployment.compensated, 3),
-                        springs ? "elastic compensation" : "");
-    if (!run.extra.empty()) {
-      text += fmt::format("{}{}, which only this program's own model knows", springs ? " and " : "",
-                          fmt::join(run.extra, ", "));
-    }
+                        CompensationInWords(springs, run.extra));
   }
   if (run.held_out) return text + ".\n" + ScaleText(run);
   const bool folded = run.cross_validation.folds > 0;

@@ -72,16 +72,20 @@ std::string ComplianceText(const CalibrationResult& result) {
   return text;
 }
 
-/// Joint offsets that differ from zero, in degrees.
+/// Joint offsets that differ from zero: turns about the axis, of a prismatic joint ways along it.
 std::string OffsetText(const CalibrationResult& result) {
   std::string text;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[i];
-    if (parameter.kind != ParameterKind::kTheta || !std::isfinite(result.sd[i])) continue;
+    if (parameter.joint < 0 || !std::isfinite(result.sd[i])) continue;
+    const JointType type = result.model.tree.joints[static_cast<std::size_t>(parameter.joint)].type;
+    const bool slides = type == JointType::kPrismatic;
+    if (parameter.kind != (slides ? ParameterKind::kR : ParameterKind::kTheta)) continue;
     if (!Significant(result, i)) continue;
-    const double sd = kToDegrees * result.sd[i];
-    text += fmt::format("  {} {} +- {} degrees\n", parameter.name,
-                        RoundedTo(kToDegrees * result.delta[i], sd), RoundedSd(sd));
+    const double sd = InUserUnits(parameter, result.sd[i]);
+    text += fmt::format("  {} {} +- {} {}\n", parameter.name,
+                        RoundedTo(InUserUnits(parameter, result.delta[i]), sd), RoundedSd(sd),
+                        slides ? "mm" : "degrees");
   }
   return text.empty() ? "  none\n" : text;
 }

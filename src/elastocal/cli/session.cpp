@@ -43,6 +43,8 @@ double InUserUnits(const Parameter& parameter, double value) {
       return value * 1e3;
     case ParameterUnit::kPerNewton:
       return value * 1e6;
+    case ParameterUnit::kRatio:
+      return value * 1e2;
     default:
       return value;
   }
@@ -62,6 +64,8 @@ const char* UserUnit(const Parameter& parameter) {
       return "mm/h";
     case ParameterUnit::kPerNewton:
       return "um/(N.m)";
+    case ParameterUnit::kRatio:
+      return "%";
     default:
       return UnitName(parameter.unit);
   }

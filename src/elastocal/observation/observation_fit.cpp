@@ -19,6 +19,7 @@ constexpr double kSettled = 1e-4;         // relative change of a standard devia
 constexpr double kRoughlySettled = 1e-2;  // of a fit that only looks for outliers
 constexpr double kSlightStep = 1e-9;      // of the cost
 constexpr double kLeastNoise = 1e-9;      // SI: roundings
+constexpr double kLeastOfGuess = 5e-3;    // that the noise of an instrument is taken to be
 constexpr double kHuberShare = 0.99;      // of observations that count whole
 constexpr double kLeastRows = 0.01;    // share of rows that is left over where it is all but zero
 constexpr double kGrossFreedom = 4.0;  // of the Student distribution of observations
@@ -82,6 +83,17 @@ double FirstGuess(const std::vector<SourceSum>& sums, const std::vector<Source>&
   return squares / freedom;
 }
 
+/// The variance of the noise of an instrument that `squares` (SI) tell, beside a guess of the
+/// weight `own`. Instruments are often much better than guessed: the guess counts as no more than
+/// twice the standard deviation that is found, or it alone would be most of what is found.
+double NoiseVariance(double squares, double guess, double freedom, double own) {
+  constexpr double kFarGuess = 2.0;
+  const double guessed = (squares + own * guess) / freedom;
+  const double without = freedom - kFarGuess * kFarGuess * own;
+  const double told = without > 0.0 ? std::min(guessed, squares / without) : guessed;
+  return std::max(told, kLeastOfGuess * kLeastOfGuess * guess);
+}
+
 /// The largest relative change.
 double UpdateSpread(const std::vector<SourceSum>& sums, const std::vector<Source>& sources,
                     bool robust, Spread& spread) {
@@ -98,8 +110,10 @@ double UpdateSpread(const std::vector<SourceSum>& sums, const std::vector<Source
       squares = sum.rows * Median(all) / ChiSquareQuantile(0.5, 1.0);
     }
     const double before = spread[static_cast<int>(s)];
-    const double variance =
-        (before * before * squares + sum.own * FirstGuess(sums, sources, was, s)) / FreedomOf(sum);
+    const double guess = FirstGuess(sums, sources, was, s), freedom = FreedomOf(sum);
+    squares *= before * before;
+    const double variance = noise ? NoiseVariance(squares, guess, freedom, sum.own)
+                                  : (squares + sum.own * guess) / freedom;
     spread[static_cast<int>(s)] = std::max(kLeastNoise, std::sqrt(variance));
     change = std::max(change, std::abs(std::log(spread[static_cast<int>(s)] / before)));
   }

@@ -78,6 +78,20 @@ std::vector<std::string> TakeChosen(const CalibrateWith& calibrate_with, CauseSe
   return extra;
 }
 
+std::vector<std::string> Without(std::vector<std::string> all,
+                                 const std::vector<std::string>& some) {
+  std::erase_if(all, [&](const std::string& one) {
+    return std::find(some.begin(), some.end(), one) != some.end();
+  });
+  return all;
+}
+
+std::string Listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 bool MayChoose(int postures) { return postures >= kFewestPostures && postures <= kLargestTable; }
 
 }  // namespace
@@ -105,7 +119,7 @@ CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& mod
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed) {
   Project project = given;
-  project.elasticity.extra.clear();
+  if (project.calibration.earlier.empty()) project.elasticity.extra.clear();
   Measurements own = measured;
   const RecordedModel robot = MakeRecordedModel(project, seed, own, KnockSearch::kNone);
   const Recording& recording = own.calibration;
@@ -175,26 +189,44 @@ ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot&
   return causes;
 }
 
-std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time) {
+std::vector<std::string> NeverApplied(const std::vector<std::string>& causes) {
   // These depend on more than positions and loads.
-  constexpr std::string_view kUnknownAtRunTime[] = {".hysteresis", ".suspension", ".drift",
-                                                    ".creep"};
-  std::string applied, never;
-  for (const std::string& cause : causes) {
-    const bool unknown = std::any_of(std::begin(kUnknownAtRunTime), std::end(kUnknownAtRunTime),
-                                     [&](std::string_view end) { return cause.ends_with(end); });
-    std::string& names = unknown ? never : applied;
-    names += (names.empty() ? "" : ", ") + cause;
+  constexpr std::string_view kUnknownAtRunTime[] = {".hysteresis", ".drift", ".creep"};
+  std::vector<std::string> never;
+  std::copy_if(causes.begin(), causes.end(), std::back_inserter(never), [&](const auto& cause) {
+    return std::any_of(std::begin(kUnknownAtRunTime), std::end(kUnknownAtRunTime),
+                       [&](std::string_view end) { return cause.ends_with(end); });
+  });
+  return never;
+}
+
+std::string CompensationInWords(bool springs, const std::vector<std::string>& causes) {
+  const std::vector<std::string> never = NeverApplied(causes);
+  std::vector<std::string> applied = Without(causes, never);
+  if (springs) applied.insert(applied.begin(), "elasticity");
+  std::string text;
+  for (std::size_t i = 0; i < applied.size(); ++i) {
+    const bool last = i + 1 == applied.size() && never.empty();
+    text += (i == 0 ? "" : last ? " and " : ", ") + applied[i];
   }
+  if (!never.empty()) {
+    text += (text.empty() ? "" : " and of ") + Listed(never) + ", which no export applies";
+  }
+  return "compensation of " + text;
+}
+
+std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time) {
+  const std::vector<std::string> never = NeverApplied(causes);
+  const std::vector<std::string> applied = Without(causes, never);
   std::string text;
   if (!applied.empty() && !at_run_time) {
     text =
-        applied +
+        Listed(applied) +
         ": estimated beside geometry and springs; compensate and export --format c99 and runtime "
         "apply it, a URDF and other formats cannot";
   }
   if (!never.empty()) {
-    text += (text.empty() ? "" : "; ") + never +
+    text += (text.empty() ? "" : "; ") + Listed(never) +
             ": estimated beside geometry and springs; no export applies it";
   }
   return text;

@@ -27,8 +27,9 @@ struct CauseReport {
   std::vector<CausePicture> pictures;  ///< of the causes that were taken, and of the best others
 };
 
-/// Calibrates without extra causes (those of `given` are ignored), then tests each and searches
-/// the best set. Throws what Calibrate throws.
+/// Calibrates without extra causes (those of `given` are ignored, but for those of an earlier
+/// calibration that is the prior), then tests each and searches the best set. Throws what Calibrate
+/// throws.
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed);
 
@@ -58,6 +59,14 @@ ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot&
 /// recording alone (drift).
 std::vector<std::string> StoredCauses(const RobotTree& tree,
                                       const std::map<std::string, double>& joint_errors);
+
+/// Those that no export and no `compensate` applies, because they depend on more than positions and
+/// loads.
+std::vector<std::string> NeverApplied(const std::vector<std::string>& causes);
+
+/// What errors hold with that contain springs, or not, and these causes: "compensation of
+/// elasticity and j.gear".
+std::string CompensationInWords(bool springs, const std::vector<std::string>& causes);
 
 /// What to say where a calibration with these causes is put to use; empty where all are applied.
 /// `at_run_time`: in a robot at run time, which knows what positions and loads tell.

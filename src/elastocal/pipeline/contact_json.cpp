@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/pipeline/contact_run.hpp"
+#include "elastocal/pipeline/contact_verdict.hpp"
 
 namespace elastocal {
 namespace {
@@ -223,6 +224,7 @@ nlohmann::ordered_json ContactJson(const ContactRun& run) {
   }
   if (run.geometric) {
     json["urdf_alone"] = FiguresJson(run.model, ContactRun::Judged(*run.geometric));
+    json["holds_with"] = CompensationOf(run);
   }
   json["gain_in_sds"] = run.gain_in_sds;
   json["plates"] = PlatesJson(run);

@@ -75,12 +75,14 @@ std::optional<ObservedRobot> WithGeometryOnly(const ObservedRobot& model,
   return rigid;
 }
 
-/// All joints give way about their axes; nothing where the project says which do, or the robot has
-/// no masses.
+bool IsElasticityOpen(const Project& project) {
+  return !project.elasticity.torsion && !project.elasticity.bending;
+}
+
+/// All joints give way about their axes; nothing where the robot has no masses.
 std::optional<ObservedRobot> WithTorsion(const ObservedRobot& rigid,
                                          const Observations& observations, const Project& project) {
-  const bool open = !project.elasticity.torsion && !project.elasticity.bending;
-  if (!open || !HasMasses(project.tree)) return std::nullopt;
+  if (!HasMasses(project.tree)) return std::nullopt;
   std::vector<int> joints;
   for (std::size_t k = 0; k < project.tree.joints.size(); ++k) {
     joints.push_back(static_cast<int>(k));
@@ -104,23 +106,26 @@ void Take(ObservedRobot wider, ContactOutcome outcome, ContactRun& run) {
   run.rigid_model = std::move(before);
 }
 
+constexpr double kElasticGain = 2.0;  // standard errors: by which elastic joints lower the error
+constexpr const char* kTakenAsElastic =
+    "joints are taken as elastic about their axes, which predicts postures that were left out "
+    "better; elasticity in the project says otherwise where it is known";
+
 /// Where nobody says whether joints give way, left-out postures do: elastic joints enter where they
 /// lower the error by more than twice the standard error of that gain. Whether they did.
 bool TakeElasticity(const Project& project, const ContactRunOptions& options, int folds,
                     ContactRun& run) {
-  constexpr double kPlainly = 2.0;
-  auto elastic = folds > 0 ? WithTorsion(run.model, run.observations, project) : std::nullopt;
+  if (folds == 0 || !IsElasticityOpen(project)) return false;
+  auto elastic = WithTorsion(run.model, run.observations, project);
   if (!elastic) return false;
   ContactOutcome outcome = Estimate(*elastic, run.observations, true, options, folds);
   const double gain = GainInSds(*elastic, run.observations, run.calibrated.held_out.left,
                                 outcome.held_out.left, outcome.estimate.fit.spread);
-  if (!(gain > kPlainly) || outcome.estimate.fit.termination != Termination::kConverged) {
+  if (!(gain > kElasticGain) || outcome.estimate.fit.termination != Termination::kConverged) {
     return false;
   }
   Take(std::move(*elastic), std::move(outcome), run);
-  run.warnings.emplace_back(
-      "joints are taken as elastic about their axes, which predicts postures that were left out "
-      "better; elasticity in the project says otherwise where it is known");
+  run.warnings.emplace_back(kTakenAsElastic);
   return true;
 }
 
@@ -154,16 +159,62 @@ void TakeCauses(const Project& project, const ContactRunOptions& options, int fo
   Take(std::move(with), std::move(outcome), run);
 }
 
-/// Springs and causes that the data ask for. A large cause hides springs, and a spring that is
-/// missing looks like a cause: where causes but no springs were found, springs are looked for
-/// beside them and, if there are any, causes once more.
+/// Gives up the springs that were found before the causes, and these with them, where springs do
+/// not lower the error beside the causes as well. Whether it did.
+bool GiveUpElasticity(const Project& project, const ContactRunOptions& options, int folds,
+                      ContactRun& run) {
+  const ObservedRobot rigid = WithCorrections(*run.rigid_model, project.placement, run.observations,
+                                              run.model.robot.elasticity.corrections);
+  const ContactOutcome outcome = Estimate(rigid, run.observations, true, options, folds);
+  if (outcome.estimate.fit.termination != Termination::kConverged ||
+      GainInSds(run.model, run.observations, outcome.held_out.left, run.calibrated.held_out.left,
+                run.calibrated.estimate.fit.spread) > kElasticGain) {
+    return false;
+  }
+  run.model = std::move(*run.rigid_model);
+  run.calibrated = std::move(*run.geometric);
+  run.rigid_model.reset();
+  run.geometric.reset();
+  std::erase(run.warnings, kTakenAsElastic);
+  return true;
+}
+
+/// Where the project holds joints rigid, causes may stand for the springs that it forbids: elastic
+/// joints that predict what was left out plainly better than the causes do are said.
+void WarnOfForbiddenSprings(const Project& project, const ContactRunOptions& options, int folds,
+                            ContactRun& run) {
+  const Elasticity& own = run.model.robot.elasticity;
+  const bool chosen = run.causes.has_value() && !run.extra.empty();
+  if (!chosen || folds == 0 || !own.torsion.empty() || !own.bending.empty()) return;
+  const ObservedRobot rigid = WithCorrections(run.model, project.placement, run.observations, {});
+  const auto elastic = WithTorsion(rigid, run.observations, project);
+  if (!elastic || IsElasticityOpen(project)) return;
+  const ContactOutcome outcome = Estimate(*elastic, run.observations, true, options, folds);
+  if (GainInSds(*elastic, run.observations, run.calibrated.held_out.left, outcome.held_out.left,
+                outcome.estimate.fit.spread) > kElasticGain) {
+    run.warnings.push_back(
+        JoinNames(run.extra) +
+        ": joints that give way would predict postures that were left out better, but elasticity "
+        "in "
+        "the project holds them rigid: without that key, springs are estimated where they help");
+  }
+}
+
+/// Springs and causes that the data ask for. A large cause hides springs or looks like them, and a
+/// spring that is missing looks like a cause: where causes were found, springs are decided on once
+/// more beside them and, if that changes, causes once more.
 void ChooseBeyondGeometry(const Project& project, const ContactRunOptions& options, int folds,
                           ContactRun& run) {
   const bool springs = TakeElasticity(project, options, folds, run);
   TakeCauses(project, options, folds, run);
-  if (springs || run.extra.empty() || !TakeElasticity(project, options, folds, run)) return;
-  run.model = WithCorrections(run.model, project.placement, run.observations, {});
-  run.calibrated = Estimate(run.model, run.observations, true, options, folds);
+  if (run.extra.empty()) return;
+  if (springs) {
+    if (!GiveUpElasticity(project, options, folds, run)) return;
+  } else {
+    if (!TakeElasticity(project, options, folds, run)) return;
+    run.model = WithCorrections(run.model, project.placement, run.observations, {});
+    run.calibrated = Estimate(run.model, run.observations, true, options, folds);
+  }
   TakeCauses(project, options, folds, run);
 }
 
@@ -247,6 +298,7 @@ ContactRun CalibrateContacts(const Project& project,
     run.extra = CausesOf(run.model.robot.elasticity.corrections);
   } else if (!run.mistakes || run.mistakes->empty()) {
     ChooseBeyondGeometry(project, options, folds, run);
+    WarnOfForbiddenSprings(project, options, folds, run);
   }
   const ObservationFit& fit = run.calibrated.estimate.fit;
   const auto left = [&](const ContactOutcome& outcome) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/observation/observed_posture.hpp"
+#include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/contact_faults.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/observed_mistakes.hpp"
@@ -93,22 +94,46 @@ ObservationFigures FiguresOfGood(const ContactRun& run) {
   return MakeFigures(run.model, good, left_of_good);
 }
 
-/// The file that is deployed has no springs: its figures beside those with compensation.
-void AddUrdfAlone(ContactRun& run, const std::string& on) {
-  const ObservationFigures& urdf = ContactRun::Judged(*run.geometric);
-  std::vector<std::string> figures;
+/// "0.04 mm in position of lt, 0.02 degrees in rotation of lt"; of touches their height and tilt.
+std::string FiguresInWords(const ContactRun& run, const ObservationFigures& figures) {
   if (run.touches_only()) {
-    figures.push_back(fmt::format("{:.2f} mm and {:.2f} degrees", 1e3 * urdf.all.height,
-                                  kDegreeHere * urdf.all.tilt()));
-  } else {
-    for (const RowErrors& row : urdf.rows) {
-      figures.push_back(fmt::format("{} {} in {}", FigureOf(row), ShownUnitOf(row.unit).name,
-                                    RowName(run.model, row)));
-    }
+    return fmt::format("{:.2f} mm and {:.2f} degrees", 1e3 * figures.all.height,
+                       kDegreeHere * figures.all.tilt());
   }
-  run.verdict.remarks.push_back(
-      fmt::format("these figures hold with compensation of elasticity; the URDF alone leaves {} {}",
-                  fmt::join(figures, ", "), on));
+  std::vector<std::string> texts;
+  for (const RowErrors& row : figures.rows) {
+    texts.push_back(fmt::format("{} {} in {}", FigureOf(row), ShownUnitOf(row.unit).name,
+                                RowName(run.model, row)));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// Errors on the observations of the fit without these causes, all else staying as it was found.
+ObservationFigures FiguresWithout(const ContactRun& run, const std::vector<std::string>& causes) {
+  ObservedValues values = run.calibrated.estimate.fit.values;
+  const ErrorModel& robot = run.model.robot;
+  for (int i = 0; i < robot.parameter_count(); ++i) {
+    const int correction = robot.parameters[static_cast<std::size_t>(i)].correction;
+    if (correction < 0) continue;
+    const std::string& cause =
+        robot.elasticity.corrections[static_cast<std::size_t>(correction)].cause;
+    if (std::find(causes.begin(), causes.end(), cause) != causes.end()) values.robot[i] = 0.0;
+  }
+  return MakeFigures(run.model, run.observations, LeftOf(run.model, run.observations, values));
+}
+
+/// The file that is deployed has neither springs nor causes, and no file has all causes: their
+/// figures beside those of the whole model.
+void AddUrdfAlone(ContactRun& run, const std::string& on) {
+  std::string text = "these figures hold with " + CompensationOf(run);
+  const std::vector<std::string> never = NeverApplied(run.extra);
+  if (!never.empty()) {
+    text += fmt::format(" (without {} on the observations of the fit)",
+                        FiguresInWords(run, FiguresWithout(run, never)));
+  }
+  run.verdict.remarks.push_back(fmt::format("{}; the URDF alone leaves {} {}", text,
+                                            FiguresInWords(run, ContactRun::Judged(*run.geometric)),
+                                            on));
 }
 
 /// Noise that is far above what the project says of an instrument is no noise of it.
@@ -155,6 +180,13 @@ bool NameMistakes(ContactRun& run) {
 }
 
 }  // namespace
+
+std::string CompensationOf(const ContactRun& run) {
+  const std::vector<Parameter>& parameters = run.model.robot.parameters;
+  const bool springs = std::any_of(parameters.begin(), parameters.end(),
+                                   [](const Parameter& of) { return IsCompliance(of.kind); });
+  return CompensationInWords(springs, run.extra);
+}
 
 double LargestError(const ObservedRobot& model, SourceUnit unit) {
   switch (unit) {

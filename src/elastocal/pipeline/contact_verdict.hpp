@@ -15,6 +15,10 @@ namespace elastocal {
 /// (FindObservedMistakes).
 void JudgeContacts(ContactRun& run);
 
+/// What the errors of the run hold with, where they are not those of its geometry alone
+/// (CompensationInWords).
+std::string CompensationOf(const ContactRun& run);
+
 /// Kinds of observations that the calibrated robot predicts by a quarter worse than the
 /// uncalibrated one, and by more than a tenth of LargestError, which may be noise: "height of lt
 /// from 101 to 251 mm".

@@ -181,7 +181,11 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
   } else {
     Measurements measured = ReadMeasurements(project, recordings);
     AcceptMistakes(project, told.accept, measured);
-    as_calibrated();
+    if (told.prior.empty()) {
+      as_calibrated();
+    } else {
+      StartFromEarlier(told.prior, told.days, measured, seed, project);
+    }
     diagnosis.report = StudyCauses(project, measured, seed);
     diagnosis.recording = measured.calibration.source;
   }

@@ -171,6 +171,10 @@ void ApplyCauses(const RobotTree& tree, const StoredCalibration& calibration, Ru
     if (TargetOf(correction) == CorrectionTarget::kLoads) {
       CorrectWeights(tree, correction, found->second, model);
     }
+    if (TargetOf(correction) == CorrectionTarget::kRoot) {
+      const bool about_y = correction.shape == CorrectionShape::kSuspensionMy;
+      model.suspension[Size(correction.axis + (about_y ? 6 : 0))] = found->second;
+    }
     const auto function = ShiftFunction(correction.shape);
     if (!function) continue;
     model.shifts.push_back({correction.joint, *function,

@@ -8,6 +8,7 @@
 
 #include "elastocal/calibration/leg_stiffness.hpp"
 #include "elastocal/pipeline/cause_picture_json.hpp"
+#include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/diagnose.hpp"
 
 namespace elastocal {
@@ -194,7 +195,8 @@ Json DeploymentJson(const CalibrationRun& run) {
   json["urdf"] = artefact(deployment.urdf);
   json["urdf"]["model"] = ModelKindName(deployment.urdf_kind);
   json["compensated"] = artefact(deployment.compensated);
-  if (!run.extra.empty()) json["compensated"]["not_exported"] = run.extra;
+  const std::vector<std::string> never = NeverApplied(run.extra);
+  if (!never.empty()) json["compensated"]["not_exported"] = never;
   return json;
 }
 

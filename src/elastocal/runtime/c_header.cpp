@@ -201,9 +201,11 @@ class CHeaderWriter {
       out_ << name_ << "_" << table << ", ";
     }
     out_ << "\n    " << CNumber(robot_.total_mass) << ", {" << CNumber(robot_.gravity[0]) << ", "
-         << CNumber(robot_.gravity[1]) << ", " << CNumber(robot_.gravity[2]) << "}, "
-         << CNumber(robot_.torque_gain) << ", " << CNumber(robot_.largest_turn) << ", "
-         << CNumber(robot_.largest_shift) << ", " << CNumber(robot_.largest_correction) << "};\n\n";
+         << CNumber(robot_.gravity[1]) << ", " << CNumber(robot_.gravity[2]) << "},\n    {";
+    for (int i = 0; i < 12; ++i) out_ << (i > 0 ? ", " : "") << CNumber(robot_.suspension[i]);
+    out_ << "},\n    " << CNumber(robot_.torque_gain) << ", " << CNumber(robot_.largest_turn)
+         << ", " << CNumber(robot_.largest_shift) << ", " << CNumber(robot_.largest_correction)
+         << "};\n\n";
   }
 
   void State() {

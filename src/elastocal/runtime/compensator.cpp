@@ -96,6 +96,7 @@ void Compensator::Link(const RuntimeBranches& branches, const CompensatorOptions
   robot_.total_mass = 0.0;
   for (double mass : model_.mass) robot_.total_mass += mass;
   std::copy(model_.gravity.begin(), model_.gravity.end(), robot_.gravity);
+  std::copy(model_.suspension.begin(), model_.suspension.end(), robot_.suspension);
   robot_.torque_gain = options.period_s / (options.period_s + options.torque_time_constant_s);
   robot_.largest_turn = options.largest_turn_rad;
   robot_.largest_shift = options.largest_shift_m;

@@ -94,6 +94,8 @@ typedef struct {
   const double *lower, *upper; /* limits, by coordinate */
   double total_mass;           /* kg */
   double gravity[3];           /* in the frame of a root link that is held, m/s^2 */
+  double suspension[12];       /* displacement of a held root link, m and rad along and about its
+                                  axes, by the moment of the weight about its x, then about y */
   double torque_gain;          /* low-pass on torques: share of a new value, in (0, 1]; 1: none */
   double largest_turn;         /* limit of each deflection, rad ... */
   double largest_shift;        /* ... and m */
@@ -148,7 +150,8 @@ typedef struct {
   double* centre;       /* 3 x feet: of the soles */
   double* share;        /* feet: of the weight */
   ec_pose* sole;        /* feet */
-  double common[3];     /* point of pressure less the centre of the sole, the same for all feet */
+  double root_moment[2]; /* of the weight about x and y of a held root link, N.m */
+  double common[3];      /* point of pressure less the centre of the sole, the same for all feet */
   unsigned good_support, last_support;
   int has_good_q, has_last, had_torque;
   int is_bound;   /* commands are between `lowest` and `highest` */

@@ -40,18 +40,33 @@ static inline void ec_bend_root(const ec_robot* robot, const ec_joint* joint, co
   ec_exp(phi, root->R);
 }
 
+/* Pose of the root link against where it is without load: held by what gives way. */
+static inline void ec_sink(const ec_robot* robot, const double* moment, ec_pose* root,
+                           unsigned* status) {
+  double by[6];
+  int i;
+  for (i = 0; i < 6; ++i) {
+    by[i] = ec_cut(robot->suspension[i] * moment[0] + robot->suspension[6 + i] * moment[1],
+                   i < 3 ? robot->largest_shift : robot->largest_turn, EC_DEFLECTION_CUT, status);
+  }
+  ec_exp(&by[3], root->R);
+  for (i = 0; i < 3; ++i) root->p[i] = by[i];
+}
+
 /* Poses of all bodies (eq. 3) after ec_move, deflected by the loads in memory if `loaded`. */
 static inline void ec_walk(const ec_robot* robot, const ec_joint* joints, int loaded,
                            ec_memory* memory, unsigned* status) {
   int k, i;
   ec_identity(&memory->body[0]);
+  if (loaded) ec_sink(robot, memory->root_moment, &memory->body[0], status);
   for (k = 0; k < robot->joints; ++k) {
     const ec_joint* joint = &joints[k];
     const double c = memory->motion[3 * k], s = memory->motion[3 * k + 1];
     ec_pose frame, moved;
     if (loaded && joint->parent == 0) {
-      ec_pose root;
-      ec_bend_root(robot, joint, &memory->root_load[3 * k], &root, status);
+      ec_pose root, bent;
+      ec_bend_root(robot, joint, &memory->root_load[3 * k], &bent, status);
+      ec_compose(&memory->body[0], &bent, &root);
       ec_compose(&root, &joint->twisted, &frame);
     } else {
       ec_compose(&memory->body[joint->parent], &joint->twisted, &frame);
@@ -216,6 +231,11 @@ static inline void ec_loads(const ec_robot* robot, const ec_joint* joints, unsig
   ec_gravity(robot, memory, support, gravity);
   ec_stand(robot, memory, support, gravity);
   ec_accumulate(robot, joints, memory);
+  {
+    double moment[3];
+    ec_cross(&memory->beyond[1], gravity, moment);
+    for (i = 0; i < 2; ++i) memory->root_moment[i] = support == 0 ? moment[i] : 0.0;
+  }
   for (k = 0; k < robot->joints; ++k) {
     const ec_pose* twisted = &memory->twisted[k];
     const double* beyond = &memory->beyond[4 * (k + 1)];

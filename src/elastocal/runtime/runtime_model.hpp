@@ -33,6 +33,7 @@ struct RuntimeModel {
   /// In the root link's frame where that is held, m/s^2: how it hung or stood when the robot was
   /// calibrated. A robot on its feet takes the floor as level.
   std::vector<double> gravity = {0.0, 0.0, -9.81};
+  std::vector<double> suspension = std::vector<double>(12);  ///< see ec_robot
 
   int joint_count() const { return static_cast<int>(calibrated.size()); }
   int coordinate_count() const { return static_cast<int>(lower.size()); }

@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-constexpr const char* kHeading = "elastocal-runtime-model 4";
+constexpr const char* kHeading = "elastocal-runtime-model 5";
 constexpr int kMost = 10000;  // entries of a list: a robot has some dozens
 
 // One description of the file serves both directions: `archive(name, value)` writes a line, or
@@ -186,6 +186,7 @@ void Entries(Archive& archive, RuntimeModel& model) {
   archive("calibration", model.calibration);
   archive("fingerprint", model.fingerprint);
   archive("gravity", model.gravity);
+  archive("suspension", model.suspension);
   archive("joints", model.joint_names);
   archive("coordinates", model.coordinate_names);
   archive("links", model.link_names);
@@ -225,6 +226,7 @@ void CheckSizes(const RuntimeModel& model, Reader& reader) {
   reader.Check(model.calibrated.size() == joints && GoodJoints(model.calibrated, coordinates),
                "calibrated", "an entry for each joint, each behind the one that carries it");
   reader.Check(model.gravity.size() == 3, "gravity", "three numbers");
+  reader.Check(model.suspension.size() == 12, "suspension", "twelve numbers");
   reader.Check(model.mass.size() == bodies, "mass", "an entry for each body");
   reader.Check(model.moment.size() == 3 * bodies, "moment", "three entries for each body");
   reader.Check(model.leg_of_body.size() == bodies, "leg_of_body", "an entry for each body");

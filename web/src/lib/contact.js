@@ -26,7 +26,7 @@ export function contactVerdict(summary) {
   if (summary.status !== 'converged' || summary.objections?.length) {
     return {state: 'reject', word: 'Do not deploy', sentence: `${errors}, but the result must not be trusted.`, rest: summary.objections?.[0] ?? summary.status};
   }
-  const rest = summary.model === 'full' ? 'These figures hold for a controller that compensates elasticity.' : '';
+  const rest = contact.holds_with ? `These figures hold with ${contact.holds_with}.` : '';
   if (!contact.kfold) return {state: 'check', word: 'Validate first', sentence: `${errors}.`, rest};
   return {state: 'deploy', word: 'Deploy', sentence: `${errors}.`, rest};
 }
