@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/interruption.hpp"
@@ -158,11 +159,26 @@ bool Table::NextCells() {
 bool Table::Next() {
   if (!NextCells()) return false;
   ++rows_;
-  if (cells_.size() == header_.size()) return true;
+  if (cells_.size() == header_.size()) {
+    if (CountsRows(0)) CheckRowNumber();
+    return true;
+  }
   // A decimal comma splits a number in two.
   const bool commas = separator_ == ',' && 2 * cells_.size() >= 3 * header_.size();
   Fail("found " + std::to_string(cells_.size()) + " cells; the header has " +
        std::to_string(header_.size()) + (commas ? "; decimal commas?" : ""));
+}
+
+bool Table::CountsRows(int column) const {
+  return column == 0 && header_.size() > 1 &&
+         (header_.front().empty() || header_.front() == "Unnamed: 0");
+}
+
+void Table::CheckRowNumber() const {
+  const std::optional<double> number = ParseNumber(Cell(0));
+  if (number && *number >= 0.0 && *number == std::floor(*number)) return;
+  Fail("the first column has no name, and is not passed over as row numbers: found " +
+       Quote(Cell(0)));
 }
 
 double Table::Number(int column) const {
@@ -187,6 +203,7 @@ std::vector<int> FindColumns(const Table& table, const ColumnRoles& roles, std::
   for (std::size_t i = 0; i < table.header().size(); ++i) {
     const std::string& name = table.header()[i];
     const auto role = roles.find(name);
+    if (role == roles.end() && table.CountsRows(static_cast<int>(i))) continue;
     if (role == roles.end() && name.empty()) {
       table.Fail("empty column name, cell " + std::to_string(i + 1));
     }

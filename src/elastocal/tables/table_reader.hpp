@@ -78,6 +78,10 @@ class Table {
   /// A cell of the row read last, by column from 0.
   std::string_view Cell(int column) const { return cells_[static_cast<std::size_t>(column)]; }
 
+  /// Whether a column is the first one and has no name (in pandas' words, "Unnamed: 0"): row
+  /// numbers, which pandas writes and nobody needs. Next throws where they are no whole numbers.
+  bool CountsRows(int column) const;
+
   /// A cell as a finite number. Throws InputError naming file, line and column for anything else.
   double Number(int column) const;
 
@@ -92,6 +96,7 @@ class Table {
 
  private:
   bool NextCells();
+  void CheckRowNumber() const;
 
   LineReader lines_;
   char separator_ = '\0';
@@ -105,7 +110,8 @@ class Table {
 using ColumnRoles = std::map<std::string, int>;
 constexpr int kPassedOver = -1;
 
-/// For each quantity its column, -1 where there is none. Call it before the first row is read.
+/// For each quantity its column, -1 where there is none; row numbers (Table::CountsRows) are passed
+/// over. Call it before the first row is read.
 /// Throws InputError: two columns of one quantity; an unknown column, with the nearest known name
 /// and `advice`; numbers or a comment where the header should be.
 std::vector<int> FindColumns(const Table& table, const ColumnRoles& roles, std::size_t quantities,

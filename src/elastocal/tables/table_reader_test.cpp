@@ -113,6 +113,18 @@ TEST(Columns, AreFoundByAnyOfTheirNames) {
   EXPECT_EQ(Find("time"), (std::vector<int>{0, -1, -1}));
 }
 
+TEST(Columns, RowNumbersOfPandasArePassedOver) {
+  for (const char* name : {"", "Unnamed: 0"}) {
+    EXPECT_EQ(Find(std::string(name) + ",speed,t\n"), (std::vector<int>{2, 1, -1}));
+    std::istringstream stream(std::string(name) + ",t\n0,0.1\n1.0,0.2\n0.5,0.3\n");
+    Table table(stream, "t.csv");
+    ASSERT_TRUE(table.Next());
+    ASSERT_TRUE(table.Next());
+    EXPECT_EQ(table.Number(1), 0.2);
+    ExpectInputError([&] { table.Next(); }, {"t.csv:4: the first column has no name", "'0.5'"});
+  }
+}
+
 TEST(Columns, AreRefusedWhereTheyMeanNothingOrTheSame) {
   ExpectInputError([] { Find("t,sped"); },
                    {"t.csv:1: ", "'sped'", "did you mean 'speed'", "look it up"});
