@@ -139,7 +139,9 @@ sessions: [{name: gone, recording: no_such_table.csv}]
 )");
   const ProgramResult result = Run("out");
   EXPECT_EQ(result.exit_code, 4);
-  EXPECT_NE(result.out.find("gone"), std::string::npos) << result.out;
+  const std::size_t reason = result.out.find("\n  gone: ");
+  ASSERT_NE(reason, std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("no_such_table.csv", reason), std::string::npos) << result.out;
   EXPECT_NE(ReadFile(Folder("out") + "/gone.log").find("no_such_table.csv"), std::string::npos);
   fs::create_directory(Folder("full"));
   scratch_.Write("full/other.txt", "mine");
