@@ -131,6 +131,24 @@ TEST_F(Batch, AnInterruptionSaysHowFarItCame) {
   EXPECT_FALSE(fs::exists(out + "/fleet.json"));
 }
 
+TEST_F(Batch, RobotsWithInstrumentsAreStudied) {
+  const std::string project = scratch_.Write(
+      "arm.yaml", "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() + R"(}
+chains: [{name: arm, tip: flange}]
+instruments:
+  trackers: [{name: tracker}]
+  positions: [{name: ball, link: flange, tracker: tracker, point_mm: [50, 30, 20]}]
+)");
+  manifest_ = scratch_.Write("fleet.yaml", "project: " + project + R"(
+studies: [{name: arm, robots: 1, simulate: {count: 30}, calibrate: {kfold: 0}}]
+)");
+  const ProgramResult result = Run("out");
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const nlohmann::json fleet = nlohmann::json::parse(Read("out", "fleet.json"));
+  EXPECT_GT(fleet["median_urdf_rmse_3d_mm"].get<double>(), 0.0);
+  EXPECT_LT(fleet["median_urdf_rmse_3d_mm"].get<double>(), 2.0);
+}
+
 TEST_F(Batch, AFailedTaskIsNamedAndTheOthersAreDone) {
   manifest_ = scratch_.Write("fleet.yaml",
                              "project: " + SourceFile("tests/robots/arm6_project.yaml").string() +
