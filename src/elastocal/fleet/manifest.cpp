@@ -2,10 +2,13 @@
 #include "elastocal/fleet/manifest.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <set>
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/files/yaml_value.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -61,7 +64,32 @@ std::vector<std::string> CalibrateWords(const FleetTask& task, const fs::path& r
   return words;
 }
 
-FleetTask ReadSession(const YamlValue& item, const Common& common) {
+/// How the days of sessions are given; not both ways, since their differences count.
+struct DayKinds {
+  bool dates = false, numbers = false;
+};
+
+/// Days from any day: a number, or a date, in days from 1970.
+double ReadDay(const YamlValue& value, DayKinds& kinds) {
+  const std::string text = value.Text();
+  int year = 0, month = 0, day = 0, length = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &length) == 3 &&
+      static_cast<std::size_t>(length) == text.size()) {
+    const std::chrono::year_month_day date{std::chrono::year(year),
+                                           std::chrono::month(static_cast<unsigned>(month)),
+                                           std::chrono::day(static_cast<unsigned>(day))};
+    value.Expect(date.ok(), "a day of the calendar");
+    kinds.dates = true;
+    value.Expect(!kinds.numbers, "a number of days, as the sessions above have");
+    return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+  }
+  value.Expect(ParseNumber(text).has_value(), "a number of days, or a date like 2026-03-31");
+  kinds.numbers = true;
+  value.Expect(!kinds.dates, "a date, as the sessions above have");
+  return value.Number();
+}
+
+FleetTask ReadSession(const YamlValue& item, const Common& common, DayKinds& days) {
   item.ExpectKeys({"name", "robot", "batch", "day", "project", "recording", "calibrate"});
   FleetTask task;
   task.name = item.Get("name").Text();
@@ -69,7 +97,7 @@ FleetTask ReadSession(const YamlValue& item, const Common& common) {
   ExpectName(item.Get("name"), task.name);
   task.robot = item.Find("robot") ? item.Get("robot").Text() : task.name;
   if (const auto batch = item.Find("batch")) task.batch = batch->Text();
-  if (const auto day = item.Find("day")) task.day = day->Number();
+  if (const auto day = item.Find("day")) task.day = ReadDay(*day, days);
   if (const auto project = item.Find("project")) task.project = PathOf(*project, common.folder);
   if (task.project.empty()) item.Fail("no key 'project', neither here nor for all");
   const YamlValue recording = item.Get("recording");
@@ -155,7 +183,10 @@ std::vector<FleetTask> ReadManifest(const fs::path& file, const fs::path& output
   common.calibrate = ReadWords(root.Find("calibrate"));
   std::vector<FleetTask> tasks;
   if (const auto sessions = root.Find("sessions")) {
-    for (const YamlValue& item : sessions->Items()) tasks.push_back(ReadSession(item, common));
+    DayKinds days;
+    for (const YamlValue& item : sessions->Items()) {
+      tasks.push_back(ReadSession(item, common, days));
+    }
   }
   if (const auto studies = root.Find("studies")) {
     for (const YamlValue& item : studies->Items()) ReadStudy(item, common, tasks);
