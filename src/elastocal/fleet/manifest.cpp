@@ -32,14 +32,22 @@ void ExpectName(const YamlValue& value, const std::string& name) {
   value.Expect(fine, "a name of letters, digits, '_', '.' and '-', not beginning with '.'");
 }
 
-/// `{kfold: 10, elastic: true}` as `--kfold 10 --elastic`.
-std::vector<std::string> ReadWords(const std::optional<YamlValue>& options) {
+fs::path PathOf(const YamlValue& value, const fs::path& folder) {
+  return (folder / value.Text()).lexically_normal();
+}
+
+/// `{kfold: 10, elastic: true}` as `--kfold 10 --elastic`; files are seen from `folder`.
+std::vector<std::string> ReadWords(const std::optional<YamlValue>& options,
+                                   const fs::path& folder) {
+  const std::set<std::string> files{"prior", "postures", "motion", "settings"};
   std::vector<std::string> words;
   if (!options) return words;
   for (const auto& [key, value] : options->Entries()) {
     const bool taken = key == "recording" || key == "output" || key == "json";
     options->Expect(!taken, "options that the batch does not set itself (" + key + ")");
-    if (value.IsScalar() && value.Text() == "true") {
+    if (value.IsScalar() && files.contains(key)) {
+      words.insert(words.end(), {"--" + key, PathOf(value, folder).string()});
+    } else if (value.IsScalar() && value.Text() == "true") {
       words.push_back("--" + key);
     } else if (value.IsScalar()) {
       words.insert(words.end(), {"--" + key, value.Text()});
@@ -49,10 +57,6 @@ std::vector<std::string> ReadWords(const std::optional<YamlValue>& options) {
     }
   }
   return words;
-}
-
-fs::path PathOf(const YamlValue& value, const fs::path& folder) {
-  return (folder / value.Text()).lexically_normal();
 }
 
 std::vector<std::string> CalibrateWords(const FleetTask& task, const fs::path& results,
@@ -110,7 +114,8 @@ FleetTask ReadSession(const YamlValue& item, const Common& common, DayKinds& day
   }
   recording.Expect(!task.recordings.empty(), "a file or folder, or a list of them");
   std::vector<std::string> words = common.calibrate;
-  for (const std::string& word : ReadWords(item.Find("calibrate"))) words.push_back(word);
+  const std::vector<std::string> own = ReadWords(item.Find("calibrate"), common.folder);
+  words.insert(words.end(), own.begin(), own.end());
   task.commands = {CalibrateWords(task, common.output / task.name, words)};
   return task;
 }
@@ -124,9 +129,10 @@ void ReadStudy(const YamlValue& item, const Common& common, std::vector<FleetTas
   const auto robots = item.Get("robots").Integer(1, kMostTasks);
   const auto first = item.Find("first") ? item.Get("first").Integer(0, 1'000'000'000) : 1;
   const bool keep = item.Find("keep_recordings") && item.Get("keep_recordings").Boolean();
-  const std::vector<std::string> simulate = ReadWords(item.Find("simulate"));
+  const std::vector<std::string> simulate = ReadWords(item.Find("simulate"), common.folder);
   std::vector<std::string> calibrate = common.calibrate;
-  for (const std::string& word : ReadWords(item.Find("calibrate"))) calibrate.push_back(word);
+  const std::vector<std::string> own = ReadWords(item.Find("calibrate"), common.folder);
+  calibrate.insert(calibrate.end(), own.begin(), own.end());
   struct Setting {
     std::string name;
     std::vector<std::string> simulate, calibrate;
@@ -136,8 +142,8 @@ void ReadStudy(const YamlValue& item, const Common& common, std::vector<FleetTas
     for (const YamlValue& one : list->Items()) {
       one.ExpectKeys({"name", "simulate", "calibrate"});
       ExpectName(one.Get("name"), one.Get("name").Text());
-      settings.push_back({one.Get("name").Text(), ReadWords(one.Find("simulate")),
-                          ReadWords(one.Find("calibrate"))});
+      settings.push_back({one.Get("name").Text(), ReadWords(one.Find("simulate"), common.folder),
+                          ReadWords(one.Find("calibrate"), common.folder)});
     }
   }
   if (settings.empty()) settings.push_back({});
@@ -180,7 +186,7 @@ std::vector<FleetTask> ReadManifest(const fs::path& file, const fs::path& output
   root.ExpectKeys({"project", "calibrate", "sessions", "studies"});
   Common common{.folder = file.parent_path(), .output = output, .project = {}, .calibrate = {}};
   if (const auto project = root.Find("project")) common.project = PathOf(*project, common.folder);
-  common.calibrate = ReadWords(root.Find("calibrate"));
+  common.calibrate = ReadWords(root.Find("calibrate"), common.folder);
   std::vector<FleetTask> tasks;
   if (const auto sessions = root.Find("sessions")) {
     DayKinds days;

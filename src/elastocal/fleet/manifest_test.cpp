@@ -31,7 +31,7 @@ sessions:
   EXPECT_EQ(tasks[0].commands,
             (std::vector<std::vector<std::string>>{
                 {"calibrate", here + "p.yaml", "--recording", here + "r1", here + "r2", "-o",
-                 "out/a_1", "--threads", "1", "--kfold", "0", "--prior", "base"}}));
+                 "out/a_1", "--threads", "1", "--kfold", "0", "--prior", here + "base"}}));
   EXPECT_EQ(tasks[1].robot, "b");
   EXPECT_EQ(tasks[1].project, here + "other.yaml");
 }
