@@ -181,9 +181,27 @@ void Table::CheckRowNumber() const {
        Quote(Cell(0)));
 }
 
+/// The same number with a decimal point. Where no comma separates, numbers may have decimal commas,
+/// all of them then.
+std::string_view Table::WithPoint(int column) const {
+  const std::string_view cell = Cell(column);
+  const std::size_t at = separator_ == ',' ? std::string_view::npos : cell.find_first_of(".,");
+  if (at == std::string_view::npos) return cell;
+  if (decimal_mark_ == '\0') decimal_mark_ = cell[at];
+  if (cell[at] != decimal_mark_) {
+    FailCell(column, "found " + Quote(cell) + "; a number with a decimal " +
+                         (decimal_mark_ == ',' ? "comma" : "point") +
+                         ", as others above, was expected");
+  }
+  if (cell[at] == '.') return cell;
+  number_ = cell;
+  number_[at] = '.';
+  return number_;
+}
+
 double Table::Number(int column) const {
   const std::string_view cell = Cell(column);
-  if (const std::optional<double> number = ParseNumber(cell)) return *number;
+  if (const std::optional<double> number = ParseNumber(WithPoint(column))) return *number;
   FailCell(column, "found " + (cell.empty() ? "nothing" : Quote(cell)) +
                        "; a finite number was expected" +
                        (cell.find(',') == std::string_view::npos ? "" : ", with a decimal point"));

@@ -82,7 +82,8 @@ class Table {
   /// numbers, which pandas writes and nobody needs. Next throws where they are no whole numbers.
   bool CountsRows(int column) const;
 
-  /// A cell as a finite number. Throws InputError naming file, line and column for anything else.
+  /// A cell as a finite number, with a decimal point or, where no comma separates, a decimal comma
+  /// as all numbers then have. Throws InputError naming file, line and column for anything else.
   double Number(int column) const;
 
   const std::vector<std::string>& header() const { return header_; }
@@ -97,12 +98,16 @@ class Table {
  private:
   bool NextCells();
   void CheckRowNumber() const;
+  std::string_view WithPoint(int column) const;
 
   LineReader lines_;
   char separator_ = '\0';
   std::vector<std::string_view> cells_;
   std::vector<std::string> header_;
   int rows_ = 0;
+  mutable char decimal_mark_ =
+      '\0';  ///< of the first number that has one, where no comma separates
+  mutable std::string number_;
 };
 
 /// What column names mean: the number of a quantity, from 0, or kPassedOver. Several names may mean

@@ -102,6 +102,20 @@ TEST(Table, NumbersHaveLineAndColumn) {
   EXPECT_FALSE(table.Next());
 }
 
+TEST(Table, NumbersMayHaveDecimalCommasWhereNoCommaSeparates) {
+  std::istringstream stream("x;y;z\n3;1,5;-2,5e-3\n0,25;1.5;1,000,000\n");
+  Table table(stream, "t.csv");
+  ASSERT_TRUE(table.Next());
+  EXPECT_EQ(table.Number(0), 3.0);
+  EXPECT_EQ(table.Number(1), 1.5);
+  EXPECT_EQ(table.Number(2), -2.5e-3);
+  ASSERT_TRUE(table.Next());
+  EXPECT_EQ(table.Number(0), 0.25);
+  ExpectInputError([&] { table.Number(1); },
+                   {"t.csv:3: column 'y'", "'1.5'", "a decimal comma, as others above"});
+  ExpectInputError([&] { table.Number(2); }, {"'1,000,000'"});
+}
+
 std::vector<int> Find(const std::string& header) {
   std::istringstream stream(header);
   const ColumnRoles roles = {{"time", 0}, {"t", 0}, {"speed", 1}, {"note", kPassedOver}};
