@@ -385,6 +385,20 @@ class Runtime:
     def status(self) -> str:
         """What the last call had to cut or replace, in words; also of q that is not finite, where the last good answer
         is given."""
+    @property
+    def residual_m(self) -> float:
+        """What the last command leaves at the ends of the limbs, m."""
+    @property
+    def residual_rad(self) -> float:
+        """What the last command leaves at the ends of the limbs, rad."""
+    @property
+    def stopped(self) -> list[str]:
+        """Joints whose limit, or the limit of whose correction, keeps the end of a limb from its place after the last
+        command."""
+    @property
+    def root_displacement(self) -> _Array:
+        """Of the last correct: how far the root link is from that of the rigid robot on the same feet, (6,):
+        translation in m, then rotation vector in rad, in the axes of the first foot that stands."""
     def forget(self) -> None:
         """Lets the next command be found by itself. Commands near the last one go on from it, as along a motion."""
     def forward(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> dict[str, Any]:
@@ -396,6 +410,6 @@ class Runtime:
         (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the robot,), N.m,
         measured; empty: those of gravity. feet: bit i for foot i that stands."""
     def correct(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> _Array:
-        """Positions (joints,) at which a rigid calibrated robot has its hands where the real one has them. q:
-        (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the robot,), N.m,
+        """Positions (joints,) at which a rigid calibrated robot has its hands where the real one has them (its URDF:
+        `elastocal export --format urdf --beside-springs`). q: (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the robot,), N.m,
         measured; empty: those of gravity. feet: bit i for foot i that stands."""

@@ -43,7 +43,17 @@ class PyRuntime {
 
   void Forget() { compensator_.Forget(); }
 
+  const Compensator& compensator() const { return compensator_; }
+
   std::string Status() const { return DescribeStatus(status_); }
+
+  std::vector<std::string> Stopped() const {
+    std::vector<std::string> names;
+    for (std::size_t c = 0; c < model().coordinate_names.size(); ++c) {
+      if (compensator_.stopped()[c] != 0) names.push_back(model().coordinate_names[c]);
+    }
+    return names;
+  }
 
  private:
   static RuntimeModel Make(const Path& calibration, const Path& project,
@@ -100,6 +110,21 @@ void AddRuntime(py::module_& module) {
       .def_property_readonly("status", &PyRuntime::Status,
                              "What the last call had to cut or replace, in words; also of q that "
                              "is not finite, where the last good answer is given.")
+      .def_property_readonly(
+          "residual_m", [](const PyRuntime& r) { return r.compensator().residual_m(); },
+          "What the last command leaves at the ends of the limbs, m.")
+      .def_property_readonly(
+          "residual_rad", [](const PyRuntime& r) { return r.compensator().residual_rad(); },
+          "What the last command leaves at the ends of the limbs, rad.")
+      .def_property_readonly("stopped", &PyRuntime::Stopped,
+                             "Joints whose limit, or the limit of whose correction, keeps the end "
+                             "of a limb from its place after the last command.")
+      .def_property_readonly(
+          "root_displacement",
+          [](const PyRuntime& r) -> Eigen::VectorXd { return r.compensator().root_displacement(); },
+          "Of the last correct: how far the root link is from that of the rigid robot on the same "
+          "feet, (6,): translation in m, then rotation vector in rad, in the axes of the first "
+          "foot that stands.")
       .def("forget", &PyRuntime::Forget,
            "Lets the next command be found by itself. Commands near the last one go on from it, as "
            "along a motion.")
@@ -113,7 +138,8 @@ void AddRuntime(py::module_& module) {
                .c_str())
       .def("correct", &PyRuntime::Correct, "q"_a, "torque"_a = none, "feet"_a = 0u,
            with_arguments("Positions (joints,) at which a rigid calibrated robot has its hands "
-                          "where the real one has them.")
+                          "where the real one has them (its URDF: `elastocal export --format urdf "
+                          "--beside-springs`).")
                .c_str());
 }
 

@@ -97,6 +97,11 @@ class LeftArm(unittest.TestCase):
         # What is commanded brings the real hand where the nominal one is at q.
         again = real.forward(real.command(q))["links"][tip][:3, 3]
         self.assertLess(np.linalg.norm(again - at[0]), 1e-5)
+        self.assertLess(real.residual_m, 1e-5)
+        self.assertLess(real.residual_rad, 1e-4)
+        self.assertEqual(real.stopped, [])
+        real.correct(q)
+        self.assertEqual(real.root_displacement.shape, (6,))
         # Joints by name, the others at zero; and the project that the calibration names.
         again = elastocal.Runtime(self.folder / "cli").forward(bent)["links"][tip]
         every = real.forward(np.array([bent.get(name, 0.0) for name in real.joints]))["links"][tip]

@@ -131,6 +131,24 @@ TEST_F(Batch, AnInterruptionSaysHowFarItCame) {
   EXPECT_FALSE(fs::exists(out + "/fleet.json"));
 }
 
+TEST_F(Batch, RobotsWithInstrumentsAreStudied) {
+  const std::string project = scratch_.Write(
+      "arm.yaml", "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() + R"(}
+chains: [{name: arm, tip: flange}]
+instruments:
+  trackers: [{name: tracker}]
+  positions: [{name: ball, link: flange, tracker: tracker, point_mm: [50, 30, 20]}]
+)");
+  manifest_ = scratch_.Write("fleet.yaml", "project: " + project + R"(
+studies: [{name: arm, robots: 1, simulate: {count: 30}, calibrate: {kfold: 0}}]
+)");
+  const ProgramResult result = Run("out");
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const nlohmann::json fleet = nlohmann::json::parse(Read("out", "fleet.json"));
+  EXPECT_GT(fleet["median_urdf_rmse_3d_mm"].get<double>(), 0.0);
+  EXPECT_LT(fleet["median_urdf_rmse_3d_mm"].get<double>(), 2.0);
+}
+
 TEST_F(Batch, AFailedTaskIsNamedAndTheOthersAreDone) {
   manifest_ = scratch_.Write("fleet.yaml",
                              "project: " + SourceFile("tests/robots/arm6_project.yaml").string() +
@@ -139,7 +157,9 @@ sessions: [{name: gone, recording: no_such_table.csv}]
 )");
   const ProgramResult result = Run("out");
   EXPECT_EQ(result.exit_code, 4);
-  EXPECT_NE(result.out.find("gone"), std::string::npos) << result.out;
+  const std::size_t reason = result.out.find("\n  gone: ");
+  ASSERT_NE(reason, std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("no_such_table.csv", reason), std::string::npos) << result.out;
   EXPECT_NE(ReadFile(Folder("out") + "/gone.log").find("no_such_table.csv"), std::string::npos);
   fs::create_directory(Folder("full"));
   scratch_.Write("full/other.txt", "mine");

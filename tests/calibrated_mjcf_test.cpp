@@ -69,6 +69,22 @@ struct CalibratedMjcf {
   std::string text;
 };
 
+/// With the first joint's axis, type and zero said by a class of its body's.
+std::string WithDefaultClass(std::string mjcf, const std::string& axis) {
+  const std::size_t body = mjcf.find("<body", mjcf.find("<body") + 1);
+  const std::size_t from = mjcf.find(" type=", body), to = mjcf.find("/>", from);
+  std::string given = mjcf.substr(from, to - from);
+  if (!axis.empty())
+    given.replace(given.find(" axis"), std::string::npos, " axis=\"" + axis + "\"");
+  mjcf.replace(from, to - from, "");
+  mjcf.insert(body + 5, " childclass=\"inner\"");
+  return mjcf.insert(
+      mjcf.find("<worldbody>"),
+      "<default><joint ref=\"0.25\"/><default class=\"outer\"><joint axis=\"1 2 3\"" +
+          given.substr(0, given.find(" axis")) + "/><default class=\"inner\"><joint" +
+          given.substr(given.find(" axis")) + "/></default></default></default>");
+}
+
 CalibratedMjcf Export(const std::string& robot, const std::string& compiler) {
   const std::string urdf = ReadFile(SourceFile(robot));
   CalibratedMjcf result;
@@ -120,6 +136,30 @@ TEST(CalibratedMjcf, AnglesOfTheFileMayBeRadiansAndLinksMayFollowOthers) {
   ExpectThatMujocoAgrees(Export("tests/robots/mini_humanoid.urdf", "<compiler angle=\"radian\"/>"));
 }
 
+TEST(CalibratedMjcf, DefaultClassesSayWhatJointsAre) {
+  const std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  const RobotTree tree = ParseUrdf(urdf, "arm6.urdf");
+  const std::string radians = "<compiler angle=\"radian\"/>";
+  const std::string good = WithDefaultClass(NominalMjcf(tree, radians), "");
+  const std::string& joint = tree.joints[0].name;
+  const std::string text =
+      MakeCalibratedMjcf(good, "a.xml", tree, tree, {{joint, 0.125}, {tree.joints[1].name, 0.5}});
+  // Without the class, the axis of the first joint would be MuJoCo's own, and its zero 0.
+  const Model model = Load(text);
+  ASSERT_NE(model, nullptr);
+  const int id = mj_name2id(model.get(), mjOBJ_JOINT, joint.c_str());
+  EXPECT_NEAR(model->qpos0[model->jnt_qposadr[id]], 0.25 - 0.125, 1e-12);
+  const auto refused = [&](const std::string& model_text, const std::string& words) {
+    ExpectInputError([&] { MakeCalibratedMjcf(model_text, "a.xml", tree, tree, {}); }, {words});
+  };
+  refused(WithDefaultClass(NominalMjcf(tree, radians), "0 0 -1"), "the axis of joint");
+  std::string other = good;
+  refused(other.replace(other.find("\"slide\""), 7, "\"hinge\""), "is a hinge");
+  other = good;
+  refused(other.replace(other.find("childclass=\"inner\""), 18, "childclass=\"none\""),
+          "no default class 'none'");
+}
+
 TEST(CalibratedMjcf, NamesWhatDoesNotBelongToTheUrdf) {
   const std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
   const RobotTree tree = ParseUrdf(urdf, "arm6.urdf");
@@ -135,6 +175,12 @@ TEST(CalibratedMjcf, NamesWhatDoesNotBelongToTheUrdf) {
   refused("<mujoco>", "<mujoco><compiler coordinate=\"global\"/>", "global");
   refused("<body name=\"" + tree.links[static_cast<std::size_t>(tree.joints[2].child_link)].name,
           "<body name=\"other", "no body");
+  ExpectInputError(
+      [&] {
+        MakeCalibratedMjcf("<mujoco><worldbody><include file=\"bodies.xml\"/></worldbody></mujoco>",
+                           "a.xml", tree, tree, {});
+      },
+      {"no body", "it includes 'bodies.xml'"});
   refused("quat=", "euler=\"0 0 0\" quat=", "'quat' was expected");
   refused("<joint name=\"" + tree.joints[0].name, "<joint name=\"other", "has no joint");
   refused("<joint name", "<joint pos=\"0 0 0.1\" name", "not in the origin");

@@ -68,6 +68,23 @@ TEST_F(CalibratedTalos, RobotDescriptionsAreTheCalibratedRobot) {
   ExpectTheCalibratedRobot(rising, zeros);
 }
 
+TEST_F(CalibratedTalos, BesideSpringsTheUrdfHasTheGeometryOfTheElasticModel) {
+  const std::string file = (scratch_.path() / "out/calibration.yaml").string();
+  WriteFile(file, ReadFile(file) +
+                      "urdf:\n  model: rigid\n  errors:\n    arm_left_1_joint.theta: 0.03\n");
+  const Eigen::VectorXd q = Posture(1);
+  const auto hand = [&](const std::string& urdf) -> Eigen::Vector3d {
+    const RobotTree tree = ParseUrdf(urdf, "exported");
+    const int link = FindLink(tree, "gripper_left_base_link");
+    return LinkTransforms(tree, q)[static_cast<std::size_t>(link)].translation();
+  };
+  const std::string beside = ReadFile(Export("urdf", "--beside-springs"));
+  EXPECT_GT((hand(ReadFile(Export("urdf"))) - hand(beside)).norm(), 1e-3);
+  ExpectTheCalibratedRobot(beside, {});
+  EXPECT_NE(beside.find("Geometry of the elastic model"), std::string::npos);
+  EXPECT_EQ(RunExport("c99", (scratch_.path() / "x.h").string(), "--beside-springs").exit_code, 3);
+}
+
 TEST_F(CalibratedTalos, SevenNumbersAJointAreTheCalibratedRobot) {
   const std::string nominal = ReadFile(project_.urdf);
   std::map<std::string, std::array<double, 6>> added;

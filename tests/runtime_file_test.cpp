@@ -31,6 +31,18 @@ TEST(RuntimeFile, GivesTheSameBits) {
   EXPECT_EQ(first.command(), second.command());
 }
 
+TEST(RuntimeFile, NamesMayHaveBlanks) {
+  RuntimeModel model = TalosModel();
+  model.joint_names[1] = model.coordinate_names[1] = "lift  column 2";
+  model.link_names[0] = "# base link";
+  std::stringstream file;
+  WriteRuntimeModel(model, file);
+  const RuntimeModel read = ReadRuntimeModel(file, "model");
+  EXPECT_EQ(read.joint_names, model.joint_names);
+  EXPECT_EQ(read.coordinate_names, model.coordinate_names);
+  EXPECT_EQ(read.link_names, model.link_names);
+}
+
 TEST(RuntimeFile, ADamagedOneIsRefused) {
   std::ostringstream out;
   WriteRuntimeModel(TalosModel(), out);

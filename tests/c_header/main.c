@@ -5,6 +5,7 @@
 #include "robot.h"
 
 static robot_state state;
+static const double* none; /* no torques: statics */
 
 static void print(const double* values, int count) {
   int i;
@@ -21,13 +22,13 @@ int main(void) {
     for (i = 0; i < ROBOT_Q_COUNT; ++i) {
       if (scanf("%lf", &q[i]) != 1) return 1;
     }
-    robot_forward(&state, q, 0, feet, links, &root);
+    robot_forward(&state, q, none, feet, links, &root);
     print(links[5].p, 3);
     print(root.p, 3);
-    robot_correct(&state, q, 0, feet, out, six);
+    robot_correct(&state, q, none, feet, out, six);
     print(out, ROBOT_Q_COUNT);
     print(six, 6);
-    robot_command(&state, q, 0, feet, out, residual);
+    robot_command(&state, q, none, feet, out, residual);
     print(out, ROBOT_Q_COUNT);
     print(residual, 1);
   }

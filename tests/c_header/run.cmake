@@ -12,7 +12,7 @@ foreach(compiler gcc clang clang-14 g++)
   endif()
   set(language -std=c99)
   if(compiler STREQUAL g++)
-    set(language -x c++ -std=c++20 -Wold-style-cast)
+    set(language -x c++ -std=c++20 -Wold-style-cast -Wzero-as-null-pointer-constant)
   endif()
   execute_process(COMMAND ${${compiler}_found} ${language} -O2 -Wall -Wextra -Wpedantic -Wshadow
     -Wconversion -Werror -I${WORK} ${SOURCE}/main.c -o ${WORK}/${compiler} -lm COMMAND_ERROR_IS_FATAL ANY)

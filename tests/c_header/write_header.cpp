@@ -18,7 +18,11 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const std::filesystem::path folder = argv[1];
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
-  const RuntimeModel model = MakeRuntimeModel(project, RandomCalibration(project, 3));
+  RuntimeModel model = MakeRuntimeModel(project, RandomCalibration(project, 3));
+  // Names that C does not tell apart, or that the header needs itself.
+  model.coordinate_names[1] = "a-b";
+  model.coordinate_names[2] = "A_b";
+  model.link_names[0] = "count";
   std::ofstream(folder / "robot.h")
       << MakeCHeader(model, {.prefix = "robot", .heading = "for the test */ of comments"});
   std::ofstream postures(folder / "postures.txt"), expected(folder / "expected.txt");

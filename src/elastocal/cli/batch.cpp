@@ -3,8 +3,13 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <set>
+#include <string>
+#include <string_view>
 #include <thread>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -174,6 +179,34 @@ std::string DescribeFamily(const FleetReport& report) {
   return text;
 }
 
+/// What a command said last of its errors, or else first of all; empty where it said nothing.
+std::string ErrorOf(const fs::path& log) {
+  constexpr std::string_view kError = "error: ";
+  std::ifstream lines(log);
+  std::string first, error;
+  for (std::string line; std::getline(lines, line);) {
+    if (first.empty()) first = line;
+    const std::size_t at = line.find(kError);
+    if (at != std::string::npos) error = line.substr(at + kError.size());
+  }
+  return error.empty() ? first : error;
+}
+
+/// Why tasks failed: of the first few that failed for other reasons.
+std::string DescribeFailures(const std::vector<std::string>& failed, const fs::path& output) {
+  constexpr std::size_t kMostReasons = 5;
+  std::string text = fmt::format("Failed (see {}/NAME.log): {}\n", output.string(),
+                                 FirstOf(failed, kMostFindings));
+  std::set<std::string> reasons;
+  for (const std::string& name : failed) {
+    const std::string reason = ErrorOf(output / (name + ".log"));
+    if (reason.empty() || !reasons.insert(reason).second) continue;
+    text += fmt::format("  {}: {}\n", name, reason);
+    if (reasons.size() == kMostReasons) break;
+  }
+  return text;
+}
+
 std::string DescribeReport(const FleetReport& report, const fs::path& output) {
   int fine = 0;
   std::vector<std::string> refused, failed;
@@ -192,10 +225,7 @@ std::string DescribeReport(const FleetReport& report, const fs::path& output) {
     text += fmt::format("Not to be deployed (see {}/NAME.log): {}\n", output.string(),
                         FirstOf(refused, kMostFindings));
   }
-  if (!failed.empty()) {
-    text += fmt::format("Failed (see {}/NAME.log): {}\n", output.string(),
-                        FirstOf(failed, kMostFindings));
-  }
+  if (!failed.empty()) text += DescribeFailures(failed, output);
   if (report.robots > 0) {
     text += fmt::format("{} robots", report.robots);
     if (std::isfinite(report.family.median_error)) {

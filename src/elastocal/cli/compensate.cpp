@@ -42,6 +42,7 @@ std::string MakeCompensationJson(const CompensatedMotion& result) {
   json["to_joint_limit"] = MotionExtremeJson(result.position);
   json["velocity_share"] = MotionExtremeJson(result.velocity);
   if (result.has_clearance) json["clearance_m"] = MotionExtremeJson(result.clearance);
+  json["at_rest"] = result.at_rest;
   json["broken"] = result.broken;
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
@@ -65,7 +66,12 @@ std::string DescribeCompensation(const CompensatedMotion& result, const RobotTre
   add_of_joint("joint to its limit", result.position);
   add("velocity, % of limit", result.velocity, 100.0);
   if (result.has_clearance) add("least distance of parts, mm", result.clearance, 1e3);
-  return table.Render() +
+  std::string at_rest;
+  if (!result.at_rest.empty()) {
+    at_rest = fmt::format("At rest, since the motion has no column of them: {}\n",
+                          fmt::join(result.at_rest, ", "));
+  }
+  return table.Render() + at_rest +
          fmt::format("Left at hands, feet and waist: at most {:.3f} mm and {:.4f} deg\n",
                      1e3 * result.residual_m, result.residual_rad * kDegreesARadian);
 }

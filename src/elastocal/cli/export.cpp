@@ -86,6 +86,10 @@ void AddExport(CLI::App& app, Action& action) {
   command->add_flag("--mjcf-springs", options->options.mjcf_springs,
                     "For --format mjcf: springs in series with the joints, where the calibration "
                     "is elastic");
+  command->add_flag("--beside-springs", options->options.beside_springs,
+                    "For formats without springs: the geometry of the elastic model, for programs "
+                    "that correct elasticity themselves (Correct of the run-time library, "
+                    "flex-joints); default: the geometry that predicts best without springs");
   command
       ->add_option("--hip-damping", options->options.hip_damping,
                    "For --format flex_joints: damping of the hips, N.m.s/rad, which no calibration "

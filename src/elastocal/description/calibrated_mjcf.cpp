@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/description/mjcf_defaults.hpp"
 #include "elastocal/files/xml_edit.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/transform.hpp"
@@ -26,17 +27,42 @@ constexpr double kSpringInertiaTime = 0.010, kSpringDampingTime = 0.020;
 
 struct MjcfBody {
   XmlElement element;
-  std::string parent;  ///< name of the body that carries it; empty: the world
+  std::string parent;      ///< name of the body that carries it; empty: the world
+  std::string childclass;  ///< default class of its joints; empty: the outermost one
 };
 
 void CollectBodies(const XmlElement& within, const std::string& parent,
-                   std::map<std::string, MjcfBody>& bodies) {
+                   const std::string& childclass, std::map<std::string, MjcfBody>& bodies) {
   for (const XmlElement& child : within.Children()) {
     if (child.Tag() != "body") continue;
     const std::string name = child.Has("name") ? child.Text("name") : "";
-    if (!name.empty()) bodies.insert({name, {child, parent}});
-    CollectBodies(child, name, bodies);
+    const std::string own = child.Has("childclass") ? child.Text("childclass") : childclass;
+    if (!name.empty()) bodies.insert({name, {child, parent, own}});
+    CollectBodies(child, name, own, bodies);
   }
+}
+
+/// The first file that a part of the model is in.
+std::optional<std::string> FindInclude(const XmlElement& within) {
+  for (const XmlElement& child : within.Children()) {
+    if (child.Tag() == "include" && child.Has("file")) return child.Text("file");
+    if (auto found = FindInclude(child)) return found;
+  }
+  return {};
+}
+
+[[noreturn]] void FailWithoutBody(const XmlElement& root, const std::string& link,
+                                  const std::string& joint,
+                                  const std::map<std::string, MjcfBody>& bodies) {
+  std::vector<std::string> names;
+  for (const auto& [name, body] : bodies) names.push_back(name);
+  const std::string missing = "no body " + Quote(link) + ", which joint " + Quote(joint) + " moves";
+  if (const auto file = FindInclude(root)) {
+    root.Fail(missing + ", in this file; it includes " + Quote(*file) +
+              ": give the file that has the bodies, or the whole model as MuJoCo saves it");
+  }
+  root.Fail(missing + "; the names of the URDF's links and joints were expected" +
+            DidYouMean(link, names));
 }
 
 /// Angles of an MJCF are degrees unless it says otherwise.
@@ -100,7 +126,7 @@ Transform PoseInParent(const RobotTree& tree, const Joint& joint, const MjcfBody
          tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link * joint.T_parent_child;
 }
 
-XmlElement JointOf(const MjcfBody& body, const Joint& joint) {
+XmlElement JointOf(const MjcfBody& body, const Joint& joint, const MjcfJointDefaults& defaults) {
   std::optional<XmlElement> found;
   std::vector<std::string> names;
   for (const XmlElement& child : body.element.Children()) {
@@ -111,18 +137,28 @@ XmlElement JointOf(const MjcfBody& body, const Joint& joint) {
   if (!found) {
     body.element.Fail("the body has no joint " + Quote(joint.name) + DidYouMean(joint.name, names));
   }
-  if (found->Has("pos") && found->Vector("pos").norm() > kSamePlace) {
+  const auto giver = [&](const char* attribute) {
+    return defaults.Giver(*found, body.childclass, attribute);
+  };
+  const auto position = giver("pos");
+  if (position && position->Vector("pos").norm() > kSamePlace) {
     found->Fail("joint " + Quote(joint.name) + " is not in the origin of its body");
   }
-  if (found->Has("axis")) {
-    const Eigen::Vector3d axis = found->Vector("axis").normalized();
-    if (!((axis - joint.axis).norm() < kSameAxis)) {
-      found->Fail(
-          fmt::format("the axis of joint '{}' is ({:.4g} {:.4g} {:.4g}); that of the URDF, "
-                      "({:.4g} {:.4g} {:.4g}), was expected",
-                      joint.name, axis.x(), axis.y(), axis.z(), joint.axis.x(), joint.axis.y(),
-                      joint.axis.z()));
-    }
+  const auto typed = giver("type");
+  const std::string type = typed ? typed->Text("type") : "hinge";
+  const std::string expected = joint.type == JointType::kRevolute ? "hinge" : "slide";
+  if (type != expected) {
+    found->Fail("joint " + Quote(joint.name) + " is a " + type + "; that of the URDF, a " +
+                expected + ", was expected");
+  }
+  const auto turned = giver("axis");
+  const Eigen::Vector3d axis =
+      turned ? turned->Vector("axis").normalized() : Eigen::Vector3d::UnitZ();
+  if (!((axis - joint.axis).norm() < kSameAxis)) {
+    found->Fail(fmt::format(
+        "the axis of joint '{}' is ({:.4g} {:.4g} {:.4g}); that of the URDF, "
+        "({:.4g} {:.4g} {:.4g}), was expected",
+        joint.name, axis.x(), axis.y(), axis.z(), joint.axis.x(), joint.axis.y(), joint.axis.z()));
   }
   return *found;
 }
@@ -275,9 +311,8 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
   }
   const double angle_unit = AngleUnit(root);
   std::map<std::string, MjcfBody> bodies;
-  std::vector<std::string> names;
-  if (const auto world = root.FindFirst("worldbody")) CollectBodies(*world, "", bodies);
-  for (const auto& [name, body] : bodies) names.push_back(name);
+  if (const auto world = root.FindFirst("worldbody")) CollectBodies(*world, "", "", bodies);
+  const MjcfJointDefaults defaults(root);
   std::vector<XmlEdit> edits;
   std::optional<SpringWriter> writer;
   if (!springs.empty()) writer.emplace(mjcf, root);
@@ -285,12 +320,9 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
     const Joint& joint = nominal.joints[k];
     const std::string& child = nominal.links[static_cast<std::size_t>(joint.child_link)].name;
     const auto body = bodies.find(child);
-    if (body == bodies.end()) {
-      root.Fail("no body " + Quote(child) + ", which joint " + Quote(joint.name) + " moves" +
-                DidYouMean(child, names));
-    }
+    if (body == bodies.end()) FailWithoutBody(root, child, joint.name, bodies);
     CheckNominal(body->second, joint, PoseInParent(nominal, joint, body->second));
-    const XmlElement element = JointOf(body->second, joint);
+    const XmlElement element = JointOf(body->second, joint, defaults);
     Transform T = PoseInParent(calibrated, calibrated.joints[k], body->second);
     if (writer) {
       const Transform T_parent_root = CarrierOf(nominal, joint, body->second).T_body_link.inverse();
@@ -303,8 +335,9 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
     const auto offset = encoder_offsets.find(joint.name);
     if (offset == encoder_offsets.end() || offset->second == 0.0) continue;
     const double unit = joint.type == JointType::kRevolute ? angle_unit : 1.0;
-    edits.push_back(SetAttribute(
-        element, "ref", FormatNumber(element.NumberOr("ref", 0.0) - offset->second / unit)));
+    const auto given = defaults.Giver(element, body->second.childclass, "ref");
+    const double ref = given ? given->Number("ref") : 0.0;
+    edits.push_back(SetAttribute(element, "ref", FormatNumber(ref - offset->second / unit)));
   }
   if (!writer) return ApplyEdits(mjcf, std::move(edits));
   std::vector<XmlEdit> all = std::move(*writer).Edits();

@@ -31,6 +31,32 @@ double Millimetres(const Json& json, const char* artefact, const char* key) {
   return of.contains(key) && of[key].is_number() ? 1e-3 * of[key].get<double>() : kUnknown;
 }
 
+/// Root mean square of the 3-D distances of what instruments measure the position of, m.
+double PositionError(const Json& figures) {
+  if (!figures.is_object() || !figures.contains("instruments")) return kUnknown;
+  double squares = 0.0, count = 0.0;
+  for (const Json& one : figures["instruments"]) {
+    if (!one.contains("position_mm") || !one["position_mm"].is_number()) continue;
+    const double of_coordinate = 1e-3 * one["position_mm"].get<double>();
+    const double observations = one.value("observations", 0.0);
+    squares += observations * 3.0 * of_coordinate * of_coordinate;
+    count += observations;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : kUnknown;
+}
+
+/// The errors of a session with contact or instruments: on what was held out, if anything was.
+void ReadPositionErrors(const Json& contact, SessionOutcome& outcome) {
+  const bool held_out = contact.contains("kfold") && contact["kfold"].is_object();
+  const Json judged = contact.value(held_out ? "kfold" : "fit", Json());
+  outcome.urdf = PositionError(judged);
+  if (judged.is_object())
+    outcome.uncalibrated = PositionError(judged.value("uncalibrated", Json()));
+  if (!contact.contains("urdf_alone")) return;
+  outcome.compensated = outcome.urdf;
+  outcome.urdf = PositionError(contact["urdf_alone"]);
+}
+
 SessionOutcome ReadOutcome(const FleetTask& task, const TaskEnd& end, const fs::path& output) {
   SessionOutcome outcome{.task = &task,
                          .end = end,
@@ -50,6 +76,9 @@ SessionOutcome ReadOutcome(const FleetTask& task, const TaskEnd& end, const fs::
   outcome.urdf = Millimetres(json, "urdf", "rmse_3d_mm");
   outcome.uncalibrated = Millimetres(json, "urdf", "uncalibrated");
   outcome.compensated = Millimetres(json, "compensated", "rmse_3d_mm");
+  if (json.contains("contact") && json["contact"].is_object()) {
+    ReadPositionErrors(json["contact"], outcome);
+  }
   return outcome;
 }
 

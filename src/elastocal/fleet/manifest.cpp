@@ -2,10 +2,13 @@
 #include "elastocal/fleet/manifest.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <set>
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/files/yaml_value.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -29,14 +32,22 @@ void ExpectName(const YamlValue& value, const std::string& name) {
   value.Expect(fine, "a name of letters, digits, '_', '.' and '-', not beginning with '.'");
 }
 
-/// `{kfold: 10, elastic: true}` as `--kfold 10 --elastic`.
-std::vector<std::string> ReadWords(const std::optional<YamlValue>& options) {
+fs::path PathOf(const YamlValue& value, const fs::path& folder) {
+  return (folder / value.Text()).lexically_normal();
+}
+
+/// `{kfold: 10, elastic: true}` as `--kfold 10 --elastic`; files are seen from `folder`.
+std::vector<std::string> ReadWords(const std::optional<YamlValue>& options,
+                                   const fs::path& folder) {
+  const std::set<std::string> files{"prior", "postures", "motion", "settings"};
   std::vector<std::string> words;
   if (!options) return words;
   for (const auto& [key, value] : options->Entries()) {
     const bool taken = key == "recording" || key == "output" || key == "json";
     options->Expect(!taken, "options that the batch does not set itself (" + key + ")");
-    if (value.IsScalar() && value.Text() == "true") {
+    if (value.IsScalar() && files.contains(key)) {
+      words.insert(words.end(), {"--" + key, PathOf(value, folder).string()});
+    } else if (value.IsScalar() && value.Text() == "true") {
       words.push_back("--" + key);
     } else if (value.IsScalar()) {
       words.insert(words.end(), {"--" + key, value.Text()});
@@ -48,10 +59,6 @@ std::vector<std::string> ReadWords(const std::optional<YamlValue>& options) {
   return words;
 }
 
-fs::path PathOf(const YamlValue& value, const fs::path& folder) {
-  return (folder / value.Text()).lexically_normal();
-}
-
 std::vector<std::string> CalibrateWords(const FleetTask& task, const fs::path& results,
                                         const std::vector<std::string>& more) {
   std::vector<std::string> words = {"calibrate", task.project.string(), "--recording"};
@@ -61,7 +68,32 @@ std::vector<std::string> CalibrateWords(const FleetTask& task, const fs::path& r
   return words;
 }
 
-FleetTask ReadSession(const YamlValue& item, const Common& common) {
+/// How the days of sessions are given; not both ways, since their differences count.
+struct DayKinds {
+  bool dates = false, numbers = false;
+};
+
+/// Days from any day: a number, or a date, in days from 1970.
+double ReadDay(const YamlValue& value, DayKinds& kinds) {
+  const std::string text = value.Text();
+  int year = 0, month = 0, day = 0, length = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &length) == 3 &&
+      static_cast<std::size_t>(length) == text.size()) {
+    const std::chrono::year_month_day date{std::chrono::year(year),
+                                           std::chrono::month(static_cast<unsigned>(month)),
+                                           std::chrono::day(static_cast<unsigned>(day))};
+    value.Expect(date.ok(), "a day of the calendar");
+    kinds.dates = true;
+    value.Expect(!kinds.numbers, "a number of days, as the sessions above have");
+    return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+  }
+  value.Expect(ParseNumber(text).has_value(), "a number of days, or a date like 2026-03-31");
+  kinds.numbers = true;
+  value.Expect(!kinds.dates, "a date, as the sessions above have");
+  return value.Number();
+}
+
+FleetTask ReadSession(const YamlValue& item, const Common& common, DayKinds& days) {
   item.ExpectKeys({"name", "robot", "batch", "day", "project", "recording", "calibrate"});
   FleetTask task;
   task.name = item.Get("name").Text();
@@ -69,7 +101,7 @@ FleetTask ReadSession(const YamlValue& item, const Common& common) {
   ExpectName(item.Get("name"), task.name);
   task.robot = item.Find("robot") ? item.Get("robot").Text() : task.name;
   if (const auto batch = item.Find("batch")) task.batch = batch->Text();
-  if (const auto day = item.Find("day")) task.day = day->Number();
+  if (const auto day = item.Find("day")) task.day = ReadDay(*day, days);
   if (const auto project = item.Find("project")) task.project = PathOf(*project, common.folder);
   if (task.project.empty()) item.Fail("no key 'project', neither here nor for all");
   const YamlValue recording = item.Get("recording");
@@ -82,7 +114,8 @@ FleetTask ReadSession(const YamlValue& item, const Common& common) {
   }
   recording.Expect(!task.recordings.empty(), "a file or folder, or a list of them");
   std::vector<std::string> words = common.calibrate;
-  for (const std::string& word : ReadWords(item.Find("calibrate"))) words.push_back(word);
+  const std::vector<std::string> own = ReadWords(item.Find("calibrate"), common.folder);
+  words.insert(words.end(), own.begin(), own.end());
   task.commands = {CalibrateWords(task, common.output / task.name, words)};
   return task;
 }
@@ -96,9 +129,10 @@ void ReadStudy(const YamlValue& item, const Common& common, std::vector<FleetTas
   const auto robots = item.Get("robots").Integer(1, kMostTasks);
   const auto first = item.Find("first") ? item.Get("first").Integer(0, 1'000'000'000) : 1;
   const bool keep = item.Find("keep_recordings") && item.Get("keep_recordings").Boolean();
-  const std::vector<std::string> simulate = ReadWords(item.Find("simulate"));
+  const std::vector<std::string> simulate = ReadWords(item.Find("simulate"), common.folder);
   std::vector<std::string> calibrate = common.calibrate;
-  for (const std::string& word : ReadWords(item.Find("calibrate"))) calibrate.push_back(word);
+  const std::vector<std::string> own = ReadWords(item.Find("calibrate"), common.folder);
+  calibrate.insert(calibrate.end(), own.begin(), own.end());
   struct Setting {
     std::string name;
     std::vector<std::string> simulate, calibrate;
@@ -108,8 +142,8 @@ void ReadStudy(const YamlValue& item, const Common& common, std::vector<FleetTas
     for (const YamlValue& one : list->Items()) {
       one.ExpectKeys({"name", "simulate", "calibrate"});
       ExpectName(one.Get("name"), one.Get("name").Text());
-      settings.push_back({one.Get("name").Text(), ReadWords(one.Find("simulate")),
-                          ReadWords(one.Find("calibrate"))});
+      settings.push_back({one.Get("name").Text(), ReadWords(one.Find("simulate"), common.folder),
+                          ReadWords(one.Find("calibrate"), common.folder)});
     }
   }
   if (settings.empty()) settings.push_back({});
@@ -152,10 +186,13 @@ std::vector<FleetTask> ReadManifest(const fs::path& file, const fs::path& output
   root.ExpectKeys({"project", "calibrate", "sessions", "studies"});
   Common common{.folder = file.parent_path(), .output = output, .project = {}, .calibrate = {}};
   if (const auto project = root.Find("project")) common.project = PathOf(*project, common.folder);
-  common.calibrate = ReadWords(root.Find("calibrate"));
+  common.calibrate = ReadWords(root.Find("calibrate"), common.folder);
   std::vector<FleetTask> tasks;
   if (const auto sessions = root.Find("sessions")) {
-    for (const YamlValue& item : sessions->Items()) tasks.push_back(ReadSession(item, common));
+    DayKinds days;
+    for (const YamlValue& item : sessions->Items()) {
+      tasks.push_back(ReadSession(item, common, days));
+    }
   }
   if (const auto studies = root.Find("studies")) {
     for (const YamlValue& item : studies->Items()) ReadStudy(item, common, tasks);

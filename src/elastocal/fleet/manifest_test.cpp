@@ -31,9 +31,23 @@ sessions:
   EXPECT_EQ(tasks[0].commands,
             (std::vector<std::vector<std::string>>{
                 {"calibrate", here + "p.yaml", "--recording", here + "r1", here + "r2", "-o",
-                 "out/a_1", "--threads", "1", "--kfold", "0", "--prior", "base"}}));
+                 "out/a_1", "--threads", "1", "--kfold", "0", "--prior", here + "base"}}));
   EXPECT_EQ(tasks[1].robot, "b");
   EXPECT_EQ(tasks[1].project, here + "other.yaml");
+}
+
+TEST(Manifest, DaysMayBeDates) {
+  const auto read = [](const std::string& first, const std::string& second) {
+    return Read("project: p.yaml\nsessions:\n  - {name: a, recording: r, day: " + first +
+                "}\n  - {name: b, recording: r, day: " + second + "}\n");
+  };
+  const auto tasks = read("2024-02-28", "2024-03-01");
+  EXPECT_EQ(tasks[0].day, 19781.0);
+  EXPECT_EQ(tasks[1].day, 19783.0);  // a leap year
+  ExpectInputError([&] { read("2023-02-28", "2023-02-29"); }, {"day", "a day of the calendar"});
+  ExpectInputError([&] { read("2023-02-28", "12"); }, {"day", "a date, as the sessions above"});
+  ExpectInputError([&] { read("12", "2023-02-28"); }, {"day", "a number of days, as"});
+  ExpectInputError([&] { read("12", "monday"); }, {"'monday'", "or a date like 2026-03-31"});
 }
 
 TEST(Manifest, StudiesAreRobotsTimesSettings) {

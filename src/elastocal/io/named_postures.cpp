@@ -20,8 +20,8 @@ struct PostureTableColumns {
 };
 
 /// Names what the columns hold; nothing without a marker.
-std::optional<PostureTableColumns> NameColumns(const std::vector<std::string>& header,
-                                               NamedPostures& postures) {
+std::optional<PostureTableColumns> NameColumns(const Table& table, NamedPostures& postures) {
+  const std::vector<std::string>& header = table.header();
   PostureTableColumns columns;
   const auto find = [&](const std::string& name) {
     const auto at = std::find(header.begin(), header.end(), name);
@@ -40,7 +40,7 @@ std::optional<PostureTableColumns> NameColumns(const std::vector<std::string>& h
   if (columns.markers.empty()) return std::nullopt;
   columns.time = std::max(find("t"), find("time"));
   for (int i = 0; i < static_cast<int>(header.size()); ++i) {
-    if (i == columns.time || taken.contains(i)) continue;
+    if (i == columns.time || taken.contains(i) || table.CountsRows(i)) continue;
     postures.joints.push_back(header[static_cast<std::size_t>(i)]);
   }
   return columns;
@@ -63,7 +63,7 @@ std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source) {
   SourceStream stream(source);
   Table table(stream, source.name());
   NamedPostures postures;
-  const std::optional<PostureTableColumns> columns = NameColumns(table.header(), postures);
+  const std::optional<PostureTableColumns> columns = NameColumns(table, postures);
   if (!columns) return std::nullopt;
   std::vector<double> time;
   while (table.Next()) {

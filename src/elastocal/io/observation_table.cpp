@@ -243,9 +243,31 @@ std::vector<std::string> SilentInstruments(const ObservationTables& tables) {
 
 }  // namespace
 
-ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>& files,
+std::vector<std::filesystem::path> ObservationFiles(
+    const std::vector<std::filesystem::path>& recordings) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& recording : recordings) {
+    if (FileTypeOf(recording) != std::filesystem::file_type::directory) {
+      files.push_back(recording);
+      continue;
+    }
+    const std::filesystem::path table = recording / "observations.csv";
+    const std::filesystem::path corners = recording / "corners.csv";
+    if (FileTypeOf(table) == std::filesystem::file_type::not_found) {
+      throw InputError(recording.string() +
+                       ": this is a folder without observations.csv; tables of observations (CSV) "
+                       "were expected, because the project has contact or instruments");
+    }
+    files.push_back(table);
+    if (FileTypeOf(corners) != std::filesystem::file_type::not_found) files.push_back(corners);
+  }
+  return files;
+}
+
+ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>& recordings,
                                         const Project& project,
                                         const std::vector<ContactFoot>* feet) {
+  const std::vector<std::filesystem::path> files = ObservationFiles(recordings);
   if (files.empty()) throw InputError("no recording; one or more were expected");
   ObservationTables tables;
   tables.setup = project.contact->setup;
@@ -257,11 +279,6 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
     const std::filesystem::path& file = *at;
     if (std::find(files.begin(), at, file) != at) {
       throw InputError(file.string() + ": the file is given twice; its rows would count twice");
-    }
-    if (FileTypeOf(file) == std::filesystem::file_type::directory) {
-      throw InputError(file.string() +
-                       ": this is a folder; tables of observations (CSV) were expected, because "
-                       "the project has contact or instruments");
     }
     if (IsDetectionTable(file)) {
       detections.push_back(file);

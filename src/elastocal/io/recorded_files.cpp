@@ -235,6 +235,7 @@ JointLog ReadPlainLog(const ByteSource& source) {
     for (std::size_t i = 0; i < header.size(); ++i) {
       if (header.begin() + static_cast<std::ptrdiff_t>(i) == at) continue;
       const int column = static_cast<int>(i);
+      if (table.CountsRows(column)) continue;
       const bool torque = header[i].ends_with("_torque") || header[i].ends_with("_effort");
       columns[header[i]].push_back(torque && IsGap(table.Cell(column)) ? kNaN
                                                                        : table.Number(column));

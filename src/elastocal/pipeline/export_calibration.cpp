@@ -30,6 +30,9 @@ namespace {
 /// Stands with the version in a comment of every exported file: by it IsExported knows them.
 constexpr const char* kMadeBy = "Made by elastocal ";
 
+constexpr const char* kBesideSprings =
+    "Geometry of the elastic model: for programs that correct elasticity themselves";
+
 /// A name as XML and YAML take it, and C.
 std::string CPrefix(const std::string& name) {
   std::string prefix;
@@ -71,10 +74,15 @@ std::vector<Leg> LegsOf(const Project& project) {
 }
 
 /// Whether the format has a place for compliances.
-bool HasLoads(const ExportOptions& options) {
+bool HasSprings(const ExportOptions& options) {
   const std::string& format = options.format;
   return format == "c99" || format == "runtime" || format == "flex_joints" ||
          (format == "mjcf" && options.mjcf_springs);
+}
+
+/// Whether what is exported goes with compliances, in the same file or beside it.
+bool HasLoads(const ExportOptions& options) {
+  return HasSprings(options) || options.beside_springs;
 }
 
 /// Whether it is the calibrated URDF in another form.
@@ -213,6 +221,10 @@ void CheckExportOptions(const ExportOptions& options) {
   if (format != "mjcf" && options.mjcf_springs) {
     throw InputError("format " + format + ": --mjcf-springs is about format mjcf");
   }
+  if (options.beside_springs && (HasSprings(options) || format == "linkages")) {
+    throw InputError("format " + format +
+                     ": --beside-springs is about formats without springs (urdf, ...)");
+  }
   if (format != "flex_joints" && options.hip_damping) {
     throw InputError("format " + format + ": --hip-damping is about format flex_joints");
   }
@@ -225,6 +237,7 @@ std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportO
   std::vector<std::string> heading{fmt::format("{}, calibrated from {}. {}{} of {}",
                                                robot.project.tree.name, robot.calibration.recording,
                                                kMadeBy, options.version, robot.calibration.source)};
+  if (options.beside_springs) heading.push_back(kBesideSprings);
   heading.insert(heading.end(), kept.comments.begin(), kept.comments.end());
   if (format == "c99") {
     return CHeaderOf(robot, kept, estimate, fmt::format("{}", fmt::join(heading, "\n   ")),

@@ -31,6 +31,9 @@ struct ExportOptions {
   /// has not seen (FindHeldOutGains, of what the format carries), m; the others stay nominal.
   std::optional<double> least_gain = {};
   bool mjcf_springs = false;  ///< of format mjcf: with springs in series with the joints
+  /// Of rigid formats: with the geometry of the elastic model (that of c99 and runtime), for
+  /// programs that correct elasticity themselves. Without, that of the URDF by calibrate.
+  bool beside_springs = false;
   /// Of format flex_joints: damping of the hips, N.m.s/rad; no calibration tells it.
   std::optional<double> hip_damping = {};
 };
@@ -47,7 +50,7 @@ struct ExportedCalibration {
 /// - c99: one self-contained header (runtime/c_header.hpp), with elasticity,
 /// - runtime: the file that Compensator reads (runtime/runtime_model.hpp), with elasticity,
 /// - urdf: the user's URDF with changed joint origins; as all rigid formats, with the errors that
-///   the URDF by calibrate has (AsInUrdf),
+///   the URDF by calibrate has (AsInUrdf), or those of the elastic model (`beside_springs`),
 /// - urdf_encoder: the same with the joints' zeros left to the encoders,
 /// - urdf_rising: that one, with the zeros added to the joints' element `calibration` (rising),
 /// - linkages: the calibrated rods as a section of a project (io/linkage_file.hpp),

@@ -198,11 +198,14 @@ std::string MakeFlexJointsYaml(const CalibrationResult& result, const RobotTree&
   const std::vector<SeriesSpring> springs = SeriesSprings(unit, calibrated, legs);
   std::string text =
       YamlComment(heading) +
-      YamlComment({"For flex-joints (Gepetto): springs between the waist and the legs, about y and "
-                   "x of the root",
-                   "link, N.m/rad. Sums of the root link's and the hip joints' compliances in the "
-                   "zero posture,",
-                   "with 95 % intervals. Compliances of the legs as a whole are not among them."});
+      YamlComment(
+          {"For flex-joints (Gepetto): springs between the waist and the legs, about y and "
+           "x of the root",
+           "link, N.m/rad. Sums of the root link's and the hip joints' compliances in the "
+           "zero posture,",
+           "with 95 % intervals. Compliances of the legs as a whole are not among them. The "
+           "URDF that",
+           "belongs to them: export --format urdf --beside-springs."});
   const std::array<const char*, 2> sides = {"left", "right"};
   const std::array<const Leg*, 2> by_side = LeftAndRight(legs, T_root_link);
   for (std::size_t side = 0; side < sides.size(); ++side) {

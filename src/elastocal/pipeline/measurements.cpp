@@ -8,6 +8,7 @@
 #include "elastocal/calibration/closed_chains.hpp"
 #include "elastocal/calibration/residuals.hpp"
 #include "elastocal/io/experiment.hpp"
+#include "elastocal/io/observation_table.hpp"
 #include "elastocal/io/posture_table.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/io/waist_truth.hpp"
@@ -158,6 +159,11 @@ Measurements ReadMeasurements(const Project& project, const std::vector<fs::path
 
 std::vector<fs::path> InputFiles(const Project& project, const std::vector<fs::path>& recordings) {
   std::vector<fs::path> files = {project.file, project.urdf};
+  if (project.contact) {
+    const std::vector<fs::path> tables = ObservationFiles(recordings);
+    files.insert(files.end(), tables.begin(), tables.end());
+    return files;
+  }
   for (const fs::path& recording : recordings) {
     if (!IsRecordingFolder(recording)) {
       ExpectNoFolder(recording);

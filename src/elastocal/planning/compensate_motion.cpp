@@ -156,8 +156,16 @@ StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
   return feet;
 }
 
+JointMotion WithOpenJointsAtRest(const Project& project, JointMotion motion) {
+  for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
+    if (!motion.q.col(c).array().isNaN().all()) continue;
+    motion.q.col(c).setConstant(project.motion.rest[c]);
+  }
+  return motion;
+}
+
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
-                                   const JointMotion& planned, MotionLoads loads) {
+                                   const JointMotion& given, MotionLoads loads) {
   for (const Sole& sole : project.soles) {
     if (!sole.ball_radius) continue;
     throw InputError(project.file.string() + ": sole '" +
@@ -169,6 +177,12 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     throw InputError(project.file.string() + ": " + NothingToCorrect());
   }
   CompensatedMotion result;
+  for (Eigen::Index c = 0; c < given.q.cols(); ++c) {
+    if (given.q.col(c).array().isNaN().all()) {
+      result.at_rest.push_back(CoordinateName(project.tree, c));
+    }
+  }
+  const JointMotion planned = WithOpenJointsAtRest(project, given);
   result.planned.motion = planned;
   JointMotion& motion = result.planned.motion;
   std::unique_ptr<StandingRobot> robot;

@@ -27,8 +27,9 @@ struct MotionExtreme {
 /// A planned motion with other joint positions: those with which the calibrated robot has hands,
 /// feet and waist where the plan meant.
 struct CompensatedMotion {
-  PlannedMotion planned;     ///< zero-moment points and torques are those of the plan
-  MotionExtreme correction;  ///< largest change of a joint, rad or m
+  std::vector<std::string> at_rest;  ///< joints that the motion leaves open
+  PlannedMotion planned;             ///< zero-moment points and torques are those of the plan
+  MotionExtreme correction;          ///< largest change of a joint, rad or m
   double residual_m = 0.0, residual_rad = 0.0;  ///< largest that is left at the end of a limb
   MotionExtreme position;                       ///< least distance to a joint's limit, rad or m
   MotionExtreme velocity;                       ///< largest share of a joint's velocity limit
@@ -42,9 +43,13 @@ struct CompensatedMotion {
   std::vector<std::string> broken;
 };
 
-/// Corrects every sample of a motion (Compensator::Command). The motion has times or not; its
-/// support may be left open: then all feet stand, or the root link is held where there are none.
-/// Throws InputError for a support that is no foot of the model, and for feet that are balls.
+/// The motion with joints that it leaves open as they are in the robot's posture of rest.
+JointMotion WithOpenJointsAtRest(const Project& project, JointMotion motion);
+
+/// Corrects every sample of a motion (Compensator::Command). The motion has times or not; joints
+/// that it leaves open are at rest. Its support may be left open: then all feet stand, or the root
+/// link is held where there are none. Throws InputError for a support that is no foot of the model,
+/// and for feet that are balls.
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
                                    const JointMotion& planned,
                                    MotionLoads loads = MotionLoads::kStatics);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -59,6 +62,22 @@ TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
   EXPECT_EQ(result.broken[0].find("stopped by a joint's limit: leg_left_4_joint ("), 0U)
       << result.broken[0];
   EXPECT_NE(result.broken[0].find("plan the motion further from this limit"), std::string::npos);
+}
+
+// Motions of arms often lack the fingers, or the legs.
+TEST(CompensateMotion, JointsThatAMotionLeavesOpenAreAtRest) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
+  JointMotion whole, open;
+  whole.q = open.q = project.motion.rest.transpose().replicate(2, 1);
+  open.q.col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const CompensatedMotion expected = CompensateMotion(project, model, whole);
+  const CompensatedMotion result = CompensateMotion(project, model, open);
+  EXPECT_TRUE(expected.at_rest.empty());
+  EXPECT_EQ(result.at_rest, std::vector<std::string>{model.coordinate_names[0]});
+  EXPECT_TRUE(result.broken.empty()) << result.broken[0];
+  EXPECT_EQ(result.planned.motion.q, expected.planned.motion.q);
 }
 
 // Nothing would be corrected, and all of it said to be where the plan has it.

@@ -272,7 +272,7 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
                                       const Progress& progress) {
   constexpr double kHeld = 20.0;  // times stiffer: what integration makes of a servo
   CheckPlan(motion);
-  const JointMotion planned = Until(options.until_s, motion);
+  const JointMotion planned = WithOpenJointsAtRest(project, Until(options.until_s, motion));
   CheckPlan(planned);
   const DescribedRobot described = DescribeRobot(project);
   const TrueRobot robot = DrawTrueRobot(

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -74,6 +75,20 @@ std::string UpperName(const std::string& name) {
   return upper;
 }
 
+/// The names in C of these, all different; that of their number is taken.
+std::vector<std::string> UpperNames(const std::vector<std::string>& names) {
+  std::set<std::string> taken{"COUNT"};
+  std::vector<std::string> upper;
+  for (const std::string& name : names) {
+    const std::string wanted = UpperName(name);
+    upper.push_back(wanted);
+    for (int number = 2; !taken.insert(upper.back()).second; ++number) {
+      upper.back() = wanted + "_" + std::to_string(number);
+    }
+  }
+  return upper;
+}
+
 /// A comment may not end early.
 std::string CommentText(std::string text) {
   for (std::size_t at = 0; (at = text.find("*/", at)) != std::string::npos;) text[at] = ' ';
@@ -108,8 +123,11 @@ class CHeaderWriter {
   void Indices(const char* kind, const std::vector<std::string>& names, const char* what) {
     const std::string begin = UpperName(name_) + "_" + kind + "_";
     out_ << "/* " << what << " */\nenum {\n";
+    const std::vector<std::string> upper = UpperNames(names);
     for (std::size_t i = 0; i < names.size(); ++i) {
-      out_ << "  " << begin << UpperName(names[i]) << " = " << i << ",\n";
+      out_ << "  " << begin << upper[i] << " = " << i << ",";
+      if (upper[i] != UpperName(names[i])) out_ << " /* " << CommentText(names[i]) << " */";
+      out_ << "\n";
     }
     out_ << "  " << UpperName(name_) << "_" << kind << "_COUNT = " << names.size() << "\n};\n\n";
   }
@@ -117,9 +135,9 @@ class CHeaderWriter {
   void Feet() {
     out_ << "/* feet that stand, to be added up; 0: the root link is held */\nenum {\n  "
          << UpperName(name_) << "_HELD = 0";
-    for (std::size_t i = 0; i < model_.foot_names.size(); ++i) {
-      out_ << ",\n  " << UpperName(name_) << "_ON_" << UpperName(model_.foot_names[i]) << " = "
-           << (1U << i);
+    const std::vector<std::string> upper = UpperNames(model_.foot_names);
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+      out_ << ",\n  " << UpperName(name_) << "_ON_" << upper[i] << " = " << (1U << i);
     }
     out_ << "\n};\n\n";
   }
@@ -215,8 +233,7 @@ class CHeaderWriter {
       out_ << "  " << type << " " << name << "[" << std::max(1, count) << "];\n";
     };
     out_ << "/* Working memory, last good input and last command of one controller: static or on "
-            "its "
-            "stack. */\n"
+            "its\n   stack. It holds pointers into itself: not to be copied. */\n"
             "typedef struct {\n";
     for (const char* name : {"body"}) array("ec_pose", name, robot_.joints + 1);
     array("ec_pose", "twisted", robot_.joints);

@@ -68,7 +68,8 @@ class Compensator {
                             StandingFeet feet) noexcept;
 
   /// The positions with which a rigid robot of calibrated geometry has hands and feet where the
-  /// real one has them at `q`: rigid_positions(). And how far the real root link is from that of
+  /// real one has them at `q`: rigid_positions(), for kinematics with the URDF of `elastocal export
+  /// --format urdf --beside-springs`. And how far the real root link is from that of
   /// the rigid robot at `q` on the same feet: root_displacement().
   CompensatorStatus Correct(const Eigen::Ref<const Eigen::VectorXd>& q,
                             const Eigen::Ref<const Eigen::VectorXd>& torque,
@@ -76,9 +77,10 @@ class Compensator {
 
   /// Commands with which hands, feet and waist are where the nominal robot has them at
   /// `nominal`: command(). They are within the limits of the joints: what one cannot do, others
-  /// take over. Where that is not enough the command is the best nearby, and that of a call by
-  /// itself never worse than `nominal` as it is. What is left is in residual_m() and
-  /// residual_rad(), and why in stopped().
+  /// take over. A joint of `nominal` that is beyond its limit stays there, and gets no further.
+  /// Where that is not enough the command is the best nearby, and that of a call by itself never
+  /// worse than `nominal` as it is. What is left is in residual_m() and residual_rad(), and why in
+  /// stopped().
   ///
   /// Calls along a motion stay at one solution: while no joint of `nominal` is further than 0.1
   /// (rad, m) from the last call, the search starts from the last correction. If the same feet

@@ -85,8 +85,8 @@ static inline unsigned ec_forward(const ec_robot* robot, const double* q, const 
   ec_place_feet(robot, memory, placed);
   ec_move(robot, robot->calibrated, memory->good_q, memory);
   ec_walk(robot, robot->calibrated, 0, memory, &status);
-  ec_settle(robot, memory->good_q, memory->good_support, torque ? memory->good_torque : 0, memory,
-            gravity, &status);
+  ec_settle(robot, memory->good_q, memory->good_support, torque ? memory->good_torque : torque,
+            memory, gravity, &status);
   for (i = 0; i < robot->links; ++i) {
     ec_compose(&memory->body[robot->link[i].body], &robot->link[i].pose, &links[i]);
   }
@@ -119,7 +119,7 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   ec_move(robot, robot->calibrated, q, memory);
   ec_walk(robot, robot->calibrated, 0, memory, &status);
   ec_place_feet(robot, memory, straight);
-  ec_settle(robot, q, memory->good_support, torque ? memory->good_torque : 0, memory, gravity,
+  ec_settle(robot, q, memory->good_support, torque ? memory->good_torque : torque, memory, gravity,
             &status);
   ec_tip_poses(robot, memory, memory->target);
   ec_root_on_feet(robot, memory->good_support, placed, memory->sole, memory->share, &root);
@@ -175,8 +175,8 @@ static inline unsigned ec_command(const ec_robot* robot, const double* nominal,
   ec_place_feet(robot, memory, placed);
   for (f = 0; f < robot->feet; ++f) memory->sole[f] = placed[f];
   ec_tip_poses(robot, memory, memory->target);
-  ec_reach(robot, memory->good_q, torque ? memory->good_torque : 0, memory->good_support, 0, memory,
-           command, residual, &status);
+  ec_reach(robot, memory->good_q, torque ? memory->good_torque : torque, memory->good_support, 0,
+           memory, command, residual, &status);
   return status;
 }
 
@@ -197,8 +197,8 @@ static inline unsigned ec_command_poses(const ec_robot* robot, const ec_pose* ta
     return ec_command(robot, memory->good_q, torque, support, memory, command, residual) |
            EC_BAD_POSITION;
   for (t = 0; t < robot->tips; ++t) memory->target[t] = targets[t];
-  ec_reach(robot, memory->good_q, torque ? memory->good_torque : 0, memory->good_support, 1, memory,
-           command, residual, &status);
+  ec_reach(robot, memory->good_q, torque ? memory->good_torque : torque, memory->good_support, 1,
+           memory, command, residual, &status);
   return status;
 }
 

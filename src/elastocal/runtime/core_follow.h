@@ -45,7 +45,7 @@ static inline double ec_change(const ec_robot* robot, const double* nominal, int
    corrections then jump. */
 static inline void ec_stay_near(const ec_robot* robot, const double* nominal, const double* torque,
                                 unsigned support, double change, ec_memory* memory) {
-  const int same = support == memory->last_support && (torque != 0) == memory->had_torque;
+  const int same = support == memory->last_support && (torque ? 1 : 0) == memory->had_torque;
   const double room = same ? EC_FOLLOW * change + EC_CREEP : 2.0 * robot->largest_correction;
   int c, k;
   for (c = 0; c < robot->coordinates; ++c) memory->lowest[c] = room;
@@ -181,7 +181,7 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
   for (t = 0; t < robot->tips; ++t) memory->last_target[t] = memory->target[t];
   for (t = 0; t < robot->branches; ++t) memory->search[t].last_left = memory->search[t].left;
   memory->last_support = support;
-  memory->had_torque = torque != 0;
+  memory->had_torque = torque ? 1 : 0;
   memory->has_last = 1;
 }
 

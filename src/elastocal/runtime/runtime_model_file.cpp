@@ -44,7 +44,7 @@ class Writer {
     out_ << text;
   }
   void Value(int& value) { out_ << ' ' << value; }
-  void Value(std::string& value) { out_ << ' ' << value; }
+  void Name(std::string& name) { out_ << ' ' << name; }
 
  private:
   void Begin(const char* name) { out_ << name; }
@@ -100,6 +100,12 @@ class Reader {
     if (!(in_ >> value)) Fail("the end of the file", "a value");
   }
 
+  /// The rest of the line: a name may have blanks in it.
+  void Name(std::string& name) {
+    if (!std::getline(in_ >> std::ws, name)) Fail("the end of the file", "a name");
+    while (!name.empty() && name.back() == '\r') name.pop_back();
+  }
+
   [[noreturn]] void Fail(const std::string& found, const std::string& expected) const {
     throw std::runtime_error(source_ + ": entry '" + name_ + "': found " + found + "; " + expected +
                              " was expected");
@@ -131,8 +137,13 @@ void Items(Archive& archive, ec_pose& pose) {
 }
 
 template <typename Archive, typename Scalar>
-requires std::is_arithmetic_v<Scalar> || std::is_same_v<Scalar, std::string>
+requires std::is_arithmetic_v<Scalar>
 void Items(Archive& archive, Scalar& value) { archive.Value(value); }
+
+template <typename Archive>
+void Items(Archive& archive, std::string& name) {
+  archive.Name(name);
+}
 
 template <typename Archive>
 void Items(Archive& archive, ec_frame& frame) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/interruption.hpp"
@@ -158,16 +159,49 @@ bool Table::NextCells() {
 bool Table::Next() {
   if (!NextCells()) return false;
   ++rows_;
-  if (cells_.size() == header_.size()) return true;
+  if (cells_.size() == header_.size()) {
+    if (CountsRows(0)) CheckRowNumber();
+    return true;
+  }
   // A decimal comma splits a number in two.
   const bool commas = separator_ == ',' && 2 * cells_.size() >= 3 * header_.size();
   Fail("found " + std::to_string(cells_.size()) + " cells; the header has " +
        std::to_string(header_.size()) + (commas ? "; decimal commas?" : ""));
 }
 
+bool Table::CountsRows(int column) const {
+  return column == 0 && header_.size() > 1 &&
+         (header_.front().empty() || header_.front() == "Unnamed: 0");
+}
+
+void Table::CheckRowNumber() const {
+  const std::optional<double> number = ParseNumber(Cell(0));
+  if (number && *number >= 0.0 && *number == std::floor(*number)) return;
+  Fail("the first column has no name, and is not passed over as row numbers: found " +
+       Quote(Cell(0)));
+}
+
+/// The same number with a decimal point. Where no comma separates, numbers may have decimal commas,
+/// all of them then.
+std::string_view Table::WithPoint(int column) const {
+  const std::string_view cell = Cell(column);
+  const std::size_t at = separator_ == ',' ? std::string_view::npos : cell.find_first_of(".,");
+  if (at == std::string_view::npos) return cell;
+  if (decimal_mark_ == '\0') decimal_mark_ = cell[at];
+  if (cell[at] != decimal_mark_) {
+    FailCell(column, "found " + Quote(cell) + "; a number with a decimal " +
+                         (decimal_mark_ == ',' ? "comma" : "point") +
+                         ", as others above, was expected");
+  }
+  if (cell[at] == '.') return cell;
+  number_ = cell;
+  number_[at] = '.';
+  return number_;
+}
+
 double Table::Number(int column) const {
   const std::string_view cell = Cell(column);
-  if (const std::optional<double> number = ParseNumber(cell)) return *number;
+  if (const std::optional<double> number = ParseNumber(WithPoint(column))) return *number;
   FailCell(column, "found " + (cell.empty() ? "nothing" : Quote(cell)) +
                        "; a finite number was expected" +
                        (cell.find(',') == std::string_view::npos ? "" : ", with a decimal point"));
@@ -187,6 +221,7 @@ std::vector<int> FindColumns(const Table& table, const ColumnRoles& roles, std::
   for (std::size_t i = 0; i < table.header().size(); ++i) {
     const std::string& name = table.header()[i];
     const auto role = roles.find(name);
+    if (role == roles.end() && table.CountsRows(static_cast<int>(i))) continue;
     if (role == roles.end() && name.empty()) {
       table.Fail("empty column name, cell " + std::to_string(i + 1));
     }

@@ -78,7 +78,12 @@ class Table {
   /// A cell of the row read last, by column from 0.
   std::string_view Cell(int column) const { return cells_[static_cast<std::size_t>(column)]; }
 
-  /// A cell as a finite number. Throws InputError naming file, line and column for anything else.
+  /// Whether a column is the first one and has no name (in pandas' words, "Unnamed: 0"): row
+  /// numbers, which pandas writes and nobody needs. Next throws where they are no whole numbers.
+  bool CountsRows(int column) const;
+
+  /// A cell as a finite number, with a decimal point or, where no comma separates, a decimal comma
+  /// as all numbers then have. Throws InputError naming file, line and column for anything else.
   double Number(int column) const;
 
   const std::vector<std::string>& header() const { return header_; }
@@ -92,12 +97,17 @@ class Table {
 
  private:
   bool NextCells();
+  void CheckRowNumber() const;
+  std::string_view WithPoint(int column) const;
 
   LineReader lines_;
   char separator_ = '\0';
   std::vector<std::string_view> cells_;
   std::vector<std::string> header_;
   int rows_ = 0;
+  mutable char decimal_mark_ =
+      '\0';  ///< of the first number that has one, where no comma separates
+  mutable std::string number_;
 };
 
 /// What column names mean: the number of a quantity, from 0, or kPassedOver. Several names may mean
@@ -105,7 +115,8 @@ class Table {
 using ColumnRoles = std::map<std::string, int>;
 constexpr int kPassedOver = -1;
 
-/// For each quantity its column, -1 where there is none. Call it before the first row is read.
+/// For each quantity its column, -1 where there is none; row numbers (Table::CountsRows) are passed
+/// over. Call it before the first row is read.
 /// Throws InputError: two columns of one quantity; an unknown column, with the nearest known name
 /// and `advice`; numbers or a comment where the header should be.
 std::vector<int> FindColumns(const Table& table, const ColumnRoles& roles, std::size_t quantities,

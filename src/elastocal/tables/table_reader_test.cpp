@@ -102,6 +102,20 @@ TEST(Table, NumbersHaveLineAndColumn) {
   EXPECT_FALSE(table.Next());
 }
 
+TEST(Table, NumbersMayHaveDecimalCommasWhereNoCommaSeparates) {
+  std::istringstream stream("x;y;z\n3;1,5;-2,5e-3\n0,25;1.5;1,000,000\n");
+  Table table(stream, "t.csv");
+  ASSERT_TRUE(table.Next());
+  EXPECT_EQ(table.Number(0), 3.0);
+  EXPECT_EQ(table.Number(1), 1.5);
+  EXPECT_EQ(table.Number(2), -2.5e-3);
+  ASSERT_TRUE(table.Next());
+  EXPECT_EQ(table.Number(0), 0.25);
+  ExpectInputError([&] { table.Number(1); },
+                   {"t.csv:3: column 'y'", "'1.5'", "a decimal comma, as others above"});
+  ExpectInputError([&] { table.Number(2); }, {"'1,000,000'"});
+}
+
 std::vector<int> Find(const std::string& header) {
   std::istringstream stream(header);
   const ColumnRoles roles = {{"time", 0}, {"t", 0}, {"speed", 1}, {"note", kPassedOver}};
@@ -111,6 +125,18 @@ std::vector<int> Find(const std::string& header) {
 TEST(Columns, AreFoundByAnyOfTheirNames) {
   EXPECT_EQ(Find("note,speed,note,t\n"), (std::vector<int>{3, 1, -1}));
   EXPECT_EQ(Find("time"), (std::vector<int>{0, -1, -1}));
+}
+
+TEST(Columns, RowNumbersOfPandasArePassedOver) {
+  for (const char* name : {"", "Unnamed: 0"}) {
+    EXPECT_EQ(Find(std::string(name) + ",speed,t\n"), (std::vector<int>{2, 1, -1}));
+    std::istringstream stream(std::string(name) + ",t\n0,0.1\n1.0,0.2\n0.5,0.3\n");
+    Table table(stream, "t.csv");
+    ASSERT_TRUE(table.Next());
+    ASSERT_TRUE(table.Next());
+    EXPECT_EQ(table.Number(1), 0.2);
+    ExpectInputError([&] { table.Next(); }, {"t.csv:4: the first column has no name", "'0.5'"});
+  }
 }
 
 TEST(Columns, AreRefusedWhereTheyMeanNothingOrTheSame) {
