@@ -21,6 +21,7 @@ constexpr double kMostOfStep = 0.6;  // that a position is moved
 constexpr int kSweeps = 3;           // over the joints
 constexpr double kScatter = 0.25 * M_PI / 180.0, kScatterSlide = 1e-3;
 constexpr double kLeftWithoutScatter = 0.5;
+constexpr double kLoose = 0.5 * M_PI / 180.0, kLooseSlide = 2e-3, kLeftWithoutLoose = 0.4;
 constexpr double kOfMedian = 1.4826;  // a normal deviation's sd over its median size
 constexpr int kSteps = 2;             // of Newton's method
 
@@ -124,6 +125,7 @@ std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult
         q[i] = was[i] + enough * LeastOf(before[i], at[i], after[i]);
       }
       at = SquaresOf(result, moved, options);
+      if (at.sum() > kLeftWithoutSteps * given.sum()) break;
     }
     if (!(at.sum() < least)) continue;
     const double off =
@@ -133,6 +135,11 @@ std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult
     found = {joint.coordinate, off, at.sum() / given.sum()};
   }
   return found;
+}
+
+bool IsTooLoose(const ScatteredPositions& scattered, const RobotTree& tree) {
+  const double most = IsSliding(tree, scattered.coordinate) ? kLooseSlide : kLoose;
+  return scattered.off > most && scattered.left < kLeftWithoutLoose;
 }
 
 std::string Describe(const ScatteredPositions& scattered, const RobotTree& tree) {

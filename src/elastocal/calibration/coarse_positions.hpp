@@ -52,6 +52,10 @@ std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult
                                                          const Recording& recording,
                                                          const CalibrationOptions& options);
 
+/// Whether no joint that is worth calibrating does so: 0.5 degrees or 2 mm, which make three fifths
+/// of the squared distances. The wrist of a real TIAGo has 0.27 degrees of play, which make 55 %.
+bool IsTooLoose(const ScatteredPositions& scattered, const RobotTree& tree);
+
 /// "arm_3_joint: its positions scatter by 0.9 deg (sd) about where the markers show them, ...".
 std::string Describe(const ScatteredPositions& scattered, const RobotTree& tree);
 

@@ -195,6 +195,9 @@ CalibrationRun CalibrateExperiment(const Project& given,
          FindCoarsePositions(run.comparison.largest(), recording, settings, as_recorded.trials)) {
       run.warnings.push_back(Describe(one, project.tree));
     }
+    if (const auto loose = FindScatteredPositions(run.comparison.largest(), recording, settings)) {
+      run.warnings.push_back(Describe(*loose, project.tree));
+    }
   }
   run.common_scale = EstimateCommonScale(run.comparison.largest(), settings);
   if (run.faults.empty() && run.common_scale && IsDoubtful(*run.common_scale) &&

@@ -265,7 +265,9 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     if (!faults.empty()) return faults;
     const auto scattered =
         FindScatteredPositions(comparison.largest(), recording, project.calibration);
-    if (scattered) faults.push_back(Describe(*scattered, project.tree));
+    if (scattered && IsTooLoose(*scattered, project.tree)) {
+      faults.push_back(Describe(*scattered, project.tree));
+    }
     return faults;
   }
   const std::string of_slide =
