@@ -332,22 +332,6 @@ TEST(InstrumentInput, ATableHoldsWhatAllInstrumentsShow) {
   EXPECT_EQ(tables.observations.effects.size(), 1u);  // of the wall
 }
 
-TEST(InstrumentInput, AFolderThatSimulateWroteStandsForItsTables) {
-  const ScratchFolder scratch;
-  for (const char* name : {"full", "other"}) {
-    std::filesystem::create_directory(scratch.path() / name);
-  }
-  const std::filesystem::path table = scratch.Write("full/observations.csv", "a\n");
-  const std::filesystem::path folder = table.parent_path();
-  using Files = std::vector<std::filesystem::path>;
-  EXPECT_EQ(ObservationFiles({"b.csv", folder}), (Files{"b.csv", table}));
-  const std::filesystem::path corners = scratch.Write("full/corners.csv", "b\n");
-  EXPECT_EQ(ObservationFiles({folder}), (Files{table, corners}));
-  scratch.Write("other/truth.yaml", "");
-  ExpectInputError([&] { ObservationFiles({scratch.path() / "other"}); },
-                   {"other: this is a folder without observations.csv"});
-}
-
 TEST(InstrumentInput, TheTableSaysWhatIsWrong) {
   const Project project = InstrumentProject();
   ScratchFolder folder;

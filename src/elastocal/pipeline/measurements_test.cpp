@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/joint_log.hpp"
+#include "elastocal/io/observation_table.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/validation/model_comparison.hpp"
@@ -133,6 +134,22 @@ TEST_F(MeasurementsTest, ListsEveryFileThatIsRead) {
     EXPECT_NE(std::find(files.begin(), files.end(), file), files.end()) << file;
   }
   EXPECT_EQ(files.size(), 6u);
+}
+
+TEST(ObservationFiles, AFolderThatSimulateWroteStandsForItsTables) {
+  const ScratchFolder scratch;
+  for (const char* name : {"full", "other"}) {
+    std::filesystem::create_directory(scratch.path() / name);
+  }
+  const std::filesystem::path table = scratch.Write("full/observations.csv", "a\n");
+  const std::filesystem::path folder = table.parent_path();
+  using Files = std::vector<std::filesystem::path>;
+  EXPECT_EQ(ObservationFiles({"b.csv", folder}), (Files{"b.csv", table}));
+  const std::filesystem::path corners = scratch.Write("full/corners.csv", "b\n");
+  EXPECT_EQ(ObservationFiles({folder}), (Files{table, corners}));
+  scratch.Write("other/truth.yaml", "");
+  ExpectInputError([&] { ObservationFiles({scratch.path() / "other"}); },
+                   {"other: this is a folder without observations.csv"});
 }
 
 TEST_F(MeasurementsTest, OnlyFoldersCanBeTakenTogether) {
