@@ -126,6 +126,26 @@ TEST_F(ArmWithCause, WhatNoExportAppliesIsSaidWithWhatItLeaves) {
   EXPECT_GT(left, 3e3 * run.calibrated.in_sample.rows[0].rms);
 }
 
+// Each of two parameters is one standard deviation from zero; their sum is known a hundred times
+// better.
+TEST(IdleCause, IsJudgedByAllOfItsParametersTogether) {
+  CalibrationResult result;
+  for (int i = 0; i < 2; ++i) {
+    Correction correction;
+    correction.cause = "waist.suspension";
+    result.model.elasticity.corrections.push_back(correction);
+    Parameter parameter;
+    parameter.correction = i;
+    result.model.parameters.push_back(parameter);
+    result.posterior.parameters.push_back(i);
+  }
+  result.delta = result.sd = Eigen::Vector2d(1.0, 1.0);
+  result.posterior.covariance = Eigen::Matrix2d{{1.0, -0.9999}, {-0.9999, 1.0}};
+  EXPECT_EQ(IdleCause(result), std::nullopt);
+  result.posterior.covariance.setIdentity();
+  EXPECT_EQ(IdleCause(result), "waist.suspension");
+}
+
 TEST(CompensationInWords, NamesWhatExportsApplyBeforeWhatTheyDoNot) {
   EXPECT_EQ(CompensationInWords(true, {}), "compensation of elasticity");
   EXPECT_EQ(CompensationInWords(true, {"b.gear"}), "compensation of elasticity and b.gear");

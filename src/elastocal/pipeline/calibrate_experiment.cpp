@@ -240,7 +240,17 @@ CalibrationRun CalibrateExperiment(const Project& given,
   Append(repeated.estimated_twice, run.warnings);
   Append(repeated.judged_by_estimated, run.faults);
   if (measured.validation.posture_count() > 0) {
-    run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);
+    const auto judge = [&] {
+      run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);
+    };
+    judge();
+    std::string left_out;
+    while (!(left_out = LeaveOutBriefExchange(project, recording, run.comparison,
+                                              run.held_out->table, measured.validation))
+                .empty()) {
+      run.warnings.push_back(left_out);
+      judge();
+    }
     if (run.faults.empty()) {
       run.faults = FindContradictions(project, robot, recording, measured.validation,
                                       run.comparison, run.held_out->table);

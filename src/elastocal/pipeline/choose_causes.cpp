@@ -7,7 +7,9 @@
 #include <map>
 #include <string_view>
 
+#include "elastocal/calibration/posterior.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/observation/observed_study.hpp"
 #include "elastocal/pipeline/contact_result.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
@@ -42,24 +44,6 @@ std::vector<std::string> CausesMatching(const std::vector<std::string>& causes,
     matching.push_back(causes[static_cast<std::size_t>(i)]);
   }
   return matching;
-}
-
-/// Of the causes of a calibration with all of them, the one that is least, if it is within its
-/// uncertainty: another cause, or a spring, explains what it was found by.
-std::optional<std::string> IdleCause(const CalibrationResult& result) {
-  constexpr double kPlain = 2.0;       // standard deviations
-  std::map<std::string, double> size;  // the most of a cause's parameters
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    const int correction = result.model.parameters[static_cast<std::size_t>(i)].correction;
-    if (correction < 0 || !(result.sd[i] > 0.0)) continue;
-    double& most =
-        size[result.model.elasticity.corrections[static_cast<std::size_t>(correction)].cause];
-    most = std::max(most, std::abs(result.delta[i]) / result.sd[i]);
-  }
-  const auto least = std::min_element(
-      size.begin(), size.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (least == size.end() || least->second > kPlain) return std::nullopt;
-  return least->first;
 }
 
 /// The causes that the search took, less those that a calibration with all of them does not find:
@@ -187,6 +171,35 @@ ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot&
   };
   causes.extra = TakeChosen(calibrate_with, causes.report->search);
   return causes;
+}
+
+std::optional<std::string> IdleCause(const CalibrationResult& result) {
+  constexpr double kPlain = 0.9545;  // probability of two standard deviations of one parameter
+  std::map<std::string, std::vector<Eigen::Index>> entries;  // of the posterior, by cause
+  const std::vector<int>& known = result.posterior.parameters;
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const int correction = result.model.parameters[static_cast<std::size_t>(known[k])].correction;
+    const auto row = static_cast<Eigen::Index>(k);
+    if (correction < 0 || !(result.posterior.covariance(row, row) > 0.0)) continue;
+    entries[result.model.elasticity.corrections[static_cast<std::size_t>(correction)].cause]
+        .push_back(row);
+  }
+  std::optional<std::string> least;
+  double smallest = 1.0;
+  for (const auto& [cause, at] : entries) {
+    const auto count = static_cast<Eigen::Index>(at.size());
+    Eigen::VectorXd size(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      size[i] = result.delta[known[static_cast<std::size_t>(at[static_cast<std::size_t>(i)])]];
+    }
+    const Eigen::MatrixXd information = InverseOfInformation(result.posterior.covariance(at, at));
+    const double of_limit =
+        size.dot(information * size) / ChiSquareQuantile(kPlain, static_cast<double>(count));
+    if (!(of_limit <= smallest)) continue;
+    smallest = of_limit;
+    least = cause;
+  }
+  return least;
 }
 
 std::vector<std::string> NeverApplied(const std::vector<std::string>& causes) {

@@ -60,6 +60,12 @@ ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot&
 std::vector<std::string> StoredCauses(const RobotTree& tree,
                                       const std::map<std::string, double>& joint_errors);
 
+/// Of the causes of a calibration with all of them, the one that is least, if zero is within the
+/// region of its parameters that has the probability of two standard deviations: another cause, or
+/// a spring, explains what it was found by. Parameters that are doubtful one by one may be plain
+/// together.
+std::optional<std::string> IdleCause(const CalibrationResult& result);
+
 /// Those that no export and no `compensate` applies, because they depend on more than positions and
 /// loads.
 std::vector<std::string> NeverApplied(const std::vector<std::string>& causes);

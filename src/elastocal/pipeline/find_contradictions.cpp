@@ -145,10 +145,31 @@ std::string TrialsThatSee(const Recording& recording, int a, int b) {
 }
 
 /// Two markers of one cluster that have each other's labels in all trials of the estimate that see
-/// them, or in held-out postures; else empty. Each side fits by itself, and where the distances to
-/// the cluster's others are much alike, only the robot tells.
-std::string ExchangeWithinCluster(const Project& project, const Recording& recording,
-                                  const Recording& held_out, const ModelComparison& comparison) {
+/// them, or in held-out postures.
+struct Exchange {
+  int a = -1, b = -1;
+  std::vector<int> postures;  ///< held-out ones that are nearer to the model with it undone
+  double before = 0.0;        ///< rms of all held-out distances, m
+  double after = 0.0;         ///< with it undone
+  bool of_estimate = false;   ///< the labels are wrong there, not in the held-out postures
+
+  std::string Description(const Recording& recording, const Recording& held_out) const {
+    return fmt::format(
+        "the labels of {} and {} seem exchanged in {}: exchanged back, held-out trials are {:.3g} "
+        "mm off the model, as they are {:.3g} mm",
+        recording.marker_names[Size(a)], recording.marker_names[Size(b)],
+        of_estimate ? "trial " + TrialsThatSee(recording, a, b)
+                    : fmt::format("{} postures of trial {}", postures.size(),
+                                  TrialsThatSee(SelectPostures(held_out, postures), a, b)),
+        1e3 * after, 1e3 * before);
+  }
+};
+
+/// Each side fits by itself, and where the distances to the cluster's others are much alike, only
+/// the robot tells.
+std::optional<Exchange> ExchangeWithinCluster(const Project& project, const Recording& recording,
+                                              const Recording& held_out,
+                                              const ModelComparison& comparison) {
   const auto squares_of = [&](const Recording& judged) -> Eigen::ArrayXXd {
     const HeldOut result = JudgeOnTrials(comparison, judged, project.calibration);
     const auto& distances =
@@ -157,9 +178,9 @@ std::string ExchangeWithinCluster(const Project& project, const Recording& recor
   };
   const Eigen::ArrayXXd given = squares_of(held_out);
   const double before = given.sum();
+  const auto count = static_cast<double>((given > 0.0).count());
   double least = kLeftByMistake * kLeftByMistake * before;
-  int a = -1, b = -1;
-  std::vector<int> postures;
+  std::optional<Exchange> found;
   for (const LabelCluster& cluster : SeenClusters(project, recording)) {
     for (std::size_t i = 0; i < cluster.markers.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
@@ -179,39 +200,66 @@ std::string ExchangeWithinCluster(const Project& project, const Recording& recor
         }
         if (!(before - gained < least)) continue;
         least = before - gained;
-        a = one;
-        b = other;
-        postures = nearer;
+        found = {one, other, nearer, std::sqrt(before / count), std::sqrt(least / count)};
       }
     }
   }
-  if (a < 0) return "";
-  const bool of_estimate = AreExchanged(comparison.largest(), a, b);
-  const auto count = static_cast<double>((given > 0.0).count());
-  return fmt::format(
-      "the labels of {} and {} seem exchanged in {}: exchanged back, held-out trials are {:.3g} mm "
-      "off the model, as they are {:.3g} mm. Correct the labels and calibrate again",
-      recording.marker_names[Size(a)], recording.marker_names[Size(b)],
-      of_estimate ? "trial " + TrialsThatSee(recording, a, b)
-                  : fmt::format("{} postures of trial {}", postures.size(),
-                                TrialsThatSee(SelectPostures(held_out, postures), a, b)),
-      1e3 * std::sqrt(least / count), 1e3 * std::sqrt(before / count));
+  if (found) found->of_estimate = AreExchanged(comparison.largest(), found->a, found->b);
+  return found;
+}
+
+/// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
+Contrast ContrastOf(const Project& project, const Recording& recording,
+                    const ModelComparison& comparison, const ErrorTable& held_out_table) {
+  const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
+  return LargestContrast(fitted, held_out_table, comparison.largest().kind);
 }
 
 }  // namespace
+
+std::string LeaveOutBriefExchange(const Project& project, const Recording& recording,
+                                  const ModelComparison& comparison,
+                                  const ErrorTable& held_out_table, Recording& held_out) {
+  if (!(ContrastOf(project, recording, comparison, held_out_table).ratio() > kSuspicious))
+    return "";
+  const std::optional<Exchange> found =
+      ExchangeWithinCluster(project, recording, held_out, comparison);
+  if (!found || found->of_estimate) return "";
+  // Half of what the trials that it is in show of the two: a tracker that lost them for a while.
+  int seen = 0;
+  for (int i = 0; i < held_out.posture_count(); ++i) {
+    const bool in_trial =
+        std::any_of(found->postures.begin(), found->postures.end(), [&](int exchanged) {
+          return held_out.trials.empty() || held_out.trial[exchanged] == held_out.trial[i];
+        });
+    if (in_trial && Seen(held_out, i, found->a) && Seen(held_out, i, found->b)) ++seen;
+  }
+  if (2 * static_cast<int>(found->postures.size()) > seen) return "";
+  const std::string text =
+      found->Description(recording, held_out) + ". The two are left out of the judgement there";
+  for (const int i : found->postures) {
+    for (const int marker : {found->a, found->b}) {
+      held_out.markers.block<1, 3>(i, 3 * marker).setConstant(std::nan(""));
+    }
+  }
+  return text;
+}
 
 std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
                                             const Recording& recording, const Recording& held_out,
                                             const ModelComparison& comparison,
                                             const ErrorTable& held_out_table) {
-  const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
-  const Contrast contrast = LargestContrast(fitted, held_out_table, comparison.largest().kind);
+  const Contrast contrast = ContrastOf(project, recording, comparison, held_out_table);
   if (!(contrast.ratio() > kSuspicious)) return {};
   const std::string mistake =
       MistakeInHeldOut(project, held_out, robot.knocks, comparison, held_out_table);
   if (!mistake.empty()) return {mistake};
-  const std::string exchange = ExchangeWithinCluster(project, recording, held_out, comparison);
-  if (!exchange.empty()) return {exchange};
+  const std::optional<Exchange> exchange =
+      ExchangeWithinCluster(project, recording, held_out, comparison);
+  if (exchange) {
+    return {exchange->Description(recording, held_out) +
+            ". Correct the labels and calibrate again"};
+  }
   const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
   Recording all = JoinTrials(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.

@@ -10,6 +10,14 @@
 
 namespace elastocal {
 
+/// Two markers of a cluster whose labels a tracker exchanged for a while, in no more than half of
+/// the held-out postures that show them: the estimate knows nothing of it, and where the distances
+/// of the cluster are alike only the robot tells. Takes the two out of `held_out` there and says
+/// so; empty where there is nothing of the kind.
+std::string LeaveOutBriefExchange(const Project& project, const Recording& recording,
+                                  const ModelComparison& comparison,
+                                  const ErrorTable& held_out_table, Recording& held_out);
+
 /// Where held-out trials contradict those of the estimate. A fault in the only trial that exercises
 /// a joint is one that this trial cannot show: it is fitted as an error of the robot. So where the
 /// largest model errs on the held-out trials of a group of chains by more than three times its
