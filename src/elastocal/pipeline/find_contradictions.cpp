@@ -23,6 +23,7 @@ constexpr double kSuspicious = 3.0;  // times the error on the trials of the est
 constexpr double kContradicted = 10.0;
 constexpr double kLeftByMistake = 0.3;  // of the error on held-out trials
 constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
+constexpr int kFilterSpreads = 2;     // postures beside exchanged ones, which the filter mixes
 /// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
 /// be as good in motion, which statics does not describe.
 constexpr double kBestExpected = 0.03;
@@ -237,9 +238,14 @@ std::string LeaveOutBriefExchange(const Project& project, const Recording& recor
   if (2 * static_cast<int>(found->postures.size()) > seen) return "";
   const std::string text =
       found->Description(recording, held_out) + ". The two are left out of the judgement there";
-  for (const int i : found->postures) {
-    for (const int marker : {found->a, found->b}) {
-      held_out.markers.block<1, 3>(i, 3 * marker).setConstant(std::nan(""));
+  for (const int exchanged : found->postures) {
+    const int first = std::max(0, exchanged - kFilterSpreads);
+    const int last = std::min(held_out.posture_count() - 1, exchanged + kFilterSpreads);
+    for (int i = first; i <= last; ++i) {
+      if (!held_out.trials.empty() && held_out.trial[i] != held_out.trial[exchanged]) continue;
+      for (const int marker : {found->a, found->b}) {
+        held_out.markers.block<1, 3>(i, 3 * marker).setConstant(std::nan(""));
+      }
     }
   }
   return text;

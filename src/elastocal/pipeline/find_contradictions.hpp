@@ -12,8 +12,9 @@ namespace elastocal {
 
 /// Two markers of a cluster whose labels a tracker exchanged for a while, in no more than half of
 /// the held-out postures that show them: the estimate knows nothing of it, and where the distances
-/// of the cluster are alike only the robot tells. Takes the two out of `held_out` there and says
-/// so; empty where there is nothing of the kind.
+/// of the cluster are alike only the robot tells. Takes the two out of `held_out` there, and
+/// in two postures on either side, which the filter mixes, and says so; empty where there is
+/// nothing of the kind.
 std::string LeaveOutBriefExchange(const Project& project, const Recording& recording,
                                   const ModelComparison& comparison,
                                   const ErrorTable& held_out_table, Recording& held_out);
