@@ -84,13 +84,13 @@ double FirstGuess(const std::vector<SourceSum>& sums, const std::vector<Source>&
 }
 
 /// The variance of the noise of an instrument that `squares` (SI) tell, beside a guess of the
-/// weight `own`. Instruments are often much better than guessed: the guess counts as no more than
-/// twice the standard deviation that is found, or it alone would be most of what is found.
+/// weight `own`, which is a part of `freedom`. Instruments are often much better than guessed: the
+/// guess counts as no more than twice the standard deviation that the squares alone tell, or it
+/// would be most of what is found.
 double NoiseVariance(double squares, double guess, double freedom, double own) {
   constexpr double kFarGuess = 2.0;
-  const double guessed = (squares + own * guess) / freedom;
-  const double without = freedom - kFarGuess * kFarGuess * own;
-  const double told = without > 0.0 ? std::min(guessed, squares / without) : guessed;
+  const double alone = freedom > own ? squares / (freedom - own) : guess;
+  const double told = (squares + own * std::min(guess, kFarGuess * kFarGuess * alone)) / freedom;
   return std::max(told, kLeastOfGuess * kLeastOfGuess * guess);
 }
 
