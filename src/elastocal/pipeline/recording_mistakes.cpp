@@ -25,6 +25,7 @@ namespace elastocal {
 namespace {
 
 constexpr std::size_t kMostMistakes = 3;
+constexpr int kRoughUpdates = 20;         // of noise and prior, where a suspicion is tried
 constexpr std::size_t kMostTried = 3;     // of a kind, at a time
 constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
 constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
@@ -205,10 +206,12 @@ class Refitting {
       model_ = std::move(robot.model);
       base_ = std::move(robot.base);
     }
+    // What is right comes to rest soon; what is wrong may never.
+    CalibrationOptions roughly = project_.calibration;
+    roughly.max_iterations = std::min(roughly.max_iterations, kRoughUpdates);
     try {
-      return FitError(
-          Calibrate(*model_, recording, *base_, ModelKinds(*model_).back(), project_.calibration),
-          recording, project_.calibration);
+      return FitError(Calibrate(*model_, recording, *base_, ModelKinds(*model_).back(), roughly),
+                      recording, project_.calibration);
     } catch (const InputError&) {
       return std::numeric_limits<double>::infinity();
     }
