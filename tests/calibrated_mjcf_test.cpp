@@ -78,11 +78,11 @@ std::string WithDefaultClass(std::string mjcf, const std::string& axis) {
     given.replace(given.find(" axis"), std::string::npos, " axis=\"" + axis + "\"");
   mjcf.replace(from, to - from, "");
   mjcf.insert(body + 5, " childclass=\"inner\"");
-  return mjcf.insert(
-      mjcf.find("<worldbody>"),
-      "<default><joint ref=\"0.25\"/><default class=\"outer\"><joint axis=\"1 2 3\"" +
-          given.substr(0, given.find(" axis")) + "/><default class=\"inner\"><joint" +
-          given.substr(given.find(" axis")) + "/></default></default></default>");
+  return mjcf.insert(mjcf.find("<worldbody>"),
+                     R"(<default><joint ref="0.25"/><default class="outer"><joint axis="1 2 3")" +
+                         given.substr(0, given.find(" axis")) +
+                         R"(/><default class="inner"><joint)" + given.substr(given.find(" axis")) +
+                         "/></default></default></default>");
 }
 
 CalibratedMjcf Export(const std::string& robot, const std::string& compiler) {

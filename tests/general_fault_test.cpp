@@ -9,6 +9,7 @@
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
+#include "elastocal/math/random.hpp"
 #include "elastocal/pipeline/find_faults.hpp"
 #include "elastocal/pipeline/recorded_model.hpp"
 #include "elastocal/pipeline/up_by_loads.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/description/mjcf_defaults.hpp"
 
+#include <ranges>
+
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -45,9 +47,8 @@ std::optional<XmlElement> MjcfJointDefaults::Giver(const XmlElement& joint,
       joint.Fail("the file has no default class " + Quote(name) +
                  "; the model as MuJoCo saves it was expected");
     }
-    const std::vector<XmlElement>& entries = found->second.entries;
-    for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
-      if (entry->Has(attribute)) return *entry;
+    for (const XmlElement& entry : std::ranges::reverse_view(found->second.entries)) {
+      if (entry.Has(attribute)) return entry;
     }
     name = found->second.around;
   }

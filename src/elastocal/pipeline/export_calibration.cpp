@@ -237,7 +237,7 @@ std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportO
   std::vector<std::string> heading{fmt::format("{}, calibrated from {}. {}{} of {}",
                                                robot.project.tree.name, robot.calibration.recording,
                                                kMadeBy, options.version, robot.calibration.source)};
-  if (options.beside_springs) heading.push_back(kBesideSprings);
+  if (options.beside_springs) heading.emplace_back(kBesideSprings);
   heading.insert(heading.end(), kept.comments.begin(), kept.comments.end());
   if (format == "c99") {
     return CHeaderOf(robot, kept, estimate, fmt::format("{}", fmt::join(heading, "\n   ")),

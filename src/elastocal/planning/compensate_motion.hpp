@@ -51,7 +51,7 @@ JointMotion WithOpenJointsAtRest(const Project& project, JointMotion motion);
 /// link is held where there are none. Throws InputError for a support that is no foot of the model,
 /// and for feet that are balls.
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
-                                   const JointMotion& planned,
+                                   const JointMotion& given,
                                    MotionLoads loads = MotionLoads::kStatics);
 
 /// The feet of the model that are these links. Throws InputError for a link that is no foot.
