@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/description/mjcf_defaults.hpp"
 
-#include <ranges>
+#include <algorithm>
 
 #include "elastocal/tables/text.hpp"
 
@@ -47,9 +47,10 @@ std::optional<XmlElement> MjcfJointDefaults::Giver(const XmlElement& joint,
       joint.Fail("the file has no default class " + Quote(name) +
                  "; the model as MuJoCo saves it was expected");
     }
-    for (const XmlElement& entry : std::ranges::reverse_view(found->second.entries)) {
-      if (entry.Has(attribute)) return entry;
-    }
+    const std::vector<XmlElement>& entries = found->second.entries;
+    const auto giver = std::find_if(entries.rbegin(), entries.rend(),
+                                    [&](const auto& entry) { return entry.Has(attribute); });
+    if (giver != entries.rend()) return *giver;
     name = found->second.around;
   }
   return {};
