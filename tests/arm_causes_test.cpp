@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -32,25 +31,6 @@ class ArmWithCause : public ArmWithTracker {
 
   static double ValueOf(const ContactRun& run, const std::string& name) {
     return run.result.delta[FindParameter(run.result.model.parameters, name)];
-  }
-
-  /// All joints of the arm that the tracker sees give way about their axes, rad/(N.m).
-  void MakeElastic(double compliance) {
-    std::vector<int> all(project_.tree.joints.size());
-    std::iota(all.begin(), all.end(), 0);
-    const ObservedRobot elastic =
-        MakeObservedRobot(project_.tree, project_.placement, project_.contact->setup, all, {});
-    ObservedValues truth = truth_;
-    truth.robot = Eigen::VectorXd::Zero(elastic.robot.parameter_count());
-    for (int i = 0; i < elastic.robot.parameter_count(); ++i) {
-      const Parameter& parameter = elastic.robot.parameters[static_cast<std::size_t>(i)];
-      if (!IsCompliance(parameter.kind)) {
-        truth.robot[i] = truth_.robot[FindParameter(model_.robot.parameters, parameter.name)];
-      } else if (parameter.unit == ParameterUnit::kRadianPerNewtonMetre) {
-        truth.robot[i] = compliance;
-      }
-    }
-    Measure(elastic, truth);
   }
 
   CauseReport Study(const Eigen::MatrixXd& q) const {

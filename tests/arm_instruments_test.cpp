@@ -58,22 +58,8 @@ TEST_F(ArmWithTracker, ATrackerIsSetUpAnewForEachFile) {
 // Nobody says whether its joints give way. Where they do, left-out postures tell; a joint that
 // bends under gravity is no wrong gain.
 TEST_F(ArmWithTracker, JointsThatGiveWayAreFound) {
-  std::vector<int> all;
-  for (std::size_t k = 0; k < project_.tree.joints.size(); ++k) all.push_back(static_cast<int>(k));
-  const ObservedRobot elastic =
-      MakeObservedRobot(project_.tree, project_.placement, project_.contact->setup, all, {});
-  ObservedValues truth = truth_;
-  truth.robot = Eigen::VectorXd::Zero(elastic.robot.parameter_count());
-  for (int i = 0; i < elastic.robot.parameter_count(); ++i) {
-    const Parameter& parameter = elastic.robot.parameters[static_cast<std::size_t>(i)];
-    if (!IsCompliance(parameter.kind)) {
-      truth.robot[i] = truth_.robot[FindParameter(model_.robot.parameters, parameter.name)];
-    } else if (parameter.unit == ParameterUnit::kRadianPerNewtonMetre) {
-      truth.robot[i] = 300e-6;
-    }
-  }
   EXPECT_FALSE(Calibrate(q_).geometric);
-  Measure(elastic, truth);
+  MakeElastic(300e-6);
   const ContactRun run = Calibrate(q_);
   EXPECT_EQ(First(run), "");
   ASSERT_TRUE(run.geometric);

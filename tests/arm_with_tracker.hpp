@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,25 @@ class ArmWithTracker : public testing::Test {
       }
     }
     Measure(model_, truth_);
+  }
+
+  /// All joints of the arm that the tracker sees give way about their axes, rad/(N.m).
+  void MakeElastic(double compliance) {
+    std::vector<int> all(project_.tree.joints.size());
+    std::iota(all.begin(), all.end(), 0);
+    const ObservedRobot elastic =
+        MakeObservedRobot(project_.tree, project_.placement, project_.contact->setup, all, {});
+    ObservedValues truth = truth_;
+    truth.robot = Eigen::VectorXd::Zero(elastic.robot.parameter_count());
+    for (int i = 0; i < elastic.robot.parameter_count(); ++i) {
+      const Parameter& parameter = elastic.robot.parameters[static_cast<std::size_t>(i)];
+      if (!IsCompliance(parameter.kind)) {
+        truth.robot[i] = truth_.robot[FindParameter(model_.robot.parameters, parameter.name)];
+      } else if (parameter.unit == ParameterUnit::kRadianPerNewtonMetre) {
+        truth.robot[i] = compliance;
+      }
+    }
+    Measure(elastic, truth);
   }
 
   /// What the tracker sees of this robot.
