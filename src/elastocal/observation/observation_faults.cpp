@@ -19,6 +19,8 @@ namespace {
 constexpr double kDerivativeStep = 1e-6;  // rad, m
 constexpr double kLeastShare = 0.1;
 constexpr double kCertain = 4.0;  // standard deviations, in noise that has the fault in it
+constexpr double kLeastMoved =
+    0.01;  // of the squares by which a joint moves what is measured elsewhere
 constexpr int kSplitsTried = 12;  // of the table, after which a fault may begin
 constexpr double kOneDegree = M_PI / 180.0;
 
@@ -312,20 +314,31 @@ class ObservationFaultSearch {
     }
   }
 
-  /// Joints that are frozen in postures that are worse than the others.
+  /// Joints that are frozen in postures that are worse than the others. A joint that does not move
+  /// what was measured there (the right arm, while the left hand touches) may well have rested.
   void TryFrozen() {
     const int count = observations_.posture_count();
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(count);
-    for (int i = 0; i < observations_.count(); ++i) {
-      squares[posture_[Size(i)]] += at_[Size(i)].squaredNorm();
-    }
+    const Eigen::VectorXd squares = SquaresByPosture(at_);
     for (const int c : MovingCoordinates()) {
       auto longest = FindFrozen(observations_, c);
       if (!longest) continue;
-      longest->share = squares.segment(longest->posture, longest->count).sum() / squares_;
+      const auto share_of = [&](const Eigen::VectorXd& of) {
+        return of.segment(longest->posture, longest->count).sum() / of.sum();
+      };
+      longest->share = share_of(squares);
       const double fair = static_cast<double>(longest->count) / static_cast<double>(count);
-      if (longest->share > std::max(kLeastShare, fair)) found_.push_back(*longest);
+      if (!(longest->share > std::max(kLeastShare, fair))) continue;
+      const double moves = share_of(SquaresByPosture(DerivativeBy(Moved(c), fit_.values)));
+      if (moves > kLeastMoved * fair) found_.push_back(*longest);
     }
+  }
+
+  Eigen::VectorXd SquaresByPosture(const std::vector<Eigen::VectorXd>& blocks) const {
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(observations_.posture_count());
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      if (posture_[i] >= 0) squares[posture_[i]] += blocks[i].squaredNorm();
+    }
+    return squares;
   }
 
   /// One of each joint and quantity, the one that explains most first.

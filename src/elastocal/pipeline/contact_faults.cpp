@@ -22,14 +22,15 @@ namespace {
 constexpr double kHalved = 0.5;         // what a fault may leave once it is undone
 constexpr std::size_t kMostFaults = 8;  // that are tried by a fit
 
-/// Root mean square of what `values` leave in observations, but for some that are left out, in
-/// units of the noise of `spread`.
+/// Root mean square, by degrees of freedom, of what a fit leaves in observations, but for some that
+/// are left out, in units of the noise of `spread`. A fit to few observations leaves little,
+/// whatever they are.
 double RmsLeft(const ObservedRobot& model, const Observations& observations,
-               const ObservedValues& values, const Spread& spread,
+               const ObservationFit& fit, const Spread& spread,
                const std::vector<ObservationOutlier>& outliers) {
   std::set<int> out;
   for (const ObservationOutlier& outlier : outliers) out.insert(outlier.observation);
-  const std::vector<Eigen::VectorXd> left = LeftOf(model, observations, values);
+  const std::vector<Eigen::VectorXd> left = LeftOf(model, observations, fit.values);
   double squares = 0.0, rows = 0.0;
   for (int i = 0; i < observations.count(); ++i) {
     if (out.contains(i)) continue;
@@ -38,7 +39,7 @@ double RmsLeft(const ObservedRobot& model, const Observations& observations,
     squares += (instrument.Weights(spread) * left[k]).squaredNorm();
     rows += instrument.size();
   }
-  return std::sqrt(squares / std::max(1.0, rows));
+  return std::sqrt(squares / std::max(1.0, rows - fit.effective_parameters));
 }
 
 bool Slides(const ObservedRobot& model, int coordinate) {
@@ -72,13 +73,15 @@ std::string RemedyOf(const ObservationFault& fault, const ObservedRobot& model,
 }
 
 /// What a fit without the fault leaves of what is left with it. Postures that are frozen count
-/// before: they were left out as outliers at best.
+/// before: they were left out as outliers at best; the others are too few to say what is noise.
 double LeftWithout(const ContactRun& run, const ObservationFault& fault) {
   const Observations without = WithoutFault(fault, run.model, run.observations);
   const auto [fit, outliers] = EstimateObserved(run.model, without, {});
+  const ObservationFit& with = run.calibrated.estimate.fit;
   const bool fewer = fault.kind == ObservationFaultKind::kJointFrozen;
-  return RmsLeft(run.model, without, fit.values, fit.spread, outliers) /
-         RmsLeft(run.model, run.observations, run.calibrated.estimate.fit.values, fit.spread,
+  const Spread& noise = fewer ? with.spread : fit.spread;
+  return RmsLeft(run.model, without, fit, noise, outliers) /
+         RmsLeft(run.model, run.observations, with, noise,
                  fewer ? std::vector<ObservationOutlier>() : outliers);
 }
 
