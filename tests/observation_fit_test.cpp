@@ -222,6 +222,25 @@ TEST(ObservationFit, ThePoseOfACameraLiesInItsInterval) {
   EXPECT_LT(squares, 61.0);
 }
 
+// Few images: where each tag stands, and with it the rows that its corners share, is explained one
+// by one. That is no sign of images without noise.
+TEST(ObservationFit, NoiseIsNotTakenForNoneWhereUnknownsExplainItsRows) {
+  const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kImages, {"*.compliance_*"});
+  const std::vector<Source>& sources = biped.model.setup.sources;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Random random(80 + seed);
+    const ObservedValues truth = RandomTruth(biped.model, 0, random);
+    Observations seen = biped.Observe(truth, 0, 12, random);
+    AddNoise(biped.model, seen, random);
+    const ObservationFit fit = EstimateObserved(biped.model, seen, {}).fit;
+    EXPECT_TRUE(fit.settled);
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      if (sources[s].role != Source::Role::kNoise) continue;
+      EXPECT_GT(fit.spread.sd[s], 0.1 * sources[s].sd) << sources[s].name << ", seed " << seed;
+    }
+  }
+}
+
 TEST(ObservationFit, FindsTheComplianceOfTheHips) {
   const ObservedRobot model = MakeTouchingBiped();
   Random random(12);

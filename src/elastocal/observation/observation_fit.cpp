@@ -86,12 +86,19 @@ double FirstGuess(const std::vector<SourceSum>& sums, const std::vector<Source>&
 /// The variance of the noise of an instrument that `squares` (SI) tell, beside a guess of the
 /// weight `own`, which is a part of `freedom`. Instruments are often much better than guessed: the
 /// guess counts as no more than twice the standard deviation that the squares alone tell, or it
-/// would be most of what is found.
+/// would be most of what is found; where these are few, as what they leave possible. Rows that
+/// unknowns explain one by one leave no squares, whatever the noise is.
 double NoiseVariance(double squares, double guess, double freedom, double own) {
   constexpr double kFarGuess = 2.0;
-  const double alone = freedom > own ? squares / (freedom - own) : guess;
-  const double told = (squares + own * std::min(guess, kFarGuess * kFarGuess * alone)) / freedom;
-  return std::max(told, kLeastOfGuess * kLeastOfGuess * guess);
+  constexpr double kPossible = 0.025;  // probability of fewer squares
+  const double numbers = freedom - own;
+  double counted = guess;
+  if (numbers > 1.0) {
+    const double most =
+        std::max(kFarGuess * kFarGuess, numbers / ChiSquareQuantile(kPossible, numbers));
+    counted = std::min(guess, most * squares / numbers);
+  }
+  return std::max((squares + own * counted) / freedom, kLeastOfGuess * kLeastOfGuess * guess);
 }
 
 /// The largest relative change.
