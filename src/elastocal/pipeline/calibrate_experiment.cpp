@@ -127,168 +127,216 @@ void Append(const std::vector<std::string>& more, std::vector<std::string>& warn
   warnings.insert(warnings.end(), more.begin(), more.end());
 }
 
-}  // namespace
-
-CalibrationRun CalibrateExperiment(const Project& given,
-                                   const std::vector<std::filesystem::path>& recordings,
-                                   const ExperimentOptions& options) {
-  Project project = given;
-  const CalibrationOptions& settings = project.calibration;
+/// What the steps of a calibration work on.
+struct Work {
+  const Project& given;
+  const ExperimentOptions& options;
+  Project project;           ///< `given` with the elasticity and the causes that were chosen
+  Measurements measured;     ///< with markers split where they were knocked
+  Measurements as_recorded;  ///< before
+  RecordedModel robot;
   CalibrationRun run;
 
-  // Section 5.1, the measurements y^. Markers and the robot's log pass the same low-pass filter,
-  // get one clock, and are reduced to the samples at which the markers are stable: for every marker
-  // of a posture the same ones, so that none weighs more. The trials of all chains are joined.
-  Measurements measured = ReadMeasurements(project, recordings);
-  run.undone = AcceptMistakes(project, options.accept, measured);
+  const CalibrationOptions& settings() const { return project.calibration; }
+  const Recording& recording() const { return measured.calibration; }
+};
 
-  // Not in the paper: what is plainly wrong is named, and nothing is chosen or judged by it.
-  run.faults = FindPlainMistakes(project, measured.calibration);
-  const bool sound = run.faults.empty();
-
-  if (!sound) {
+/// What is estimated: elasticity and causes as the data decide or, not in the paper, as an earlier
+/// calibration has them, which is also the prior. A recording that is plainly wrong decides
+/// nothing.
+void ChooseWhatIsEstimated(Work& work) {
+  const ExperimentOptions& options = work.options;
+  Project& project = work.project;
+  CalibrationRun& run = work.run;
+  if (!run.faults.empty()) {
     project.elasticity.extra.clear();
   } else if (options.prior.empty()) {
     ModelChoice choice =
-        ChooseModel(measured, options.seed, kElasticityFolds, options.threads, project);
+        ChooseModel(work.measured, options.seed, kElasticityFolds, options.threads, project);
     run.elasticity = std::move(choice.elasticity);
     run.causes = std::move(choice.causes);
-    if (measured.calibration.trials.empty() && !HasMasses(project.tree)) {
+    if (work.recording().trials.empty() && !HasMasses(project.tree)) {
       run.warnings.emplace_back(
           "the robot description has no masses: it is not known whether joints give way under "
           "loads");
     }
   } else {
-    // Not in the paper: an earlier calibration tells both, and is the prior of the estimates.
-    Append(StartFromEarlier(options.prior, options.days, measured, options.seed, project),
+    Append(StartFromEarlier(options.prior, options.days, work.measured, options.seed, project),
            run.warnings);
   }
   run.extra = project.elasticity.extra;
+}
+
+/// Positions that are coarse or scattered, and a scale that no length tells.
+void WarnOfWhatWasRecorded(Work& work) {
+  CalibrationRun& run = work.run;
+  const CalibrationResult& fit = run.comparison.largest();
+  run.common_scale = EstimateCommonScale(fit, work.settings());
+  if (!run.faults.empty()) return;  // they are worse
+  const std::vector<TrialSummary>& trials = work.as_recorded.trials;
+  for (const CoarsePositions& one :
+       FindCoarsePositions(fit, work.recording(), work.settings(), trials)) {
+    run.warnings.push_back(Describe(one, work.project.tree));
+  }
+  if (const auto loose = FindScatteredPositions(fit, work.recording(), work.settings())) {
+    run.warnings.push_back(Describe(*loose, work.project.tree));
+  }
+  if (run.common_scale && IsDoubtful(*run.common_scale) && !ScaleIsKnown(trials)) {
+    run.warnings.push_back(DescribeDoubt(*run.common_scale));
+  }
+}
+
+/// Errors on postures that were left out; what the data chose, each fold chooses anew.
+void CrossValidateRun(int folds, Work& work) {
+  const ExperimentOptions& options = work.options;
+  CalibrationRun& run = work.run;
+  ExperimentData data{work.project, work.as_recorded.calibration, options.seed, {}};
+  if (!run.elasticity.empty()) {
+    data.open_elasticity = work.project.elasticity;
+    data.open_elasticity->torsion = work.given.elasticity.torsion;
+    data.open_elasticity->bending = work.given.elasticity.bending;
+  }
+  try {
+    run.cross_validation = CrossValidateExperiment(data, work.robot, run.comparison,
+                                                   {.folds = folds,
+                                                    .unit = options.fold_unit,
+                                                    .seed = options.seed.value_or(1),
+                                                    .threads = options.threads},
+                                                   OfStep(options.progress, "cross-validation"));
+    run.decided_once = DecidedOnce(data, run.causes.has_value() && !run.extra.empty());
+  } catch (const InputError& error) {  // a fold has fewer equations than unknowns
+    if (options.folds) throw;
+    run.warnings.push_back(std::string("not cross-validated: ") + error.what());
+  }
+  if (options.prior.empty() || run.cross_validation.folds == 0) return;
+  const auto kind = static_cast<std::size_t>(run.comparison.largest_kind());
+  const std::string worse =
+      DescribeWorseUpdate(options.prior, work.robot, work.recording(), work.settings(),
+                          run.cross_validation.metrics[kind].rmse_3d);
+  if (!worse.empty()) run.warnings.push_back(worse);
+}
+
+/// Errors on trials for validation. Labels that are exchanged there for a while are left out; other
+/// contradictions are faults.
+void JudgeOnOtherTrials(Work& work) {
+  CalibrationRun& run = work.run;
+  const RepeatedTrials repeated = FindRepeatedTrials(work.measured);
+  Append(repeated.estimated_twice, run.warnings);
+  Append(repeated.judged_by_estimated, run.faults);
+  Recording& validation = work.measured.validation;
+  if (validation.posture_count() == 0) return;
+  std::string left_out;
+  do {
+    if (!left_out.empty()) run.warnings.push_back(left_out);
+    run.held_out = JudgeOnTrials(run.comparison, validation, work.settings());
+    left_out = LeaveOutBriefExchange(work.project, work.recording(), run.comparison,
+                                     run.held_out->table, validation);
+  } while (!left_out.empty());
+  if (run.faults.empty()) {
+    run.faults = FindContradictions(work.project, work.robot, work.recording(), validation,
+                                    run.comparison, run.held_out->table);
+  }
+}
+
+/// Whether all this can be trusted, as a rigid URDF and with its elasticity.
+void JudgeRun(Work& work) {
+  CalibrationRun& run = work.run;
+  const Recording& recording = work.recording();
+  run.deployment = ChooseDeployment(run.comparison, run.cross_validation,
+                                    run.held_out ? &run.held_out->table : nullptr);
+  run.verdict =
+      Judge(run.comparison, run.cross_validation, run.excitation, recording, work.settings());
+  const double expected_error = ExpectedError(work.robot.model, recording, work.settings().prior);
+  JudgeDeployment(run.deployment, expected_error, run.verdict);
+  if (run.faults.empty()) {  // else these say why
+    const CalibrationResult& fit = run.comparison.largest();
+    JudgePostures(Predict(fit.model, fit.delta, recording, work.settings()).distances, fit.used,
+                  recording, expected_error, run.verdict);
+  }
+  if (run.held_out) {
+    JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
+                 run.verdict);
+  }
+  run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
+                                run.faults.end());
+  run.coverage = FindCoverage(work.project, work.measured);
+  const bool whole = std::all_of(run.coverage.begin(), run.coverage.end(), [](const auto& of) {
+    return of.calibrated || of.refused.empty();
+  });
+  if (whole) {  // else the chain's objection says so
+    Append(UnknownStance(work.project, work.measured), run.verdict.objections);
+  }
+  JudgeCoverage(run.coverage, run.verdict);
+  Append(work.measured.warnings, run.warnings);
+  for (const std::string& what : run.undone) run.warnings.push_back(DescribeUndone(what));
+  Append(run.verdict.remarks, run.warnings);
+  if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra, false));
+}
+
+}  // namespace
+
+CalibrationRun CalibrateExperiment(const Project& given,
+                                   const std::vector<std::filesystem::path>& recordings,
+                                   const ExperimentOptions& options) {
+  Work work{given, options, given, {}, {}, {}, {}};
+  Project& project = work.project;
+  CalibrationRun& run = work.run;
+
+  // Section 5.1, the measurements y^. Markers and the robot's log pass the same low-pass filter,
+  // get one clock, and are reduced to the samples at which the markers are stable: for every marker
+  // of a posture the same ones, so that none weighs more. The trials of all chains are joined.
+  work.measured = ReadMeasurements(project, recordings);
+  run.undone = AcceptMistakes(project, options.accept, work.measured);
+
+  // Not in the paper: what is plainly wrong is named, and nothing is chosen or judged by it.
+  run.faults = FindPlainMistakes(project, work.recording());
+  const bool sound = run.faults.empty();
+  ChooseWhatIsEstimated(work);
 
   // Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
   // that give way under their loads (eq. 5 and 6): delta is eq. 7. A QR decomposition of the
   // regressor (eq. 4) over random postures tells which of it can be identified (section 2.1).
-  const Measurements as_recorded = measured;
-  RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
-  const Recording& recording = measured.calibration;
+  work.as_recorded = work.measured;
+  work.robot = MakeRecordedModel(project, options.seed, work.measured);
+  const RecordedModel& robot = work.robot;
+  const CalibrationOptions& settings = work.settings();
   CheckGauge(settings.gauge, robot.model, robot.base);
-  const std::string still = StillJoints(robot.model, recording);
+  const std::string still = StillJoints(robot.model, work.recording());
   if (!still.empty()) run.warnings.push_back(still);
 
   // Section 5, eq. 14. One least-squares problem over all samples: find the delta that minimises
   // |y^ - y(delta)|^2 while the pose F(q_i, delta) of the supporting foot stays what it was. Each
   // residual is weighed by its standard deviation, which follows from the residuals, and a prior
   // around the nominal robot takes the place of parameters held by hand.
-  CalibrationResult calibrated =
-      Calibrate(robot.model, recording, robot.base, ModelKinds(robot.model).back(), settings);
+  CalibrationResult calibrated = Calibrate(robot.model, work.recording(), robot.base,
+                                           ModelKinds(robot.model).back(), settings);
 
   // Section 6.1.4. Simpler models (not calibrated, geometric) on the same data.
-  run.comparison = CompareModels(std::move(calibrated), robot.model, recording, robot.base,
+  run.comparison = CompareModels(std::move(calibrated), robot.model, work.recording(), robot.base,
                                  settings, OfStep(options.progress, "fit"));
 
+  // Not in the paper: what is wrong with the recording, by what the fit leaves.
   if (sound) {
-    run.faults = FindFaults(project, options.seed, as_recorded, robot, recording, run.comparison);
+    run.faults = FindFaults(project, options.seed, work.as_recorded, robot, work.recording(),
+                            run.comparison);
   }
-
-  if (run.faults.empty()) {
-    for (const CoarsePositions& one :
-         FindCoarsePositions(run.comparison.largest(), recording, settings, as_recorded.trials)) {
-      run.warnings.push_back(Describe(one, project.tree));
-    }
-    if (const auto loose = FindScatteredPositions(run.comparison.largest(), recording, settings)) {
-      run.warnings.push_back(Describe(*loose, project.tree));
-    }
-  }
-  run.common_scale = EstimateCommonScale(run.comparison.largest(), settings);
-  if (run.faults.empty() && run.common_scale && IsDoubtful(*run.common_scale) &&
-      !ScaleIsKnown(as_recorded.trials)) {
-    run.warnings.push_back(DescribeDoubt(*run.common_scale));
-  }
+  WarnOfWhatWasRecorded(work);
 
   // Eq. 12: how well the recorded postures tell the parameters apart.
-  run.excitation = ExcitationOf(run.comparison.largest(), robot.base, recording, settings.earlier);
+  run.excitation =
+      ExcitationOf(run.comparison.largest(), robot.base, work.recording(), settings.earlier);
 
   // Section 6.1.4, Table 2: errors on postures and on motions that took no part in the estimate.
-  const int folds = sound ? options.folds.value_or(UsualFolds(recording)) : 0;
-  if (folds > 0) {
-    ExperimentData data{project, as_recorded.calibration, options.seed, {}};
-    if (!run.elasticity.empty()) {
-      data.open_elasticity = project.elasticity;
-      data.open_elasticity->torsion = given.elasticity.torsion;
-      data.open_elasticity->bending = given.elasticity.bending;
-    }
-    try {
-      run.cross_validation = CrossValidateExperiment(data, robot, run.comparison,
-                                                     {.folds = folds,
-                                                      .unit = options.fold_unit,
-                                                      .seed = options.seed.value_or(1),
-                                                      .threads = options.threads},
-                                                     OfStep(options.progress, "cross-validation"));
-      run.decided_once = DecidedOnce(data, run.causes.has_value() && !run.extra.empty());
-    } catch (const InputError& error) {  // a fold has fewer equations than unknowns
-      if (options.folds) throw;
-      run.warnings.push_back(std::string("not cross-validated: ") + error.what());
-    }
-  }
-  if (!options.prior.empty() && run.cross_validation.folds > 0) {
-    const auto kind = static_cast<std::size_t>(run.comparison.largest_kind());
-    const std::string worse = DescribeWorseUpdate(options.prior, robot, recording, settings,
-                                                  run.cross_validation.metrics[kind].rmse_3d);
-    if (!worse.empty()) run.warnings.push_back(worse);
-  }
-  const RepeatedTrials repeated = FindRepeatedTrials(measured);
-  Append(repeated.estimated_twice, run.warnings);
-  Append(repeated.judged_by_estimated, run.faults);
-  if (measured.validation.posture_count() > 0) {
-    const auto judge = [&] {
-      run.held_out = JudgeOnTrials(run.comparison, measured.validation, settings);
-    };
-    judge();
-    std::string left_out;
-    while (!(left_out = LeaveOutBriefExchange(project, recording, run.comparison,
-                                              run.held_out->table, measured.validation))
-                .empty()) {
-      run.warnings.push_back(left_out);
-      judge();
-    }
-    if (run.faults.empty()) {
-      run.faults = FindContradictions(project, robot, recording, measured.validation,
-                                      run.comparison, run.held_out->table);
-    }
-  }
-  // Whether all this can be trusted, as a rigid URDF and with its elasticity; if so, the robot
-  // description with delta in it.
-  run.deployment = ChooseDeployment(run.comparison, run.cross_validation,
-                                    run.held_out ? &run.held_out->table : nullptr);
-  run.verdict = Judge(run.comparison, run.cross_validation, run.excitation, recording, settings);
-  const double expected_error = ExpectedError(robot.model, recording, settings.prior);
-  JudgeDeployment(run.deployment, expected_error, run.verdict);
-  if (run.faults.empty()) {  // else these say why
-    const CalibrationResult& fit = run.comparison.largest();
-    JudgePostures(Predict(fit.model, fit.delta, recording, settings).distances, fit.used, recording,
-                  expected_error, run.verdict);
-  }
-  if (run.held_out) {
-    JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
-                 run.verdict);
-  }
+  const int folds = sound ? options.folds.value_or(UsualFolds(work.recording())) : 0;
+  if (folds > 0) CrossValidateRun(folds, work);
+  JudgeOnOtherTrials(work);
+  JudgeRun(work);
+
   // Not in the paper: no measurement tells where the waist's frame is on the robot.
   GiveGauge(settings, run.comparison);
-  run.waist_error = WaistErrors(run.comparison, measured, settings);
-  run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
-                                run.faults.end());
-  run.coverage = FindCoverage(project, measured);
-  const bool whole = std::all_of(run.coverage.begin(), run.coverage.end(), [](const auto& of) {
-    return of.calibrated || of.refused.empty();
-  });
-  if (whole) {  // else the chain's objection says so
-    Append(UnknownStance(project, measured), run.verdict.objections);
-  }
-  JudgeCoverage(run.coverage, run.verdict);
-  Append(measured.warnings, run.warnings);
-  for (const std::string& what : run.undone) run.warnings.push_back(DescribeUndone(what));
-  Append(run.verdict.remarks, run.warnings);
-  if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra, false));
+  run.waist_error = WaistErrors(run.comparison, work.measured, settings);
+
+  // The robot description with delta in it.
   run.zero_offsets = options.zero_offsets;
   if (run.deployable()) {
     run.urdf = MakeCalibratedUrdf(
@@ -297,12 +345,12 @@ CalibrationRun CalibrateExperiment(const Project& given,
     Append(run.urdf->warnings, run.warnings);
   }
 
-  run.recording = std::move(measured.calibration);
-  run.validation = std::move(measured.validation);
-  run.trials = std::move(measured.trials);
-  run.base = std::move(robot.base);
-  run.knocks = std::move(robot.knocks);
-  return run;
+  run.recording = std::move(work.measured.calibration);
+  run.validation = std::move(work.measured.validation);
+  run.trials = std::move(work.measured.trials);
+  run.base = std::move(work.robot.base);
+  run.knocks = std::move(work.robot.knocks);
+  return std::move(work.run);
 }
 
 std::string RunStatus(const CalibrationRun& run) {
