@@ -230,7 +230,15 @@ JointLog ReadPlainLog(const ByteSource& source) {
   }
   std::vector<double> time;
   std::map<std::string, std::vector<double>> columns;
+  const auto is_empty = [&] {
+    for (int i = 0; i < static_cast<int>(header.size()); ++i) {
+      const bool counted = i == at - header.begin() || table.CountsRows(i);
+      if (!counted && !IsGap(table.Cell(i))) return false;
+    }
+    return true;
+  };
   while (table.Next()) {
+    if (time.empty() && is_empty()) continue;  // as ReadJointLog does
     AppendTime(table, static_cast<int>(at - header.begin()), time);
     for (std::size_t i = 0; i < header.size(); ++i) {
       if (header.begin() + static_cast<std::ptrdiff_t>(i) == at) continue;
