@@ -271,6 +271,13 @@ RecordingFile ReadAnyRecording(const fs::path& file, const ReaderOptions& option
     read.format = "posture table (CSV)";
     read.why_no_markers = "a posture table has no frames";
     read.why_no_joints = "a posture table has no log";
+  } else if ((read.postures = ReadColumnsAsTheyAre(source))) {
+    read.format = "table (CSV)";
+    read.why_no_markers = "a table without a column of the time has no frames";
+    read.why_no_joints = "a table without a column of the time has no log";
+    read.notes.emplace_back(
+        "there is no column 't' or 'time', so that it is no joint log; what the columns of a table "
+        "of postures, observations or corners are, its project says");
   } else {
     read.format = "joint log (CSV)";
     read.joints = ReadPlainLog(source);
