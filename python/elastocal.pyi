@@ -255,7 +255,7 @@ def read(
     'joints' with time_s (samples), positions (samples, joints), rad or m, and torques (samples, joints), N.m or N.
     unit: of lengths, where the file does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame:
     the cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all that move in it.
-    salvage: reads an MCAP bag that was not closed or was cut off, up to where it ends, which 'notes' then say."""
+    salvage: reads a bag that was not closed or was cut off, up to where it ends, which 'notes' then say."""
 def info(
     file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...,
     salvage: bool = False
