@@ -28,5 +28,6 @@ records["time"], records["elbow"], records["elbow_torque"], records["shoulder"] 
 np.savez("joints_records.npz", log=records)
 records = np.zeros(n, dtype=[("t", "f8"), ("q", "f8", (2,)), ("tau", "f4", (2,))])
 records["t"], records["q"], records["tau"] = t, q, 2 * q
-np.savez_compressed("joints_records_matrix.npz", state=records, names=np.array(["elbow", "shoulder"]))
+np.savez_compressed("joints_records_matrix.npz", state=records, names=np.array(["elbow", "shoulder"]),
+                    about=np.array([{"robot": 1}], dtype=object))
 np.savez("joints_pickled.npz", t=np.array([{"a": 1}], dtype=object))

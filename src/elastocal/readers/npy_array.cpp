@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMostNumbers = 1u << 27;
 constexpr std::size_t kLongestHeader = 1u << 16;
+constexpr std::size_t kLargestRecord = 1u << 20;
 
 struct NpyType {
   bool big_endian = false;
@@ -175,6 +176,7 @@ class NpyReader {
       text = Trim(text.substr(1));
       if (text.starts_with(',')) text.remove_prefix(1);
       header.type.width += field.type.width * field.count;
+      if (header.type.width > kLargestRecord) Fail("its records have more than 1 MiB each");
       header.fields.push_back(std::move(field));
     }
   }

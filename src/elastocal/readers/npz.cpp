@@ -121,12 +121,20 @@ class NpzReader {
     throw InputError(source_.name() + ": " + message);
   }
 
+  bool HasFields(std::size_t i) const {
+    const std::vector<std::size_t> none = {0, 0, 0};  // so that only the head is read
+    try {
+      return !archive_.Read(i, &none).field_names.empty();
+    } catch (const InputError&) {
+      return false;  // whoever needs it says what is wrong
+    }
+  }
+
   /// The fields of records become arrays of their own, under their names.
   void TakeRecords() {
-    const std::vector<std::size_t> none = {0, 0, 0};  // so that only the head is read
     const std::map<std::string, std::size_t> entries = entries_;
     for (const auto& [name, i] : entries) {
-      if (archive_.Read(i, &none).field_names.empty()) continue;
+      if (!HasFields(i)) continue;
       NpyArray records = archive_.Read(i);
       entries_.erase(name);
       for (std::size_t f = 0; f < records.fields.size(); ++f) {
