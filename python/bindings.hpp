@@ -37,6 +37,8 @@ void AddDesigning(py::module_& module);    ///< design, design_after
 void AddMotions(py::module_& module);      ///< plan
 void AddSimulating(py::module_& module);   ///< simulate
 void AddRuntime(py::module_& module);      ///< Runtime
+void AddUsing(py::module_& module);        ///< export, compensate
+void AddBatches(py::module_& module);      ///< batch
 
 /// No result: the limits leave no posture, or no motion. `elastocal.InfeasibleError`.
 struct Infeasible : std::runtime_error {

@@ -255,7 +255,7 @@ def read(
     'joints' with time_s (samples), positions (samples, joints), rad or m, and torques (samples, joints), N.m or N.
     unit: of lengths, where the file does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame:
     the cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all that move in it.
-    salvage: reads an MCAP bag that was not closed or was cut off, up to where it ends, which 'notes' then say."""
+    salvage: reads a bag that was not closed or was cut off, up to where it ends, which 'notes' then say."""
 def info(
     file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...,
     salvage: bool = False
@@ -361,6 +361,56 @@ def simulate(
     with time_s (samples,), positions (samples, joints) and perhaps support (lists of links). postures: a Design, a
     file, or a dict of chains. settings: a file, or a dict of simulation_settings(). nominal: begins without
     imperfections. Progress counts trials."""
+def export(
+    calibration: _Path,
+    format: str,
+    file: _Path,
+    *,
+    project: _Path = "",
+    prefix: str = "",
+    mjcf: _Path = "",
+    mjcf_joints: Sequence[str] = ...,
+    mjcf_springs: bool = False,
+    min_significance: float = 0.0,
+    min_gain_mm: Optional[float] = None,
+    beside_springs: bool = False,
+    hip_damping: Optional[float] = None,
+) -> list[str]:
+    """Writes a saved calibration in a form that controllers and ROS read, like the command of that name: format
+    'urdf', 'c99', 'mjcf' and so on (docs/deploy.md). Returns its notes: what stays nominal, and why. Other arguments
+    are those of the command."""
+class Compensation:
+    """A planned motion that compensate() corrected."""
+
+    @property
+    def time_s(self) -> _Array:
+        """(samples,), s."""
+    @property
+    def positions(self) -> _Array:
+        """To command, (samples, joints), rad or m, by Project.joints."""
+    @property
+    def summary(self) -> dict[str, Any]:
+        """The dict of `elastocal compensate --json`: largest correction, what is left, margins."""
+    def save(self, file: _Path) -> None:
+        """Writes the motion (CSV)."""
+def compensate(
+    calibration: _Path,
+    motion: Union[Plan, _Path, _MotionDict],
+    *,
+    project: _Path = "",
+    content: str = "everything",
+    loads: str = "statics",
+) -> Compensation:
+    """Corrects a planned motion so that hands, feet and waist go where the plan meant, like the command of that name.
+    motion: a Plan, a file (CSV), or a dict of time_s, positions and perhaps support. content: 'everything', or
+    'geometry' (without elasticity). loads: 'statics', or 'planned' for fast motion. Raises InfeasibleError where a
+    limit would be broken."""
+def batch(
+    manifest: _Path, folder: _Path, *, workers: int = 0, level: float = 0.05, program: Optional[_Path] = None
+) -> dict[str, Any]:
+    """Does the tasks of a manifest (docs/scale.md) into a folder by the program's command of that name, which is looked
+    for beside the module and on the path unless `program` names it: the dict of fleet.json. workers: tasks at a time;
+    0: one a core. What is done is not done again."""
 def simulation_settings() -> dict[str, dict[str, str]]:
     """What `settings` of simulate() may hold: by key, its 'default' and 'help'."""
 

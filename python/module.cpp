@@ -33,4 +33,6 @@ PYBIND11_MODULE(elastocal, module) {
   python::AddMotions(module);
   python::AddSimulating(module);
   python::AddRuntime(module);
+  python::AddUsing(module);
+  python::AddBatches(module);
 }

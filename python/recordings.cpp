@@ -88,16 +88,15 @@ void WriteTable(const Project& project, const Path& file, const RowMajor& positi
 }  // namespace
 
 void AddRecordings(py::module_& module) {
-  module.def(
-      "read", Read, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "", "tf_frame"_a = "",
-      "tf_bodies"_a = Names(), "salvage"_a = false,
-      "Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, "
-      "NaN where not seen, and 'joints' with time_s (samples), positions (samples, joints), "
-      "rad or m, and torques (samples, joints), N.m or N. unit: of lengths, where the file "
-      "does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame: the "
-      "cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all "
-      "that move in it. salvage: reads an MCAP bag that was not closed or was cut off, up to "
-      "where it ends, which 'notes' then say.");
+  module.def("read", Read, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
+             "tf_frame"_a = "", "tf_bodies"_a = Names(), "salvage"_a = false,
+             "Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, "
+             "NaN where not seen, and 'joints' with time_s (samples), positions (samples, joints), "
+             "rad or m, and torques (samples, joints), N.m or N. unit: of lengths, where the file "
+             "does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame: the "
+             "cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all "
+             "that move in it. salvage: reads a bag that was not closed or was cut off, up to "
+             "where it ends, which 'notes' then say.");
   module.def("info", Info, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
              "tf_frame"_a = "", "tf_bodies"_a = Names(), "salvage"_a = false,
              "What is in a recording or a posture table: the dict of `elastocal info --json`.");

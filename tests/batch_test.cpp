@@ -131,6 +131,34 @@ TEST_F(Batch, AnInterruptionSaysHowFarItCame) {
   EXPECT_FALSE(fs::exists(out + "/fleet.json"));
 }
 
+TEST_F(Batch, EveryOptionIsKnownBeforeTheFirstTask) {
+  const std::string good = ReadFile(manifest_);
+  scratch_.Write("fleet.yaml", good + "  - {name: late, robots: 2, calibrate: {kfodl: 5}}\n");
+  const ProgramResult result = Run("out");
+  EXPECT_EQ(result.exit_code, 3) << result.out;
+  EXPECT_NE(result.err.find("task 'late_1': calibrate: "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("'--kfodl'"), std::string::npos) << result.err;
+  EXPECT_FALSE(fs::exists(Folder("out") + "/arm_1.log"));
+}
+
+/// mpirun sends SIGTERM to its ranks where it gets Ctrl-C; the first of them is the one that
+/// speaks.
+TEST_F(Batch, AnInterruptedRankSaysHowFarTheBatchCame) {
+  if (std::system("mpirun --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "there is no mpirun";
+  std::string manifest = ReadFile(manifest_);
+  scratch_.Write("fleet.yaml", manifest.replace(manifest.find("robots: 4"), 9, "robots: 400"));
+  const std::string out = Folder("out"), log = Folder("log");
+  const std::string command =
+      "mpirun --allow-run-as-root --oversubscribe -n 2 " + ProgramFile() + " batch " + manifest_ +
+      " -o " + out + " >" + log + " 2>&1 & process=$!; while [ ! -e " + out +
+      "/arm_1.done.json ] && kill -0 $process; do sleep 0.02; done; kill -TERM $(ps -o pid= --ppid "
+      "$process | sort -n | head -1); wait $process; test $? -ne 0";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_NE(ReadFile(log).find(" of 400 tasks are done; the same command does the rest"),
+            std::string::npos)
+      << ReadFile(log);
+}
+
 TEST_F(Batch, RobotsWithInstrumentsAreStudied) {
   const std::string project = scratch_.Write(
       "arm.yaml", "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() + R"(}

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -173,19 +174,87 @@ TEST(CalibratedMjcf, NamesWhatDoesNotBelongToTheUrdf) {
     ExpectInputError([&] { MakeCalibratedMjcf(text, "a.xml", tree, tree, {}); }, {words});
   };
   refused("<mujoco>", "<mujoco><compiler coordinate=\"global\"/>", "global");
-  refused("<body name=\"" + tree.links[static_cast<std::size_t>(tree.joints[2].child_link)].name,
-          "<body name=\"other", "no body");
   ExpectInputError(
       [&] {
         MakeCalibratedMjcf("<mujoco><worldbody><include file=\"bodies.xml\"/></worldbody></mujoco>",
                            "a.xml", tree, tree, {});
       },
-      {"no body", "it includes 'bodies.xml'"});
+      {"no body has a joint", "it includes 'bodies.xml'"});
   refused("quat=", "euler=\"0 0 0\" quat=", "'quat' was expected");
-  refused("<joint name=\"" + tree.joints[0].name, "<joint name=\"other", "has no joint");
+  refused("<joint name=\"" + tree.joints[0].name, "<joint name=\"other", "no body has a joint");
+  refused("<joint name=\"" + tree.joints[1].name, "<joint name=\"other\"/><joint name=\"more",
+          "no body has a joint '" + tree.joints[1].name);
+  refused("<body", "<body><joint name=\"" + tree.joints[3].name + "\"/></body><body",
+          "is carried by ''");
   refused("<joint name", "<joint pos=\"0 0 0.1\" name", "not in the origin");
   refused("pos=\"", "pos=\"1", "from where the URDF");
   ExpectInputError([&] { MakeCalibratedMjcf(urdf, "a.xml", tree, tree, {}); }, {"<mujoco>"});
+}
+
+TEST(CalibratedMjcf, WhatBodiesAreCalledDoesNotMatter) {
+  const CalibratedMjcf robot = Export("tests/robots/arm6.urdf", "");
+  const std::string expected = robot.text;
+  std::string mjcf = NominalMjcf(robot.nominal, "");
+  int bodies = 0;
+  for (std::size_t at = 0; (at = mjcf.find("<body name=\"", at)) != std::string::npos;
+       ++at, ++bodies) {
+    const std::size_t begin = at + 12, end = mjcf.find('"', begin);
+    mjcf.replace(begin, end - begin, "part" + std::to_string(bodies));
+  }
+  ASSERT_GT(bodies, 6);
+  MjcfJointNames names;
+  for (const std::vector<std::string>& rules :
+       {std::vector<std::string>{}, {"elbow_joint=bend", "*_joint=j_*"}}) {
+    names = ReadMjcfJointNames(robot.nominal, rules);
+    std::string renamed = mjcf;
+    for (const auto& [joint, name] : names) {
+      const std::size_t at = renamed.find("<joint name=\"" + joint + "\"");
+      ASSERT_NE(at, std::string::npos) << joint;
+      renamed.replace(at + 13, joint.size(), name);
+    }
+    const std::string text = MakeCalibratedMjcf(renamed, "a.xml", robot.nominal, robot.calibrated,
+                                                robot.offsets, {}, names);
+    const Model model = Load(text), same = Load(expected);
+    ASSERT_NE(model, nullptr);
+    ASSERT_EQ(model->nbody, same->nbody);
+    for (int i = 0; i < 3 * model->nbody; ++i) EXPECT_EQ(model->body_pos[i], same->body_pos[i]);
+    for (int i = 0; i < model->nq; ++i) EXPECT_EQ(model->qpos0[i], same->qpos0[i]);
+  }
+  EXPECT_EQ(names.at("elbow_joint"), "bend");
+  EXPECT_EQ(names.at("rail_joint"), "j_rail");
+  ExpectInputError([&] { ReadMjcfJointNames(robot.nominal, {"elbow_jont=bend"}); },
+                   {"'elbow_jont=bend'", "elbow_joint"});
+  ExpectInputError([&] { ReadMjcfJointNames(robot.nominal, {"*=bend"}); }, {"one * on each side"});
+}
+
+TEST(CalibratedMjcf, FindsItsFilesFromAnotherFolder) {
+  const ScratchFolder folder;
+  const std::filesystem::path from = folder.path() / "robots/a & b", to = folder.path() / "out";
+  std::filesystem::create_directories(from / "meshes");
+  std::filesystem::create_directories(to);
+  WriteFile(from / "meshes/corner.obj",
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const auto model = [](const std::string& compiler, const std::string& file) {
+    return "<mujoco>" + compiler + "<asset><mesh name=\"c\" file=\"" + file +
+           "\"/></asset><worldbody><geom type=\"mesh\" mesh=\"c\"/></worldbody></mujoco>";
+  };
+  const auto loads = [&](const std::string& text) {
+    std::array<char, 1000> error{};
+    const std::string file = folder.Write("out/robot.xml", text);
+    const Model loaded(mj_loadXML(file.c_str(), nullptr, error.data(), error.size()),
+                       &mj_deleteModel);
+    return loaded ? std::string() : std::string(error.data());
+  };
+  for (const auto& [compiler, file] :
+       {std::pair{"", "meshes/corner.obj"}, {"<compiler meshdir=\"meshes\"/>", "corner.obj"}}) {
+    EXPECT_NE(loads(model(compiler, file)), "");
+    EXPECT_EQ(loads(MoveMjcf(model(compiler, file), "robot.xml", from, to)), "");
+    EXPECT_EQ(MoveMjcf(model(compiler, file), "robot.xml", from, from / "."),
+              model(compiler, file));
+  }
+  ExpectInputError(
+      [&] { MoveMjcf("<mujoco><include file=\"b.xml\"/></mujoco>", "a.xml", from, to); },
+      {"a.xml:1", "includes other files"});
 }
 
 TEST(ReferencePositions, AreShiftedByTheZeros) {

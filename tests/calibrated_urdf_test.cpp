@@ -119,6 +119,28 @@ TEST(CalibratedUrdf, AMimicJointWithoutMarkersStaysWhereItIs) {
   EXPECT_EQ(origin.xyz, calibrated.nominal.at("right_hip_yaw_pitch").xyz);
 }
 
+// xacro's names have letters, digits and '_' alone.
+TEST(CalibratedUrdf, XacroPropertiesOfJointsWithOtherNamesDiffer) {
+  CalibratedUrdf calibrated;
+  for (const char* joint : {"a-b", "a.b", "a_b", "2 z", "hip", "hip_roll"}) {
+    calibrated.nominal[joint] = calibrated.calibrated[joint] = UrdfOrigin();
+    calibrated.encoder_offsets[joint] = 0.5;
+  }
+  calibrated.calibrated["a_b"].xyz.x() += 3.0;
+  const std::string xacro = MakeXacroOffsets(calibrated);
+  const auto count = [&](const std::string& words) {
+    int found = 0;
+    for (std::size_t at = 0; (at = xacro.find(words, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("name=\"a_b_x_offset\" value=\"3\""), 1) << xacro;
+  for (const char* name : {"a_b", "a_b_2", "a_b_3", "_2_z", "hip", "hip_roll_2"}) {
+    EXPECT_EQ(count("name=\"" + std::string(name) + "_offset\""), 1) << xacro;
+  }
+  EXPECT_EQ(count("name=\"hip_roll_offset\" value=\"0\""), 1) << xacro;  // of the joint hip
+  EXPECT_EQ(count("<!-- joint 'a.b': a_b_3_... -->"), 1) << xacro;
+}
+
 TEST(CalibratedUrdf, EveryEncoderHasAnOffsetWhateverWasEstimated) {
   const std::string urdf = ReadFile(SourceFile("tests/robots/mini_humanoid.urdf"));
   CalibrationResult calibration = WithErrors(ParseUrdf(urdf, "urdf"), 3);

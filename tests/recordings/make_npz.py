@@ -22,4 +22,12 @@ np.savez(
     q=np.asfortranarray(q),
     tau=np.asfortranarray(2.0 * q),
 )
+records = np.zeros(n, dtype=np.dtype([("time", ">f8"), ("label", "U3"), ("elbow", "<f4"), ("elbow_torque", "f8"),
+                                       ("flag", "?"), ("force", "f8", (2, 3)), ("shoulder", "i2")], align=True))
+records["time"], records["elbow"], records["elbow_torque"], records["shoulder"] = t, elbow, 2 * elbow, np.arange(n) - 3
+np.savez("joints_records.npz", log=records)
+records = np.zeros(n, dtype=[("t", "f8"), ("q", "f8", (2,)), ("tau", "f4", (2,))])
+records["t"], records["q"], records["tau"] = t, q, 2 * q
+np.savez_compressed("joints_records_matrix.npz", state=records, names=np.array(["elbow", "shoulder"]),
+                    about=np.array([{"robot": 1}], dtype=object))
 np.savez("joints_pickled.npz", t=np.array([{"a": 1}], dtype=object))

@@ -22,7 +22,7 @@ PLACES = ("hands", "swinging_feet", "waist")
 def deploy(arguments, seed, work):
     """What deployment.json says of one robot, by (as, stabilised)."""
     recordings = []
-    for kind in ("motion", "sine", "random"):
+    for kind in arguments.kinds:
         recordings.append(work / f"recording_{seed}_{kind}")
         words = [] if kind == "motion" else ["--kind", kind]
         run(arguments.program, "simulate", arguments.project, "--motion", arguments.demo / f"{kind}.csv", *words,
@@ -30,7 +30,7 @@ def deploy(arguments, seed, work):
     result = work / f"calibration_{seed}"
     run(arguments.program, "calibrate", arguments.project, "--recording", *recordings, "-o", result)
     run(arguments.program, "simulate", arguments.project, "--deploy", result, "--motion", arguments.demo / "sine.csv",
-        "-o", result, "--seed", seed)
+        "-o", result, "--seed", seed, *(["--until-s", arguments.until_s] if arguments.until_s else []))
     executions = json.loads((result / "deployment.json").read_text())["executions"]
     return {(one["as"], one["stabilised"]): one for one in executions}
 
@@ -42,6 +42,8 @@ def main():
     parser.add_argument("demo", type=pathlib.Path)
     parser.add_argument("--robots", type=int, default=5)
     parser.add_argument("--first", type=int, default=1)
+    parser.add_argument("--kinds", nargs="+", default=["motion", "sine", "random"], help="motions that are recorded")
+    parser.add_argument("--until-s", type=float, help="the robots execute the motion until then")
     parser.add_argument("--work", type=pathlib.Path)
     arguments = parser.parse_args()
     print("robot  controller   stabiliser  stood     hands  feet  waist  landing mm, deg  shift mm")

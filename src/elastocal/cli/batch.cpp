@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -64,10 +65,13 @@ void WatchInterruption() {
   }
 }
 
-/// Says how far it has come, and ends as the signal would have ended it.
-[[noreturn]] void EndInterrupted(const BatchInterrupted& at) {
+/// Says how far it has come, and ends as the signal would have ended it. mpirun, which then ends
+/// its ranks, does not pass on what one says that is gone before it looks, and kills it after a
+/// second.
+[[noreturn]] void EndInterrupted(const BatchInterrupted& at, bool is_rank) {
   spdlog::warn("interrupted: {} of {} tasks are done; the same command does the rest", at.done,
                at.all);
+  if (is_rank) std::this_thread::sleep_for(std::chrono::milliseconds(300));
   std::signal(interrupted, SIG_DFL);
   std::raise(interrupted);
   std::abort();
@@ -86,6 +90,18 @@ void CheckFolder(const fs::path& output) {
   throw InputError(
       output.string() +
       ": holds other things; an empty folder was expected, or that of an earlier batch");
+}
+
+/// Throws InputError for a word of the manifest that a command does not know: before the first
+/// task, since the last one may be days away.
+void RefuseUnknownWords(const std::string& manifest, const std::vector<FleetTask>& tasks) {
+  for (const FleetTask& task : tasks) {
+    for (const std::vector<std::string>& words : task.commands) {
+      const std::string error = UsageErrorOf(words);
+      if (error.empty()) continue;
+      throw InputError(manifest + ": task '" + task.name + "': " + words.front() + ": " + error);
+    }
+  }
 }
 
 std::vector<std::unique_ptr<TaskSlot>> LocalSlots(int count, const fs::path& output,
@@ -123,7 +139,7 @@ std::vector<TaskEnd> DoTasks(const BatchCommand& command, const std::vector<Flee
   int done = static_cast<int>(tasks.size() - open.size());
   const auto all = static_cast<int>(tasks.size());
   if (progress) progress(done, all);
-  if (ranks == nullptr) WatchInterruption();
+  WatchInterruption();
   int with_result = done;
   const auto ended = [&](int task, const TaskEnd& end) {
     ends[static_cast<std::size_t>(task)] = end;
@@ -258,6 +274,7 @@ int Batch(const BatchCommand& command) {
   try {
     OutputSet outputs;
     outputs.Protect({command.manifest});
+    RefuseUnknownWords(command.manifest, tasks);
     CheckFolder(output);
     for (const fs::path& name : FleetFileNames()) outputs.Declare(output / name);
     outputs.Declare(output / ".batch");
@@ -273,7 +290,7 @@ int Batch(const BatchCommand& command) {
     outputs.Set(command.common.json_file, files.front());
     outputs.Publish();
   } catch (const BatchInterrupted& at) {
-    EndInterrupted(at);
+    EndInterrupted(at, ranks != nullptr);
   } catch (...) {
     if (ranks) ranks->Dismiss();
     throw;

@@ -57,6 +57,9 @@ using Action = std::function<int()>;
 /// Parses and runs a command line (without the program's name). Gives the exit code.
 int RunCommandLine(const std::vector<std::string>& arguments);
 
+/// What is wrong with the words of a command line, which is not run; empty: nothing.
+std::string UsageErrorOf(std::vector<std::string> words);
+
 /// Each adds its command; `action` is set when the command is on the command line.
 void AddInit(CLI::App& app, Action& action);
 void AddInspect(CLI::App& app, Action& action);

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
@@ -28,24 +27,6 @@ struct CompensateOptions {
   std::string calibration, project, motion, output;
   std::string as = "compensated", loads = "statics";
 };
-
-nlohmann::ordered_json MotionExtremeJson(const MotionExtreme& extreme) {
-  return {{"value", extreme.value}, {"time_s", extreme.time_s}, {"where", extreme.where}};
-}
-
-std::string MakeCompensationJson(const CompensatedMotion& result) {
-  nlohmann::ordered_json json;
-  json["status"] = result.broken.empty() ? "fine" : "refused";
-  json["correction"] = MotionExtremeJson(result.correction);
-  json["residual_mm"] = 1e3 * result.residual_m;
-  json["residual_deg"] = result.residual_rad * 180.0 / M_PI;
-  json["to_joint_limit"] = MotionExtremeJson(result.position);
-  json["velocity_share"] = MotionExtremeJson(result.velocity);
-  if (result.has_clearance) json["clearance_m"] = MotionExtremeJson(result.clearance);
-  json["at_rest"] = result.at_rest;
-  json["broken"] = result.broken;
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
 
 std::string DescribeCompensation(const CompensatedMotion& result, const RobotTree& tree) {
   TextTable table({"over all samples", "worst", "at s", "where"});

@@ -32,6 +32,7 @@ int Export(const ExportCommand& command) {
   outputs.Prepare();
   ExportOptions options = command.options;
   options.version = ProgramVersion();
+  options.output = command.output;
   if (command.least_gain_mm) options.least_gain = 1e-3 * *command.least_gain_mm;
   const ExportedCalibration exported = ExportCalibration(robot, options);
   outputs.Set(command.output, exported.text);
@@ -72,6 +73,11 @@ void AddExport(CLI::App& app, Action& action) {
       ->add_option("--mjcf", options->options.mjcf,
                    "The nominal MuJoCo model of the robot, for --format mjcf")
       ->type_name("FILE");
+  command
+      ->add_option("--mjcf-joints", options->options.mjcf_joints,
+                   "Joints that the MuJoCo model calls otherwise than the URDF, as URDF=MJCF; a * "
+                   "on both sides stands for the rest of the name: 'panda_*=*'")
+      ->type_name("NAME");
   command
       ->add_option("--min-significance", options->options.least_significance,
                    "Joints whose errors are all below so many standard deviations stay nominal")

@@ -144,9 +144,8 @@ std::string UsageMessage(const CLI::App* app, const CLI::Error& error) {
          "\nRun with --help for more information.\n";
 }
 
-int Run(int argc, char** argv) {
-  SetCommandLine(argc, argv);
-  CLI::App app("Elasto-geometric calibration of humanoid robots from marker positions.");
+/// All commands; parsing a command line sets `action`.
+void AddCommands(CLI::App& app, Action& action) {
   app.name("elastocal");
   app.set_version_flag("--version", std::string("elastocal ") + ProgramVersion());
   app.require_subcommand(1);
@@ -154,7 +153,6 @@ int Run(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 fine, 2 usage, 3 bad input, 4 not converged or infeasible.\n"
       "Example: elastocal demo");
-  Action action;
   AddInit(app, action);
   AddInspect(app, action);
   AddCalibrate(app, action);
@@ -173,6 +171,16 @@ int Run(int argc, char** argv) {
   AddCompensate(app, action);
   AddInfo(app, action);
   AddConvert(app, action);
+}
+
+constexpr const char* kAbout =
+    "Elasto-geometric calibration of humanoid robots from marker positions.";
+
+int Run(int argc, char** argv) {
+  SetCommandLine(argc, argv);
+  CLI::App app(kAbout);
+  Action action;
+  AddCommands(app, action);
   if (argc == 3 && std::string(argv[1]) == "--generate") return Generate(app, argv[2]);
   if (const std::string unknown = UnknownCommand(app, argc, argv); !unknown.empty()) {
     spdlog::error("{} (elastocal --help lists the commands)", unknown);
@@ -212,6 +220,20 @@ int RunAndExplain(int argc, char** argv) {
 }
 
 }  // namespace
+
+std::string UsageErrorOf(std::vector<std::string> words) {
+  CLI::App app(kAbout);
+  Action action;
+  AddCommands(app, action);
+  std::reverse(words.begin(), words.end());  // as the library takes them
+  try {
+    app.parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    const std::string message = UsageMessage(&app, error);
+    return message.substr(0, message.find('\n'));
+  }
+  return "";
+}
 
 int RunCommandLine(const std::vector<std::string>& arguments) {
   std::vector<std::string> words = {"elastocal"};

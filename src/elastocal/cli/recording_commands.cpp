@@ -62,7 +62,21 @@ std::string DescribeJoints(const RecordingInfo& info, bool verbose) {
   return text + "\n  " + FirstOf(log.names, verbose ? log.names.size() : 8) + "\n";
 }
 
+std::string DescribeColumns(const NamedPostures& postures) {
+  TextTable table({"column", "filled", "least", "largest"});
+  for (const NamedPostures::Column& column : postures.columns) {
+    const bool numbers = column.numbers == column.filled && column.filled > 0;
+    table.Add({column.name, fmt::format("{} of {}", column.filled, postures.count),
+               numbers             ? fmt::format("{:.6g}", column.least)
+               : column.filled > 0 ? "text"
+                                   : "",
+               numbers ? fmt::format("{:.6g}", column.largest) : ""});
+  }
+  return fmt::format("Rows: {}\n", postures.count) + table.Render();
+}
+
 std::string DescribePostures(const NamedPostures& postures, bool verbose) {
+  if (!postures.columns.empty()) return DescribeColumns(postures);
   std::string text =
       fmt::format("Postures: {}; joints: {}\n  {}\n", postures.count, postures.joints.size(),
                   FirstOf(postures.joints, verbose ? postures.joints.size() : 8));
@@ -150,7 +164,7 @@ void AddRecording(CLI::App& command, RecordingCommand& options) {
                   "Frames of tf that are bodies (default: all that move in the cameras' frame)")
       ->type_name("NAME");
   command.add_flag("--salvage", options.reading.salvage,
-                   "Read an MCAP bag that was not closed or was cut off, up to where it ends");
+                   "Read a bag that was not closed or was cut off, up to where it ends");
 }
 
 }  // namespace

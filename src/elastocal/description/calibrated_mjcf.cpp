@@ -2,7 +2,6 @@
 #include "elastocal/description/calibrated_mjcf.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -25,44 +24,11 @@ constexpr double kSameAxis = 1e-4;
 // Inertia and damping of springs, as times, s (see simulation/mjcf.hpp).
 constexpr double kSpringInertiaTime = 0.010, kSpringDampingTime = 0.020;
 
-struct MjcfBody {
-  XmlElement element;
-  std::string parent;      ///< name of the body that carries it; empty: the world
-  std::string childclass;  ///< default class of its joints; empty: the outermost one
-};
-
-void CollectBodies(const XmlElement& within, const std::string& parent,
-                   const std::string& childclass, std::map<std::string, MjcfBody>& bodies) {
-  for (const XmlElement& child : within.Children()) {
-    if (child.Tag() != "body") continue;
-    const std::string name = child.Has("name") ? child.Text("name") : "";
-    const std::string own = child.Has("childclass") ? child.Text("childclass") : childclass;
-    if (!name.empty()) bodies.insert({name, {child, parent, own}});
-    CollectBodies(child, name, own, bodies);
-  }
-}
-
-/// The first file that a part of the model is in.
-std::optional<std::string> FindInclude(const XmlElement& within) {
-  for (const XmlElement& child : within.Children()) {
-    if (child.Tag() == "include" && child.Has("file")) return child.Text("file");
-    if (auto found = FindInclude(child)) return found;
-  }
-  return {};
-}
-
-[[noreturn]] void FailWithoutBody(const XmlElement& root, const std::string& link,
-                                  const std::string& joint,
-                                  const std::map<std::string, MjcfBody>& bodies) {
-  std::vector<std::string> names;
-  for (const auto& [name, body] : bodies) names.push_back(name);
-  const std::string missing = "no body " + Quote(link) + ", which joint " + Quote(joint) + " moves";
-  if (const auto file = FindInclude(root)) {
-    root.Fail(missing + ", in this file; it includes " + Quote(*file) +
-              ": give the file that has the bodies, or the whole model as MuJoCo saves it");
-  }
-  root.Fail(missing + "; the names of the URDF's links and joints were expected" +
-            DidYouMean(link, names));
+/// Where the URDF has the child link of a joint, in the frame of the body that carries it.
+Transform PoseInParent(const RobotTree& tree, std::size_t k, const MjcfBodies& bodies) {
+  const Joint& joint = tree.joints[k];
+  return bodies.CarrierFrame(tree, k).inverse() *
+         tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link * joint.T_parent_child;
 }
 
 /// Angles of an MJCF are degrees unless it says otherwise.
@@ -78,64 +44,11 @@ double AngleUnit(const XmlElement& root) {
   return unit;
 }
 
-Eigen::Quaterniond ReadQuaternion(const XmlElement& body) {
-  for (const char* other : {"euler", "axisangle", "xyaxes", "zaxis"}) {
-    if (body.Has(other)) {
-      body.Fail(std::string("orientation by '") + other +
-                "'; 'quat' was expected, as MuJoCo saves models");
-    }
-  }
-  if (!body.Has("quat")) return Eigen::Quaterniond::Identity();
-  const std::string text = body.Text("quat");
-  std::array<double, 4> numbers{};
-  std::string_view rest = Trim(text);
-  for (double& number : numbers) {
-    const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n"));
-    const std::optional<double> value = ParseNumber(word);
-    rest = Trim(rest.substr(word.size()));
-    if (!value) body.Fail("quat is " + Quote(text) + "; four finite numbers were expected");
-    number = *value;
-  }
-  const Eigen::Quaterniond quaternion(numbers[0], numbers[1], numbers[2], numbers[3]);
-  if (!rest.empty() || !(quaternion.norm() > 0.1)) {
-    body.Fail("quat is " + Quote(text) + "; four numbers w x y z were expected");
-  }
-  return quaternion.normalized();
-}
-
-Transform ReadBodyPose(const XmlElement& body) {
-  Transform T = Transform::Identity();
-  if (body.Has("pos")) T.translation() = body.Vector("pos");
-  T.linear() = ReadQuaternion(body).toRotationMatrix();
-  return T;
-}
-
-/// The link of the MJCF's body that carries that of a joint: of the same part of the robot.
-const Link& CarrierOf(const RobotTree& tree, const Joint& joint, const MjcfBody& body) {
-  const Link& carrier = tree.links[static_cast<std::size_t>(joint.parent_link)];
-  for (const Link& link : tree.links) {
-    if (link.name == body.parent && link.body == carrier.body) return link;
-  }
-  body.element.Fail("the body is carried by " + Quote(body.parent) + "; " + Quote(carrier.name) +
-                    " or a link fixed to it was expected");
-}
-
-/// Where the URDF has the child link of a joint, in the frame of the body that carries it.
-Transform PoseInParent(const RobotTree& tree, const Joint& joint, const MjcfBody& body) {
-  return CarrierOf(tree, joint, body).T_body_link.inverse() *
-         tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link * joint.T_parent_child;
-}
-
-XmlElement JointOf(const MjcfBody& body, const Joint& joint, const MjcfJointDefaults& defaults) {
+XmlElement JointOf(const MjcfBody& body, const Joint& joint, const std::string& name,
+                   const MjcfJointDefaults& defaults) {
   std::optional<XmlElement> found;
-  std::vector<std::string> names;
   for (const XmlElement& child : body.element.Children()) {
-    if (child.Tag() != "joint" || !child.Has("name")) continue;
-    names.push_back(child.Text("name"));
-    if (names.back() == joint.name) found = child;
-  }
-  if (!found) {
-    body.element.Fail("the body has no joint " + Quote(joint.name) + DidYouMean(joint.name, names));
+    if (child.Tag() == "joint" && child.Has("name") && child.Text("name") == name) found = child;
   }
   const auto giver = [&](const char* attribute) {
     return defaults.Giver(*found, body.childclass, attribute);
@@ -205,8 +118,8 @@ class SpringWriter {
 
   /// Those of one joint. `T_parent_root`: the root link in the body that carries the joint's body.
   /// Whether the body got others around it, in that frame.
-  bool Add(const std::vector<SeriesSpring>& springs, const MjcfBody& body, const XmlElement& motor,
-           const Transform& T_parent_root) {
+  bool Add(const std::vector<SeriesSpring>& springs, const MjcfBody& body,
+           const std::string& carrier, const XmlElement& motor, const Transform& T_parent_root) {
     std::map<SpringPlace, std::string> joints;
     for (const SeriesSpring& spring : springs) joints[spring.place] += SpringText(spring);
     if (joints.contains(SpringPlace::kJoint)) {
@@ -226,8 +139,8 @@ class SpringWriter {
     edits_.push_back(InFrontOf(text_, body.element, begin));
     ends_.push_back({body.element.End(), 0, end});
     // MuJoCo lets a body and the one that carries it pass through each other.
-    if (!body.parent.empty()) {
-      excluded_ += "<exclude body1=\"" + body.parent + "\" body2=\"" + name + "\"/>";
+    if (!carrier.empty()) {
+      excluded_ += "<exclude body1=\"" + carrier + "\" body2=\"" + name + "\"/>";
     }
     return true;
   }
@@ -303,39 +216,38 @@ class SpringWriter {
 std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& source,
                                const RobotTree& nominal, const RobotTree& calibrated,
                                const std::map<std::string, double>& encoder_offsets,
-                               const std::vector<SeriesSpring>& springs) {
+                               const std::vector<SeriesSpring>& springs,
+                               const MjcfJointNames& joint_names) {
   const XmlText xml(mjcf, source);
   const XmlElement root = xml.Root();
   if (root.Tag() != "mujoco") {
     root.Fail("found <" + std::string(root.Tag()) + ">; an MJCF model, <mujoco>, was expected");
   }
   const double angle_unit = AngleUnit(root);
-  std::map<std::string, MjcfBody> bodies;
-  if (const auto world = root.FindFirst("worldbody")) CollectBodies(*world, "", "", bodies);
+  const MjcfBodies bodies(root, nominal, joint_names);
   const MjcfJointDefaults defaults(root);
   std::vector<XmlEdit> edits;
   std::optional<SpringWriter> writer;
   if (!springs.empty()) writer.emplace(mjcf, root);
   for (std::size_t k = 0; k < nominal.joints.size(); ++k) {
     const Joint& joint = nominal.joints[k];
-    const std::string& child = nominal.links[static_cast<std::size_t>(joint.child_link)].name;
-    const auto body = bodies.find(child);
-    if (body == bodies.end()) FailWithoutBody(root, child, joint.name, bodies);
-    CheckNominal(body->second, joint, PoseInParent(nominal, joint, body->second));
-    const XmlElement element = JointOf(body->second, joint, defaults);
-    Transform T = PoseInParent(calibrated, calibrated.joints[k], body->second);
+    const MjcfBody& body = bodies.MovedBy(k);
+    CheckNominal(body, joint, PoseInParent(nominal, k, bodies));
+    const XmlElement element = JointOf(body, joint, bodies.JointName(k), defaults);
+    Transform T = PoseInParent(calibrated, k, bodies);
     if (writer) {
-      const Transform T_parent_root = CarrierOf(nominal, joint, body->second).T_body_link.inverse();
-      if (writer->Add(SpringsOf(springs, k), body->second, element, T_parent_root)) {
+      const Transform T_parent_root = bodies.CarrierFrame(nominal, k).inverse();
+      if (writer->Add(SpringsOf(springs, k), body, bodies.CarrierName(body), element,
+                      T_parent_root)) {
         T = T_parent_root.inverse() * T;  // carried by the root link's own part now
       }
     }
-    edits.push_back(SetAttribute(body->second.element, "pos", WriteVector(T.translation())));
-    edits.push_back(SetAttribute(body->second.element, "quat", WriteQuaternion(T.linear())));
+    edits.push_back(SetAttribute(body.element, "pos", WriteVector(T.translation())));
+    edits.push_back(SetAttribute(body.element, "quat", WriteQuaternion(T.linear())));
     const auto offset = encoder_offsets.find(joint.name);
     if (offset == encoder_offsets.end() || offset->second == 0.0) continue;
     const double unit = joint.type == JointType::kRevolute ? angle_unit : 1.0;
-    const auto given = defaults.Giver(element, body->second.childclass, "ref");
+    const auto given = defaults.Giver(element, body.childclass, "ref");
     const double ref = given ? given->Number("ref") : 0.0;
     edits.push_back(SetAttribute(element, "ref", FormatNumber(ref - offset->second / unit)));
   }

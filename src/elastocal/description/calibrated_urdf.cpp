@@ -2,6 +2,7 @@
 #include "elastocal/description/calibrated_urdf.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <set>
@@ -241,6 +242,54 @@ CalibratedUrdf MakeCalibratedUrdf(const std::string& urdf, const std::string& so
   return result;
 }
 
+namespace {
+
+constexpr std::array kXacroOffsets = {"_x_offset",     "_y_offset",   "_z_offset", "_roll_offset",
+                                      "_pitch_offset", "_yaw_offset", "_offset"};
+
+/// How the properties of each joint begin: a name of xacro has letters, digits and '_' alone. A
+/// joint of whose properties one would have the name of another joint's gets a number behind it.
+std::map<std::string, std::string> XacroNames(const CalibratedUrdf& calibrated) {
+  std::set<std::string> joints, taken;
+  for (const auto& [joint, origin] : calibrated.calibrated) joints.insert(joint);
+  for (const auto& [joint, offset] : calibrated.encoder_offsets) joints.insert(joint);
+  const auto as_property = [](std::string name) {
+    for (char& c : name) {
+      if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    }
+    return std::isdigit(static_cast<unsigned char>(name.front())) ? '_' + name : name;
+  };
+  const auto properties_of = [&](const std::string& joint, const std::string& name) {
+    std::vector<std::string> properties;
+    for (const char* ending : kXacroOffsets) {
+      const bool of_encoder = ending == kXacroOffsets.back();
+      const bool has = of_encoder ? calibrated.encoder_offsets.contains(joint)
+                                  : calibrated.calibrated.contains(joint);
+      if (has) properties.push_back(name + ending);
+    }
+    return properties;
+  };
+  const auto is_free = [&](const std::string& property) { return !taken.contains(property); };
+  std::map<std::string, std::string> names;
+  for (const bool as_it_is : {true, false}) {  // whose names are fine keep them
+    for (const std::string& joint : joints) {
+      const std::string property = as_property(joint);
+      if ((property == joint) != as_it_is) continue;
+      std::string name = property;
+      std::vector<std::string> all = properties_of(joint, name);
+      for (int i = 2; !std::all_of(all.begin(), all.end(), is_free); ++i) {
+        name = property + "_" + std::to_string(i);
+        all = properties_of(joint, name);
+      }
+      taken.insert(all.begin(), all.end());
+      names[joint] = name;
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
 std::string MakeXacroOffsets(const CalibratedUrdf& calibrated) {
   pugi::xml_document xml;
   pugi::xml_node declaration = xml.append_child(pugi::node_declaration);
@@ -257,23 +306,28 @@ std::string MakeXacroOffsets(const CalibratedUrdf& calibrated) {
                        "of the controller + offset. ");
   pugi::xml_node robot = xml.append_child("robot");
   robot.append_attribute("xmlns:xacro") = "http://www.ros.org/wiki/xacro";
-  const auto add = [&](std::string name, double value) {
-    for (char& c : name) {
-      if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    }
-    if (std::isdigit(static_cast<unsigned char>(name.front()))) name = '_' + name;
+  const std::map<std::string, std::string> properties = XacroNames(calibrated);
+  for (const auto& [joint, name] : properties) {
+    if (name == joint) continue;
+    robot.append_child(pugi::node_comment)
+        .set_value((" joint '" + joint + "': " + name + "_... ").c_str());
+  }
+  const auto add = [&](const std::string& name, double value) {
     pugi::xml_node property = robot.append_child("xacro:property");
     property.append_attribute("name") = name.c_str();
     property.append_attribute("value") = FormatNumber(value).c_str();
   };
-  static constexpr const char* kLengths[] = {"_x_offset", "_y_offset", "_z_offset"};
-  static constexpr const char* kAngles[] = {"_roll_offset", "_pitch_offset", "_yaw_offset"};
   for (const auto& [joint, origin] : calibrated.calibrated) {
     const UrdfOrigin& nominal = calibrated.nominal.at(joint);
-    for (int i = 0; i < 3; ++i) add(joint + kLengths[i], origin.xyz[i] - nominal.xyz[i]);
-    for (int i = 0; i < 3; ++i) add(joint + kAngles[i], origin.rpy[i] - nominal.rpy[i]);
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto k = static_cast<Eigen::Index>(i % 3);
+      add(properties.at(joint) + kXacroOffsets[i],
+          i < 3 ? origin.xyz[k] - nominal.xyz[k] : origin.rpy[k] - nominal.rpy[k]);
+    }
   }
-  for (const auto& [joint, offset] : calibrated.encoder_offsets) add(joint + "_offset", offset);
+  for (const auto& [joint, offset] : calibrated.encoder_offsets) {
+    add(properties.at(joint) + kXacroOffsets.back(), offset);
+  }
   std::ostringstream stream;
   xml.save(stream, "  ");
   return stream.str();

@@ -7,6 +7,18 @@
 
 namespace elastocal {
 
+std::string EscapedXml(const std::string& text) {
+  std::string safe;
+  for (char c : text) {
+    if (c == '<' || c == '>' || c == '&' || c == '"') {
+      safe += "&#" + std::to_string(static_cast<int>(c)) + ";";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
 XmlEdit SetAttribute(const XmlElement& element, const char* name, const std::string& value) {
   if (element.Has(name)) {
     const auto [begin, length] = element.ValueRange(name);

@@ -17,6 +17,9 @@ struct XmlEdit {
   std::string text;
 };
 
+/// A text as it stands in the value of an attribute.
+std::string EscapedXml(const std::string& text);
+
 /// Gives an attribute this value; adds it where the element has none.
 XmlEdit SetAttribute(const XmlElement& element, const char* name, const std::string& value);
 

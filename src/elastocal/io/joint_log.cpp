@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/io/joint_log.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -107,26 +108,36 @@ JointColumns FindJointColumns(const Table& table, const Project& project) {
   return columns;
 }
 
-/// Rows stand below the header line by line.
-std::string RowPlace(const std::string& source, Eigen::Index row) {
-  return Place(source, 2 + static_cast<int>(row));
+/// Rows stand below the first one line by line.
+std::string RowPlace(const std::string& source, int first_line, Eigen::Index row) {
+  return Place(source, first_line + static_cast<int>(row));
 }
 
 /// A joint has a torque sensor or it has none.
 void CheckTorques(const Eigen::Ref<const Eigen::VectorXd>& torques, const std::string& column,
-                  const std::string& source) {
+                  const std::string& source, int first_line) {
   const Eigen::Index missing = torques.array().isNaN().count();
   if (missing == 0 || missing == torques.size()) return;
   Eigen::Index row = 0;
   while (!std::isnan(torques[row])) ++row;
-  throw InputError(RowPlace(source, row) + "column " + Quote(column) +
+  throw InputError(RowPlace(source, first_line, row) + "column " + Quote(column) +
                    ": found no torque; a finite number was expected, or no torque in any row");
 }
 
-/// Reads the numbers of all rows: time, positions, torques and wrenches of the log.
-void ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
+/// Reads the numbers of all rows: time, positions, torques and wrenches of the log. Rows without
+/// any position above the first one that has some are passed over: loggers write them until the
+/// robot answers. Gives the line of the first sample.
+int ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
   std::vector<double> time, positions, torques, wrenches;
+  int first_line = 0;
   while (table.Next()) {
+    if (time.empty()) {
+      first_line = table.line();
+      if (std::all_of(columns.positions.begin(), columns.positions.end(),
+                      [&](int column) { return IsGap(table.Cell(column)); })) {
+        continue;
+      }
+    }
     if (table.row_count() > kMostLogRows) {
       table.Fail("more than " + std::to_string(kMostLogRows) + " rows");
     }
@@ -140,11 +151,16 @@ void ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
     for (int column : columns.wrenches) wrenches.push_back(table.Number(column));
   }
   const std::size_t rows = time.size();
-  if (rows == 0) throw InputError(table.source() + ": no row below the header");
+  if (rows == 0) {
+    throw InputError(table.source() + (table.row_count() == 0
+                                           ? ": no row below the header"
+                                           : ": no row below the header has a position"));
+  }
   log.time_s = StackRows(time, rows);
   log.positions = StackRows(positions, rows);
   log.torques = StackRows(torques, rows);
   log.wrenches = StackRows(wrenches, rows);
+  return first_line;
 }
 
 /// The log of joints, or of motors where the project names these.
@@ -153,7 +169,7 @@ JointLog ReadColumns(Table& table, const Project& project) {
   const JointColumns columns = FindJointColumns(table, project);
   JointLog log;
   log.source = source;
-  ReadNumbers(columns, table, log);
+  const int first_line = ReadNumbers(columns, table, log);
   for (int sensor : columns.sensors) {
     log.wrench_sensors.push_back(project.force_torque_sensors[sensor]);
   }
@@ -162,9 +178,9 @@ JointLog ReadColumns(Table& table, const Project& project) {
     const auto column = static_cast<Eigen::Index>(i);
     log.names.push_back(joint.name);
     CheckUnits(joint, log.positions.col(column),
-               [&](Eigen::Index row) { return RowPlace(source, row); });
+               [&](Eigen::Index row) { return RowPlace(source, first_line, row); });
     if (columns.torques[i] < 0) continue;
-    CheckTorques(log.torques.col(column), table.header()[columns.torques[i]], source);
+    CheckTorques(log.torques.col(column), table.header()[columns.torques[i]], source, first_line);
   }
   return log;
 }

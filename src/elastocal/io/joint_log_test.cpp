@@ -49,6 +49,18 @@ TEST(JointLog, ReadsPositionsAndTorques) {
   EXPECT_TRUE(log.torques.col(2).array().isNaN().all());
 }
 
+// Loggers write rows until the robot answers.
+TEST(JointLog, EmptyRowsAboveTheFirstSampleArePassedOver) {
+  const std::string begin = "time,elbow_joint,elbow_joint_torque,turret_joint\n\n0.5,,,\n,nan,,\n";
+  const JointLog log = ReadLog(begin + "1,0.1,5,0.2\n2,0.2,6,0.3\n");
+  EXPECT_EQ(log.time_s, Eigen::Vector2d(1.0, 2.0));
+  EXPECT_EQ(log.positions.row(0), Eigen::RowVector2d(0.1, 0.2));
+  ExpectLogError(begin + "1,0.1,5,0.2\n2,,,\n", {"j.csv:6: ", "'elbow_joint'", "found nothing"});
+  ExpectLogError(begin + "1,0.1,5,\n", {"j.csv:5: ", "'turret_joint'"});
+  ExpectLogError(begin + "1,0.1,5,0\n2,0.1,,0\n", {"j.csv:6: ", "found no torque"});
+  ExpectLogError(begin, {"no row below the header has a position"});
+}
+
 TEST(JointLog, ReadsAndWritesForceTorqueSensors) {
   const Project project = LogProject(
       "{}", "force_torque_sensors: [{name: base, link: pedestal}, {name: tip, link: tool}]");

@@ -79,4 +79,31 @@ std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source) {
   return postures;
 }
 
+std::optional<NamedPostures> ReadColumnsAsTheyAre(const ByteSource& source) {
+  SourceStream stream(source);
+  Table table(stream, source.name());
+  NamedPostures table_of;
+  for (const std::string& name : table.header()) {
+    if (name == "t" || name == "time") return std::nullopt;
+    table_of.columns.push_back({name});
+  }
+  if (table_of.columns.size() < 2) return std::nullopt;
+  while (table.Next()) {
+    ++table_of.count;
+    for (std::size_t i = 0; i < table_of.columns.size(); ++i) {
+      const std::string_view cell = table.Cell(static_cast<int>(i));
+      if (IsGap(cell)) continue;
+      NamedPostures::Column& column = table_of.columns[i];
+      ++column.filled;
+      const std::optional<double> number = ParseNumber(cell);
+      if (!number) continue;
+      column.least = column.numbers == 0 ? *number : std::min(column.least, *number);
+      column.largest = column.numbers == 0 ? *number : std::max(column.largest, *number);
+      ++column.numbers;
+    }
+  }
+  if (table_of.count == 0) return std::nullopt;
+  return table_of;
+}
+
 }  // namespace elastocal

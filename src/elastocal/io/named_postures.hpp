@@ -14,4 +14,9 @@ namespace elastocal {
 /// (median): they are samples of joints with such names. Throws InputError where Table does.
 std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source);
 
+/// A table with a header row whose names nobody knows without its project (touches, poses, corners
+/// of tags, markers of other names): what its columns hold. Nothing where a column is the time, `t`
+/// or `time`, and for one column alone. Throws InputError where Table does.
+std::optional<NamedPostures> ReadColumnsAsTheyAre(const ByteSource& source);
+
 }  // namespace elastocal

@@ -230,7 +230,15 @@ JointLog ReadPlainLog(const ByteSource& source) {
   }
   std::vector<double> time;
   std::map<std::string, std::vector<double>> columns;
+  const auto is_empty = [&] {
+    for (int i = 0; i < static_cast<int>(header.size()); ++i) {
+      const bool counted = i == at - header.begin() || table.CountsRows(i);
+      if (!counted && !IsGap(table.Cell(i))) return false;
+    }
+    return true;
+  };
   while (table.Next()) {
+    if (time.empty() && is_empty()) continue;  // as ReadJointLog does
     AppendTime(table, static_cast<int>(at - header.begin()), time);
     for (std::size_t i = 0; i < header.size(); ++i) {
       if (header.begin() + static_cast<std::ptrdiff_t>(i) == at) continue;
@@ -263,6 +271,13 @@ RecordingFile ReadAnyRecording(const fs::path& file, const ReaderOptions& option
     read.format = "posture table (CSV)";
     read.why_no_markers = "a posture table has no frames";
     read.why_no_joints = "a posture table has no log";
+  } else if ((read.postures = ReadColumnsAsTheyAre(source))) {
+    read.format = "table (CSV)";
+    read.why_no_markers = "a table without a column of the time has no frames";
+    read.why_no_joints = "a table without a column of the time has no log";
+    read.notes.emplace_back(
+        "there is no column 't' or 'time', so that it is no joint log; what the columns of a table "
+        "of postures, observations or corners are, its project says");
   } else {
     read.format = "joint log (CSV)";
     read.joints = ReadPlainLog(source);

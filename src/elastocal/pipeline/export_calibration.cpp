@@ -106,8 +106,11 @@ std::string MjcfOf(const CalibratedRobot& robot, const StoredCalibration& calibr
     springs = SeriesSprings(ResultOf(RestoreRobot(robot.project, calibration)), calibrated,
                             LegsOf(robot.project));
   }
-  return MakeCalibratedMjcf(ReadFile(options.mjcf), file, robot.project.tree, calibrated,
-                            apart.encoder_offsets, springs);
+  const std::string text = MakeCalibratedMjcf(
+      ReadFile(options.mjcf), file, robot.project.tree, calibrated, apart.encoder_offsets, springs,
+      ReadMjcfJointNames(robot.project.tree, options.mjcf_joints));
+  if (options.output.empty()) return text;
+  return MoveMjcf(text, file, options.mjcf.parent_path(), options.output.parent_path());
 }
 
 /// What of a calibration is exported.
@@ -217,6 +220,9 @@ void CheckExportOptions(const ExportOptions& options) {
   }
   if (format == "mjcf" && options.mjcf.empty()) {
     throw InputError("format mjcf: the nominal model was expected (--mjcf FILE)");
+  }
+  if (format != "mjcf" && !options.mjcf_joints.empty()) {
+    throw InputError("format " + format + ": --mjcf-joints is about format mjcf");
   }
   if (format != "mjcf" && options.mjcf_springs) {
     throw InputError("format " + format + ": --mjcf-springs is about format mjcf");

@@ -10,23 +10,12 @@
 #include <fmt/format.h>
 
 #include "elastocal/description/series_springs.hpp"
+#include "elastocal/files/xml_edit.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
 namespace {
-
-std::string EscapedXml(const std::string& text) {
-  std::string safe;
-  for (char c : text) {
-    if (c == '<' || c == '>' || c == '&' || c == '"') {
-      safe += fmt::format("&#{};", static_cast<int>(c));
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
 
 constexpr int kHipJoints = 3;
 constexpr double kAlong = 0.9;  // cosine between the axis of a hip's joint and z, x or y

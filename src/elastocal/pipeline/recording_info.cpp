@@ -178,6 +178,13 @@ std::string MakeInfoJson(const RecordingInfo& info) {
     }
     json["postures"] = {
         {"count", postures->count}, {"markers", list}, {"joints", postures->joints}};
+    for (const NamedPostures::Column& column : postures->columns) {
+      const bool numbers = column.numbers == column.filled && column.filled > 0;
+      json["postures"]["columns"].push_back({{"name", column.name},
+                                             {"filled", column.filled},
+                                             {"least", numbers ? Json(column.least) : Json()},
+                                             {"largest", numbers ? Json(column.largest) : Json()}});
+    }
   }
   json["notes"] = info.file.notes;
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
@@ -186,6 +193,13 @@ std::string MakeInfoJson(const RecordingInfo& info) {
 ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions& options,
                                     RecordingPart part, const std::string& up) {
   RecordingFile file = ReadAnyRecording(path, options);
+  if (file.postures && !file.postures->columns.empty()) {
+    throw InputError(
+        path +
+        ": this is no recording of a known format, nor a joint log: there is no column "
+        "'t' or 'time' (tables of postures, observations and detections have none: "
+        "`calibrate` reads them with their project)");
+  }
   if (file.postures) {
     throw InputError(path +
                      ": this is a posture table, which calibrate takes as it is; a recording of "

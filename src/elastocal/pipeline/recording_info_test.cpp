@@ -41,6 +41,24 @@ TEST(RecordingInfoTest, SaysWhenWhichMarkerWasSeen) {
   EXPECT_TRUE(json["joints"].is_null());
 }
 
+TEST(RecordingInfoTest, ShowsTheColumnsOfOtherTables) {
+  const ScratchFolder folder;
+  const std::string file =
+      folder.Write("touches.csv", "contact,hip,x1\nc_21,0.5,\nc_24,-0.25,3e-1\n");
+  const RecordingInfo info = DescribeRecording(file, {}, 8);
+  const auto json = nlohmann::json::parse(MakeInfoJson(info));
+  EXPECT_EQ(json["format"], "table (CSV)");
+  EXPECT_EQ(json["postures"]["count"], 2);
+  EXPECT_EQ(json["postures"]["columns"].dump(),
+            R"([{"filled":2,"largest":null,"least":null,"name":"contact"},)"
+            R"({"filled":2,"largest":0.5,"least":-0.25,"name":"hip"},)"
+            R"({"filled":1,"largest":0.3,"least":0.3,"name":"x1"}])");
+  ExpectInputError([&] { ConvertRecording(file, {}, RecordingPart::kOnlyOne, ""); },
+                   {"no column 't' or 'time'", "calibrate"});
+  const std::string log = folder.Write("log.csv", "time,hip,knee\n0,,\n\n");
+  ExpectInputError([&] { DescribeRecording(log, {}, 8); }, {"no row below the header"});
+}
+
 TEST(RecordingInfoTest, KnowsAPostureTableByItsColumns) {
   const ScratchFolder folder;
   const std::string header = "t,A_x,A_y,A_z,hip,knee,B_x,B_y,B_z,C_x\n";

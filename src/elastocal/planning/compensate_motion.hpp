@@ -54,6 +54,9 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
                                    const JointMotion& given,
                                    MotionLoads loads = MotionLoads::kStatics);
 
+/// As JSON: what `compensate --json` writes.
+std::string MakeCompensationJson(const CompensatedMotion& result);
+
 /// The feet of the model that are these links. Throws InputError for a link that is no foot.
 StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
                          const std::vector<int>& links);

@@ -186,6 +186,21 @@ class PlanWatch {
   Sum hands_, feet_, landing_sum_, waist_, com_;
 };
 
+/// With all feet on the floor where the motion does not say which.
+JointMotion OnItsFeet(const Project& project, JointMotion motion) {
+  if (project.soles.empty()) {
+    throw InputError(
+        project.file.string() +
+        ": the robot has no feet; 'standing' with 'soles' was expected, since the robot "
+        "that executes a motion stands freely");
+  }
+  if (!motion.support.empty()) return motion;
+  std::vector<int> feet;
+  for (const Sole& sole : project.soles) feet.push_back(sole.link);
+  motion.support.assign(Size(motion.time_s.size()), feet);
+  return motion;
+}
+
 void CheckPlan(const JointMotion& planned) {
   const bool stands = !planned.support.empty() &&
                       std::none_of(planned.support.begin(), planned.support.end(),
@@ -271,8 +286,9 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
                                       const JointMotion& motion, const DeployOptions& options,
                                       const Progress& progress) {
   constexpr double kHeld = 20.0;  // times stiffer: what integration makes of a servo
-  CheckPlan(motion);
-  const JointMotion planned = WithOpenJointsAtRest(project, Until(options.until_s, motion));
+  const JointMotion given = OnItsFeet(project, motion);
+  CheckPlan(given);
+  const JointMotion planned = WithOpenJointsAtRest(project, Until(options.until_s, given));
   CheckPlan(planned);
   const DescribedRobot described = DescribeRobot(project);
   const TrueRobot robot = DrawTrueRobot(

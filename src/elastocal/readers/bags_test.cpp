@@ -272,6 +272,37 @@ TEST(BagsTest, WhatIsLeftOfABagIsReadWhereAsked) {
   EXPECT_TRUE(ReadBag(good, {.salvage = true}).salvaged.empty());
 }
 
+TEST(BagsTest, WhatIsLeftOfOtherBagsIsReadWhereAsked) {
+  const auto file = [](const char* name) {
+    return ReadFile(SourceFile(std::string("tests/recordings/") + name));
+  };
+  const std::string bag = file("bag1_none.bag");
+  const RecordingFile whole = ReadBag(bag, {.salvage = true});
+  EXPECT_TRUE(whole.salvaged.empty());
+  const RecordingFile cut = ReadBag(bag.substr(0, bag.size() - 3), {.salvage = true});  // its index
+  EXPECT_EQ(cut.joints->positions, whole.joints->positions);
+  ASSERT_EQ(cut.salvaged.size(), 1u);
+  EXPECT_NE(cut.notes.front().find("up to byte"), std::string::npos) << cut.notes.front();
+  // A recorder that crashed has not said yet where its index is.
+  std::string open = bag;
+  const std::size_t index = bag.find("index_pos=") + 10;
+  open.replace(index, 8, 8, '\0');
+  ExpectInputError([&] { ReadBag(open); }, {"not closed", "reindex", "--salvage"});
+  EXPECT_EQ(ReadBag(open, {.salvage = true}).joints->positions, whole.joints->positions);
+
+  const std::string database = file("bag.db3");
+  const JointLog log = ReadBag(database, {.salvage = true}).joints.value();
+  EXPECT_TRUE(ReadBag(database, {.salvage = true}).salvaged.empty());
+  const std::string torn = database.substr(0, 8 * 1024);  // two of its ten pages are gone
+  ExpectInputError([&] { ReadBag(torn); }, {"bag: the database", "cut off", "--salvage"});
+  const RecordingFile left = ReadBag(torn, {.salvage = true});
+  const Eigen::Index samples = left.joints->sample_count();
+  EXPECT_GT(samples, log.sample_count() / 2);
+  EXPECT_LT(samples, log.sample_count());
+  EXPECT_EQ(left.joints->positions, log.positions.topRows(samples));
+  EXPECT_EQ(left.salvaged.size(), 1u);
+}
+
 TEST(BagsTest, DamageIsNamedWithItsPlace) {
   const std::string good = McapBytes(SomeLog());
   ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 45)); }, {"bag: byte", "cut off"});

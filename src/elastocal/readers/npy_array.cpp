@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMostNumbers = 1u << 27;
 constexpr std::size_t kLongestHeader = 1u << 16;
+constexpr std::size_t kLargestRecord = 1u << 20;
 
 struct NpyType {
   bool big_endian = false;
@@ -23,8 +24,17 @@ struct NpyType {
   std::size_t width = 0;  ///< bytes of an element
 };
 
+/// A field of records; without a name: bytes that mean nothing.
+struct NpyField {
+  std::string name;
+  NpyType type;
+  std::vector<std::size_t> shape;
+  std::size_t count = 1;
+};
+
 struct NpyHeader {
   NpyType type;
+  std::vector<NpyField> fields;  ///< of records; else none
   bool columns_first = false;
   std::vector<std::size_t> shape;
 };
@@ -37,6 +47,10 @@ class NpyReader {
     const NpyHeader header = ReadHeader();
     NpyArray array;
     array.shape = header.shape;
+    for (const NpyField& field : header.fields) {
+      if (field.name.empty()) continue;
+      array.field_names.push_back(field.name);
+    }
     if (wanted && *wanted != array.shape) return array;
     array.is_text = header.type.kind == 'U' || header.type.kind == 'S';
     std::size_t count = 1;
@@ -45,6 +59,10 @@ class NpyReader {
       count *= length;
     }
     if (count * header.type.width > (std::uint64_t{1} << 31)) Fail("more than 2 GiB");
+    if (!header.fields.empty()) {
+      ReadRecords(header, count, array);
+      return array;
+    }
     ReadElements(header.type, count, array);
     if (header.columns_first && header.shape.size() == 2) Transpose(array);
     if (header.columns_first && header.shape.size() > 2) {
@@ -79,13 +97,29 @@ class NpyReader {
   NpyHeader ParseHeader(const std::string& text) const {
     NpyHeader header;
     const std::string_view type = Value(text, "descr");
+    if (type.starts_with('[')) {
+      ParseFields(type.substr(1), header);
+      ParseShape(text, header);
+      return header;
+    }
     const std::size_t end = type.size() > 1 ? type.find('\'', 1) : std::string::npos;
     if (type.empty() || type[0] != '\'' || end == std::string_view::npos || end < 3) {
-      Fail("its elements have fields; numbers or texts were expected");
+      Fail("the type of its elements cannot be read; numbers, texts or records were expected");
     }
     header.type = ParseType(type.substr(1, end - 1));
+    if (header.type.kind == 'V') Fail("its elements are bytes that mean nothing");
+    ParseShape(text, header);
+    return header;
+  }
+
+  void ParseShape(const std::string& text, NpyHeader& header) const {
     header.columns_first = Value(text, "fortran_order").starts_with("True");
-    std::string_view shape = Value(text, "shape");
+    header.shape = ParseLengths(Value(text, "shape"));
+  }
+
+  /// (3, 4)
+  std::vector<std::size_t> ParseLengths(std::string_view shape) const {
+    std::vector<std::size_t> lengths;
     const std::size_t close = shape.find(')');
     if (!shape.starts_with('(') || close == std::string_view::npos)
       Fail("its shape cannot be read");
@@ -96,12 +130,55 @@ class NpyReader {
       shape.remove_prefix(std::min(comma + 1, shape.size()));
       if (part.empty()) continue;
       const auto number = ParseNumber(part);
-      if (!number || *number < 0.0 || *number > 1e9 || header.shape.size() > 8) {
+      if (!number || *number < 0.0 || *number > 1e9 || lengths.size() > 8) {
         Fail("its shape cannot be read");
       }
-      header.shape.push_back(static_cast<std::size_t>(*number));
+      lengths.push_back(static_cast<std::size_t>(*number));
     }
-    return header;
+    return lengths;
+  }
+
+  /// 'time', '<f8'), ('q', '<f8', (3,)), ('', '|V4')]: of each field the name, type and perhaps
+  /// shape.
+  void ParseFields(std::string_view text, NpyHeader& header) const {
+    constexpr std::size_t kMostFields = 10000;
+    const auto next_text = [&] {
+      text = Trim(text);
+      const char quote = text.empty() ? ' ' : text[0];
+      const std::size_t end = quote == '\'' || quote == '"' ? text.find(quote, 1) : text.npos;
+      if (end == text.npos) Fail("its records have fields within fields, or cannot be read");
+      const std::string_view found = text.substr(1, end - 1);
+      text = Trim(text.substr(end + 1));
+      return found;
+    };
+    while (!(text = Trim(text)).starts_with(']')) {
+      if (!text.starts_with('(') || header.fields.size() == kMostFields) {
+        Fail("the fields of its records cannot be read");
+      }
+      text.remove_prefix(1);
+      NpyField field;
+      field.name = next_text();
+      if (!text.starts_with(',')) Fail("the fields of its records cannot be read");
+      text.remove_prefix(1);
+      field.type = ParseType(next_text());
+      if (field.type.kind == 'V') field.name.clear();
+      if (text.starts_with(',')) {
+        text = Trim(text.substr(1));
+        field.shape = ParseLengths(text);
+        text.remove_prefix(text.find(')') + 1);
+      }
+      for (const std::size_t length : field.shape) {
+        field.count *= length;
+        if (length > kLongestHeader || field.count > kLongestHeader) Fail("a field is too large");
+      }
+      text = Trim(text);
+      if (!text.starts_with(')')) Fail("the fields of its records cannot be read");
+      text = Trim(text.substr(1));
+      if (text.starts_with(',')) text.remove_prefix(1);
+      header.type.width += field.type.width * field.count;
+      if (header.type.width > kLargestRecord) Fail("its records have more than 1 MiB each");
+      header.fields.push_back(std::move(field));
+    }
   }
 
   static std::string_view Value(std::string_view text, const std::string& key) {
@@ -122,13 +199,47 @@ class NpyReader {
              std::find(widths.begin(), widths.end(), width) != widths.end();
     };
     const bool text_type = (type.kind == 'U' || type.kind == 'S') && width >= 0 && width <= 4096;
-    if (std::string_view("<>|=").find(text[0]) == std::string_view::npos ||
-        (!is("f", {4, 8}) && !is("iu", {1, 2, 4, 8}) && !is("b", {1}) && !text_type)) {
+    const bool padding = type.kind == 'V' && width > 0 && width <= kLongestHeader;
+    if (text.size() < 3 || std::string_view("<>|=").find(text[0]) == std::string_view::npos ||
+        (!is("f", {4, 8}) && !is("iu", {1, 2, 4, 8}) && !is("b", {1}) && !text_type && !padding)) {
       Fail("its elements are of type " + Quote(text) +
            "; floats of 4 or 8 bytes, integers or texts were expected");
     }
     type.width = static_cast<std::size_t>(width) * (type.kind == 'U' ? 4 : 1);
     return type;
+  }
+
+  void ReadRecords(const NpyHeader& header, std::size_t count, NpyArray& array) const {
+    if (header.shape.size() != 1) Fail("its records have several dimensions; a list was expected");
+    std::vector<NpyArray> fields(header.fields.size());
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      const NpyField& field = header.fields[f];
+      fields[f].shape = header.shape;
+      fields[f].shape.insert(fields[f].shape.end(), field.shape.begin(), field.shape.end());
+      fields[f].is_text = field.type.kind == 'U' || field.type.kind == 'S';
+    }
+    std::vector<char> record(header.type.width);
+    for (std::size_t i = 0; i < count && !record.empty(); ++i) {
+      ReadAll(record, "its records");
+      std::size_t at = 0;
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        const NpyField& field = header.fields[f];
+        for (std::size_t k = 0; k < field.count; ++k, at += field.type.width) {
+          if (field.type.kind != 'V') AddElement(&record[at], field.type, fields[f]);
+        }
+      }
+    }
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      if (!header.fields[f].name.empty()) array.fields.push_back(std::move(fields[f]));
+    }
+  }
+
+  static void AddElement(const char* from, const NpyType& type, NpyArray& array) {
+    if (array.is_text) {
+      array.texts.push_back(type.width == 0 ? std::string() : Text(from, type));
+    } else {
+      array.numbers.push_back(Number(from, type));
+    }
   }
 
   /// In pieces, so that memory grows with what is there and not with what the head claims.
@@ -143,12 +254,7 @@ class NpyReader {
       const std::size_t now = std::min(piece, count - done);
       ReadAll({bytes.data(), now * type.width}, "its elements");
       for (std::size_t i = 0; i < now; ++i) {
-        const char* const from = &bytes[i * type.width];
-        if (array.is_text) {
-          array.texts.push_back(Text(from, type));
-        } else {
-          array.numbers.push_back(Number(from, type));
-        }
+        AddElement(&bytes[i * type.width], type, array);
       }
     }
   }

@@ -80,7 +80,8 @@ class ZipArchive {
   std::unique_ptr<zip_t, Discard> archive_;
 };
 
-/// A log of joints: the time `t`, and either one array a joint, or `names` with matrices.
+/// A log of joints: the time `t`, and either one array a joint, or `names` with matrices; each an
+/// array of its own, or a field of records.
 class NpzReader {
  public:
   explicit NpzReader(const ByteSource& source) : source_(source), archive_(source) {}
@@ -96,6 +97,7 @@ class NpzReader {
       entries_[name] = i;
     }
     RecordingFile file;
+    TakeRecords();
     file.why_no_markers = "an .npz file has joint positions only";
     const auto time = Take({"t", "time"});
     if (!time) {
@@ -108,6 +110,8 @@ class NpzReader {
     }
     for (const auto& [name, i] : entries_)
       notes_.push_back("the array " + name + " is passed over");
+    for (const auto& [name, array] : fields_)
+      notes_.push_back("the field " + name + " is passed over");
     file.notes = std::move(notes_);
     return file;
   }
@@ -117,9 +121,37 @@ class NpzReader {
     throw InputError(source_.name() + ": " + message);
   }
 
+  bool HasFields(std::size_t i) const {
+    const std::vector<std::size_t> none = {0, 0, 0};  // so that only the head is read
+    try {
+      return !archive_.Read(i, &none).field_names.empty();
+    } catch (const InputError&) {
+      return false;  // whoever needs it says what is wrong
+    }
+  }
+
+  /// The fields of records become arrays of their own, under their names.
+  void TakeRecords() {
+    const std::map<std::string, std::size_t> entries = entries_;
+    for (const auto& [name, i] : entries) {
+      if (!HasFields(i)) continue;
+      NpyArray records = archive_.Read(i);
+      entries_.erase(name);
+      for (std::size_t f = 0; f < records.fields.size(); ++f) {
+        const std::string& field = records.field_names[f];
+        if (fields_.contains(field) || entries.contains(field)) {
+          Fail("the field " + Quote(field) + " of " + Quote(name) +
+               " has the name of another array or field; one list of records was expected");
+        }
+        fields_.emplace(field, std::move(records.fields[f]));
+      }
+    }
+  }
+
   /// The first of these arrays that is there; it is then not listed any more.
   std::optional<NpyArray> Take(std::initializer_list<const char*> names) {
     for (const char* name : names) {
+      if (auto field = fields_.extract(name)) return std::move(field.mapped());
       const auto entry = entries_.find(name);
       if (entry == entries_.end()) continue;
       NpyArray array = archive_.Read(entry->second);
@@ -176,10 +208,20 @@ class NpzReader {
       columns.emplace(name, std::move(array.numbers));
       entries_.erase(name);
     }
+    for (auto field = fields_.begin(); field != fields_.end();) {
+      NpyArray& array = field->second;
+      if (array.is_text || array.shape != std::vector{samples}) {
+        ++field;
+        continue;
+      }
+      columns.emplace(field->first, std::move(array.numbers));
+      field = fields_.erase(field);
+    }
   }
 
   const ByteSource& source_;
   ZipArchive archive_;
+  std::map<std::string, NpyArray> fields_;      ///< of records, that are not used yet, by name
   std::map<std::string, std::size_t> entries_;  ///< arrays that are not read yet, by name
   std::vector<std::string> notes_;
 };

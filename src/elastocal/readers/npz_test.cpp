@@ -45,6 +45,31 @@ TEST(NpzTest, MatricesOfNumpy) {
   }
 }
 
+// Arrays of records, with room between their fields or with rows of matrices as fields.
+TEST(NpzTest, RecordsOfNumpy) {
+  for (const bool matrix : {false, true}) {
+    const RecordingFile file =
+        ReadRecordingFile(Numpy(matrix ? "joints_records_matrix.npz" : "joints_records.npz"), {});
+    const JointLog& log = file.joints.value();
+    EXPECT_EQ(log.names[0], "elbow");
+    EXPECT_EQ(log.names.back(), "shoulder");
+    ASSERT_EQ(log.sample_count(), 6);
+    const Eigen::Index shoulder = log.positions.cols() - 1;
+    for (int i = 0; i < 6; ++i) {
+      EXPECT_EQ(log.time_s[i], 100.0 + 0.125 * i);
+      EXPECT_EQ(log.positions(i, 0), 0.25 * i - 0.5);
+      EXPECT_EQ(log.positions(i, shoulder), i - 3);
+      EXPECT_EQ(log.torques(i, 0), 0.5 * i - 1.0);
+    }
+  }
+  const auto notes = [](const char* name) { return ReadRecordingFile(Numpy(name), {}).notes; };
+  EXPECT_EQ(notes("joints_records.npz"),
+            (std::vector<std::string>{"the field force is passed over",
+                                      "the field label is passed over"}));
+  EXPECT_EQ(notes("joints_records_matrix.npz"),  // an array of objects, which nobody needs
+            (std::vector<std::string>{"the array about is passed over"}));
+}
+
 TEST(NpzTest, HandMadeArchive) {
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(4, 0.0, 0.3), q = Eigen::VectorXd::Random(4);
   const JointLog log = ReadArchive(NpzBytes({{"t", t}, {"elbow", q}})).joints.value();

@@ -17,7 +17,7 @@ struct ReaderOptions {
   std::string joints_topic = {};  ///< of a bag with several topics of joint states
   std::string tf_frame = {};      ///< of a bag's tf: the cameras' frame
   std::vector<std::string> tf_bodies = {};  ///< frames that are bodies; empty: all that move in it
-  /// An MCAP bag that was not closed or was cut off is read up to where it ends.
+  /// A bag that was not closed or was cut off is read up to where it ends.
   bool salvage = false;
 };
 
@@ -30,6 +30,14 @@ struct NamedPostures {
   int count = 0;
   std::vector<Sight> markers;
   std::vector<std::string> joints;  ///< every column that is neither a marker's nor the time
+  struct Column {
+    std::string name;
+    int filled = 0;   ///< rows that have something there
+    int numbers = 0;  ///< of these, numbers
+    double least = 0.0, largest = 0.0;
+  };
+  /// Of a table without columns of markers: all of its columns, as they are.
+  std::vector<Column> columns = {};
 };
 
 /// What a recording in any format holds, as far as a calibration can use it.

@@ -13,6 +13,7 @@ namespace elastocal {
 namespace {
 
 constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
+constexpr const char* kSalvage = "; `elastocal convert --salvage` takes what is before";
 
 /// What stands in the head of a record: `name=value`, values as bytes.
 class BagHeader {
@@ -50,32 +51,56 @@ class Rosbag1Reader {
   Rosbag1Reader(const ByteSource& source, const ReaderOptions& options)
       : source_(source), messages_(source.name(), options) {}
 
-  RecordingFile Read() {
+  RecordingFile Read(bool salvage) {
     std::uint64_t at = kBagMagic.size();
+    std::vector<std::string> salvaged;
     while (at < source_.size()) {
+      if (salvage && !IsWhole(at)) {
+        salvaged.push_back(source_.name() +
+                           " was not closed, or was cut off: it is read up to byte " +
+                           std::to_string(at) + " of " + std::to_string(source_.size()));
+        break;
+      }
       ReadPart(at, head_, "the head of a record");
       const BagHeader header(source_, at, head_);
       const std::uint64_t data = at + 4 + head_.size();
       const std::uint64_t kind = header.Number("op", 1);
-      if (kind == kBag && header.Number("index_pos", 8) == 0) {
-        source_.Fail(at, "the bag was not closed; `rosbag reindex` mends it");
+      if (kind == kBag && header.Number("index_pos", 8) == 0 && !salvage) {
+        source_.Fail(at,
+                     std::string("the bag was not closed; `rosbag reindex` mends it") + kSalvage);
       }
       if (kind == kChunk || kind == kConnection || kind == kMessage) {
-        ReadPart(data, data_, "a record (the bag was cut off)");
+        ReadPart(data, data_, std::string("a record (the bag was cut off") + kSalvage + ")");
         Take(kind, header, data_, at);
       }
       at = data + 4 + Length(data);
-      if (at > source_.size()) source_.Fail(source_.size(), "the bag ends within a record");
+      if (at > source_.size())
+        source_.Fail(source_.size(), std::string("the bag ends within a record") + kSalvage);
     }
-    return messages_.Take();
+    RecordingFile file = messages_.Take();
+    file.notes.insert(file.notes.begin(), salvaged.begin(), salvaged.end());
+    file.salvaged = std::move(salvaged);
+    return file;
   }
 
  private:
   enum Kind : std::uint64_t { kMessage = 2, kBag = 3, kChunk = 5, kConnection = 7 };
 
+  /// Whether a record's head and data are there.
+  bool IsWhole(std::uint64_t at) const {
+    for (int part = 0; part < 2; ++part) {
+      if (source_.size() - at < 4) return false;
+      const std::uint64_t length = Length(at);
+      if (length > source_.size() - at - 4) return false;
+      at += 4 + length;
+    }
+    return true;
+  }
+
   std::uint64_t Length(std::uint64_t at) const {
     std::array<char, 4> bytes{};
-    source_.ReadAll(at, bytes, "the length of a record (the bag was cut off)");
+    source_.ReadAll(at, bytes,
+                    std::string("the length of a record (the bag was cut off") + kSalvage + ")");
     return RecordFields(source_, at, bytes).Number(4);
   }
 
@@ -143,7 +168,7 @@ class Rosbag1Reader {
 bool IsRosbag1(std::string_view head) { return head.starts_with(kBagMagic); }
 
 RecordingFile ReadRosbag1(const ByteSource& source, const ReaderOptions& options) {
-  return Rosbag1Reader(source, options).Read();
+  return Rosbag1Reader(source, options).Read(options.salvage);
 }
 
 }  // namespace elastocal

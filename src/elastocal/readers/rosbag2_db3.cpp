@@ -14,10 +14,13 @@ namespace {
 
 constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 
+constexpr const char* kCutOff =
+    "the database is damaged or was cut off (`elastocal convert --salvage` takes what is before)";
+
 /// The database of a bag, open for reading.
 class Database {
  public:
-  explicit Database(const ByteSource& source) : source_(source) {
+  Database(const ByteSource& source, bool salvage) : source_(source) {
     const bool file = !source.path().empty();
     sqlite3* opened = nullptr;
     const int result =
@@ -26,6 +29,8 @@ class Database {
     database_.reset(opened);
     if (result != SQLITE_OK) Fail("the database cannot be opened");
     if (!file) Load();
+    // Without this, SQLite reads nothing of a file that is shorter than its head says.
+    if (salvage) sqlite3_exec(opened, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
     sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, 512 << 20);
   }
 
@@ -35,14 +40,20 @@ class Database {
     Rows(const Database& database, const char* sql) : database_(database) {
       sqlite3_stmt* statement = nullptr;
       if (sqlite3_prepare_v2(database.get(), sql, -1, &statement, nullptr) != SQLITE_OK) {
-        database.Fail("its tables are not those of a bag");
+        const bool cut = sqlite3_errcode(database.get()) == SQLITE_CORRUPT;
+        database.Fail(cut ? kCutOff
+                          : "its tables are not those of a bag (or it was copied without the file "
+                            "-wal beside it, which a recorder that was not closed leaves)");
       }
       statement_.reset(statement);
     }
-    bool Next() {
+    /// With `damaged`, that the next row cannot be read is no error, but said there.
+    bool Next(bool* damaged = nullptr) {
       const int result = sqlite3_step(statement_.get());
       if (result == SQLITE_ROW) return true;
-      if (result != SQLITE_DONE) database_.Fail("the database is damaged");
+      if (result == SQLITE_DONE) return false;
+      if (damaged == nullptr) database_.Fail(kCutOff);
+      *damaged = true;
       return false;
     }
     std::int64_t Number(int column) const { return sqlite3_column_int64(statement_.get(), column); }
@@ -91,12 +102,13 @@ class Database {
   std::unique_ptr<sqlite3, decltype(&sqlite3_close)> database_{nullptr, sqlite3_close};
 };
 
-/// Adds what one file of a bag holds.
-void ReadDatabase(const ByteSource& source, RosMessages& messages) {
+/// Adds what one file of a bag holds; with `salvage`, up to where it is damaged. That, in words, or
+/// nothing.
+std::string ReadDatabase(const ByteSource& source, bool salvage, RosMessages& messages) {
   // A file that was cut off is shorter than its head says; SQLite would notice only later.
   std::array<char, 32> head{};
   source.ReadAll(0, head, "the head of the database");
-  const Database database(source);
+  const Database database(source, salvage);
   messages.BeginPiece();
   std::string wanted;
   Database::Rows topics(database, "SELECT id, name, type, serialization_format FROM topics");
@@ -111,10 +123,18 @@ void ReadDatabase(const ByteSource& source, RosMessages& messages) {
   const std::string sql = "SELECT id, topic_id, timestamp, data FROM messages WHERE topic_id IN (" +
                           wanted + ") ORDER BY id";
   Database::Rows rows(database, sql.c_str());
-  while (rows.Next()) {
+  bool damaged = false;
+  std::int64_t last = 0;
+  while (rows.Next(salvage ? &damaged : nullptr)) {
+    if (salvage && rows.Bytes(3).empty()) damaged = true;  // its pages are not there
+    if (damaged) break;
+    last = rows.Number(0);
     messages.Add(static_cast<std::uint64_t>(rows.Number(1)), rows.Bytes(3), rows.Number(2),
                  "messages, row " + std::to_string(rows.Number(0)) + ": ");
   }
+  if (!damaged) return "";
+  return source.name() + " is damaged or was cut off: it is read up to row " +
+         std::to_string(last) + " of its messages";
 }
 
 }  // namespace
@@ -123,8 +143,15 @@ bool IsRosbag2Db3(std::string_view head) { return head.starts_with(kSqliteMagic)
 
 RecordingFile ReadRosbag2Db3(const ByteSource& source, const ReaderOptions& options) {
   RosMessages messages(source.name(), options);
-  ForEachPiece(source, [&](const ByteSource& piece) { ReadDatabase(piece, messages); });
-  return messages.Take();
+  std::vector<std::string> salvaged;
+  ForEachPiece(source, [&](const ByteSource& piece) {
+    const std::string end = ReadDatabase(piece, options.salvage, messages);
+    if (!end.empty()) salvaged.push_back(end);
+  });
+  RecordingFile file = messages.Take();
+  file.notes.insert(file.notes.begin(), salvaged.begin(), salvaged.end());
+  file.salvaged = std::move(salvaged);
+  return file;
 }
 
 }  // namespace elastocal

@@ -147,10 +147,15 @@ bool Table::NextCells() {
     const int first_empty = line();
     while (lines_.Next(text)) {
       if (IsBlank(text)) continue;
+      if (rows_ == 0) return SplitLine(text);
       throw InputError(Place(source(), first_empty) + "an empty line above further rows");
     }
     return false;
   }
+  return SplitLine(text);
+}
+
+bool Table::SplitLine(std::span<char> text) {
   if (separator_ == '\0') separator_ = FindSeparator(text);
   if (SplitCells(text, separator_, Quotes::kEnclose, cells_)) return true;
   Fail("quotes that do not enclose a whole cell");

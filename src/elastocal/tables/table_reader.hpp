@@ -63,7 +63,7 @@ bool SplitCells(std::span<char> line, char separator, Quotes quotes,
                 std::vector<std::string_view>& cells);
 
 /// A table of separated values with a header row: separated by comma, semicolon or tab, whichever
-/// the header has most of. Empty lines at the end are passed over.
+/// the header has most of. Empty lines above the first row and at the end are passed over.
 class Table {
  public:
   /// Reads the header. The stream must outlive the new object; `source` names it in messages.
@@ -97,6 +97,7 @@ class Table {
 
  private:
   bool NextCells();
+  bool SplitLine(std::span<char> text);
   void CheckRowNumber() const;
   std::string_view WithPoint(int column) const;
 

@@ -61,6 +61,10 @@ TEST(Table, SeparatorsInNamesAreNotCounted) {
   EXPECT_EQ(Rows("\"a;b;c\",d\n1,2\n"), (std::vector<Cells>{{"a;b;c", "d"}, {"1", "2"}}));
 }
 
+TEST(Table, EmptyLinesAboveTheFirstRowArePassedOver) {
+  EXPECT_EQ(Rows("\n \na,b\n\n\n1,2\n"), (std::vector<Cells>{{"a", "b"}, {"1", "2"}}));
+}
+
 TEST(Table, NamesWhatIsNoTable) {
   ExpectInputError([] { Rows(""); }, {"t.csv", "is empty"});
   ExpectInputError([] { Rows("\n\n"); }, {"t.csv", "is empty"});
