@@ -26,6 +26,7 @@ constexpr double kLeastDiscrepancy = 0.06;        // rad: beyond errors of a rob
 constexpr double kLeastSlideDiscrepancy = 0.015;  // m
 constexpr double kFarBetter = 0.5;                // of the discrepancy is left at most
 constexpr double kStill = 2e-5;                   // rad or m: encoders count in steps
+constexpr double kAsLogged = 1e-6;                // rad or m
 constexpr int kLeastFrozen = 2;                   // postures
 constexpr int kLeastJudged = 4;                   // of a trial
 
@@ -190,13 +191,20 @@ class SuspicionSearch {
     }
   }
 
+  /// It moved by the log, and no marker shows it, so that it is as logged: that was the motion of
+  /// another joint, if that one is shown to have done it.
+  bool HidesMotion(int c, const std::vector<int>& postures) const {
+    return (Shown(c, postures) - Logged(c, postures)).cwiseAbs().maxCoeff() < kAsLogged &&
+           Range(Logged(c, postures)) >= LeastRange(c);
+  }
+
   void TryExchange(int a, int b, const std::vector<int>& postures) {
     if (EntrySlides(a) != EntrySlides(b) || IsMotor(a) != IsMotor(b)) return;
     if (IsMotor(a) && MotorOf(a).first != MotorOf(b).first) return;
-    const auto both = [&](int of_a, int of_b) {
-      return std::hypot(Typical(Shown(a, postures) - Logged(of_a, postures)),
-                        Typical(Shown(b, postures) - Logged(of_b, postures)));
+    const auto off = [&](int c, int by) {
+      return HidesMotion(c, postures) ? 0.0 : Typical(Shown(c, postures) - Logged(by, postures));
     };
+    const auto both = [&](int of_a, int of_b) { return std::hypot(off(a, of_a), off(b, of_b)); };
     const double before = both(a, b);
     const double after = both(b, a);
     if (before < LeastDiscrepancy(a) || after > kFarBetter * before) return;
