@@ -55,6 +55,10 @@ class SuspicionSearch {
       const bool known = std::count(entries_.begin(), entries_.end(), coordinate) > 0;
       if (!known && !IsMovedByRods(tree_, joint)) entries_.push_back(coordinate);
     }
+    for (int c = 0; c < tree_.coordinate_count(); ++c) {
+      const bool seen = std::count(entries_.begin(), entries_.end(), c) > 0;
+      if (!seen && !IsMovedByRods(tree_, tree_.coordinate_joint[Size(c)])) unseen_.push_back(c);
+    }
     for (std::size_t k = 0; k < tree_.linkages.size(); ++k) AddMotors(static_cast<int>(k));
   }
 
@@ -71,6 +75,7 @@ class SuspicionSearch {
         for (int b : entries_) {
           if (a < b) TryExchange(a, b, postures);
         }
+        for (int b : unseen_) TryExchange(std::min(a, b), std::max(a, b), postures);
       }
     }
     FollowSigns();
@@ -191,8 +196,7 @@ class SuspicionSearch {
     }
   }
 
-  /// It moved by the log, and no marker shows it, so that it is as logged: that was the motion of
-  /// another joint, if that one is shown to have done it.
+  /// No marker shows the motion of the log, which may have been that of another joint.
   bool HidesMotion(int c, const std::vector<int>& postures) const {
     return (Shown(c, postures) - Logged(c, postures)).cwiseAbs().maxCoeff() < kAsLogged &&
            Range(Logged(c, postures)) >= LeastRange(c);
@@ -261,6 +265,7 @@ class SuspicionSearch {
   const Recording& recording_;
   Eigen::MatrixXd logged_, shown_;           ///< postures x entries
   std::vector<int> entries_;                 ///< that move a marker
+  std::vector<int> unseen_;                  ///< coordinates that move none
   std::vector<std::pair<int, int>> motors_;  ///< linkage and rod, of the entries beyond q
   std::map<std::array<int, 3>, LogSuspicion> found_;
 };
