@@ -232,6 +232,19 @@ TEST_F(GeneralFaults, AGainIsNoOddPosture) {
   EXPECT_EQ(Said().find("turret_joint: its positions are 0.97"), 0u) << Said();
 }
 
+// A fit that left out much as outliers is where other unknowns explain most of the squares: what a
+// fault explains is a share of what these leave.
+TEST_F(GeneralFaults, AFitThatIsFarFromTheDataHidesNoGain) {
+  const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
+  recorded_.q.col(CoordinateOf("elbow_joint")) *= 1.01;
+  Turn("turret_joint", 0, 48, 3.0);  // in all postures: an error of the robot
+  const auto found = FindRecordingFaults(fit, recorded_, project_.calibration);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].kind, FaultKind::kJointGain);
+  EXPECT_EQ(found[0].coordinate, CoordinateOf("elbow_joint"));
+  EXPECT_NEAR(found[0].size, 0.01, 0.001);  // by one linear step
+}
+
 // With -z up, springs take up a part of a gain beside a slip; both explain all with z up.
 TEST_F(GeneralFaults, AGainBesideASlipIsNoOtherAxisUp) {
   recorded_.q.col(CoordinateOf("shoulder_joint")) *= 1.025;

@@ -314,7 +314,9 @@ TEST_F(Pipeline, MistakesAreUndoneOnRequest) {
   EXPECT_EQ(measured.calibration.q, q);
   EXPECT_EQ(measured.validation.q, q_validation);
   ExpectInputError([&] { AcceptMistakes(project_, {"sign:" + joint}, measured); },
-                   {"nothing in the recording points to it"});
+                   {"nothing in the recording points to it", "no mistake that has a name"});
+  ExpectInputError([&] { AcceptMistakes(project_, {"bogus"}, measured); },
+                   {"--accept bogus", "sign:JOINT, ", "offset:JOINT@TRIAL=SIZE", "scale=FACTOR"});
 
   measured.calibration.q.col(2).tail(15).setConstant(measured.calibration.q(25, 2));
   EXPECT_EQ(AcceptMistakes(project_, {"frozen:" + joint}, measured).size(), 1u);

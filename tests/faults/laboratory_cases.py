@@ -268,7 +268,9 @@ def declared_faults(lab, draw):
         yield ("support", f"support of {trial}: both feet declared", (trial, "support"),
                declare(trial, "support", feet))
     limbs = [t for t in lab.calibration if "head" not in t]
-    for trial in draw.sample(limbs, 2):
+    if all(lab.experiment[t]["chains"] == lab.experiment[limbs[0]]["chains"] for t in limbs):
+        limbs = []  # one arm or snake
+    for trial in draw.sample(limbs, min(2, len(limbs))):
         mine = lab.experiment[trial]["chains"]
         other = draw.choice([lab.experiment[t]["chains"] for t in limbs
                              if lab.experiment[t]["chains"] != mine])
@@ -325,16 +327,16 @@ def torque_faults(lab, draw):
 
 
 def clock_faults(lab, draw):
-    for trial in draw.sample(lab.calibration, 2):
+    for trial in draw.sample(lab.calibration, min(2, len(lab.calibration))):
         jump = draw.choice([0.3, 0.5, 1.0])
         yield ("clock", f"clock of {trial} jumps by {jump} s", (trial, "clock"),
                lambda r, t=trial, j=jump: r.change_log(
                    [t], time_change(lambda s, share: s + (j if share > 0.5 else 0))))
-    for trial in draw.sample(lab.calibration, 2):
+    for trial in draw.sample(lab.calibration, min(2, len(lab.calibration))):
         drift = draw.choice([-1, 1]) * draw.choice([2e-3, 1e-2])
         yield ("clock", f"clock of {trial} drifts by {1e6 * drift:.0f} ppm", (trial, "clock"),
                lambda r, t=trial, d=drift: r.change_log([t], time_change(lambda s, share: s * (1 + d))))
-    for trial in draw.sample(lab.calibration, 2):
+    for trial in draw.sample(lab.calibration, min(2, len(lab.calibration))):
         yield ("clock", f"5 % of the rows of {trial} lost, unnumbered", (trial, "clock"),
                lambda r, t=trial: r.change_log([t], lose_rows(0.05, 0, draw)))
 

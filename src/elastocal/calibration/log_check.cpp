@@ -26,6 +26,7 @@ constexpr double kLeastDiscrepancy = 0.06;        // rad: beyond errors of a rob
 constexpr double kLeastSlideDiscrepancy = 0.015;  // m
 constexpr double kFarBetter = 0.5;                // of the discrepancy is left at most
 constexpr double kStill = 2e-5;                   // rad or m: encoders count in steps
+constexpr double kAsLogged = 1e-6;                // rad or m
 constexpr int kLeastFrozen = 2;                   // postures
 constexpr int kLeastJudged = 4;                   // of a trial
 
@@ -54,6 +55,10 @@ class SuspicionSearch {
       const bool known = std::count(entries_.begin(), entries_.end(), coordinate) > 0;
       if (!known && !IsMovedByRods(tree_, joint)) entries_.push_back(coordinate);
     }
+    for (int c = 0; c < tree_.coordinate_count(); ++c) {
+      const bool seen = std::count(entries_.begin(), entries_.end(), c) > 0;
+      if (!seen && !IsMovedByRods(tree_, tree_.coordinate_joint[Size(c)])) unseen_.push_back(c);
+    }
     for (std::size_t k = 0; k < tree_.linkages.size(); ++k) AddMotors(static_cast<int>(k));
   }
 
@@ -70,6 +75,7 @@ class SuspicionSearch {
         for (int b : entries_) {
           if (a < b) TryExchange(a, b, postures);
         }
+        for (int b : unseen_) TryExchange(std::min(a, b), std::max(a, b), postures);
       }
     }
     FollowSigns();
@@ -190,13 +196,19 @@ class SuspicionSearch {
     }
   }
 
+  /// No marker shows the motion of the log, which may have been that of another joint.
+  bool HidesMotion(int c, const std::vector<int>& postures) const {
+    return (Shown(c, postures) - Logged(c, postures)).cwiseAbs().maxCoeff() < kAsLogged &&
+           Range(Logged(c, postures)) >= LeastRange(c);
+  }
+
   void TryExchange(int a, int b, const std::vector<int>& postures) {
     if (EntrySlides(a) != EntrySlides(b) || IsMotor(a) != IsMotor(b)) return;
     if (IsMotor(a) && MotorOf(a).first != MotorOf(b).first) return;
-    const auto both = [&](int of_a, int of_b) {
-      return std::hypot(Typical(Shown(a, postures) - Logged(of_a, postures)),
-                        Typical(Shown(b, postures) - Logged(of_b, postures)));
+    const auto off = [&](int c, int by) {
+      return HidesMotion(c, postures) ? 0.0 : Typical(Shown(c, postures) - Logged(by, postures));
     };
+    const auto both = [&](int of_a, int of_b) { return std::hypot(off(a, of_a), off(b, of_b)); };
     const double before = both(a, b);
     const double after = both(b, a);
     if (before < LeastDiscrepancy(a) || after > kFarBetter * before) return;
@@ -253,6 +265,7 @@ class SuspicionSearch {
   const Recording& recording_;
   Eigen::MatrixXd logged_, shown_;           ///< postures x entries
   std::vector<int> entries_;                 ///< that move a marker
+  std::vector<int> unseen_;                  ///< coordinates that move none
   std::vector<std::pair<int, int>> motors_;  ///< linkage and rod, of the entries beyond q
   std::map<std::array<int, 3>, LogSuspicion> found_;
 };

@@ -141,6 +141,26 @@ TEST_F(LogCheckTest, AnExchangeOfJointsInOneTrialIsTold) {
           .q == recording_.q);
 }
 
+// As a waist and a neck whose markers only another trial shows.
+TEST_F(LogCheckTest, AnExchangeWithAJointThatNoMarkerShowsIsTold) {
+  const int trunk = Coordinate("trunk_yaw"), hip = Coordinate("right_3");
+  recording_.q.col(hip).head(kPlayed).setZero();
+  See(recording_);
+  for (int i = 0; i < kPlayed; ++i) robot_.ShowOnly({"WAIST", "TRUNK", "LFOOT"}, i, recording_);
+  EXPECT_EQ(First(recording_), "");
+  Recording changed = recording_;
+  changed.q.col(hip).head(kPlayed) = recording_.q.col(trunk).head(kPlayed);
+  changed.q.col(trunk).head(kPlayed).setZero();
+  const std::string said = "trunk_yaw and right_3: their positions are exchanged in trial a";
+  EXPECT_EQ(First(changed), said);
+  // Nor does any other trial: a model of the markers that were seen has no such joint.
+  changed.marker_names.resize(9);  // without RFOOT
+  changed.markers.conservativeResize(Eigen::NoChange, 27);
+  const auto found = FindLogSuspicions(SelectMarkers(robot_.model, changed.marker_names), changed);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(DescribeSuspicion(found.front(), robot_.biped.tree, changed), said);
+}
+
 TEST_F(LogCheckTest, AFrozenJointIsTold) {
   Recording changed = recording_;
   changed.q.col(Coordinate("right_4"))

@@ -49,11 +49,16 @@ class FaultSearch {
       posture_[body.TieBlock(static_cast<int>(t))] = body.tied_postures()[t];
     }
     at_ = Residuals(body);
-    for (std::size_t b = 0; b < at_.size(); ++b) {
-      if (body.residual_blocks[b].active) squares_ += at_[b].squaredNorm();
-    }
     const NormalEquations equations(body);
     const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
+    double with_priors = 0.0;
+    for (std::size_t b = 0; b < posture_.size(); ++b) {
+      if (!body.residual_blocks[b].active) continue;
+      with_priors += body.Residual(static_cast<int>(b)).squaredNorm();
+      squares_ += at_[b].squaredNorm();
+    }
+    // By these weights the fit may be far from where the other unknowns explain most.
+    squares_ = std::min(squares_, with_priors - 2.0 * equations.Decrease(covariance));
     if (only != nullptr) {
       Measure(equations, covariance, *only);
       return;
@@ -122,9 +127,7 @@ class FaultSearch {
 
   Trial MakeTrial(const RecordingFault& fault) const {
     Trial trial{fault, Eigen::VectorXd(recording_.posture_count())};
-    for (int i = 0; i < recording_.posture_count(); ++i) {
-      trial.factor[i] = FactorOf(fault, recording_, i);
-    }
+    for (int i = 0; i < trial.factor.size(); ++i) trial.factor[i] = FactorOf(fault, recording_, i);
     return trial;
   }
 

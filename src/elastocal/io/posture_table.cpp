@@ -11,6 +11,7 @@
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/marker_units.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -221,6 +222,10 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
     recording.joints_not_recorded.push_back(CoordinateName(project.tree, c));
   }
   CheckPlausible(recording, project.tree);
+  if (const auto other =
+          FindOtherUnit(recording.markers, recording.marker_names, project.markers)) {
+    throw InputError(source + ": " + Describe(*other));
+  }
   for (std::string& warning : LimitWarnings(recording, project.tree)) {
     result.warnings.push_back(std::move(warning));
   }

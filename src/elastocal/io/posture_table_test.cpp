@@ -277,6 +277,25 @@ TEST(PostureTable, NamesAFileThatCannotBeRead) {
                    {"t.csv: cannot be read: Permission denied"});
 }
 
+TEST(PostureTable, RefusesOneMarkerInAnotherUnit) {
+  const Project project = ParseProject(
+      "robot: {urdf: arm6.urdf}\n"
+      "markers: {single: [{name: M, link: carriage, position_mm: [0, 0, 0]},\n"
+      "                   {name: N, link: carriage, position_mm: [90, 0, 0]},\n"
+      "                   {name: O, link: carriage, position_mm: [0, 60, 0]}]}\n"
+      "recording: {columns: {joints: {rail_joint: q}}}\n",
+      SourceFile("tests/robots/p.yaml"));
+  ExpectInputError(
+      [&] {
+        ReadTable(
+            "M_x,M_y,M_z,N_x,N_y,N_z,O_x,O_y,O_z,q\n"
+            "1,1,0.5,0.00109,0.001,0.0005,1,1.06,0.5,0.1\n"
+            "1.2,1,0.5,0.00129,0.001,0.0005,1.2,1.06,0.5,0.3\n",
+            project);
+      },
+      {"t.csv", "marker N", "1000 times too small"});
+}
+
 TEST(PostureTable, WritesWhatItReads) {
   const ScratchFolder scratch;
   const std::filesystem::path file = scratch.path() / "written.csv";

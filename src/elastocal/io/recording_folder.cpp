@@ -9,6 +9,7 @@
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/interruption.hpp"
+#include "elastocal/measurement/marker_units.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
 #include "elastocal/measurement/session_shapes.hpp"
 #include "elastocal/tables/text.hpp"
@@ -60,6 +61,10 @@ TrialSamples Sample(const TrialFiles& files, const MarkedRobot& robot, const Pro
                     MarkerFile file, const JointLog& log, const PairDistances& usual = {}) {
   const std::vector<int> markers = TrialMarkers(project, files);
   CheckJoints(log, markers, files, project);
+  const MarkerTrajectories& seen = file.trajectories;
+  if (const auto other = FindOtherUnit(seen.positions, seen.names, project.markers)) {
+    throw InputError(seen.source + ": " + Describe(*other));
+  }
   MeasurementOptions options = project.measurement;
   options.labels.usual = usual;
   // Of a bag with both, the clocks are one already, up to what the computers differed.

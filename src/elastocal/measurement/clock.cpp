@@ -166,6 +166,10 @@ std::string Describe(const ClockFit& fit) {
       return format("the clock lag does not change steadily: %.1f ms off a line over the trial",
                     1e3 * fit.line_residual_s);
     case ClockState::kImprecise:
+      if (fit.windows.empty()) {
+        return format("no part of the trial tells the clock lag, which seems to be near %.2f s",
+                      fit.lag_s);
+      }
       return format("too little motion to tell the clock lag: %.3f s with sd %.1f ms", fit.lag_s,
                     1e3 * fit.sd_s);
   }

@@ -154,6 +154,14 @@ TEST(EstimateClock, TakesAShortTrialWithoutDrift) {
   EXPECT_NEAR(fit.lag_s, 1.0, 1e-3);
 }
 
+TEST(EstimateClock, SaysNoDeviationWhereNoPartTellsTheLag) {
+  ClockFit fit;
+  fit.state = ClockState::kImprecise;
+  fit.lag_s = 4.3;
+  EXPECT_EQ(Describe(fit),
+            "no part of the trial tells the clock lag, which seems to be near 4.30 s");
+}
+
 TEST(EstimateClock, RefusesAPeriodicMotion) {
   const Speed speed = [](double t) {
     return 0.3 * std::abs(std::sin(std::numbers::pi * t / 4.0)) + 0.02 * std::sin(t / 40.0);

@@ -36,6 +36,10 @@ class NormalEquations {
   void UpdateGradient();
   /// By how much the cost falls by the nuisance alone, the unknowns staying.
   double NuisanceDecrease() const { return nuisance_decrease_; }
+  /// By how much it falls by all unknowns and the nuisance; `covariance`: inverse of information().
+  double Decrease(const Eigen::MatrixXd& covariance) const {
+    return nuisance_decrease_ + 0.5 * gradient_.dot(covariance * gradient_);
+  }
 
   /// Where entries of x stand among the unknowns.
   std::vector<int> Positions(const std::vector<int>& entries) const;

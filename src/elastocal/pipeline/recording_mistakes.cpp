@@ -360,9 +360,7 @@ std::vector<std::string> AcceptMistakes(const Project& project,
   Accept(project, names, measured.calibration, measured.calibration_truth, shown, undone);
   Accept(project, names, measured.validation, measured.validation_truth, shown, undone);
   for (const std::string& name : names) {
-    if (shown.contains(name)) continue;
-    throw InputError("--accept " + name + ": nothing in the recording points to it" +
-                     DidYouMean(name, shown));
+    if (!shown.contains(name)) RefuseAccepted(name, shown);
   }
   return undone;
 }

@@ -278,4 +278,19 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
   return InWords(correction, tree);
 }
 
+void RefuseAccepted(const std::string& name, const std::set<std::string>& shown) {
+  const std::string known =
+      "sign:JOINT, exchange:JOINT,JOINT, frozen:JOINT, labels:NAME,NAME, rows:COUNT, "
+      "gain:JOINT=FACTOR, offset:JOINT@TRIAL=SIZE, scale:TRIAL=FACTOR or scale=FACTOR";
+  const std::size_t colon = name.find(':');
+  if (colon == std::string::npos || known.find(name.substr(0, colon + 1)) == std::string::npos) {
+    Refuse(name, "no such mistake is known; " + known + " was expected");
+  }
+  const std::string near = DidYouMean(name, shown);
+  Refuse(name, "nothing in the recording points to it" +
+                   (!near.empty()   ? near
+                    : shown.empty() ? "; it points to no mistake that has a name"
+                                    : fmt::format("; it points to {}", fmt::join(shown, ", "))));
+}
+
 }  // namespace elastocal

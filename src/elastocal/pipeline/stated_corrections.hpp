@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 
 #include "elastocal/calibration/recording_faults.hpp"
@@ -45,5 +46,9 @@ std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const R
 /// InputError for a trial that is in neither.
 std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree& tree,
                             Measurements& measured);
+
+/// Throws the InputError of a name without a size that corrects nothing: what can be accepted, or
+/// what the recording does show (`shown`).
+[[noreturn]] void RefuseAccepted(const std::string& name, const std::set<std::string>& shown);
 
 }  // namespace elastocal

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/measurement/marker_units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "elastocal/math/statistics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kWrongDistance = 0.1, kRightDistance = 0.03;  // m
+constexpr double kLeftOfWrong = 0.1;
+constexpr std::size_t kFewestMates = 2;
+constexpr Eigen::Index kMostRows = 500;
+
+struct Mate {
+  Eigen::Index column = 0;  ///< of the positions
+  double distance = 0.0;    ///< by the project, m
+};
+
+/// How far the distances to the mates are from the project's, where the coordinates in `column` are
+/// multiplied by a factor; median, m. NaN where they are never seen together.
+double OffMates(const Eigen::MatrixXd& positions, Eigen::Index column,
+                const std::vector<Mate>& mates, double factor) {
+  const Eigen::Index step = 1 + (positions.rows() - 1) / kMostRows;
+  std::vector<double> off;
+  for (Eigen::Index row = 0; row < positions.rows(); row += step) {
+    for (const Mate& mate : mates) {
+      const double distance =
+          (factor * positions.block<1, 3>(row, column) - positions.block<1, 3>(row, mate.column))
+              .norm();
+      if (!std::isnan(distance)) off.push_back(std::abs(distance - mate.distance));
+    }
+  }
+  return Median(off);
+}
+
+}  // namespace
+
+std::optional<OtherUnit> FindOtherUnit(const Eigen::MatrixXd& positions,
+                                       const std::vector<std::string>& names,
+                                       const std::vector<Marker>& robot) {
+  std::vector<const Marker*> known;  // by column
+  for (const std::string& name : names) {
+    const auto marker = std::find_if(robot.begin(), robot.end(),
+                                     [&](const Marker& one) { return one.name == name; });
+    known.push_back(marker == robot.end() ? nullptr : &*marker);
+  }
+  for (std::size_t m = 0; m < known.size(); ++m) {
+    if (known[m] == nullptr) continue;
+    std::vector<Mate> mates;
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      if (k == m || known[k] == nullptr || known[k]->link != known[m]->link) continue;
+      mates.push_back({static_cast<Eigen::Index>(3 * k),
+                       (known[k]->p_link_marker - known[m]->p_link_marker).norm()});
+    }
+    if (mates.size() < kFewestMates) continue;
+    const auto column = static_cast<Eigen::Index>(3 * m);
+    OtherUnit found{known[m]->name, 1.0, OffMates(positions, column, mates, 1.0), kRightDistance};
+    if (!(found.before > kWrongDistance)) continue;
+    for (const double factor : {1000.0, 1e-3, 100.0, 1e-2, 10.0, 0.1, 25.4, 1.0 / 25.4}) {
+      const double off = OffMates(positions, column, mates, factor);
+      if (!(off < std::min(found.after, kLeftOfWrong * found.before))) continue;
+      found.after = off;
+      found.factor = factor;
+    }
+    if (found.factor != 1.0) return found;
+  }
+  return std::nullopt;
+}
+
+std::string Describe(const OtherUnit& found) {
+  const bool small = found.factor > 1.0;
+  char text[300];
+  std::snprintf(
+      text, sizeof text,
+      "marker %s: its coordinates are %g times too %s: its distances to the other markers "
+      "of its link are %.3g mm off those of the project, and %.3g mm once that is "
+      "corrected; are all columns in one unit?",
+      found.marker.c_str(), small ? found.factor : 1.0 / found.factor, small ? "small" : "large",
+      1e3 * found.before, 1e3 * found.after);
+  return text;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "elastocal/robot/error_model.hpp"
+
+namespace elastocal {
+
+/// A marker whose coordinates are in another unit than those of the others.
+struct OtherUnit {
+  std::string marker;
+  double factor = 1.0;  ///< by which they are to be multiplied
+  double before = 0.0;  ///< from the distances that the project gives to others of its link, m
+  double after = 0.0;   ///< the same, multiplied
+};
+
+/// Looks for one in positions (rows x 3 markers, m; NaN where not seen) of markers of these names:
+/// its distances to at least two others of its link are 100 mm and more off those of `robot`, by
+/// the median, and 30 mm at most, a tenth of it, once its coordinates are multiplied by 10, 100,
+/// 1000, 25.4 or divided by one of these.
+std::optional<OtherUnit> FindOtherUnit(const Eigen::MatrixXd& positions,
+                                       const std::vector<std::string>& names,
+                                       const std::vector<Marker>& robot);
+
+/// "marker HAND_1: its coordinates seem 1000 times too small ..."
+std::string Describe(const OtherUnit& found);
+
+}  // namespace elastocal
