@@ -9,7 +9,10 @@ about 30 or 80 urad/(N.m). 50 postures, 40 of a tracker. Prints tables (Markdown
   sizes       eccentricity, gear, hysteresis or coupling of one joint, drawn by the seed and named in
               `calibration.extra`: how often the truth is in its interval of 95 %
   suspension  10 urad/(N.m) of the base: error of the exported model in 80 fresh postures, registered anew
-  hysteresis  1.5 mrad of one joint: whether it is taken, and the same error, of the URDF as well
+  hysteresis  1.5 mrad of one joint: whether it is taken, and the same error, also where each posture is the first
+              one that the model sees, so that it does not know the way, and of the URDF
+  tiago       a real TIAGo (../shared/data/tiago_mocap), calibrated by one session: the model at run time on the rows
+              of both, base and markers placed by the same rows; and again where each is the first
 
   /usr/bin/python3 tests/study/cause_sizes.py --program build/release/bin/elastocal --work DIR [--only PART ...]
       [--robots NAME ...] [--seen KIND ...] [--springs 0 30 80] [--seeds 1] [--first 1] [--details]
@@ -18,6 +21,7 @@ URDFs of others are looked for in ../shared/robots; a robot that is not there is
 """
 
 import argparse
+import csv
 import json
 import pathlib
 import re
@@ -31,6 +35,7 @@ import foreign_causes as causes  # noqa: E402, pylint: disable=wrong-import-posi
 from foreign_arm import (  # noqa: E402, pylint: disable=wrong-import-position
     UPRIGHT, Arm, Study, from_rpy, placed_error, turned, urdf)
 
+DATA = pathlib.Path(__file__).resolve().parents[3] / "shared/data/tiago_mocap"
 SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared/robots"
 H = np.pi / 2
 GANTRY = [
@@ -188,13 +193,14 @@ class Bench:
         last = len(robot.joints) - 1
         return placed_error(pairs[:40], pairs[40:], [last] * 3, robot.nominal[:3], (np.eye(3), np.zeros(3)))
 
-    def model(self, robot):
+    def model(self, joints, anew=False):
+        """Frames by the model at run time; `anew`: by one that has seen no other posture."""
         import elastocal  # pylint: disable=import-outside-toplevel,import-error
         runtime = elastocal.Runtime(self.last)
 
         def frames(row):
-            posed = runtime.forward({j[0]: x for j, x in zip(robot.joints, row)})
-            links = [np.array(posed["root"]) @ np.array(posed["links"][j[1]]) for j in robot.joints]
+            posed = (elastocal.Runtime(self.last) if anew else runtime).forward({j[0]: x for j, x in zip(joints, row)})
+            links = [np.array(posed["root"]) @ np.array(posed["links"][j[1]]) for j in joints]
             return [(l[:3, :3], l[:3, 3]) for l in links]
 
         return frames
@@ -243,15 +249,44 @@ def exports(cause):
         for kind, spring, robot in bench.robots(cause, seed):
             code, extra = bench.calibrated(kind, spring, robot, seed)
             own = bench.exported(robot)
-            model = bench.error(robot, bench.model(robot), seed)
+            model = f"{bench.error(robot, bench.model(robot.joints), seed):.3f} mm"
+            if cause == "hysteresis":
+                model += f", without the way {bench.error(robot, bench.model(robot.joints, anew=True), seed):.3f} mm"
             text = f"{bench.error(robot, own, seed):.3f}" if own else "none"
             right = "taken" if robot.named() in extra else f"taken: {', '.join(extra) or 'nothing'}"
-            lines.append(f"| {cause}, {robot.kind}, {kind}, {spring} | exit {code} | {right}; model {model:.3f} mm, URDF {text} mm |")
+            lines.append(f"| {cause}, {robot.kind}, {kind}, {spring} | exit {code} | {right}; model {model}, URDF {text} mm |")
         return "\n".join(lines)
     return part
 
 
-PARTS = {"clean": clean, "sizes": sizes, "suspension": exports("suspension"), "hysteresis": exports("hysteresis")}
+def tiago(bench, _):
+    places = np.array([(0, 70, 130), (0, -90, 145), (0, -60, 235), (0, 50, 235)]) / 1e3
+    joints, work, lines = causes.ARMS["tiago"][0], bench.study.work, []
+    markers = "".join(f"    - {{name: M{m + 1}, link: arm_7_link, position_mm: {(1e3 * p).round().tolist()}}}\n" for m, p in enumerate(places))
+    columns = ", ".join(f"M{m}: [x{m}, y{m}, z{m}]" for m in range(1, 5))
+    (work / "real.yaml").write_text(
+        f"robot: {{urdf: {SHARED / URDFS['tiago'][0]}}}\nchains: [{{name: arm, tip: arm_7_link}}]\nmarkers:\n  single:\n{markers}"
+        f"recording:\n  ignore: [shipped_row, t_start_robot, t_end_robot, marker_std_mm]\n  columns: {{markers: {{{columns}}}}}\n")
+    bench.last = work / "real"
+    bench.study.run("calibrate", work / "real.yaml", "--recording", DATA / "training.csv", "--kfold", "0", "-o", bench.last)
+    for session in ("training", "validation"):
+        rows = list(csv.DictReader((DATA / f"{session}.csv").open()))
+        seen = [np.array([[float(row[f"{c}{m}"]) for c in "xyz"] for m in range(1, 5)]) for row in rows]
+        q, errors = [[float(row[j[0]]) for j in joints] for row in rows], []
+        for anew in (False, True):
+            frames_of = bench.model(joints, anew)
+            pairs = list(zip([frames_of(row) for row in q], seen))
+            at = np.array([f[-1][1] + f[-1][0] @ places[0] for f, _ in pairs])
+            first = np.array([points[0] for points in seen])
+            u, _, v = np.linalg.svd((at - at.mean(0)).T @ (first - first.mean(0)))
+            turn = v.T @ np.diag([1, 1, np.linalg.det(v.T @ u.T)]) @ u.T
+            base = (turn, first.mean(0) - turn @ at.mean(0))
+            errors.append(placed_error(pairs, pairs, [len(joints) - 1] * 4, places, base))
+        lines.append(f"| real TIAGo, {session} | {len(rows)} rows | model {errors[0]:.3f} mm, without the way {errors[1]:.3f} mm |")
+    return "\n".join(lines)
+
+
+PARTS = {"clean": clean, "sizes": sizes, "suspension": exports("suspension"), "hysteresis": exports("hysteresis"), "tiago": tiago}
 
 
 def main():

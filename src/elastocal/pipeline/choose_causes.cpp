@@ -203,8 +203,7 @@ std::optional<std::string> IdleCause(const CalibrationResult& result) {
 }
 
 std::vector<std::string> NeverApplied(const std::vector<std::string>& causes) {
-  // These depend on more than positions and loads.
-  constexpr std::string_view kUnknownAtRunTime[] = {".hysteresis", ".drift", ".creep"};
+  constexpr std::string_view kUnknownAtRunTime[] = {".drift", ".creep"};  // of one recording
   std::vector<std::string> never;
   std::copy_if(causes.begin(), causes.end(), std::back_inserter(never), [&](const auto& cause) {
     return std::any_of(std::begin(kUnknownAtRunTime), std::end(kUnknownAtRunTime),

@@ -108,32 +108,12 @@ std::string FiguresInWords(const ContactRun& run, const ObservationFigures& figu
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// Errors on the observations of the fit without these causes, all else staying as it was found.
-ObservationFigures FiguresWithout(const ContactRun& run, const std::vector<std::string>& causes) {
-  ObservedValues values = run.calibrated.estimate.fit.values;
-  const ErrorModel& robot = run.model.robot;
-  for (int i = 0; i < robot.parameter_count(); ++i) {
-    const int correction = robot.parameters[static_cast<std::size_t>(i)].correction;
-    if (correction < 0) continue;
-    const std::string& cause =
-        robot.elasticity.corrections[static_cast<std::size_t>(correction)].cause;
-    if (std::find(causes.begin(), causes.end(), cause) != causes.end()) values.robot[i] = 0.0;
-  }
-  return MakeFigures(run.model, run.observations, LeftOf(run.model, run.observations, values));
-}
-
-/// The file that is deployed has neither springs nor causes, and no file has all causes: their
-/// figures beside those of the whole model.
+/// The file that is deployed has neither springs nor causes: its figures beside those of the whole
+/// model.
 void AddUrdfAlone(ContactRun& run, const std::string& on) {
-  std::string text = "these figures hold with " + CompensationOf(run);
-  const std::vector<std::string> never = NeverApplied(run.extra);
-  if (!never.empty()) {
-    text += fmt::format(" (without {} on the observations of the fit)",
-                        FiguresInWords(run, FiguresWithout(run, never)));
-  }
-  run.verdict.remarks.push_back(fmt::format("{}; the URDF alone leaves {} {}", text,
-                                            FiguresInWords(run, ContactRun::Judged(*run.geometric)),
-                                            on));
+  run.verdict.remarks.push_back(
+      fmt::format("these figures hold with {}; the URDF alone leaves {} {}", CompensationOf(run),
+                  FiguresInWords(run, ContactRun::Judged(*run.geometric)), on));
 }
 
 /// Noise that is far above what the project says of an instrument is no noise of it.
