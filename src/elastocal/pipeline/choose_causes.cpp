@@ -227,6 +227,12 @@ std::string CompensationInWords(bool springs, const std::vector<std::string>& ca
   return "compensation of " + text;
 }
 
+std::string DescribeForbiddenSprings(const std::vector<std::string>& causes) {
+  return Listed(causes) +
+         ": joints that give way would predict postures that were left out better, but elasticity "
+         "in the project holds them rigid: without that key, springs are estimated where they help";
+}
+
 std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time) {
   const std::vector<std::string> never = NeverApplied(causes);
   const std::vector<std::string> applied = Without(causes, never);

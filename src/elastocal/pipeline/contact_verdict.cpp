@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/calibration/posterior.hpp"
 #include "elastocal/observation/observed_posture.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/contact_faults.hpp"
@@ -133,6 +134,33 @@ void RemarkOnNoise(ContactRun& run) {
   }
 }
 
+/// A covariance of poses in other units, or with rotations first, is not of what is left of them.
+void RemarkOnCovariances(ContactRun& run) {
+  constexpr double kOtherShape = 10.0;  // model errors change the shape by less
+  const ObservationFigures good = FiguresOfGood(run);
+  const bool any = std::any_of(good.rows.begin(), good.rows.end(),
+                               [](const RowErrors& row) { return row.observations > 0; });
+  const std::vector<RowErrors>& rows = any ? good.rows : run.calibrated.in_sample.rows;
+  for (const RowErrors& place : rows) {
+    const Eigen::MatrixXd& whitening = run.model.instrument(place.instrument).whitening;
+    const auto turn = std::find_if(rows.begin(), rows.end(), [&](const RowErrors& row) {
+      return row.instrument == place.instrument && row.unit == SourceUnit::kRadian;
+    });
+    if (whitening.size() == 0 || place.unit != SourceUnit::kMetre || turn == rows.end()) continue;
+    const Eigen::MatrixXd stated = InverseOfInformation(whitening.transpose() * whitening);
+    const double place_sd = std::sqrt(stated.topLeftCorner(3, 3).trace() / 3.0);
+    const double turn_sd = std::sqrt(stated.bottomRightCorner(3, 3).trace() / 3.0);
+    const double ratio = place.rms * turn_sd / (place_sd * turn->rms);
+    if (ratio > 1.0 / kOtherShape && ratio < kOtherShape) continue;
+    run.verdict.remarks.push_back(fmt::format(
+        "the covariance of {}: positions and rotations are off by {:.2g} mm and {:.2g} degrees, "
+        "where it says {:.2g} mm and {:.2g} degrees, up to a factor in common: m and rad, "
+        "positions first, were expected",
+        run.model.instrument(place.instrument).name, 1e3 * place.rms, kDegreeHere * turn->rms,
+        1e3 * place_sd, kDegreeHere * turn_sd));
+  }
+}
+
 /// Of what no robot explains, one sentence; nothing where all is plausible.
 void ObjectToNonsense(ContactRun& run) {
   std::vector<std::string> nonsense = WidePriors(run);
@@ -244,6 +272,7 @@ void JudgeContacts(ContactRun& run) {
     if (!fault.empty()) verdict.objections.insert(verdict.objections.begin(), fault);
   }
   if (verdict.objections.empty()) RemarkOnNoise(run);
+  RemarkOnCovariances(run);
   if (!held_out && !mistaken) {
     verdict.remarks.push_back("no " + std::string(touches ? "touch" : "posture") +
                               " was left out (--kfold 0): nothing was validated");
