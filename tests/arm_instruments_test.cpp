@@ -36,6 +36,33 @@ TEST_F(ArmWithTracker, ItsNoiseIsFoundHoweverFarItIsFromTheGuess) {
 }
 
 // On the second day the tracker stands elsewhere: each file is a session of it.
+// Positions in mm^2: their weight is a millionth of that of rotations.
+TEST_F(ArmWithTracker, ACovarianceInOtherUnitsIsNamed) {
+  const auto remarks = [&](const std::string& place) {
+    std::string rows;
+    for (int i = 0; i < 6; ++i) {
+      rows += i > 0 ? ", [" : "[";
+      for (int j = 0; j < 6; ++j) {
+        rows += (j > 0 ? ", " : "") + (i != j ? std::string("0") : i < 3 ? place : "4e-8");
+      }
+      rows += "]";
+    }
+    project_ = ParseProject(
+        "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() +
+            "}\nrecording: {not_recorded_mm: {finger_left_joint: 10}}\n"
+            "elasticity: {torsion: []}\ncalibration: {extra: none}\ninstruments:\n"
+            "  trackers: [{name: laser}]\n  poses:\n    - {name: tool, link: tool, tracker: laser, "
+            "xyz_mm: [30, 10, 20], rpy_deg: [5, 3, -4], covariance: [" +
+            rows + "]}\n",
+        (folder_.path() / "covariance.yaml").string());
+    std::string all;
+    for (const std::string& remark : Calibrate(q_).verdict.remarks) all += remark + "\n";
+    return all;
+  };
+  EXPECT_EQ(remarks("1e-8").find("the covariance of tool"), std::string::npos);
+  EXPECT_NE(remarks("1e-2").find("the covariance of tool"), std::string::npos);
+}
+
 TEST_F(ArmWithTracker, ATrackerIsSetUpAnewForEachFile) {
   constexpr int kFirstDay = 18;
   const Transform T = FromXyzRpy({0.6, -1.1, 0.2}, {0.02, -0.03, 1.4});

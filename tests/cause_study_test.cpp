@@ -315,5 +315,14 @@ TEST(ChooseModel, SpringsAreChosenBesideACauseThatHidesThem) {
   EXPECT_TRUE(choice.causes->search.accepted);
 }
 
+TEST(ChooseModel, SpringsThatTheProjectForbidsAreMissedWhereCausesStandForThem) {
+  Project rigid = ArmProject();
+  rigid.elasticity.torsion.emplace();
+  const Measurements measured = Record(ArmProject(), nullptr, true, kFirstSeed);
+  const ModelChoice choice = ChooseModel(measured, {}, 5, 2, rigid);
+  EXPECT_FALSE(rigid.elasticity.extra.empty());
+  EXPECT_TRUE(choice.misses_springs);
+}
+
 }  // namespace
 }  // namespace elastocal

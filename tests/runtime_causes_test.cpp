@@ -101,6 +101,36 @@ TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
   }
 }
 
+// A joint that lags by 2 mrad: what it moves stands still while it crosses its play of 4 mrad.
+// Plans cross it by themselves.
+TEST_F(Runtime, FollowsAJointThroughItsPlay) {
+  Compensator plain = Make();
+  stored_.joint_errors["arm_left_4_joint.hysteresis"] = -2e-3;
+  std::stringstream file;
+  WriteRuntimeModel(Make().model(), file);
+  Compensator robot(ReadRuntimeModel(file, "file"));
+  const auto elbow = static_cast<std::size_t>(FindJoint(project_.tree, "arm_left_4_joint"));
+  const Eigen::Index at = project_.tree.joints[elbow].coordinate;
+  const Eigen::VectorXd start = Posture(4);
+  const auto moved = [&](double by) {
+    Eigen::VectorXd q = start;
+    q[at] += by;
+    return q;
+  };
+  // The encoder, and where the joint is.
+  for (const auto& [encoder, joint] : std::initializer_list<std::pair<double, double>>{
+           {0.0, 0.0}, {1e-3, 0.0}, {0.05, 0.048}, {0.049, 0.048}, {0.046, 0.048}, {0.03, 0.032}}) {
+    robot.Forward(moved(encoder), kNoTorque, 0);
+    plain.Forward(moved(joint), kNoTorque, 0);
+    for (int i = 0; i < static_cast<int>(robot.model().links.size()); ++i) {
+      // The first loads are those at the encoders.
+      EXPECT_LT(Distance(robot.link_pose(i), Transform(plain.link_pose(i).matrix())), 1e-7);
+    }
+    robot.Command(moved(0.02 - encoder), kNoTorque, 0);
+    EXPECT_LT(robot.residual_m(), 1e-5);
+  }
+}
+
 // A held root link whose suspension gives way takes all of the robot along.
 TEST_F(Runtime, SinksAsTheCalibrationFoundItsSuspension) {
   const Eigen::VectorXd q = Posture(5);

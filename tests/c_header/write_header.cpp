@@ -18,7 +18,10 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const std::filesystem::path folder = argv[1];
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
-  RuntimeModel model = MakeRuntimeModel(project, RandomCalibration(project, 3));
+  StoredCalibration calibration = RandomCalibration(project, 3);
+  calibration.joint_errors["arm_left_4_joint.hysteresis"] = -2e-3;
+  calibration.joint_errors["torso_2_joint.backlash"] = 1e-3;
+  RuntimeModel model = MakeRuntimeModel(project, calibration);
   // Names that C does not tell apart, or that the header needs itself.
   model.coordinate_names[1] = "a-b";
   model.coordinate_names[2] = "A_b";

@@ -20,7 +20,8 @@ import xml.etree.ElementTree as xml
 import numpy as np
 
 H = np.pi / 2
-# Joint, link, place (m), turn (rpy), axis, largest position, effort; mass (kg) and its centre in the link.
+# Joint, link, place (m), turn (rpy), axis, largest position (or both limits), effort; mass (kg) and its centre in the
+# link; "prismatic" may follow.
 JOINTS = [
     ("shoulder_pan", "link1", (0, 0, 0.20), (0, 0, 0), (0, 0, 1), 2.8, 180, 6.5, (0.01, 0, 0.09)),
     ("shoulder_lift", "link2", (0.03, 0, 0.16), (-H, 0, 0), (0, 0, 1), 1.9, 180, 7.2, (0, -0.11, 0.02)),
@@ -64,6 +65,7 @@ class Arm:
         self.joints, self.bodies = joints or JOINTS, bodies or BODY
         self.places = [(from_rpy(joint[3]), np.array(joint[2], float)) for joint in self.joints]
         self.axes = [np.array(joint[4], float) for joint in self.joints]
+        self.slides = np.array(["prismatic" in joint for joint in self.joints])
         self.offset, self.compliance = np.zeros(len(self.joints)), np.zeros(len(self.joints))
         self.masses = np.array([joint[7] for joint in self.joints], float)
         self.gravity = np.array([0, 0, -9.81])  # in the base
@@ -98,20 +100,25 @@ class Arm:
 
     def frames(self, positions):
         turn, place, frames = np.eye(3), np.zeros(3), []
-        for (own_turn, own_place), axis, angle in zip(self.places, self.axes, positions):
+        for (own_turn, own_place), axis, slides, angle in zip(self.places, self.axes, self.slides, positions):
             place = place + turn @ own_place
-            turn = turn @ own_turn @ about(axis, angle)
+            turn = turn @ own_turn
+            if slides:
+                place = place + turn @ axis * angle
+            else:
+                turn = turn @ about(axis, angle)
             frames.append((turn, place))
         return frames
 
     def loads(self, frames):
-        """Moments of the weights about the axes, N.m."""
+        """Moments of the weights about the axes, N.m; of slides forces along them, N."""
         loads = np.zeros(len(frames))
         for k, (turn, place) in enumerate(frames):
             axis = turn @ self.axes[k]
             for m in range(k, len(frames)):
+                weight = self.masses[m] * self.gravity
                 centre = frames[m][1] + frames[m][0] @ np.array(self.joints[m][8])
-                loads[k] += axis @ np.cross(centre - place, self.masses[m] * self.gravity)
+                loads[k] += axis @ (weight if self.slides[k] else np.cross(centre - place, weight))
         return loads
 
     def stands(self, encoders):
@@ -130,14 +137,16 @@ class Arm:
 def urdf(joints=None):
     text = '<robot name="foreign_arm"><link name="base"/>'
     parent = "base"
-    for name, link, place, rpy, axis, most, effort, mass, centre in joints or JOINTS:
+    for name, link, place, rpy, axis, most, effort, mass, centre, *kind in joints or JOINTS:
+        lower, upper = most if isinstance(most, tuple) else (-most, most)
+        moves = kind[0] if kind else "revolute"
         words = lambda numbers: " ".join(f"{x:.9g}" for x in numbers)
         moment = 0.004 * mass
         text += (f'<link name="{link}"><inertial><origin xyz="{words(centre)}"/><mass value="{mass}"/><inertia '
                  f'ixx="{moment}" iyy="{moment}" izz="{0.6 * moment}" ixy="0" ixz="0" iyz="0"/></inertial></link>'
-                 f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{link}"/><origin '
-                 f'xyz="{words(place)}" rpy="{words(rpy)}"/><axis xyz="{words(axis)}"/><limit lower="{-most}" '
-                 f'upper="{most}" effort="{effort}" velocity="2"/></joint>')
+                 f'<joint name="{name}" type="{moves}"><parent link="{parent}"/><child link="{link}"/><origin '
+                 f'xyz="{words(place)}" rpy="{words(rpy)}"/><axis xyz="{words(axis)}"/><limit lower="{lower}" '
+                 f'upper="{upper}" effort="{effort}" velocity="2"/></joint>')
         parent = link
     return text + "</robot>\n"
 
@@ -177,18 +186,16 @@ def write(file, q, points):
     return file
 
 
-def error_of(frames_of, arm, fitted, judged):
-    """rms distance (mm) of the real markers from a model whose base and markers are placed by `fitted` postures."""
-    turn, place, own = UPRIGHT[0], UPRIGHT[1], PLACES.copy()
-    frames = [frames_of(q) for q in fitted]
-    wanted = measured(arm, fitted, noise=0)
+def placed_error(fitted, judged, bodies, start, base=UPRIGHT):
+    """rms distance (mm) of real points from a model whose base and points are placed by `fitted`. Both lists have, by
+    posture, frames of the model's links and the real points; `start`: points in the links `bodies`."""
+    (turn, place), own = base, start.copy()
     for _ in range(12):
         rows, left = [], []
-        for at, links in zip(wanted, frames):
-            for m, body in enumerate(BODY):
-                in_base = links[body][1] + links[body][0] @ own[m]
-                lever = turn @ in_base
-                row = np.zeros((3, 6 + 3 * len(BODY)))
+        for links, at in fitted:
+            for m, body in enumerate(bodies):
+                lever = turn @ (links[body][1] + links[body][0] @ own[m])
+                row = np.zeros((3, 6 + 3 * len(bodies)))
                 row[:, :3] = -np.array([[0, -lever[2], lever[1]], [lever[2], 0, -lever[0]], [-lever[1], lever[0], 0]])
                 row[:, 3:6] = np.eye(3)
                 row[:, 6 + 3 * m:9 + 3 * m] = turn @ links[body][0]
@@ -196,12 +203,15 @@ def error_of(frames_of, arm, fitted, judged):
                 left.append(at[m] - lever - place)
         step = np.linalg.lstsq(np.vstack(rows), np.concatenate(left), rcond=None)[0]
         turn, place, own = turned(step[:3]) @ turn, place + step[3:6], own + step[6:].reshape(-1, 3)
-    squares = []
-    for at, q in zip(measured(arm, judged, noise=0), judged):
-        links = frames_of(q)
-        for m, body in enumerate(BODY):
-            squares.append(np.sum((at[m] - turn @ (links[body][1] + links[body][0] @ own[m]) - place) ** 2))
+    squares = [np.sum((at[m] - turn @ (links[body][1] + links[body][0] @ own[m]) - place) ** 2)
+               for links, at in judged for m, body in enumerate(bodies)]
     return 1e3 * np.sqrt(np.mean(squares))
+
+
+def error_of(frames_of, arm, fitted, judged):
+    """The same for the markers of an arm."""
+    pairs = [list(zip([frames_of(q) for q in rows], measured(arm, rows, noise=0))) for rows in (fitted, judged)]
+    return placed_error(*pairs, BODY, PLACES)
 
 
 class Study:

@@ -51,7 +51,7 @@ SIZES = {"eccentricity": 1.2e-3, "gear": 2e-3, "backlash": 1.5e-3, "hysteresis":
 
 def scaled(joints, scale):
     by = lambda place: tuple(scale * x for x in place)
-    return [(n, l, by(p), r, a, q, e * scale**2, m * scale**2, by(c)) for n, l, p, r, a, q, e, m, c in joints]
+    return [(n, l, by(p), r, a, q, e * scale**2, m * scale**2, by(c), *kind) for n, l, p, r, a, q, e, m, c, *kind in joints]
 
 
 class Robot(Arm):
@@ -121,9 +121,10 @@ class Robot(Arm):
 
     def postures(self, count, seed):
         rng, found = np.random.default_rng(seed), []
-        most, nominal = np.array([j[5] for j in self.joints]), Arm(self.joints)
+        limits = np.array([j[5] if isinstance(j[5], tuple) else (-j[5], j[5]) for j in self.joints])
+        middle, half, nominal = limits.mean(axis=1), 0.5 * (limits[:, 1] - limits[:, 0]), Arm(self.joints)
         while len(found) < count:
-            q = most * rng.uniform(-0.95, 0.95, len(most))
+            q = middle + half * rng.uniform(-0.95, 0.95, len(half))
             if nominal.frames(q)[-1][1][2] > 0.03:
                 found.append(q)
         return np.array(found)

@@ -155,6 +155,9 @@ void ChooseWhatIsEstimated(Work& work) {
         ChooseModel(work.measured, options.seed, kElasticityFolds, options.threads, project);
     run.elasticity = std::move(choice.elasticity);
     run.causes = std::move(choice.causes);
+    if (choice.misses_springs) {
+      run.warnings.push_back(DescribeForbiddenSprings(project.elasticity.extra));
+    }
     if (work.recording().trials.empty() && !HasMasses(project.tree)) {
       run.warnings.emplace_back(
           "the robot description has no masses: it is not known whether joints give way under "

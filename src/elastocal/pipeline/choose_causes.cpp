@@ -203,8 +203,7 @@ std::optional<std::string> IdleCause(const CalibrationResult& result) {
 }
 
 std::vector<std::string> NeverApplied(const std::vector<std::string>& causes) {
-  // These depend on more than positions and loads.
-  constexpr std::string_view kUnknownAtRunTime[] = {".hysteresis", ".drift", ".creep"};
+  constexpr std::string_view kUnknownAtRunTime[] = {".drift", ".creep"};  // of one recording
   std::vector<std::string> never;
   std::copy_if(causes.begin(), causes.end(), std::back_inserter(never), [&](const auto& cause) {
     return std::any_of(std::begin(kUnknownAtRunTime), std::end(kUnknownAtRunTime),
@@ -226,6 +225,12 @@ std::string CompensationInWords(bool springs, const std::vector<std::string>& ca
     text += (text.empty() ? "" : " and of ") + Listed(never) + ", which no export applies";
   }
   return "compensation of " + text;
+}
+
+std::string DescribeForbiddenSprings(const std::vector<std::string>& causes) {
+  return Listed(causes) +
+         ": joints that give way would predict postures that were left out better, but elasticity "
+         "in the project holds them rigid: without that key, springs are estimated where they help";
 }
 
 std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time) {

@@ -74,8 +74,12 @@ std::vector<std::string> NeverApplied(const std::vector<std::string>& causes);
 /// elasticity and j.gear".
 std::string CompensationInWords(bool springs, const std::vector<std::string>& causes);
 
+/// What to say where these causes were taken of a robot that the project holds rigid, and elastic
+/// joints would plainly predict better.
+std::string DescribeForbiddenSprings(const std::vector<std::string>& causes);
+
 /// What to say where a calibration with these causes is put to use; empty where all are applied.
-/// `at_run_time`: in a robot at run time, which knows what positions and loads tell.
+/// `at_run_time`: in a robot at run time, which knows what motion and loads tell.
 std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time);
 
 }  // namespace elastocal

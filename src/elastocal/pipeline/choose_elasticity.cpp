@@ -84,14 +84,14 @@ std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
                          .threads = threads,
                          .by = FootingBy::kAllOfPosture});
       trial.rmse_3d = folds.metrics[static_cast<int>(kind)].rmse_3d;
-      const Eigen::VectorXd errors = ErrorsByPosture(folds.distances[static_cast<int>(kind)]);
-      if (best.size() == 0) best = errors;
-      const Eigen::ArrayXd gains = best - errors;
+      trial.errors = ErrorsByPosture(folds.distances[static_cast<int>(kind)]);
+      if (best.size() == 0) best = trial.errors;
+      const Eigen::ArrayXd gains = best - trial.errors;
       const auto count = static_cast<double>(gains.size());
       trial.gain = gains.mean();
       trial.gain_sd = std::sqrt((gains - trial.gain).square().sum() / (count - 1.0) / count);
       if (trial.gain > std::max(trial.gain_sd, kLeastGain * best.mean())) {
-        best = errors;
+        best = trial.errors;
         chosen = tried.size();
       }
     } catch (const InputError&) {  // too few postures for folds: the estimate will say so

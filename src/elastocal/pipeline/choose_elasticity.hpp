@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/project/project.hpp"
 
@@ -23,6 +25,7 @@ struct ElasticityTrial {
   /// By how much the mean error of a posture is less than with the choice before, m, and the
   /// standard error of that.
   double gain = 0.0, gain_sd = 0.0;
+  Eigen::VectorXd errors;  ///< of each left-out posture, m
   bool chosen = false;
 };
 

@@ -1,9 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/choose_model.hpp"
 
+#include <cmath>
+#include <string>
 #include <utility>
 
 namespace elastocal {
+namespace {
+
+/// Whether the second errors are less by more than twice the standard error of that.
+bool IsPlainlyLess(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
+  const Eigen::ArrayXd gains = before - after;
+  const auto count = static_cast<double>(gains.size());
+  const double sd = std::sqrt((gains - gains.mean()).square().sum() / (count - 1.0) / count);
+  return gains.mean() > 2.0 * sd;
+}
+
+/// See ModelChoice: of a project as it was decided.
+bool MissesSprings(const Measurements& measured, std::optional<std::uint64_t> seed, int folds,
+                   int threads, Project project) {
+  ElasticityChoice& own = project.elasticity;
+  const bool open = !own.torsion && !own.bending;
+  const std::vector<std::string> none;
+  if (open || own.extra.empty() || !own.torsion.value_or(none).empty() ||
+      !own.bending.value_or(none).empty()) {
+    return false;
+  }
+  const auto tried = [&] {  // rigid, then with torsion
+    own.torsion.reset();
+    own.bending.reset();
+    return ChooseElasticity(measured.calibration, seed, folds, threads, project);
+  };
+  const std::vector<ElasticityTrial> beside = tried();
+  if (beside.empty()) return false;
+  if (IsPlainlyLess(beside[0].errors, beside[1].errors)) return true;
+  own.extra.clear();
+  const std::vector<ElasticityTrial> instead = tried();
+  return !instead.empty() && IsPlainlyLess(beside[0].errors, instead[1].errors);
+}
+
+}  // namespace
 
 ModelChoice ChooseModel(const Measurements& measured, std::optional<std::uint64_t> seed, int folds,
                         int threads, Project& project) {
@@ -13,6 +49,9 @@ ModelChoice ChooseModel(const Measurements& measured, std::optional<std::uint64_
   choice.elasticity = ChooseElasticity(measured.calibration, seed, folds, threads, project);
   // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
   choice.causes = ChooseCauses(measured, seed, project);
+  if (choice.causes) {
+    choice.misses_springs = MissesSprings(measured, seed, folds, threads, project);
+  }
 
   const bool may_hide_springs = !choice.elasticity.empty() && !project.elasticity.extra.empty();
   if (!may_hide_springs) return choice;

@@ -192,11 +192,7 @@ void WarnOfForbiddenSprings(const Project& project, const ContactRunOptions& opt
   const ContactOutcome outcome = Estimate(*elastic, run.observations, true, options, folds);
   if (GainInSds(*elastic, run.observations, run.calibrated.held_out.left, outcome.held_out.left,
                 outcome.estimate.fit.spread) > kElasticGain) {
-    run.warnings.push_back(
-        JoinNames(run.extra) +
-        ": joints that give way would predict postures that were left out better, but elasticity "
-        "in "
-        "the project holds them rigid: without that key, springs are estimated where they help");
+    run.warnings.push_back(DescribeForbiddenSprings(run.extra));
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/calibration/posterior.hpp"
 #include "elastocal/observation/observed_posture.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/contact_faults.hpp"
@@ -108,32 +109,12 @@ std::string FiguresInWords(const ContactRun& run, const ObservationFigures& figu
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// Errors on the observations of the fit without these causes, all else staying as it was found.
-ObservationFigures FiguresWithout(const ContactRun& run, const std::vector<std::string>& causes) {
-  ObservedValues values = run.calibrated.estimate.fit.values;
-  const ErrorModel& robot = run.model.robot;
-  for (int i = 0; i < robot.parameter_count(); ++i) {
-    const int correction = robot.parameters[static_cast<std::size_t>(i)].correction;
-    if (correction < 0) continue;
-    const std::string& cause =
-        robot.elasticity.corrections[static_cast<std::size_t>(correction)].cause;
-    if (std::find(causes.begin(), causes.end(), cause) != causes.end()) values.robot[i] = 0.0;
-  }
-  return MakeFigures(run.model, run.observations, LeftOf(run.model, run.observations, values));
-}
-
-/// The file that is deployed has neither springs nor causes, and no file has all causes: their
-/// figures beside those of the whole model.
+/// The file that is deployed has neither springs nor causes: its figures beside those of the whole
+/// model.
 void AddUrdfAlone(ContactRun& run, const std::string& on) {
-  std::string text = "these figures hold with " + CompensationOf(run);
-  const std::vector<std::string> never = NeverApplied(run.extra);
-  if (!never.empty()) {
-    text += fmt::format(" (without {} on the observations of the fit)",
-                        FiguresInWords(run, FiguresWithout(run, never)));
-  }
-  run.verdict.remarks.push_back(fmt::format("{}; the URDF alone leaves {} {}", text,
-                                            FiguresInWords(run, ContactRun::Judged(*run.geometric)),
-                                            on));
+  run.verdict.remarks.push_back(
+      fmt::format("these figures hold with {}; the URDF alone leaves {} {}", CompensationOf(run),
+                  FiguresInWords(run, ContactRun::Judged(*run.geometric)), on));
 }
 
 /// Noise that is far above what the project says of an instrument is no noise of it.
@@ -150,6 +131,33 @@ void RemarkOnNoise(ContactRun& run) {
         "part of the recording, gears, or something that was moved? summary.json has what is left "
         "of each row",
         sources[i].name, unit.factor * fit.spread.sd[i], unit.name, ratio));
+  }
+}
+
+/// A covariance of poses in other units, or with rotations first, is not of what is left of them.
+void RemarkOnCovariances(ContactRun& run) {
+  constexpr double kOtherShape = 10.0;  // model errors change the shape by less
+  const ObservationFigures good = FiguresOfGood(run);
+  const bool any = std::any_of(good.rows.begin(), good.rows.end(),
+                               [](const RowErrors& row) { return row.observations > 0; });
+  const std::vector<RowErrors>& rows = any ? good.rows : run.calibrated.in_sample.rows;
+  for (const RowErrors& place : rows) {
+    const Eigen::MatrixXd& whitening = run.model.instrument(place.instrument).whitening;
+    const auto turn = std::find_if(rows.begin(), rows.end(), [&](const RowErrors& row) {
+      return row.instrument == place.instrument && row.unit == SourceUnit::kRadian;
+    });
+    if (whitening.size() == 0 || place.unit != SourceUnit::kMetre || turn == rows.end()) continue;
+    const Eigen::MatrixXd stated = InverseOfInformation(whitening.transpose() * whitening);
+    const double place_sd = std::sqrt(stated.topLeftCorner(3, 3).trace() / 3.0);
+    const double turn_sd = std::sqrt(stated.bottomRightCorner(3, 3).trace() / 3.0);
+    const double ratio = place.rms * turn_sd / (place_sd * turn->rms);
+    if (ratio > 1.0 / kOtherShape && ratio < kOtherShape) continue;
+    run.verdict.remarks.push_back(fmt::format(
+        "the covariance of {}: positions and rotations are off by {:.2g} mm and {:.2g} degrees, "
+        "where it says {:.2g} mm and {:.2g} degrees, up to a factor in common: m and rad, "
+        "positions first, were expected",
+        run.model.instrument(place.instrument).name, 1e3 * place.rms, kDegreeHere * turn->rms,
+        1e3 * place_sd, kDegreeHere * turn_sd));
   }
 }
 
@@ -264,6 +272,7 @@ void JudgeContacts(ContactRun& run) {
     if (!fault.empty()) verdict.objections.insert(verdict.objections.begin(), fault);
   }
   if (verdict.objections.empty()) RemarkOnNoise(run);
+  RemarkOnCovariances(run);
   if (!held_out && !mistaken) {
     verdict.remarks.push_back("no " + std::string(touches ? "touch" : "posture") +
                               " was left out (--kfold 0): nothing was validated");

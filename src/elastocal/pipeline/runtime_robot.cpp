@@ -105,7 +105,7 @@ void AddJoints(const StoredRobot& robot, RuntimeContent content, RuntimeModel& m
 }
 
 /// The function of the posture by which a correction shifts a joint; nothing where it depends on
-/// more than positions and loads.
+/// more than motion and loads.
 std::optional<int> ShiftFunction(CorrectionShape shape) {
   switch (shape) {
     case CorrectionShape::kSin:
@@ -123,6 +123,8 @@ std::optional<int> ShiftFunction(CorrectionShape shape) {
       return EC_BACKLASH;
     case CorrectionShape::kStiffening:
       return EC_STIFFENING;
+    case CorrectionShape::kHysteresis:
+      return EC_HYSTERESIS;
     default:
       return std::nullopt;
   }
@@ -163,7 +165,7 @@ void CorrectWeights(const RobotTree& tree, const Correction& correction, double 
   for (int i = 0; i < 3; ++i) model.moment[3 * body + Size(i)] += value * added[i];
 }
 
-/// What the calibration found beside geometry and springs, as far as positions and loads tell it.
+/// What the calibration found beside geometry and springs, as far as motion and loads tell it.
 void ApplyCauses(const RobotTree& tree, const StoredCalibration& calibration, RuntimeModel& model) {
   for (const Correction& correction : PossibleCorrections(tree, std::nullopt)) {
     const auto found = calibration.joint_errors.find(correction.name);

@@ -266,6 +266,8 @@ class CHeaderWriter {
     array("ec_pose", "last_target", robot_.tips);
     array("unsigned", "stopped", robot_.coordinates);
     array("double", "shift", robot_.joints);
+    array("double", "side", 2 * robot_.shifts);
+    array("double", "from", 2 * robot_.shifts);
     array("double", "centre", 3 * robot_.feet);
     array("double", "share", robot_.feet);
     out_ << "  ec_memory memory;\n} " << name_ << "_state;\n\n";
@@ -276,7 +278,7 @@ class CHeaderWriter {
           "load",        "root_load", "normal",  "factor", "gradient",    "step",   "held",
           "loosed",      "search",    "column",  "good_q", "good_torque", "work_q", "best_q",
           "kept_q",      "near_q",    "start_q", "lowest", "highest",     "last_q", "last_command",
-          "last_target", "stopped",   "shift",   "centre", "share"}) {
+          "last_target", "stopped",   "shift",   "side",   "from",        "centre", "share"}) {
       out_ << "  m->" << name << " = s->" << name << ";\n";
     }
     out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";

@@ -128,6 +128,8 @@ void Compensator::Allocate() {
                                               {&memory_.last_q, coordinates},
                                               {&memory_.last_command, coordinates},
                                               {&memory_.shift, joints},
+                                              {&memory_.side, 2 * robot_.shifts},
+                                              {&memory_.from, 2 * robot_.shifts},
                                               {&memory_.centre, 3 * feet},
                                               {&memory_.share, feet},
                                               {&memory_.motion, 3 * joints}};

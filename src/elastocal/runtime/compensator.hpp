@@ -42,6 +42,10 @@ std::string DescribeStatus(CompensatorStatus status);
 /// empty vector stands for none: loads then follow from statics. Torques of NaN are not known:
 /// statics takes their place until a first value comes, and then the last value.
 ///
+/// A joint with hysteresis lies on the side of its play from which it came: in the middle at first,
+/// then by the positions of earlier calls, measured ones (Forward, Correct) and planned ones
+/// (Command) each by themselves. So they come in the order in which the robot was there.
+///
 /// Bad input never gives a wild command. Positions that are not finite, or of another number, are
 /// replaced by the last good ones, an unknown foot by the last good support, and the status says
 /// so.
@@ -59,7 +63,7 @@ class Compensator {
   const RuntimeModel& model() const noexcept { return model_; }
 
   /// The next Command is found from its plan alone, as the first one is: for a motion that starts
-  /// anew.
+  /// anew. Of joints with hysteresis the plan keeps the side on which they lie.
   void Forget() noexcept;
 
   /// Forward kinematics with deflection (eq. 3, 5, 6): fills link_pose() and root_pose().

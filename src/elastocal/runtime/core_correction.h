@@ -7,17 +7,19 @@
 
 /* ---- input ---- */
 
-/* Takes over what is good of the input, and says what is not. */
+/* Takes over what is good of the input, and says what is not. `planned`: q are not measured. */
 static inline unsigned ec_take(const ec_robot* robot, const double* q, const double* torque,
-                               unsigned support, ec_memory* memory) {
+                               unsigned support, int planned, ec_memory* memory) {
   unsigned status = EC_FINE;
   int c, k;
+  memory->sides = &memory->side[planned * robot->shifts];
   for (c = 0; c < robot->coordinates; ++c) {
     if (!isfinite(q[c])) status |= EC_BAD_POSITION;
   }
   if (!(status & EC_BAD_POSITION)) {
     for (c = 0; c < robot->coordinates; ++c) memory->good_q[c] = q[c];
     memory->has_good_q = 1;
+    ec_cross_play(robot, memory->good_q, planned, memory);
   } else if (!memory->has_good_q) {
     status |= EC_NOTHING_YET;
   }
@@ -39,8 +41,9 @@ static inline unsigned ec_take(const ec_robot* robot, const double* q, const dou
 
 /* ---- what a controller calls ---- */
 
-/* Forgets the last command: the next one is found from its plan alone, as the first one is. For a
-   controller that starts again from another place. */
+/* Forgets the last command: the next one is found from its plan alone, as the first one is (and by
+   the side of their play on which joints lie). For a controller that starts again from another
+   place. */
 static inline void ec_forget(ec_memory* memory) { memory->has_last = 0; }
 
 /* Forgets all input. To be called once before anything else. Until a good position comes, the
@@ -55,6 +58,10 @@ static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
   }
   for (c = 0; c < robot->coordinates; ++c) memory->stopped[c] = EC_FINE;
   for (k = 0; k < robot->branches; ++k) memory->search[k].left = 0.0;
+  for (k = 0; k < 2 * robot->shifts; ++k) {
+    memory->side[k] = 0.0;
+    memory->from[k] = nan("");
+  }
   for (k = 0; k < robot->joints; ++k) memory->good_torque[k] = nan("");
   memory->good_support = 0;
   memory->has_good_q = 0;
@@ -76,7 +83,7 @@ static inline void ec_place_feet(const ec_robot* robot, const ec_memory* memory,
 static inline unsigned ec_forward(const ec_robot* robot, const double* q, const double* torque,
                                   unsigned support, ec_memory* memory, ec_pose* links,
                                   ec_pose* root) {
-  unsigned status = ec_take(robot, q, torque, support, memory);
+  unsigned status = ec_take(robot, q, torque, support, 0, memory);
   double gravity[3];
   ec_pose placed[32];
   int i;
@@ -101,7 +108,7 @@ static inline unsigned ec_forward(const ec_robot* robot, const double* q, const 
 static inline unsigned ec_correct(const ec_robot* robot, const double* q, const double* torque,
                                   unsigned support, ec_memory* memory, double* rigid,
                                   double* displacement) {
-  unsigned status = ec_take(robot, q, torque, support, memory);
+  unsigned status = ec_take(robot, q, torque, support, 0, memory);
   double gravity[3], turn[9], *start = memory->work_q;
   ec_pose placed[32], straight[32], root, rigid_root;
   int c, i, k;
@@ -159,7 +166,7 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
 static inline unsigned ec_command(const ec_robot* robot, const double* nominal,
                                   const double* torque, unsigned support, ec_memory* memory,
                                   double* command, double* residual) {
-  unsigned status = ec_take(robot, nominal, torque, support, memory);
+  unsigned status = ec_take(robot, nominal, torque, support, 1, memory);
   ec_pose placed[32];
   int f, c;
   if (status & EC_NOTHING_YET) {
@@ -187,7 +194,7 @@ static inline unsigned ec_command_poses(const ec_robot* robot, const ec_pose* ta
                                         const double* nominal, const double* torque,
                                         unsigned support, ec_memory* memory, double* command,
                                         double* residual) {
-  unsigned status = ec_take(robot, nominal, torque, support, memory);
+  unsigned status = ec_take(robot, nominal, torque, support, 1, memory);
   int t, i, good = 1;
   for (t = 0; t < robot->tips; ++t) {
     for (i = 0; i < 9; ++i) good = good && isfinite(targets[t].R[i]);

@@ -23,8 +23,28 @@ static inline void ec_move(const ec_robot* robot, const ec_joint* joints, const 
   }
 }
 
-static inline double ec_shift_of(const ec_robot* robot, const ec_shift* shift, const double* q,
+/* Follows the joints through their play. A joint whose motion turns round first crosses it, twice
+   |amount| of its encoder, while what it moves lags behind (or runs ahead, by the amount's sign).
+   `planned`: q are those of a plan, which does not know what was measured, nor the other way. */
+static inline void ec_cross_play(const ec_robot* robot, const double* q, int planned,
+                                 ec_memory* memory) {
+  double* side = &memory->side[planned * robot->shifts];
+  double* from = &memory->from[planned * robot->shifts];
+  int i;
+  for (i = 0; i < robot->shifts; ++i) {
+    const ec_shift* shift = &robot->shift[i];
+    const double position = ec_position(&robot->calibrated[shift->joint], q);
+    if (shift->function != EC_HYSTERESIS || shift->amount == 0.0) continue;
+    if (isfinite(from[i])) side[i] += (position - from[i]) / fabs(shift->amount);
+    if (side[i] > 1.0) side[i] = 1.0;
+    if (side[i] < -1.0) side[i] = -1.0;
+    from[i] = position;
+  }
+}
+
+static inline double ec_shift_of(const ec_robot* robot, int i, const double* q,
                                  const ec_memory* memory) {
+  const ec_shift* shift = &robot->shift[i];
   const double position = ec_position(&robot->calibrated[shift->source], q);
   const double load = memory->load[3 * shift->joint + 2];
   switch (shift->function) {
@@ -40,6 +60,8 @@ static inline double ec_shift_of(const ec_robot* robot, const ec_shift* shift, c
       return shift->amount * (position - shift->centre);
     case EC_BACKLASH:
       return shift->amount * tanh(load / shift->scale);
+    case EC_HYSTERESIS:
+      return shift->amount * memory->sides[i];
     default:
       return shift->amount * load * fabs(load) / (shift->scale * shift->scale);
   }
@@ -51,7 +73,7 @@ static inline void ec_shift_joints(const ec_robot* robot, const double* q, ec_me
   int i, k;
   for (k = 0; k < robot->joints; ++k) memory->shift[k] = 0.0;
   for (i = 0; i < robot->shifts; ++i) {
-    memory->shift[robot->shift[i].joint] += ec_shift_of(robot, &robot->shift[i], q, memory);
+    memory->shift[robot->shift[i].joint] += ec_shift_of(robot, i, q, memory);
   }
   for (k = 0; k < robot->joints; ++k) {
     const ec_joint* joint = &robot->calibrated[k];

@@ -43,13 +43,14 @@ typedef struct {
 
 /* What a joint's position is off by beside its zero: an amount times a function of the posture. */
 enum {
-  EC_SIN,       /* sine of the joint's position */
-  EC_COS,       /* its cosine */
-  EC_SIN_TWICE, /* sine of twice the position */
-  EC_COS_TWICE, /* its cosine */
-  EC_GEAR,      /* position of the joint `source` (itself, or a neighbour) less `centre` */
-  EC_BACKLASH,  /* sign of the load, smooth below `scale` */
-  EC_STIFFENING /* load times its size, over the square of `scale` */
+  EC_SIN,        /* sine of the joint's position */
+  EC_COS,        /* its cosine */
+  EC_SIN_TWICE,  /* sine of twice the position */
+  EC_COS_TWICE,  /* its cosine */
+  EC_GEAR,       /* position of the joint `source` (itself, or a neighbour) less `centre` */
+  EC_BACKLASH,   /* sign of the load, smooth below `scale` */
+  EC_STIFFENING, /* load times its size, over the square of `scale` */
+  EC_HYSTERESIS  /* side of its play on which the joint lies, by the way that it came: -1 to 1 */
 };
 
 typedef struct {
@@ -147,9 +148,12 @@ typedef struct {
   double* good_torque;  /* joints; NaN: never seen */
   double* work_q;       /* coordinates */
   double* shift;        /* joints: of their positions, by the calibration's causes */
-  double* centre;       /* 3 x feet: of the soles */
-  double* share;        /* feet: of the weight */
-  ec_pose* sole;        /* feet */
+  double* side; /* 2 x shifts: EC_HYSTERESIS of measured positions, then of those of plans ... */
+  double* from; /* 2 x shifts: ... and the position of the joint then; not finite: none yet */
+  const double* sides;   /* of `side`, those of this call */
+  double* centre;        /* 3 x feet: of the soles */
+  double* share;         /* feet: of the weight */
+  ec_pose* sole;         /* feet */
   double root_moment[2]; /* of the weight about x and y of a held root link, N.m */
   double common[3];      /* point of pressure less the centre of the sole, the same for all feet */
   unsigned good_support, last_support;

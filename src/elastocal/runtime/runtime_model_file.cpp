@@ -254,7 +254,7 @@ void CheckSizes(const RuntimeModel& model, Reader& reader) {
   }
   for (const ec_shift& shift : model.shifts) {
     reader.Check(Within(shift.joint, joints) && Within(shift.source, joints) &&
-                     shift.function >= EC_SIN && shift.function <= EC_STIFFENING &&
+                     shift.function >= EC_SIN && shift.function <= EC_HYSTERESIS &&
                      shift.scale > 0.0 && std::isfinite(shift.amount + shift.centre),
                  "shift", "a joint, a known function of the posture, and numbers");
   }
