@@ -2,7 +2,7 @@
 // The robot at run time: what a controller pays for a call, on whole TALOS.
 #include <benchmark/benchmark.h>
 
-#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/runtime/compensator.hpp"
 #include "tests/runtime_calibration.hpp"

@@ -3,7 +3,7 @@
 # that find_package(elastocal COMPONENTS ...) reads.
 #
 #   runtime      the robot at run time, for controllers: only Eigen is needed
-#   calibration  the layer `pipeline` and all that it uses: neither Assimp, MuJoCo nor Ipopt is needed
+#   calibration  the layer `exports` and all that it uses: neither Assimp, MuJoCo nor Ipopt is needed
 #   planning     all other layers
 #
 # CMake's components of the installation are the Debian packages (ElastocalPackages.cmake): program,
@@ -26,7 +26,7 @@ endfunction()
 
 get_property(layers GLOBAL PROPERTY ELASTOCAL_LAYERS)
 elastocal_used_layers(runtime runtime_layers)
-elastocal_used_layers(pipeline calibration_layers)
+elastocal_used_layers(exports calibration_layers)
 list(REMOVE_ITEM calibration_layers ${runtime_layers})
 set(planning_layers ${layers})
 list(REMOVE_ITEM planning_layers ${runtime_layers} ${calibration_layers})

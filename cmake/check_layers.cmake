@@ -31,7 +31,7 @@ endforeach()
 set(allowed_${unrestricted} ${unrestricted} ${layers})
 set(allowed_mpi "")  # the module that the program loads under mpirun uses nothing
 # The umbrella headers beside the layers: what they may include is what their component has.
-set(allowed_elastocal.hpp ${allowed_pipeline})
+set(allowed_elastocal.hpp ${allowed_exports})
 set(allowed_planning.hpp ${allowed_planning})
 
 set(violations 0)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bindings.hpp"
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/runtime/compensator.hpp"
 
 namespace elastocal::python {

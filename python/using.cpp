@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bindings.hpp"
+#include "elastocal/exports/export_calibration.hpp"
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/io/motion_file.hpp"
-#include "elastocal/pipeline/export_calibration.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/report/version.hpp"
 #include "motions.hpp"

@@ -2,8 +2,8 @@
 // A fixed arm whose tool carries tags that a camera in the room sees, and an inertial unit.
 #include <functional>
 
+#include "elastocal/mistakes/observed_mistakes.hpp"
 #include "elastocal/observation/seen_tag.hpp"
-#include "elastocal/pipeline/observed_mistakes.hpp"
 #include "elastocal/tables/text.hpp"
 #include "tests/arm_with_tracker.hpp"
 #include "tests/expect_input_error.hpp"

@@ -2,9 +2,9 @@
 // A fixed arm whose tool a laser tracker sees, calibrated from a table.
 #include <fstream>
 
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/pipeline/contact_validation.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "tests/arm_with_tracker.hpp"
 
 namespace elastocal {

@@ -2,7 +2,7 @@
 // What goes wrong with the table of an arm that instruments see.
 #include <functional>
 
-#include "elastocal/pipeline/observed_mistakes.hpp"
+#include "elastocal/mistakes/observed_mistakes.hpp"
 #include "tests/arm_with_tracker.hpp"
 #include "tests/expect_input_error.hpp"
 

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/description/urdf_reader.hpp"
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/io/calibration_file.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/runtime/compensator.hpp"
 #include "tests/run_program.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said of faults that a fit leaves, when they are not one simple fault.
-#include "elastocal/pipeline/general_fault.hpp"
+#include "elastocal/mistakes/general_fault.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/random.hpp"
-#include "elastocal/pipeline/find_faults.hpp"
-#include "elastocal/pipeline/recorded_model.hpp"
-#include "elastocal/pipeline/up_by_loads.hpp"
+#include "elastocal/mistakes/find_faults.hpp"
+#include "elastocal/mistakes/up_by_loads.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/test_files.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/pipeline/find_contradictions.hpp"
-#include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/mistakes/find_contradictions.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"

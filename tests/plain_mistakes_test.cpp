@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mistakes in tables of markers, and in projects, that show before anything is estimated.
-#include "elastocal/pipeline/plain_mistakes.hpp"
+#include "elastocal/mistakes/plain_mistakes.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -12,7 +12,7 @@
 #include "elastocal/calibration/told_positions.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/robot/coupling.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/pipeline/runtime_robot.hpp"
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/runtime/compensator.hpp"
 #include "tests/runtime_calibration.hpp"

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/math/random.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/robot/legs.hpp"
 #include "elastocal/robot/statics.hpp"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/math/random.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/runtime/c_header.hpp"
 #include "tests/runtime_calibration.hpp"

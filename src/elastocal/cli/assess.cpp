@@ -13,9 +13,9 @@
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/io/experiment.hpp"
 #include "elastocal/io/recording_folder.hpp"
-#include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/assess_postures.hpp"
+#include "elastocal/recorded/measurements.hpp"
 
 namespace elastocal::cli {
 namespace {

@@ -11,8 +11,8 @@
 #include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
-#include "elastocal/pipeline/find_faults.hpp"
 
 namespace elastocal::cli {
 namespace {

@@ -19,9 +19,9 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/check_calibration.hpp"
-#include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/next_postures.hpp"
+#include "elastocal/recorded/measurements.hpp"
 
 namespace elastocal::cli {
 namespace {

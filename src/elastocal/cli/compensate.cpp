@@ -10,12 +10,12 @@
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"
 

@@ -8,8 +8,8 @@
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
+#include "elastocal/exports/export_calibration.hpp"
 #include "elastocal/files/output_set.hpp"
-#include "elastocal/pipeline/export_calibration.hpp"
 #include "elastocal/report/version.hpp"
 
 namespace elastocal::cli {

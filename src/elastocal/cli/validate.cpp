@@ -17,9 +17,9 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
-#include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/pipeline/validate_calibration.hpp"
+#include "elastocal/recorded/measurements.hpp"
 
 namespace elastocal::cli {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "elastocal/math/dense.hpp"
@@ -13,6 +14,12 @@
 namespace elastocal {
 namespace {
 
+// What calibrated robots do not leave, root mean square.
+constexpr double kLargestPlace = 0.02;  // m
+constexpr double kLargestShare = 0.01;  // of the robot's size
+constexpr double kLargestTurn = 5.0 * M_PI / 180.0;
+constexpr double kLargestAcceleration = 0.5;  // m/s^2
+constexpr double kLargestPixel = 20.0;
 constexpr int kFewestTouches = 4;  // three place a table, and one is judged
 
 TouchErrors ErrorsOfTouches(const std::vector<Eigen::Vector3d>& left) {
@@ -170,6 +177,21 @@ std::vector<Eigen::VectorXd> LeftAfterRegistration(const ObservedRobot& model,
     }
   }
   return left;
+}
+
+double LargestError(const ObservedRobot& model, SourceUnit unit) {
+  switch (unit) {
+    case SourceUnit::kMetre:
+      return std::max(kLargestPlace, kLargestShare * RobotSize(model.robot.tree));
+    case SourceUnit::kRadian:
+      return kLargestTurn;
+    case SourceUnit::kAcceleration:
+      return kLargestAcceleration;
+    case SourceUnit::kPixel:
+      return kLargestPixel;
+    default:
+      return std::numeric_limits<double>::infinity();
+  }
 }
 
 double GainInSds(const ObservedRobot& model, const Observations& observations,

@@ -72,6 +72,10 @@ std::vector<Eigen::VectorXd> LeftAfterRegistration(const ObservedRobot& model,
                                                    const ObservedValues& values,
                                                    const Spread& spread);
 
+/// More than what any calibrated robot is off by, root mean square, SI: 20 mm (of a robot larger
+/// than 2 m, 1 % of RobotSize), 5 degrees, 0.5 m/s^2, 20 pixels.
+double LargestError(const ObservedRobot& model, SourceUnit unit);
+
 /// Whether observations are better explained by `after` than by `before`: mean over postures of the
 /// difference in squared error, in units of its standard deviation (about normal for many
 /// postures). Errors are in units of `spread`'s noise.

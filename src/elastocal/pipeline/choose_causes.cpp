@@ -10,9 +10,9 @@
 #include "elastocal/calibration/posterior.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/observation/contact_result.hpp"
 #include "elastocal/observation/observed_study.hpp"
-#include "elastocal/pipeline/contact_result.hpp"
-#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
 
 namespace elastocal {
 namespace {

@@ -10,7 +10,7 @@
 #include "elastocal/calibration/cause_search.hpp"
 #include "elastocal/observation/observation_fit.hpp"
 #include "elastocal/pipeline/cause_pictures.hpp"
-#include "elastocal/pipeline/measurements.hpp"
+#include "elastocal/recorded/measurements.hpp"
 
 namespace elastocal {
 

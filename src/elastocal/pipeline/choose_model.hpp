@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "elastocal/pipeline/choose_causes.hpp"
-#include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/recorded/choose_elasticity.hpp"
 
 namespace elastocal {
 

@@ -6,9 +6,9 @@
 
 #include "elastocal/io/fingerprint.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/observation/contact_result.hpp"
 #include "elastocal/observation/observed_study.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
-#include "elastocal/pipeline/contact_result.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 
 namespace elastocal {

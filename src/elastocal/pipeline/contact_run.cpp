@@ -9,14 +9,14 @@
 
 #include "elastocal/io/observation_table.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/mistakes/observed_corrections.hpp"
+#include "elastocal/mistakes/observed_faults.hpp"
+#include "elastocal/mistakes/observed_mistakes.hpp"
+#include "elastocal/observation/contact_result.hpp"
 #include "elastocal/observation/observed_study.hpp"
-#include "elastocal/pipeline/choose_elasticity.hpp"
-#include "elastocal/pipeline/contact_faults.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
-#include "elastocal/pipeline/contact_result.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
-#include "elastocal/pipeline/observed_corrections.hpp"
-#include "elastocal/pipeline/observed_mistakes.hpp"
+#include "elastocal/recorded/choose_elasticity.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -138,7 +138,8 @@ void TakeCauses(const Project& project, const ContactRunOptions& options, int fo
   run.causes = std::move(causes.report);
   run.extra = std::move(causes.extra);
   if (run.extra.empty()) return;
-  if (run.causes && !FindContactFault(run).empty()) {  // of the table: no cause is to hide it
+  if (run.causes && !FindObservedFault(run.model, run.observations, run.calibrated.estimate.fit)
+                         .empty()) {  // of the table: no cause is to hide it
     run.extra.clear();
     run.causes->search.accepted = false;
     return;

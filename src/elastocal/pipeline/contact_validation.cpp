@@ -9,14 +9,14 @@
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/contact_file.hpp"
 #include "elastocal/io/observation_table.hpp"
+#include "elastocal/mistakes/observed_corrections.hpp"
+#include "elastocal/mistakes/observed_mistakes.hpp"
 #include "elastocal/observation/standing_robot.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
-#include "elastocal/pipeline/observed_corrections.hpp"
-#include "elastocal/pipeline/observed_mistakes.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {

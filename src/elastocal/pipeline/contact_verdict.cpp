@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/posterior.hpp"
+#include "elastocal/mistakes/observed_faults.hpp"
+#include "elastocal/mistakes/observed_mistakes.hpp"
 #include "elastocal/observation/observed_posture.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
-#include "elastocal/pipeline/contact_faults.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
-#include "elastocal/pipeline/observed_mistakes.hpp"
 
 namespace elastocal {
 namespace {
@@ -27,12 +27,6 @@ constexpr double kMostLeftOut = 0.25;   // share of observations
 constexpr double kDegreeHere = 180.0 / M_PI;
 constexpr double kMatters = 0.1;   // of LargestError: below, it may be noise
 constexpr double kNoRobot = 10.0;  // times what is expected, as of tables of markers
-// What calibrated robots do not leave, root mean square.
-constexpr double kLargestPlace = 0.02;  // m
-constexpr double kLargestShare = 0.01;  // of the robot's size
-constexpr double kLargestTurn = 5.0 * M_PI / 180.0;
-constexpr double kLargestAcceleration = 0.5;  // m/s^2
-constexpr double kLargestPixel = 20.0;
 
 /// The least error of any kind of row after calibration, over that before.
 double BestRatio(const ContactRun& run) {
@@ -196,21 +190,6 @@ std::string CompensationOf(const ContactRun& run) {
   return CompensationInWords(springs, run.extra);
 }
 
-double LargestError(const ObservedRobot& model, SourceUnit unit) {
-  switch (unit) {
-    case SourceUnit::kMetre:
-      return std::max(kLargestPlace, kLargestShare * RobotSize(model.robot.tree));
-    case SourceUnit::kRadian:
-      return kLargestTurn;
-    case SourceUnit::kAcceleration:
-      return kLargestAcceleration;
-    case SourceUnit::kPixel:
-      return kLargestPixel;
-    default:
-      return std::numeric_limits<double>::infinity();
-  }
-}
-
 std::vector<std::string> WorseRows(const ObservedRobot& model, const ObservationFigures& before,
                                    const ObservationFigures& after) {
   std::vector<std::string> worse;
@@ -268,7 +247,8 @@ void JudgeContacts(ContactRun& run) {
   ObjectToNonsense(run);
   const bool mistaken = run.mistakes && !run.mistakes->empty();
   if ((verdict.objections.empty() && !mistaken) || !NameMistakes(run)) {
-    const std::string fault = FindContactFault(run);
+    const std::string fault =
+        FindObservedFault(run.model, run.observations, run.calibrated.estimate.fit);
     if (!fault.empty()) verdict.objections.insert(verdict.objections.begin(), fault);
   }
   if (verdict.objections.empty()) RemarkOnNoise(run);

@@ -25,10 +25,6 @@ std::string CompensationOf(const ContactRun& run);
 std::vector<std::string> WorseRows(const ObservedRobot& model, const ObservationFigures& before,
                                    const ObservationFigures& after);
 
-/// More than what any calibrated robot is off by, root mean square, SI: 20 mm (of a robot larger
-/// than 2 m, 1 % of RobotSize), 5 degrees, 0.5 m/s^2, 20 pixels.
-double LargestError(const ObservedRobot& model, SourceUnit unit);
-
 /// Kinds of observations that are off by more: "height of lt off by 101 mm".
 std::vector<std::string> LargeErrors(const ObservedRobot& model, const ObservationFigures& figures);
 

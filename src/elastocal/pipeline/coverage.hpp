@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/project/project.hpp"
+#include "elastocal/recorded/measurements.hpp"
 #include "elastocal/validation/verdict.hpp"
 
 namespace elastocal {

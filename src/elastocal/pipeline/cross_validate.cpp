@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "elastocal/pipeline/choose_elasticity.hpp"
+#include "elastocal/recorded/choose_elasticity.hpp"
 
 namespace elastocal {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 
 namespace elastocal {

@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/cause_picture_json.hpp"
-#include "elastocal/pipeline/choose_elasticity.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
-#include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/recorded/choose_elasticity.hpp"
 
 namespace elastocal {
 namespace {

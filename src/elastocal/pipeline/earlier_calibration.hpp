@@ -10,7 +10,7 @@
 
 #include "elastocal/calibration/earlier.hpp"
 #include "elastocal/io/calibration_file.hpp"
-#include "elastocal/pipeline/recorded_model.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 #include "elastocal/validation/moved_joints.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/recording_folder.hpp"
-#include "elastocal/pipeline/measurements.hpp"
 #include "elastocal/readers/qtm_tsv.hpp"
+#include "elastocal/recorded/measurements.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/recording_writers.hpp"

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
-#include "elastocal/pipeline/recorded_model.hpp"
-#include "elastocal/pipeline/recording_mistakes.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/validation/deployment.hpp"
 
 namespace elastocal {

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/motion/motion_check.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/planning/stopped_joints.hpp"
 #include "elastocal/robot/collision.hpp"

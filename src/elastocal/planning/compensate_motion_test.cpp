@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/math/input_error.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/robot/collision.hpp"
 #include "tests/runtime_calibration.hpp"

@@ -8,10 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/parallel.hpp"
-#include "elastocal/pipeline/runtime_robot.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 

@@ -11,7 +11,7 @@
 namespace elastocal {
 
 /// A calibrated robot as numbers: all that is needed at run time, and nothing else. SI units. It is
-/// made from a project and a calibration (pipeline/runtime_robot.hpp) and kept in a file that a
+/// made from a project and a calibration (exports/runtime_robot.hpp) and kept in a file that a
 /// controller reads without any other library.
 ///
 /// Bodies are those of the URDF with fixed links joined: body 0 is the root link's, joint k moves

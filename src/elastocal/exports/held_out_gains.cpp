@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/exports/held_out_gains.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/recorded/measurements.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/validation/model_comparison.hpp"
+#include "elastocal/validation/transfer.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kGainFolds = 5;
+constexpr int kLeastGainPostures = 10;
+
+/// The estimate as stored, judged by trials for validation.
+HeldOutSplit StoredSplit(const RecordedModel& recorded, Measurements measured,
+                         const StoredCalibration& stored, bool with_loads) {
+  HeldOutSplit split;
+  split.model = recorded.model;
+  split.delta = ErrorsByName(recorded.model, stored.joint_errors, stored.externals);
+  if (!with_loads && !stored.urdf_errors.empty()) {
+    split.exported = ErrorsByName(recorded.model, AsInUrdf(stored).joint_errors, stored.externals);
+  }
+  split.training = std::move(measured.calibration);
+  split.held_out = std::move(measured.validation);
+  return split;
+}
+
+/// Estimates without a fold each, judged by it.
+std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Recording& recording,
+                                     const CalibrationOptions& options) {
+  if (recording.posture_count() < kLeastGainPostures) {
+    throw InputError(fmt::format("{}: {} postures; {} or more were expected to judge joints by",
+                                 recording.source, recording.posture_count(), kLeastGainPostures));
+  }
+  FoldOptions folds{.folds = kGainFolds};
+  if (recording.trials.size() >= kGainFolds) folds.unit = FoldUnit::kTrial;
+  const std::vector<int> fold_of = DealFolds(recording, folds);
+  std::vector<HeldOutSplit> splits;
+  for (int fold = 0; fold < kGainFolds; ++fold) {
+    std::vector<int> training, held_out;
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      (fold_of[static_cast<std::size_t>(i)] == fold ? held_out : training).push_back(i);
+    }
+    HeldOutSplit split;
+    split.training = SelectPostures(recording, training);
+    split.held_out = SelectPostures(recording, held_out);
+    split.same_trials = folds.unit == FoldUnit::kPosture;
+    CalibrationResult result = Calibrate(recorded.model, split.training, recorded.base,
+                                         ModelKinds(recorded.model).back(), options);
+    split.model = std::move(result.model);
+    split.delta = std::move(result.delta);
+    splits.push_back(std::move(split));
+  }
+  return splits;
+}
+
+}  // namespace
+
+HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& options) {
+  Project project = robot.project;
+  CheckHasMarkers(project);
+  project.elasticity = ElasticityOf(robot.calibration, project);
+  Measurements measured = ReadMeasurements(project, RecordedRecordings(robot));
+  const RecordedModel recorded = MakeRecordedModel(project, {}, measured);
+  CheckApplies(robot.calibration, project, recorded.model);
+  HeldOutGains gains;
+  gains.least = options.least;
+  const int held_out = measured.validation.posture_count();
+  if (held_out > 0) {
+    gains.judged_on = fmt::format("{} postures of {} held-out trials", held_out,
+                                  measured.validation.trials.size());
+    gains.study = StudyGains(
+        {StoredSplit(recorded, std::move(measured), robot.calibration, options.with_loads)},
+        project.calibration, options);
+  } else {
+    gains.judged_on =
+        fmt::format("{} postures, each by an estimate without the fifth that it is in",
+                    measured.calibration.posture_count());
+    gains.study = StudyGains(FoldSplits(recorded, measured.calibration, project.calibration),
+                             project.calibration, options);
+  }
+  return gains;
+}
+
+std::vector<std::string> DescribeGains(const HeldOutGains& gains) {
+  const GainStudy& study = gains.study;
+  std::vector<std::string> lines{
+      fmt::format("Held-out error ({}; {} observations, {} left out as measured wrong): {:.3f} mm "
+                  "uncalibrated, "
+                  "{:.3f} mm with all joints, {:.3f} mm as exported",
+                  gains.judged_on, study.observations, study.left_out, 1e3 * study.uncalibrated,
+                  1e3 * study.all, 1e3 * study.kept)};
+  for (const JointGain& joint : study.joints) {
+    if (joint.kept) continue;
+    if (joint.observations == 0) {
+      lines.push_back(joint.owner + " is nominal: it moves no held-out observation");
+      continue;
+    }
+    lines.push_back(fmt::format(
+        "{} is nominal: on the {} observations that it moves it gains {:.4f} mm of {:.3f} mm, not "
+        "more than {:g}",
+        joint.owner, joint.observations, 1e3 * joint.gain, 1e3 * joint.rmse, 1e3 * gains.least));
+  }
+  return lines;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/find_contradictions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/general_fault.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/validation/held_out.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
+constexpr double kContradicted = 10.0;
+constexpr double kLeftByMistake = 0.3;  // of the error on held-out trials
+constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
+constexpr int kFilterSpreads = 2;     // postures beside exchanged ones, which the filter mixes
+/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
+/// be as good in motion, which statics does not describe.
+constexpr double kBestExpected = 0.03;
+
+/// A group of chains whose held-out trials the largest model predicts worse than it fits those of
+/// the estimate.
+struct Contrast {
+  std::string group;
+  double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;  // m
+  double ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
+};
+
+/// Whether all chains of a group (TrialGroups) are also in another one.
+bool IsWithin(const std::string& group, const std::string& other) {
+  std::istringstream chains(group);
+  for (std::string chain; std::getline(chains, chain, '+');) {
+    if (("+" + other + "+").find("+" + chain + "+") == std::string::npos) return false;
+  }
+  return true;
+}
+
+/// Over all observations of the groups within `group`: limbs that a held-out trial moves together
+/// may have been measured one after the other.
+double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind kind) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const ErrorTableRow& row : table.groups) {
+    const auto metrics = row.metrics.find(kind);
+    if (metrics == row.metrics.end() || !IsWithin(row.group, group)) continue;
+    squares += metrics->second.observations * std::pow(metrics->second.rmse_3d, 2);
+    count += metrics->second.observations;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
+  Contrast largest{"", 1.0, 0.0, 0.0};
+  for (const ErrorTableRow& row : held_out.groups) {
+    const auto metrics = row.metrics.find(kind);
+    const Contrast contrast{row.group, RmseWithin(fitted, row.group, kind),
+                            RmseWithin(fitted, row.group, ModelKind::kUncalibrated),
+                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d};
+    if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
+  }
+  return largest;
+}
+
+/// Without the markers that knocks added (SplitMarkers), which the project does not know.
+Recording AsRecorded(const Recording& recording, const std::vector<Knock>& knocks) {
+  Recording own = recording;
+  for (const Knock& knock : knocks) {
+    own.marker_names.resize(own.marker_names.size() - knock.markers.size());
+  }
+  own.markers.conservativeResize(Eigen::NoChange, 3 * own.marker_count());
+  return own;
+}
+
+/// Of the largest model, m; infinite where nothing is judged.
+double MeanError(const ModelComparison& comparison, const ErrorTable& table) {
+  const auto found = table.mean_rmse_3d.find(comparison.largest_kind());
+  return found == table.mean_rmse_3d.end() ? std::numeric_limits<double>::infinity()
+                                           : found->second;
+}
+
+/// A mistake in the log or labels of held-out trials that the calibrated robot proves; else empty.
+std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
+                             const std::vector<Knock>& knocks, const ModelComparison& comparison,
+                             const ErrorTable& table) {
+  const double before = MeanError(comparison, table);
+  const auto error_of = [&](Recording corrected) {
+    AddUnseenMarkers(comparison.largest().model, corrected);
+    try {
+      return MeanError(comparison, JudgeOnTrials(comparison, corrected, project.calibration).table);
+    } catch (const InputError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  };
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project, AsRecorded(held_out, knocks), before, error_of, {}, kLeftByMistake);
+  if (mistakes.empty()) return "";
+  std::string what, names;
+  for (const RecordingMistake& one : mistakes) {
+    what += (what.empty() ? "" : "; ") + one.what;
+    names += " " + one.name;
+  }
+  return fmt::format(
+      "in trials for validation {}; without that the calibrated robot errs by {:.3g} mm on them, "
+      "with it by {:.3g} mm (--accept{} corrects it)",
+      what, 1e3 * mistakes.back().after, 1e3 * before, names);
+}
+
+/// At most `count` postures. Motions are sampled far more densely than postures are held.
+Recording EvenlyThinned(const Recording& recording, int count) {
+  const int step = (recording.posture_count() + count - 1) / count;
+  std::vector<int> kept;
+  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
+  return SelectPostures(recording, kept);
+}
+
+/// Whether the estimate has each of two markers where the project has the other.
+bool AreExchanged(const CalibrationResult& result, int a, int b) {
+  const int first = result.model.parameter_count() - 3 * result.model.marker_count();
+  const auto nominal = [&](int m) { return result.model.markers[Size(m)].p_link_marker; };
+  const auto from = [&](int m, int other) {
+    return (nominal(m) + result.delta.segment<3>(first + 3 * m) - nominal(other)).squaredNorm();
+  };
+  return from(a, b) + from(b, a) < from(a, a) + from(b, b);
+}
+
+std::string TrialsThatSee(const Recording& recording, int a, int b) {
+  std::string names;
+  for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (recording.trial[i] != trial || !Seen(recording, i, a) || !Seen(recording, i, b)) continue;
+      names += (names.empty() ? "" : ", ") + recording.trials[Size(trial)].name;
+      break;
+    }
+  }
+  return names;
+}
+
+/// Two markers of one cluster that have each other's labels in all trials of the estimate that see
+/// them, or in held-out postures.
+struct Exchange {
+  int a = -1, b = -1;
+  std::vector<int> postures;  ///< held-out ones that are nearer to the model with it undone
+  double before = 0.0;        ///< rms of all held-out distances, m
+  double after = 0.0;         ///< with it undone
+  bool of_estimate = false;   ///< the labels are wrong there, not in the held-out postures
+
+  std::string Description(const Recording& recording, const Recording& held_out) const {
+    return fmt::format(
+        "the labels of {} and {} seem exchanged in {}: exchanged back, held-out trials are {:.3g} "
+        "mm off the model, as they are {:.3g} mm",
+        recording.marker_names[Size(a)], recording.marker_names[Size(b)],
+        of_estimate ? "trial " + TrialsThatSee(recording, a, b)
+                    : fmt::format("{} postures of trial {}", postures.size(),
+                                  TrialsThatSee(SelectPostures(held_out, postures), a, b)),
+        1e3 * after, 1e3 * before);
+  }
+};
+
+/// Each side fits by itself, and where the distances to the cluster's others are much alike, only
+/// the robot tells.
+std::optional<Exchange> ExchangeWithinCluster(const Project& project, const Recording& recording,
+                                              const Recording& held_out,
+                                              const ModelComparison& comparison) {
+  const auto squares_of = [&](const Recording& judged) -> Eigen::ArrayXXd {
+    const HeldOut result = JudgeOnTrials(comparison, judged, project.calibration);
+    const auto& distances =
+        result.predictions[static_cast<std::size_t>(comparison.largest_kind())].distances;
+    return distances.array().isFinite().select(distances.array().square(), 0.0);
+  };
+  const Eigen::ArrayXXd given = squares_of(held_out);
+  const double before = given.sum();
+  const auto count = static_cast<double>((given > 0.0).count());
+  double least = kLeftByMistake * kLeftByMistake * before;
+  std::optional<Exchange> found;
+  for (const LabelCluster& cluster : SeenClusters(project, recording)) {
+    for (std::size_t i = 0; i < cluster.markers.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const int one = cluster.markers[j], other = cluster.markers[i];
+        const Eigen::ArrayXd of_pair = given.col(one) + given.col(other);
+        if (before - of_pair.sum() > least) continue;
+        Recording exchanged = held_out;
+        exchanged.markers.middleCols<3>(3 * one).swap(exchanged.markers.middleCols<3>(3 * other));
+        const Eigen::ArrayXXd squares = squares_of(exchanged);
+        const Eigen::ArrayXd left = squares.col(one) + squares.col(other);
+        double gained = 0.0;
+        std::vector<int> nearer;
+        for (int k = 0; k < held_out.posture_count(); ++k) {
+          if (!(left[k] < kLeftByMistake * of_pair[k])) continue;
+          gained += of_pair[k] - left[k];
+          nearer.push_back(k);
+        }
+        if (!(before - gained < least)) continue;
+        least = before - gained;
+        found = {one, other, nearer, std::sqrt(before / count), std::sqrt(least / count)};
+      }
+    }
+  }
+  if (found) found->of_estimate = AreExchanged(comparison.largest(), found->a, found->b);
+  return found;
+}
+
+/// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
+Contrast ContrastOf(const Project& project, const Recording& recording,
+                    const ModelComparison& comparison, const ErrorTable& held_out_table) {
+  const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
+  return LargestContrast(fitted, held_out_table, comparison.largest().kind);
+}
+
+}  // namespace
+
+std::string LeaveOutBriefExchange(const Project& project, const Recording& recording,
+                                  const ModelComparison& comparison,
+                                  const ErrorTable& held_out_table, Recording& held_out) {
+  if (!(ContrastOf(project, recording, comparison, held_out_table).ratio() > kSuspicious))
+    return "";
+  const std::optional<Exchange> found =
+      ExchangeWithinCluster(project, recording, held_out, comparison);
+  if (!found || found->of_estimate) return "";
+  // Half of what the trials that it is in show of the two: a tracker that lost them for a while.
+  int seen = 0;
+  for (int i = 0; i < held_out.posture_count(); ++i) {
+    const bool in_trial =
+        std::any_of(found->postures.begin(), found->postures.end(), [&](int exchanged) {
+          return held_out.trials.empty() || held_out.trial[exchanged] == held_out.trial[i];
+        });
+    if (in_trial && Seen(held_out, i, found->a) && Seen(held_out, i, found->b)) ++seen;
+  }
+  if (2 * static_cast<int>(found->postures.size()) > seen) return "";
+  const std::string text =
+      found->Description(recording, held_out) + ". The two are left out of the judgement there";
+  for (const int exchanged : found->postures) {
+    const int first = std::max(0, exchanged - kFilterSpreads);
+    const int last = std::min(held_out.posture_count() - 1, exchanged + kFilterSpreads);
+    for (int i = first; i <= last; ++i) {
+      if (!held_out.trials.empty() && held_out.trial[i] != held_out.trial[exchanged]) continue;
+      for (const int marker : {found->a, found->b}) {
+        held_out.markers.block<1, 3>(i, 3 * marker).setConstant(std::nan(""));
+      }
+    }
+  }
+  return text;
+}
+
+std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
+                                            const Recording& recording, const Recording& held_out,
+                                            const ModelComparison& comparison,
+                                            const ErrorTable& held_out_table) {
+  const Contrast contrast = ContrastOf(project, recording, comparison, held_out_table);
+  if (!(contrast.ratio() > kSuspicious)) return {};
+  const std::string mistake =
+      MistakeInHeldOut(project, held_out, robot.knocks, comparison, held_out_table);
+  if (!mistake.empty()) return {mistake};
+  const std::optional<Exchange> exchange =
+      ExchangeWithinCluster(project, recording, held_out, comparison);
+  if (exchange) {
+    return {exchange->Description(recording, held_out) +
+            ". Correct the labels and calibrate again"};
+  }
+  const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
+  Recording all = JoinTrials(recording, thinned);
+  // Trials that contradict each other keep noise and outliers from coming to rest.
+  CalibrationOptions roughly = project.calibration;
+  roughly.outliers = OutlierPolicy::kKeep;
+  roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
+  const CalibrationResult together =
+      Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
+  // Within each trial they tell how fast joints moved.
+  all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
+  all.time_s << recording.time_s, thinned.time_s;
+  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
+  const std::vector<RecordingFault> faults =
+      FindRecordingFaults(together, all, project.calibration);
+  if (!faults.empty()) {
+    const GeneralFault general{
+        faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
+    return {"trials for calibration and for validation contradict each other: " +
+            ExplainFault(general, project).text};
+  }
+  if (!(contrast.ratio() > kContradicted)) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
+                "something differs between the recordings",
+                1e3 * contrast.held_out, 1e3 * contrast.fitted);
+  return {"held-out trials of " + contrast.group + " contradict those of the estimate: " + text};
+}
+
+}  // namespace elastocal

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/find_faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "elastocal/calibration/camera_scale.hpp"
+#include "elastocal/calibration/coarse_positions.hpp"
+#include "elastocal/calibration/odd_postures.hpp"
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/calibration/up_check.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/general_fault.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/mistakes/up_by_loads.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeftByOdd = 0.5;        // of the error of a fit, without them
+constexpr double kLeftBesideGears = 0.8;  // of the error of a fit with wrong gains as gears
+
+/// Gains of sliding joints are what a wrong scale of the cameras looks like: several that are alike
+/// are one, and of one that the other lengths bear out both are said. Nothing for other faults.
+std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
+                          const CalibrationResult& result, const CalibrationOptions& options) {
+  constexpr double kAlike = 1e-3, kPlain = 2.0, kConsistent = 3.0;
+  const RobotTree& tree = result.model.tree;
+  double least = 1.0, most = -1.0, sd = 0.0;
+  std::string joints;
+  for (const RecordingFault& fault : faults) {
+    const Joint& joint =
+        tree.joints[Size(tree.coordinate_joint[Size(std::max(0, fault.coordinate))])];
+    if (fault.kind != FaultKind::kJointGain || fault.coordinate < 0 || fault.trial >= 0 ||
+        joint.type != JointType::kPrismatic) {
+      return "";
+    }
+    least = std::min(least, fault.size);
+    most = std::max(most, fault.size);
+    sd = std::max(sd, fault.sd);
+    joints += (joints.empty() ? "" : ", ") + joint.name;
+  }
+  if (faults.empty() || most - least > kAlike + kConsistent * sd) return "";
+  const double size = 1.0 / (1.0 + 0.5 * (least + most)) - 1.0;
+  const std::string accept = fmt::format("--accept scale={:.5f} corrects it", 1.0 + size);
+  if (faults.size() > 1) {
+    return fmt::format(
+        "the cameras' positions seem {:.4f} +- {:.4f} times the true ones: {} seem to be wrong by "
+        "the same factor ({})",
+        1.0 + size, sd, joints, accept);
+  }
+  const auto scale = EstimateCommonScale(result, options);
+  if (!scale || std::abs(scale->size - size) > kConsistent * scale->sd ||
+      std::abs(scale->size) < kPlain * scale->sd) {
+    return "";
+  }
+  return fmt::format(
+      "the cameras' positions seem {:.4f} +- {:.4f} times the true ones, or those of {} {:.4f} "
+      "times; the other lengths of the robot say {:.4f} +- {:.4f} of the cameras. Measure a known "
+      "length first (if the cameras are wrong, {}; else --accept gain:{}={:.5f})",
+      1.0 + size, sd, joints, 1.0 + most, 1.0 + scale->size, scale->sd, accept, joints, 1.0 + most);
+}
+
+/// Joints whose gear or lead seems further off than any is made (FindRecordingFaults: 0.5 %): what
+/// was taken for a cause of the robot is a wrong gain in its log.
+std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result) {
+  constexpr double kLargestGear = 0.005, kCertain = 8.0;
+  std::vector<RecordingFault> faults;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[Size(i)];
+    if (parameter.correction < 0) continue;
+    const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
+    const double ratio = result.delta[i];
+    if (correction.shape != CorrectionShape::kGear || std::abs(ratio) < kLargestGear ||
+        std::abs(ratio) < kCertain * result.sd[i]) {
+      continue;
+    }
+    RecordingFault fault;
+    fault.coordinate = result.model.tree.joints[Size(correction.joint)].coordinate;
+    fault.size = 1.0 / (1.0 + ratio) - 1.0;
+    fault.sd = result.sd[i];
+    faults.push_back(fault);
+  }
+  return faults;
+}
+
+/// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
+/// for without the knocks, too.
+std::optional<GeneralFault> FindGeneralFault(const Project& project,
+                                             std::optional<std::uint64_t> seed,
+                                             Measurements as_recorded, const RecordedModel& robot,
+                                             const Recording& recording,
+                                             const CalibrationResult& result) {
+  GeneralFault general{{}, robot.model, robot.base, recording, result.kind, project.calibration};
+  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
+  if (!robot.knocks.empty()) {
+    RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
+    const CalibrationResult without = Calibrate(plain.model, as_recorded.calibration, plain.base,
+                                                result.kind, project.calibration);
+    std::vector<RecordingFault> found =
+        FindRecordingFaults(without, as_recorded.calibration, project.calibration);
+    if (!found.empty()) {
+      faults = std::move(found);
+      general.model = std::move(plain.model);
+      general.base = std::move(plain.base);
+      general.recording = std::move(as_recorded.calibration);
+    }
+  }
+  if (faults.empty()) return std::nullopt;
+  general.fault = faults.front();
+  return general;
+}
+
+bool IsFarOff(const std::vector<RecordingFault>& gears) {
+  constexpr double kFarOffGear = 0.1;  // beyond it, a linear estimate is none
+  return std::any_of(gears.begin(), gears.end(),
+                     [](const RecordingFault& gear) { return std::abs(gear.size) > kFarOffGear; });
+}
+
+/// The general fault of a robot without the causes that it seemed to have.
+std::optional<GeneralFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
+                                              const Measurements& as_recorded, ModelKind kind) {
+  project.elasticity.extra.clear();
+  Measurements plain = as_recorded;
+  const RecordedModel robot = MakeRecordedModel(project, seed, plain, KnockSearch::kNone);
+  const CalibrationResult fit =
+      Calibrate(robot.model, plain.calibration, robot.base, kind, project.calibration);
+  return FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
+}
+
+/// What undoes a wrong scale: `scale=1.00200` in all trials, else `scale:TRIAL=1.00200` in each.
+std::string ScaleCorrections(const std::vector<const TrialSummary*>& wrong, bool all) {
+  constexpr double kAlike = 5e-4;
+  double least = wrong.front()->scale->size, most = least, sum = 0.0;
+  std::string each;
+  for (const TrialSummary* trial : wrong) {
+    least = std::min(least, trial->scale->size);
+    most = std::max(most, trial->scale->size);
+    sum += trial->scale->size;
+    each += fmt::format(" scale:{}={:.5f}", trial->trial.name, 1.0 + trial->scale->size);
+  }
+  if (!all || most - least > kAlike) return each;
+  return fmt::format(" scale={:.5f}", 1.0 + sum / static_cast<double>(wrong.size()));
+}
+
+/// The trials whose scale the reference lengths contradict, in a sentence; empty without any.
+std::string DescribeWrongScales(const std::vector<TrialSummary>& trials) {
+  std::vector<const TrialSummary*> wrong;
+  bool all = true;
+  std::string names;
+  for (const TrialSummary& trial : trials) {
+    if (!trial.refused.empty()) continue;
+    if (trial.scale && IsWrong(*trial.scale)) {
+      wrong.push_back(&trial);
+      names += (names.empty() ? "" : ", ") + trial.trial.name;
+    } else {
+      all = false;
+    }
+  }
+  if (wrong.empty()) return "";
+  return fmt::format(
+      "the cameras' scale is wrong: by the reference lengths, positions are {} times the true ones "
+      "in {} (--accept{} corrects it)",
+      Describe(*wrong.front()->scale), all ? "all trials" : "trial " + names,
+      ScaleCorrections(wrong, all));
+}
+
+/// Mistakes in a few rows of a table which are too small beside what the nominal robot errs by,
+/// each with what corrects none of them: proved by a fit without them.
+std::vector<std::string> OddBesideCalibrated(const Project& project, const RecordedModel& robot,
+                                             const Recording& recording,
+                                             const CalibrationResult& result, double left) {
+  const std::vector<OddPostures> odd =
+      FindOddPostures(result.model, recording, SeenClusters(project, recording), &result.delta);
+  if (odd.empty()) return {};
+  const double after = MarkerError(
+      Calibrate(robot.model, odd.back().corrected, robot.base, result.kind, project.calibration),
+      odd.back().corrected, project.calibration);
+  if (!(after < kLeftByOdd * left)) return {};
+  std::vector<std::string> said;
+  for (const OddPostures& one : odd) {
+    said.push_back(
+        fmt::format("{}; without that the error of the fit falls from {:.3g} to {:.3g} mm",
+                    one.what, 1e3 * left, 1e3 * after));
+  }
+  return said;
+}
+
+}  // namespace
+
+bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
+  return !trials.empty() &&
+         std::all_of(trials.begin(), trials.end(), [](const TrialSummary& trial) {
+           return !trial.refused.empty() || (trial.scale && !IsWrong(*trial.scale));
+         });
+}
+
+std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
+                                    const Measurements& as_recorded, const RecordedModel& robot,
+                                    const Recording& recording, const ModelComparison& comparison) {
+  std::vector<std::string> faults;
+  if (const auto up = FindWrongUp(robot.model, recording)) faults.push_back(Describe(*up));
+  const std::string wrong_scales = DescribeWrongScales(as_recorded.trials);
+  if (!wrong_scales.empty()) faults.push_back(wrong_scales);
+  for (const RecordingMistake& mistake :
+       FindRecordingMistakes(project, seed, as_recorded, recording, comparison.largest())) {
+    faults.push_back(DescribeMistake(mistake));
+  }
+  const std::vector<RecordingFault> gears = FindImpossibleGears(comparison.largest());
+  const std::string of_slides = ScaleOfSlides(gears, comparison.largest(), project.calibration);
+  // Where the cameras are right, a robot whose lengths are all off is of another size.
+  const bool scale_is_known = ScaleIsKnown(as_recorded.trials);
+  const auto general = [&] {
+    return FindGeneralFault(project, seed, as_recorded, robot, recording, comparison.largest());
+  };
+  if (wrong_scales.empty() && !scale_is_known) {
+    if (const auto scale = FindWrongScale(comparison.largest(), project.calibration)) {
+      // The scale of one trial, or axis, is spread over the lengths that it tells.
+      const auto found = general();
+      const bool of_cameras =
+          found && (found->fault.kind == FaultKind::kCameraScale || IsInCameraSpace(found->fault));
+      faults.push_back(of_cameras          ? ExplainFault(*found, project).text
+                       : of_slides.empty() ? Describe(*scale)
+                                           : of_slides);
+    }
+  }
+  // What a mistake leaves would look like other faults.
+  if (!faults.empty()) return faults;
+  const double left = MarkerError(comparison.largest(), recording, project.calibration);
+  // Faults of joints load them as another direction of gravity might, and causes take up a part.
+  std::optional<GeneralFault> found;
+  std::optional<FaultsInWords> few;
+  const auto look = [&] {
+    if (few) return;
+    found = gears.empty()
+                ? general()
+                : FindWithoutCauses(project, seed, as_recorded, comparison.largest().kind);
+    few = found ? ExplainFault(*found, project) : FaultsInWords();
+  };
+  if (const auto up = FindUpByLoads(project, seed, as_recorded, left)) {
+    look();
+    if (!few->complete || few->left > up->found) return {Describe(*up, recording)};
+  }
+  if (!of_slides.empty() && !scale_is_known) return {of_slides};
+  for (const CoarsePositions& one : FindCoarsePositions(comparison.largest(), recording,
+                                                        project.calibration, as_recorded.trials)) {
+    if (IsTooCoarse(one, project.tree)) faults.push_back(Describe(one, project.tree));
+  }
+  if (!faults.empty()) return faults;
+  look();
+  if (!gears.empty()) {
+    const bool better = few->complete && few->left < kLeftBesideGears * left;
+    if (found && (better || IsFarOff(gears))) return {few->text};
+    for (const RecordingFault& gear : gears) {
+      faults.push_back(FaultAndRemedy(gear, project.tree, recording));
+    }
+    return faults;
+  }
+  if (!found) {
+    faults = OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
+    if (!faults.empty()) return faults;
+    const auto scattered =
+        FindScatteredPositions(comparison.largest(), recording, project.calibration);
+    if (scattered && IsTooLoose(*scattered, project.tree)) {
+      faults.push_back(Describe(*scattered, project.tree));
+    }
+    return faults;
+  }
+  const std::string of_slide =
+      scale_is_known ? ""
+                     : ScaleOfSlides({found->fault}, comparison.largest(), project.calibration);
+  if (!of_slide.empty()) return {of_slide};
+  if (!few->complete) {
+    const auto odd = OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
+    if (!odd.empty()) return odd;
+  }
+  return {few->text};
+}
+
+}  // namespace elastocal

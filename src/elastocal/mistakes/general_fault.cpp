@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/general_fault.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/robot/move_motors.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr std::size_t kMostTogether = 4;
+constexpr int kMostFits = 8;
+constexpr int kSweeps = 2;            // in which each size is estimated beside the others
+constexpr double kLargestStep = 0.3;  // of a gain at once: further off, a derivative says little
+// No robot whose errors are estimated leaves more, m and as a share of its size.
+constexpr double kMostLeftByFaults = 0.02, kMostLeftOfSize = 0.008;
+constexpr double kFewestSds = 6.0;      // of a fault beside the others
+constexpr int kSamePlace = 2;           // postures
+constexpr std::size_t kFewHomed = 2;    // of other robots, more joints differ
+constexpr std::size_t kSeveral = 2;     // joints that begin to be off at the same place
+constexpr double kClearlyBetter = 0.8;  // times the error that one joint leaves
+constexpr double kAsWell = 1.1;         // times the error that joints leave
+
+/// "; if its scale is right, look at ..." where other joints follow the one of a gain; else empty.
+std::string Followers(const RecordingFault& fault, const RobotTree& tree) {
+  const bool joint = fault.coordinate >= 0 && fault.linkage < 0;
+  if (fault.kind != FaultKind::kJointGain || !joint || fault.trial >= 0) return "";
+  std::string names;
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    const bool own = tree.coordinate_joint[Size(fault.coordinate)] == static_cast<int>(k);
+    if (own || !IsMovedBy(tree.joints[k], fault.coordinate)) continue;
+    names += (names.empty() ? "" : ", ") + tree.joints[k].name;
+  }
+  return names.empty() ? ""
+                       : "; if its scale is right, look at the factors by which " + names +
+                             " follow it (couplings of the project, mimic of the URDF)";
+}
+
+/// Undoes a chosen fault, fits, and looks again.
+class FaultExplanation {
+ public:
+  FaultExplanation(const GeneralFault& general, const Project& project)
+      : general_(general), project_(project) {
+    Collect(general.fault, true);
+    if (faults_.size() > 1 && Drifts()) TryWithoutDrift();
+    if (complete_ && faults_.front().linkage < 0) EstimateTogether();
+  }
+
+  bool complete() const { return complete_; }
+  double left() const { return left_; }
+
+  std::string Describe() const {
+    const bool single = faults_.size() == 1 && complete_;
+    const std::string cluster = MovedCluster(single ? kClearlyBetter : kAsWell);
+    if (!cluster.empty()) return cluster;
+    if (single) return Remedy(faults_.front());
+    const std::string together = SeveralJoints();
+    if (!together.empty()) return together;
+    std::string text;
+    std::vector<std::string> names;
+    for (const RecordingFault& one : faults_) {
+      text += (text.empty() ? "" : "; ") + DescribeFault(one, project_.tree, general_.recording);
+      const auto name = NameOfCorrection(one, project_.tree, general_.recording);
+      if (name) names.push_back(*name);
+    }
+    if (!complete_) {
+      return "something differs between the postures that no few faults explain; nearest to it "
+             "come: " +
+             text;
+    }
+    if (names.size() < faults_.size()) return text;
+    return fmt::format("{} (--accept {} corrects them)", text, fmt::join(names, " "));
+  }
+
+ private:
+  std::string Remedy(const RecordingFault& fault) const {
+    return FaultAndRemedy(fault, project_.tree, general_.recording);
+  }
+
+  CalibrationResult Fit(const ErrorModel& model, const BaseParameters& base,
+                        const Recording& recording) const {
+    return Calibrate(model, recording, base, general_.kind, general_.options);
+  }
+  CalibrationResult Fit(const Recording& recording) const {
+    return Fit(general_.model, general_.base, recording);
+  }
+
+  static bool IsSame(const RecordingFault& a, const RecordingFault& b) {
+    return a.kind == b.kind && a.coordinate == b.coordinate && a.trial == b.trial &&
+           a.posture == b.posture && a.end == b.end && a.axis == b.axis && a.by_axis == b.by_axis;
+  }
+
+  static double Sum(const RecordingFault& fault, double more) {
+    const bool factor = fault.kind == FaultKind::kJointGain ||
+                        fault.kind == FaultKind::kCameraScale ||
+                        fault.kind == FaultKind::kCameraAxis;
+    return factor ? (1.0 + fault.size) * (1.0 + more) - 1.0 : fault.size + more;
+  }
+
+  void Add(const RecordingFault& found) {
+    for (RecordingFault& one : faults_) {
+      if (!IsSame(one, found)) continue;
+      one.size = Sum(one, found.size);
+      one.sd = found.sd;
+      return;
+    }
+    faults_.push_back(found);
+  }
+
+  /// What is found in a recording. Of motors of rods, only the first one is known how to be undone.
+  std::vector<RecordingFault> FaultsIn(const Recording& recording, bool with_drift) {
+    const CalibrationResult fit = Fit(recording);
+    left_ = MarkerError(fit, recording, general_.options);
+    std::vector<RecordingFault> found = FindRecordingFaults(fit, recording, general_.options);
+    std::erase_if(found, [&](const RecordingFault& one) {
+      return one.linkage >= 0 || (one.kind == FaultKind::kJointDrift && !with_drift);
+    });
+    return found;
+  }
+
+  void Collect(RecordingFault next, bool with_drift) {
+    faults_.clear();
+    complete_ = false;
+    Recording current = general_.recording;
+    for (int fits = 0; fits < kMostFits; ++fits) {
+      const bool gain = next.kind == FaultKind::kJointGain;
+      if (gain) next.size = std::clamp(next.size, -kLargestStep, kLargestStep);
+      Add(next);
+      if (next.linkage >= 0) complete_ = true;
+      if (complete_ || faults_.size() > kMostTogether) return;
+      current = WithoutFault(current, next);
+      std::vector<RecordingFault> found;
+      try {
+        found = FaultsIn(current, with_drift);
+      } catch (const InputError&) {
+        return;
+      }
+      if (found.empty()) {
+        const double most = kMostLeftOfSize * RobotSize(project_.tree);
+        complete_ = left_ < std::min(kMostLeftByFaults, most);
+        return;
+      }
+      next = found.front();
+    }
+  }
+
+  bool Drifts() const {
+    return std::any_of(faults_.begin(), faults_.end(), [](const RecordingFault& one) {
+      return one.kind == FaultKind::kJointDrift;
+    });
+  }
+
+  /// Several slips one way look like a drift, which needs others beside it.
+  void TryWithoutDrift() {
+    const std::vector<RecordingFault> found = FaultsIn(general_.recording, false);
+    if (found.empty()) return;
+    const std::vector<RecordingFault> with_drift = faults_;
+    const bool complete = complete_;
+    Collect(found.front(), false);
+    if (complete_ && (!complete || faults_.size() <= with_drift.size())) return;
+    faults_ = with_drift;
+    complete_ = complete;
+  }
+
+  Recording Undone() const {
+    Recording recording = general_.recording;
+    for (const RecordingFault& one : faults_) recording = WithoutFault(recording, one);
+    return recording;
+  }
+
+  /// What was taken for a fault while others were unknown may be none.
+  void EstimateTogether() {
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      for (RecordingFault& one : faults_) {
+        const Recording undone = Undone();
+        const RecordingFault left = MeasureFault(one, Fit(undone), undone, general_.options);
+        one.size = Sum(one, left.size);
+        one.sd = left.sd;
+      }
+    }
+    std::erase_if(faults_, [&](const RecordingFault& one) {
+      return faults_.size() > 1 && std::abs(one.size) < kFewestSds * one.sd;
+    });
+  }
+
+  /// A cluster that is elsewhere on its link from where the first fault begins, if that leaves less
+  /// than so many times what the faults do; else empty.
+  std::string MovedCluster(double times) const {
+    const RecordingFault& first = general_.fault;
+    const bool begins = first.kind == FaultKind::kJointOffset && first.linkage < 0 &&
+                        (first.posture > 0 || first.trial >= 0);
+    if (!begins) return "";
+    const Recording undone = Undone();
+    double least = times * MarkerError(Fit(undone), undone, general_.options);
+    std::string found;
+    ErrorModel best_model;
+    Recording best;
+    int found_at = 0;
+    const int count = general_.recording.posture_count();
+    const std::vector<LabelCluster> clusters = SeenClusters(project_, general_.recording);
+    std::vector<std::pair<int, int>> stretches;
+    for (const RecordingFault& one : faults_) {
+      if (one.kind == first.kind) stretches.push_back(StretchOf(one));
+    }
+    std::sort(stretches.begin(), stretches.end());
+    stretches.erase(std::unique(stretches.begin(), stretches.end()), stretches.end());
+    for (std::size_t k = 0; k < clusters.size() * stretches.size(); ++k) {
+      const LabelCluster& cluster = clusters[k / stretches.size()];
+      const auto [begin, end] = stretches[k % stretches.size()];
+      std::vector<int> markers = cluster.markers;
+      std::erase_if(markers, [&, from = begin, to = end](int m) {
+        return !SeenWithin(m, from, to) || !(SeenWithin(m, 0, from) || SeenWithin(m, to, count));
+      });
+      if (markers.empty()) continue;
+      ErrorModel model = general_.model;
+      Recording split = general_.recording;
+      std::vector<Knock> knocks;
+      for (const int posture : {begin, end}) {
+        if (posture > 0 && posture < count) {
+          knocks.push_back({.cluster = cluster.name, .markers = markers, .posture = posture});
+        }
+      }
+      SplitMarkers(knocks, model, split);
+      const double left = MarkerError(Fit(model, BaseOf(model), split), split, general_.options);
+      if (!(left < least)) continue;
+      least = left;
+      found = cluster.name;
+      found_at = begin;
+      best_model = std::move(model);
+      best = std::move(split);
+    }
+    if (found.empty()) return "";
+    // Another robot moves other clusters as well.
+    if (!FindRecordingFaults(Fit(best_model, BaseOf(best_model), best), best, general_.options)
+             .empty()) {
+      return "";
+    }
+    return fmt::format(
+        "cluster {}: its markers seem to be elsewhere on their link from {} on (knocked, or glued "
+        "on again?). Calibrate the postures before and after apart",
+        found, DescribePosture(general_.recording, found_at));
+  }
+
+  BaseParameters BaseOf(const ErrorModel& model) const {
+    return FindBaseParameters(model, project_.identifiability);
+  }
+
+  /// Postures in which a cluster may be elsewhere where a joint seems to be: of a trial, all.
+  std::pair<int, int> StretchOf(const RecordingFault& fault) const {
+    const Recording& recording = general_.recording;
+    const int count = recording.posture_count();
+    if (fault.trial < 0) return {fault.posture, fault.end > 0 ? fault.end : count};
+    const auto first = std::find(recording.trial.begin(), recording.trial.end(), fault.trial);
+    const auto begin = static_cast<int>(first - recording.trial.begin());
+    return {begin, begin + static_cast<int>(std::count(first, recording.trial.end(), fault.trial))};
+  }
+
+  bool SeenWithin(int marker, int begin, int end) const {
+    for (int i = begin; i < end; ++i) {
+      if (Seen(general_.recording, i, marker)) return true;
+    }
+    return false;
+  }
+
+  /// Offsets of different joints that begin where this one does, it among them.
+  std::vector<RecordingFault> BeginWith(const RecordingFault& first) const {
+    std::vector<RecordingFault> there;
+    if (first.kind != FaultKind::kJointOffset) return there;
+    for (const RecordingFault& one : faults_) {
+      const bool same = one.kind == first.kind && one.trial == first.trial &&
+                        std::abs(one.posture - first.posture) <= kSamePlace;
+      const bool known = std::any_of(there.begin(), there.end(), [&](const RecordingFault& other) {
+        return other.coordinate == one.coordinate;
+      });
+      if (same && !known) there.push_back(one);
+    }
+    return there;
+  }
+
+  /// Joints that are off from the same posture on, or in the same trial; else empty.
+  std::string SeveralJoints() const {
+    std::vector<RecordingFault> joints;
+    const RecordingFault* first = nullptr;
+    for (const RecordingFault& one : faults_) {
+      std::vector<RecordingFault> there = BeginWith(one);
+      if (there.size() <= joints.size()) continue;
+      joints = std::move(there);
+      first = &one;
+    }
+    if (joints.size() < kSeveral) return "";
+    std::vector<std::string> sizes;
+    for (const RecordingFault& one : joints) {
+      const LoggedPosition logged = LoggedPositionOf(project_.tree, one.linkage, one.coordinate);
+      sizes.push_back(fmt::format("{} by {:.2f} {}", logged.name,
+                                  one.size * (logged.slides ? 1e3 : 180.0 / M_PI),
+                                  logged.slides ? "mm" : "deg"));
+    }
+    const bool of_trial = first->trial >= 0 && !IsInPartOfTrial(*first, general_.recording);
+    return fmt::format(
+        "positions of several joints are off {} ({}): another robot, or joints that were homed "
+        "anew? Calibrate what was recorded before and after apart{}",
+        of_trial ? "in trial " + general_.recording.trials[Size(first->trial)].name
+                 : "from " + DescribePosture(general_.recording, first->posture) + " on",
+        fmt::join(sizes, ", "), IfHomed(joints));
+  }
+
+  /// What corrects them, where all that was found are they.
+  std::string IfHomed(const std::vector<RecordingFault>& joints) const {
+    if (!complete_ || joints.size() < faults_.size() || joints.size() > kFewHomed) return "";
+    std::string names;
+    for (const RecordingFault& one : joints) {
+      const auto name = NameOfCorrection(one, project_.tree, general_.recording);
+      if (!name) return "";
+      names += " " + *name;
+    }
+    return " (if they were homed anew, --accept" + names + " corrects them)";
+  }
+
+  const GeneralFault& general_;
+  const Project& project_;
+  std::vector<RecordingFault> faults_;
+  bool complete_ = false;  ///< nothing is found beside them, and they explain the recording
+  double left_ = 0.0;      ///< by the last fit, m
+};
+
+}  // namespace
+
+std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
+                           const Recording& recording) {
+  const std::string text = DescribeFault(fault, tree, recording);
+  const std::optional<std::string> name = NameOfCorrection(fault, tree, recording);
+  const auto& of = tree.coordinate_joint;
+  const bool slides = fault.kind == FaultKind::kJointGain && fault.coordinate >= 0 &&
+                      tree.joints[Size(of[Size(fault.coordinate)])].type == JointType::kPrismatic;
+  if (name && slides && fault.trial < 0) {
+    const double scale = 1.0 / (1.0 + fault.size);
+    return fmt::format(
+        "{} (--accept {} corrects it; if its scale is right, the cameras' is {:.4f} times the true "
+        "one, which --accept scale={:.5f} corrects: measure a known length)",
+        text, *name, scale, scale);
+  }
+  const std::string followers = Followers(fault, tree);
+  return name ? fmt::format("{} (--accept {} corrects it{})", text, *name, followers)
+              : text + followers;
+}
+
+FaultsInWords ExplainFault(const GeneralFault& general, const Project& project) {
+  const FaultExplanation explanation(general, project);
+  return {explanation.Describe(), explanation.complete(), explanation.left()};
+}
+
+}  // namespace elastocal

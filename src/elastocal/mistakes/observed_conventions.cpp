@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/observed_conventions.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "elastocal/observation/seen_tag.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Quaternions are x, y, z, w.
+Eigen::Quaterniond AttitudeIn(const Eigen::VectorXd& pose) {
+  return Eigen::Quaterniond(Eigen::Vector4d(pose.tail<4>()));
+}
+
+Eigen::VectorXd PoseOf(const Eigen::Vector3d& position, const Eigen::Quaterniond& attitude) {
+  Eigen::VectorXd pose(7);
+  pose << position, attitude.coeffs();
+  return pose;
+}
+
+Eigen::VectorXd WithWLast(const Eigen::VectorXd& pose) {
+  return PoseOf(pose.head<3>(), Eigen::Quaterniond(pose[3], pose[4], pose[5], pose[6]));
+}
+
+Eigen::VectorXd WithWFirst(const Eigen::VectorXd& pose) {
+  return PoseOf(pose.head<3>(), Eigen::Quaterniond(pose[5], pose[6], pose[3], pose[4]));
+}
+
+Eigen::VectorXd WithAttitudeReversed(const Eigen::VectorXd& pose) {
+  return PoseOf(pose.head<3>(), AttitudeIn(pose).conjugate());
+}
+
+Eigen::VectorXd Inverse(const Eigen::VectorXd& pose) {
+  const Eigen::Quaterniond back = AttitudeIn(pose).conjugate();
+  return PoseOf(back * Eigen::Vector3d(-pose.head<3>()), back);
+}
+
+/// Reverses y of a position, and of a pose.
+Eigen::VectorXd Mirrored(const Eigen::VectorXd& measured) {
+  Eigen::VectorXd mirrored = measured;
+  mirrored[1] *= -1.0;
+  if (measured.size() == 7) {
+    mirrored[3] *= -1.0;
+    mirrored[5] *= -1.0;
+  }
+  return mirrored;
+}
+
+Eigen::VectorXd WithUvExchanged(const Eigen::VectorXd& corners) {
+  Eigen::VectorXd exchanged = corners;
+  for (int i = 0; i < exchanged.size(); i += 2) std::swap(exchanged[i], exchanged[i + 1]);
+  return exchanged;
+}
+
+/// Counted downwards, where the centre of the camera is in the middle of the image.
+Eigen::VectorXd WithVDownwards(const Instrument& instrument, const Eigen::VectorXd& corners) {
+  const auto& tag = dynamic_cast<const SeenTag&>(instrument);
+  Eigen::VectorXd downwards = corners;
+  for (int i = 1; i < downwards.size(); i += 2) downwards[i] = 2.0 * tag.camera.cy - corners[i];
+  return downwards;
+}
+
+/// Of corners that run clockwise from that of this number.
+Eigen::VectorXd Counterclockwise(const Eigen::VectorXd& corners, int first) {
+  Eigen::VectorXd turned = corners;
+  for (int corner = 0; corner < 4; ++corner) {
+    turned.segment<2>(2 * corner) = corners.segment<2>(2 * ((4 + first - corner) % 4));
+  }
+  return turned;
+}
+
+class Conventions {
+ public:
+  Conventions(const ObservedRobot& model, const Observations& observations)
+      : model_(model), observations_(observations) {}
+
+  /// Rewrites what instruments of these kinds measured, if there are any.
+  void Add(const std::vector<std::string_view>& kinds, const auto& rewrite, const std::string& what,
+           const std::string& right, const std::string& family = "") {
+    WrittenConvention convention{what, right, family, observations_};
+    convention.turns_mountings = kinds.front() == "image" || kinds.front() == "gravity";
+    bool any = false;
+    for (Observation& observation : convention.undone.all) {
+      const Instrument& instrument = model_.instrument(observation.instrument);
+      const std::string_view kind = instrument.kind();
+      if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) continue;
+      if constexpr (std::is_invocable_v<decltype(rewrite), Instrument, Eigen::VectorXd>) {
+        observation.measured = rewrite(instrument, observation.measured);
+      } else {
+        observation.measured = rewrite(observation.measured);
+      }
+      any = true;
+    }
+    if (any) found.push_back(std::move(convention));
+  }
+
+  std::vector<WrittenConvention> found;
+
+ private:
+  const ObservedRobot& model_;
+  const Observations& observations_;
+};
+
+void AddOfBodies(Conventions& conventions) {
+  conventions.Add({"pose"}, WithWLast, "w comes first in the quaternions of bodies", "x, y, z, w");
+  conventions.Add({"pose"}, WithWFirst,
+                  "the columns qw, qx, qy, qz have x, y, z, w of the quaternions of bodies",
+                  "each under its name");
+  conventions.Add({"pose"}, WithAttitudeReversed,
+                  "the attitudes of bodies are those of the tracker in the body",
+                  "that of the body in the tracker");
+  conventions.Add({"pose"}, Inverse, "the poses of bodies are those of the tracker in the body",
+                  "that of the body in the tracker");
+  conventions.Add({"pose", "position"}, Mirrored, "one axis of the tracker is reversed",
+                  "a right-handed frame");
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto reversed = [axis](Eigen::VectorXd pose) {
+      pose[axis] *= -1.0;
+      return pose;
+    };
+    conventions.Add({"pose"}, reversed,
+                    std::string(1, "xyz"[axis]) +
+                        " of the positions of bodies is reversed, but not "
+                        "in their attitudes",
+                    "one right-handed frame of both");
+  }
+}
+
+void AddOfImages(Conventions& conventions) {
+  conventions.Add({"image"}, WithUvExchanged, "u and v of the corners of tags are exchanged",
+                  "u to the right and v down");
+  conventions.Add({"image"}, WithVDownwards, "v of the corners of tags is counted upwards",
+                  "v from the upper edge of the image down");
+  const char* const places[] = {"below left", "below right", "above right", "above left"};
+  for (int first = 0; first < 4; ++first) {
+    const auto counterclockwise = [first](const Eigen::VectorXd& corners) {
+      return Counterclockwise(corners, first);
+    };
+    conventions.Add({"image"}, counterclockwise,
+                    std::string("the corners of tags run clockwise from ") + places[first],
+                    "counterclockwise from below left", "the corners of tags run clockwise");
+  }
+}
+
+void AddOfInertialUnits(Conventions& conventions) {
+  const std::string right = "9.81 m/s^2 along the axis that points up while the robot is at rest";
+  const std::string family =
+      "the axes of inertial units are left-handed (all or one of them reversed, or two exchanged)";
+  const auto add = [&](const auto& rewrite, const std::string& what) {
+    conventions.Add({"gravity"}, rewrite, what, right, family);
+  };
+  add([](const Eigen::VectorXd& shown) -> Eigen::VectorXd { return -shown; },
+      "all axes of inertial units are reversed");
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto reversed = [axis](Eigen::VectorXd shown) {
+      shown[axis] *= -1.0;
+      return shown;
+    };
+    add(reversed, std::string(1, "xyz"[axis]) + " of inertial units is reversed");
+    const int next = (axis + 1) % 3;
+    const auto exchanged = [axis, next](Eigen::VectorXd shown) {
+      std::swap(shown[axis], shown[next]);
+      return shown;
+    };
+    add(exchanged,
+        std::string(1, "xyz"[axis]) + " and " + "xyz"[next] + " of inertial units are exchanged");
+  }
+}
+
+}  // namespace
+
+std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
+                                                  const Observations& observations) {
+  Conventions conventions(model, observations);
+  AddOfBodies(conventions);
+  AddOfImages(conventions);
+  AddOfInertialUnits(conventions);
+  return std::move(conventions.found);
+}
+
+}  // namespace elastocal

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/plain_mistakes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/log_check.hpp"
+#include "elastocal/calibration/moved_frame.hpp"
+#include "elastocal/calibration/odd_postures.hpp"
+#include "elastocal/calibration/placed_misfit.hpp"
+#include "elastocal/calibration/told_positions.hpp"
+#include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/log_alternatives.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kFewestPlaced = 8;  // of few, anything is explained
+// No robot whose errors are estimated leaves more, m and of its size:
+constexpr double kMostLeft = 0.02, kMostOfSize = 0.01;
+// What is left at most once a mistake is undone, of the placed nominal robot:
+constexpr double kLeftOfMisfit = 0.7;
+constexpr double kLeftByOneOfSeveral = 0.9;
+constexpr double kLeftByToldPositions = 0.3;  // of one joint, told by the markers
+constexpr double kUntold = std::numeric_limits<double>::infinity();
+constexpr double kLeftWhereNoRobot = 0.5;  // where the offsets with the mistake are no robot's
+// ... and of the robot with joint offsets:
+constexpr double kLeftOfOffsets = 0.5;
+constexpr double kLeftByNoRobot = 0.98;  // where neither the offsets with nor without it are one's
+constexpr double kNoWorseThanNoRobot = 1.1;  // where those without it are
+// A root that moved:
+constexpr double kFarFromRobot = 0.05;  // m: beyond what a fit leaves that has not come to rest
+constexpr double kLeftOfGeometry = 0.3;
+constexpr int kFewestBodies = 2;  // that show whether it stands elsewhere
+constexpr int kEnoughPostures = 500;
+
+/// A robot and what was recorded of it, once a mistake is undone.
+struct Alternative {
+  std::string what;  ///< the mistake, in words
+  std::string name;  ///< what `--accept` calls it; empty: it is in the project
+  ErrorModel model;
+  Recording recording;
+};
+
+ErrorModel ModelOf(const Project& project, const Recording& recording) {
+  return SelectMarkers(MakeProjectModel(project, {}), recording.marker_names);
+}
+
+double MisfitOf(const ErrorModel& model, const Recording& recording) {
+  try {
+    return PlacedMisfit(model, recording);
+  } catch (const InputError&) {  // rods that do not close
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
+std::string Describe(const MovedFrame& moved) {
+  return fmt::format(
+      "from posture {} on the frame of the markers lies elsewhere against the root link: {} on it "
+      "moved by {:.2g} mm and {:.2g} mrad, which displaces the other markers by {:.2g} mm (a "
+      "tracker or the base was pushed). Calibrate the postures before and after apart, or let "
+      "these markers place the root link in each posture (recording: {{root: free}} in the "
+      "project)",
+      moved.posture + 1, fmt::join(moved.markers, ", "), 1e3 * moved.shift, 1e3 * moved.angle,
+      1e3 * moved.displaced);
+}
+
+/// With so many of the postures, evenly, that more would tell nothing new of the root link.
+Alternative Thinned(Alternative robot) {
+  const int count = robot.recording.posture_count();
+  if (count <= kEnoughPostures) return robot;
+  std::vector<int> some;
+  for (int i = 0; i < kEnoughPostures; ++i) {
+    some.push_back(static_cast<int>(static_cast<std::int64_t>(i) * count / kEnoughPostures));
+  }
+  robot.recording = SelectPostures(robot.recording, some);
+  return robot;
+}
+
+std::optional<CalibrationResult> Fit(const Alternative& robot, ModelKind kind,
+                                     const Project& project) {
+  IdentifiabilityOptions identifiability = project.identifiability;
+  if (robot.recording.free_root) identifiability.root = RootPose::kFree;
+  try {
+    const BaseParameters base = FindBaseParameters(robot.model, identifiability);
+    return Calibrate(robot.model, robot.recording, base, kind, project.calibration);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// rms distance of the markers from a robot of which so much is estimated, whatever that is, m. The
+/// offsets of joints may be so large that the nominal robot is better with a mistake than without.
+double ErrorOf(const Alternative& robot, ModelKind kind, const Project& project) {
+  const auto result = Fit(robot, kind, project);
+  return result ? MarkerError(*result, robot.recording, project.calibration)
+                : std::numeric_limits<double>::infinity();
+}
+
+/// Looks for what the placed nominal robot shows, and a robot with joint offsets confirms.
+class PlainSearch {
+ public:
+  PlainSearch(const Project& project, const Recording& recording)
+      : project_(project),
+        given_{"", "", ModelOf(project, recording), recording},
+        misfit_(MisfitOf(given_.model, recording)),
+        least_(std::min(kMostLeft, kMostOfSize * RobotSize(project.tree))) {}
+
+  /// Mistakes, each beside those before it; empty: none.
+  std::vector<Alternative> Run() {
+    for (const auto& search :
+         {&PlainSearch::FindInTable, &PlainSearch::FindExchange, &PlainSearch::FindWrongFollower,
+          &PlainSearch::FindLostColumn, &PlainSearch::FindHalfTurn, &PlainSearch::FindOtherColumn,
+          &PlainSearch::FindPair}) {
+      std::vector<Alternative> found = Confirmed((this->*search)());
+      if (!found.empty()) return found;
+    }
+    std::vector<Alternative> odd = ConfirmedByOffsets(FindOdd());
+    return odd.empty() ? FindMovedRoot() : odd;
+  }
+
+ private:
+  std::vector<LogSuspicion> SignsIn(const Recording& recording) const {
+    std::vector<LogSuspicion> signs = PossibleLogMistakes(recording, project_.tree);
+    std::erase_if(signs, [](const auto& one) { return one.kind != LogContradiction::kSign; });
+    return signs;
+  }
+
+  std::vector<Alternative> FindInTable() const {
+    std::vector<Alternative> found;
+    std::size_t told = 0;  // the last one that explains most of what is left
+    for (RecordingMistake& one : FindMistakesBy(
+             project_, given_.recording, misfit_,
+             [&](const Recording& corrected) { return MisfitOf(given_.model, corrected); },
+             [&](const Recording& recording) { return SignsIn(recording); }, kLeftByOneOfSeveral)) {
+      found.push_back({one.what, one.name, given_.model, std::move(one.corrected)});
+      if (one.after < kLeftOfMisfit * one.before) told = found.size();
+    }
+    found.resize(told);
+    return found;
+  }
+
+  std::vector<Alternative> FindExchange() const {
+    const std::vector<LogSuspicion> possible = PossibleLogMistakes(given_.recording, project_.tree);
+    const LogSuspicion* best = nullptr;
+    double least = kLeftOfMisfit * misfit_;
+    for (const LogSuspicion& one : possible) {
+      if (one.kind != LogContradiction::kExchange) continue;
+      const double left = MisfitWithout(one);
+      if (!(left < least)) continue;
+      least = left;
+      best = &one;
+    }
+    if (best == nullptr) return {};
+    return {{DescribeSuspicion(*best, project_.tree, given_.recording),
+             NameOf(*best, project_.tree), given_.model,
+             WithoutMistake(given_.recording, *best, project_.tree)}};
+  }
+
+  double MisfitWithout(const LogSuspicion& mistake) const {
+    try {
+      return MisfitOf(given_.model, WithoutMistake(given_.recording, mistake, project_.tree));
+    } catch (const InputError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+
+  /// Joints that follow others otherwise than described: the other way, or not; each, and all that
+  /// follow the same one.
+  std::vector<Alternative> FindWrongFollower() const {
+    const RobotTree& tree = project_.tree;
+    std::vector<std::vector<Follower>> groups;
+    std::map<int, std::vector<Follower>> led;
+    for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+      if (!tree.joints[k].mimic) continue;
+      const std::vector<Drive> drives = DrivesOf(tree.joints[k]);
+      for (std::size_t d = 0; d < drives.size(); ++d) {
+        groups.push_back({{k, d}});
+        led[drives[d].coordinate].push_back({k, d});
+      }
+    }
+    for (const auto& [coordinate, followers] : led) {
+      if (followers.size() > 1) groups.push_back(followers);
+    }
+    std::vector<Alternative> found;
+    double least = kLeftOfMisfit * misfit_;
+    for (const std::vector<Follower>& group : groups) {
+      for (const double factor : {-1.0, 0.0}) {
+        Alternative other = Following(group, factor);
+        const double left = MisfitOf(other.model, other.recording);
+        if (!(left < least)) continue;
+        least = left;
+        found = {std::move(other)};
+      }
+    }
+    return found;
+  }
+
+  /// A joint, and which of those that it follows.
+  struct Follower {
+    std::size_t joint = 0, drive = 0;
+  };
+
+  Alternative Following(const std::vector<Follower>& group, double factor) const {
+    Project other = project_;
+    const RobotTree& tree = project_.tree;
+    std::string what;
+    for (const Follower& one : group) {
+      const Drive drive = DrivesOf(tree.joints[one.joint])[one.drive];
+      Joint& joint = other.tree.joints[one.joint];
+      (one.drive == 0 ? joint.multiplier : joint.more[one.drive - 1].multiplier) *= factor;
+      const Joint& leads = tree.joints[Size(tree.coordinate_joint[Size(drive.coordinate)])];
+      what +=
+          (what.empty() ? "" : ", ") +
+          fmt::format("{} seems to follow {} by a factor of {:g}, not {:g} as described",
+                      joint.name, leads.name, factor * drive.multiplier + 0.0, drive.multiplier);
+    }
+    return {what + " (couplings of the project, mimic of the URDF)", "",
+            ModelOf(other, given_.recording), given_.recording};
+  }
+
+  /// A joint that moved, and whose column says the same in all rows: the markers tell where it was.
+  /// That explains a part of any mistake, so it has to explain most.
+  std::vector<Alternative> FindLostColumn() const {
+    if (given_.recording.free_root || misfit_ < least_) return {};
+    const RobotTree& tree = project_.tree;
+    std::vector<Alternative> found;
+    double least = kLeftByToldPositions * misfit_;
+    for (const int k : given_.model.active_joints) {
+      const Joint& joint = tree.joints[Size(k)];
+      const auto column = given_.recording.q.col(joint.coordinate);
+      if (joint.mimic || IsMovedByRods(tree, k) || column.maxCoeff() > column.minCoeff()) continue;
+      Recording told = WithToldPositions(given_.model, given_.recording, joint.coordinate);
+      const double left = MisfitOf(given_.model, told);
+      if (!(left < least)) continue;
+      least = left;
+      found = {{joint.name +
+                    ": its positions are the same in all rows, and the markers show that it moved "
+                    "(a column that was not logged?)",
+                "", given_.model, std::move(told)}};
+    }
+    return found;
+  }
+
+  /// A joint whose positions are logged within half a turn, though it turns further.
+  std::vector<Alternative> FindHalfTurn() const {
+    std::vector<Alternative> found;
+    double least = kLeftOfMisfit * misfit_;
+    for (const int k : given_.model.active_joints) {
+      const Joint& joint = project_.tree.joints[Size(k)];
+      if (joint.mimic || IsMovedByRods(project_.tree, k)) continue;
+      HalfTurns half = FindHalfTurns(given_.model, given_.recording, joint.coordinate);
+      if (half.postures.empty() || !(MisfitOf(given_.model, half.turned) < least)) continue;
+      least = MisfitOf(given_.model, half.turned);
+      found = {{fmt::format("{}: its positions are off by half a turn in {} of {} postures (logged "
+                            "modulo half a turn?)",
+                            joint.name, half.postures.size(), half.turned.posture_count()),
+                "", given_.model, std::move(half.turned)}};
+    }
+    return found;
+  }
+
+  std::vector<Alternative> FindOtherColumn() const {
+    if (misfit_ < least_) return {};
+    std::vector<Alternative> found;
+    double least = kLeftOfMisfit * misfit_;
+    for (LogAlternative& one :
+         OtherColumns(given_.recording, project_.tree, given_.model.active_joints)) {
+      const double left = MisfitOf(given_.model, one.recording);
+      if (!(left < least)) continue;
+      least = left;
+      found = {{std::move(one.what), "", given_.model, std::move(one.recording)}};
+    }
+    return found;
+  }
+
+  std::vector<Alternative> FindPair() const {
+    if (misfit_ < least_) return {};
+    std::vector<Alternative> found;
+    for (LogAlternative& one : BestPair(given_.recording, project_.tree, [&](const Recording& of) {
+           return MisfitOf(given_.model, of);
+         })) {
+      found.push_back(
+          {std::move(one.what), std::move(one.name), given_.model, std::move(one.recording)});
+    }
+    return found;
+  }
+
+  /// Mistakes in a part of the table.
+  std::vector<Alternative> FindOdd() const {
+    std::vector<Alternative> found;
+    for (OddPostures& one : FindOddPostures(given_.model, given_.recording,
+                                            SeenClusters(project_, given_.recording))) {
+      found.push_back({std::move(one.what), "", given_.model, std::move(one.corrected)});
+    }
+    return found;
+  }
+
+  /// A root link that was taken to stand still, and does not. In each posture, its pose explains
+  /// errors of the robot as well: all of them are estimated before it is said to move.
+  std::vector<Alternative> FindMovedRoot() const {
+    if (given_.recording.free_root) return {};
+    std::set<int> bodies;
+    for (const Marker& marker : given_.model.markers) {
+      bodies.insert(project_.tree.links[Size(marker.link)].body);
+    }
+    if (bodies.size() < kFewestBodies) return {};
+    Alternative free = given_;
+    free.recording.free_root = true;
+    if (!(MisfitOf(free.model, free.recording) < kLeftOfMisfit * misfit_)) return {};
+    const double before = ErrorOf(Thinned(given_), ModelKind::kGeometric, project_);
+    if (!(before > kFarFromRobot)) return {};
+    const double after = ErrorOf(Thinned(free), ModelKind::kGeometric, project_);
+    if (!(after < kLeftOfGeometry * before) || after > kMostLeft) return {};
+    free.what = fmt::format(
+        "the root link seems to stand elsewhere in each posture (if it does, write recording: "
+        "{{root: free}} into the project); with all geometric errors estimated, markers are {:.3g} "
+        "mm off if so, and {:.3g} mm if not",
+        1e3 * after, 1e3 * before);
+    return {free};
+  }
+
+  struct OffsetsFit {
+    double error = std::numeric_limits<double>::infinity();  ///< rms distance of the markers, m
+    bool robot = false;  ///< whether some robot may have the offsets
+  };
+
+  OffsetsFit FitOffsets(const Alternative& of) const {
+    const auto result = Fit(of, ModelKind::kOffsetsOnly, project_);
+    if (!result) return {};
+    return {MarkerError(*result, of.recording, project_.calibration),
+            std::isfinite(FitError(*result, of.recording, project_.calibration))};
+  }
+
+  /// All of them, with the evidence, unless offsets of joints explain them.
+  std::vector<Alternative> Confirmed(std::vector<Alternative> steps) const {
+    if (steps.empty()) return {};
+    const double left = MisfitOf(steps.back().model, steps.back().recording);
+    if (left > kLeftOfMisfit * misfit_) return {};
+    return ConfirmedByOffsets(std::move(steps), left);
+  }
+
+  /// The same by the offsets alone: the typical distance says little of a part of the table.
+  std::vector<Alternative> ConfirmedByOffsets(std::vector<Alternative> steps,
+                                              double left = kUntold) const {
+    if (steps.empty()) return {};
+    const OffsetsFit with = FitOffsets(given_), without = FitOffsets(steps.back());
+    if (!std::isfinite(with.error) || !(without.error < kMostLeft)) return {};
+    // Offsets of half a turn, and zeros of motors, explain much or all, with values that no robot
+    // has.
+    const bool no_robot = !with.robot && left < kLeftWhereNoRobot * misfit_;
+    double most = no_robot ? kLeftByNoRobot : kLeftOfOffsets;
+    if (no_robot && without.robot) most = kNoWorseThanNoRobot;
+    if (without.error > most * with.error) return {};
+    for (Alternative& one : steps) {
+      one.what += fmt::format(
+          "; without that, and with joint offsets estimated, markers are {:.3g} mm off, with it "
+          "{:.3g} mm{}",
+          1e3 * without.error, 1e3 * with.error, no_robot ? " by errors that no robot has" : "");
+    }
+    return steps;
+  }
+
+  const Project& project_;
+  Alternative given_;
+  double misfit_;  ///< m
+  double least_;   ///< misfit of a mistake that is looked for, m
+};
+
+}  // namespace
+
+std::vector<std::string> FindPlainMistakes(const Project& project, const Recording& recording) {
+  if (!recording.trials.empty() || recording.posture_count() < kFewestPlaced) return {};
+  std::vector<std::string> found;
+  if (const auto moved = FindMovedFrame(ModelOf(project, recording), recording)) {
+    return {Describe(*moved)};
+  }
+  for (const Alternative& one : PlainSearch(project, recording).Run()) {
+    found.push_back(one.name.empty() ? one.what
+                                     : one.what + " (--accept " + one.name + " corrects it)");
+  }
+  return found;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/up_by_loads.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/recorded/choose_elasticity.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeftOfStated = 0.6;  // at most, with another axis up
+constexpr double kLeftOfRigid = 0.75;
+constexpr double kShareOfFound = 0.2;      // of what it explains is explained with the stated axis
+constexpr double kLeftOfCalibrated = 0.9;  // of what causes explain with the stated axis
+constexpr int kLeastRows = 10;
+constexpr int kMostRows = 60;
+
+/// Whether gravity alone tells the loads of the joints of a robot whose root link is held.
+bool IsHeldByStatics(const Project& project, const Recording& recording) {
+  const bool held = std::all_of(recording.trials.begin(), recording.trials.end(),
+                                [](const Trial& trial) { return trial.support.empty(); });
+  return held && !HasFreeRoot(recording) && recording.torques.rows() == 0 &&
+         HasMasses(project.tree) && recording.posture_count() >= kLeastRows;
+}
+
+Recording Thinned(const Recording& recording) {
+  const int step = (recording.posture_count() + kMostRows - 1) / kMostRows;
+  std::vector<int> kept;
+  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
+  return SelectPostures(recording, kept);
+}
+
+CalibrationResult FitOf(const RecordedModel& robot, const Recording& recording,
+                        const CalibrationOptions& options) {
+  return Calibrate(robot.model, recording, robot.base, ModelKinds(robot.model).back(), options);
+}
+
+/// rms distance of the markers from the robot that is calibrated from a recording, m.
+double ErrorOfFit(const RecordedModel& robot, const Recording& recording,
+                  const CalibrationOptions& options) {
+  return MarkerError(FitOf(robot, recording, options), recording, options);
+}
+
+/// Whether springs explain much with that axis up, as good as nothing with the stated one, and
+/// more than all that was found with the stated one: noise may be most of both errors.
+bool OnlyItExplains(const UpByLoads& found, double rigid, double calibrated) {
+  const double by_found = rigid * rigid - found.found * found.found;
+  const double by_stated = rigid * rigid - found.stated * found.stated;
+  return found.found < kLeftOfRigid * rigid && by_stated < kShareOfFound * by_found &&
+         found.found < kLeftOfCalibrated * calibrated;
+}
+
+}  // namespace
+
+std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
+                                       const Measurements& as_recorded, double calibrated) {
+  if (!IsHeldByStatics(given, as_recorded.calibration)) return std::nullopt;
+  Project project = given;
+  project.elasticity.torsion = std::vector<std::string>{"*"};
+  project.elasticity.extra.clear();  // causes that a wrong direction has called for
+  Measurements measured = as_recorded;
+  measured.calibration = Thinned(as_recorded.calibration);
+  const RecordedModel robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
+  Recording& recording = measured.calibration;
+  const Eigen::Vector3d stated = recording.gravity;
+  UpByLoads found{.axis = {}, .stated = 0.0, .found = std::numeric_limits<double>::infinity()};
+  double rigid = 0.0;
+  try {
+    rigid = MarkerError(
+        Calibrate(robot.model, recording, robot.base, ModelKind::kGeometric, project.calibration),
+        recording, project.calibration);
+    found.stated = ErrorOfFit(robot, recording, project.calibration);
+    for (const char* axis : {"x", "-x", "y", "-y", "z", "-z"}) {
+      recording.gravity = GravityBelow(axis);
+      if (recording.gravity.normalized().dot(stated.normalized()) > 0.9) continue;
+      const double error = ErrorOfFit(robot, recording, project.calibration);
+      if (error < found.found) {
+        found.axis = axis;
+        found.found = error;
+      }
+    }
+  } catch (const InputError&) {  // fewer equations than a robot with springs has unknowns
+    return std::nullopt;
+  }
+  const bool far_better = found.found < kLeftOfStated * found.stated;
+  if (!far_better && !OnlyItExplains(found, rigid, calibrated)) return std::nullopt;
+  return found;
+}
+
+std::string Describe(const UpByLoads& found, const Recording& recording) {
+  return fmt::format(
+      "gravity: with {} up, joints that give way explain the recording to {:.3g} mm, as stated "
+      "only to {:.3g} mm; is {} the axis of the markers' frame that points up? ({})",
+      found.axis, 1e3 * found.found, 1e3 * found.stated, found.axis,
+      recording.trials.empty()
+          ? "recording.up in the project; a direction [x, y, z], where no axis does"
+          : "up in experiment.yaml");
+}
+
+}  // namespace elastocal

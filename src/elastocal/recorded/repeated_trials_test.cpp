@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/recorded/repeated_trials.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace elastocal {
+namespace {
+
+/// Two trials of two postures each, every number different.
+Recording TwoTrials(const std::string& a, const std::string& b, double from) {
+  Recording recording;
+  recording.trials = {{.name = a, .chains = {"arm"}}, {.name = b, .chains = {"arm"}}};
+  recording.trial = {0, 0, 1, 1};
+  recording.marker_names = {"A", "B"};
+  recording.q = Eigen::VectorXd::LinSpaced(8, from, from + 1.0).reshaped(4, 2);
+  recording.markers = Eigen::VectorXd::LinSpaced(24, from, from + 1.0).reshaped(4, 6);
+  return recording;
+}
+
+TEST(RepeatedTrials, AreFoundWithinTheEstimateAndAcrossWhateverTheirNames) {
+  Measurements measured;
+  measured.calibration = TwoTrials("a", "b", 0.0);
+  measured.validation = TwoTrials("c", "d", 7.0);
+  RepeatedTrials repeated = FindRepeatedTrials(measured);
+  EXPECT_TRUE(repeated.estimated_twice.empty());
+  EXPECT_TRUE(repeated.judged_by_estimated.empty());
+
+  // A marker that only one of them has seen is no difference.
+  Recording& judged = measured.validation;
+  judged.q.bottomRows(2) = measured.calibration.q.topRows(2);
+  judged.markers.bottomRows(2) = measured.calibration.markers.topRows(2);
+  judged.markers(3, 5) = std::numeric_limits<double>::quiet_NaN();
+  repeated = FindRepeatedTrials(measured);
+  ASSERT_EQ(repeated.judged_by_estimated.size(), 1u);
+  EXPECT_EQ(repeated.judged_by_estimated[0].find("trial d is the same recording as trial a"), 0u);
+  judged.markers(2, 0) += 1e-9;
+  EXPECT_TRUE(FindRepeatedTrials(measured).judged_by_estimated.empty());
+
+  measured.calibration.q.bottomRows(2) = Eigen::MatrixXd(measured.calibration.q.topRows(2));
+  measured.calibration.markers.bottomRows(2) =
+      Eigen::MatrixXd(measured.calibration.markers.topRows(2));
+  EXPECT_EQ(FindRepeatedTrials(measured).estimated_twice.size(), 1u);
+}
+
+TEST(RepeatedTrials, AreNotLookedForInATable) {
+  Measurements measured;
+  measured.calibration = TwoTrials("a", "b", 0.0);
+  measured.calibration.trials.clear();
+  measured.calibration.trial.clear();
+  EXPECT_TRUE(FindRepeatedTrials(measured).estimated_twice.empty());
+}
+
+}  // namespace
+}  // namespace elastocal
