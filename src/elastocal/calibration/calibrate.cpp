@@ -97,31 +97,43 @@ void Join(OutlierVerdict& into, const OutlierVerdict& others) {
   add(into.footings, others.footings, [](const LooseFooting& at) { return at.posture; });
 }
 
+struct EquationCount {
+  Eigen::Index equations = 0;
+  Eigen::Index unknowns =
+      0;  ///< that could be identified, and are not told by an earlier calibration
+  bool enough() const { return equations >= unknowns; }
+};
+
+EquationCount CountEquations(const FitProblem& problem, const Placement& placement,
+                             const Selection& selection, const BaseParameters& base,
+                             const std::vector<int>& free) {
+  const EarlierPart earlier = PartOf(problem.options.earlier, problem.model, free);
+  EquationCount count{.equations = 3 * selection.markers.count()};
+  const Eigen::Index identifiable = std::count_if(free.begin(), free.end(), [&](int i) {
+    return std::binary_search(base.kept.begin(), base.kept.end(), i);
+  });
+  count.unknowns =
+      std::max<Eigen::Index>(0, identifiable - static_cast<Eigen::Index>(earlier.positions.size()));
+  for (int i = 0; i < static_cast<int>(placement.T_ref_waist.size()); ++i) {
+    count.unknowns += 6;
+    if (placement.footing[i] >= 0 && selection.tied[i] != 0) count.equations += 6;
+  }
+  count.unknowns += 6 * static_cast<Eigen::Index>(placement.footings.size());
+  return count;
+}
+
 /// The prior makes any number of equations enough; fewer than what could be identified are refused
 /// all the same, unless an earlier calibration tells it.
 void CheckEquations(const FitProblem& problem, const Placement& placement,
                     const Selection& selection, const BaseParameters& base,
-                    const std::vector<int>& free, std::size_t outliers) {
+                    const std::vector<int>& free) {
   const Recording& recording = problem.recording;
-  const EarlierPart earlier = PartOf(problem.options.earlier, problem.model, free);
-  auto equations = 3 * selection.markers.count();
-  Eigen::Index unknowns = std::count_if(free.begin(), free.end(), [&](int i) {
-    return std::binary_search(base.kept.begin(), base.kept.end(), i);
-  });
-  unknowns =
-      std::max<Eigen::Index>(0, unknowns - static_cast<Eigen::Index>(earlier.positions.size()));
-  for (int i = 0; i < static_cast<int>(placement.T_ref_waist.size()); ++i) {
-    unknowns += 6;
-    if (placement.footing[i] >= 0 && selection.tied[i] != 0) equations += 6;
-  }
-  unknowns += 6 * static_cast<Eigen::Index>(placement.footings.size());
-  if (equations >= unknowns) return;
-  const std::string left_out =
-      outliers == 0 ? "" : ", " + std::to_string(outliers) + " observations left out as outliers";
-  throw InputError(recording.source + ": " + std::to_string(equations) + " equations (" +
+  const EquationCount count = CountEquations(problem, placement, selection, base, free);
+  if (count.enough()) return;
+  throw InputError(recording.source + ": " + std::to_string(count.equations) + " equations (" +
                    std::to_string(recording.posture_count()) + " postures, " +
-                   std::to_string(recording.marker_count()) + " markers" + left_out + ") for " +
-                   std::to_string(unknowns) +
+                   std::to_string(recording.marker_count()) + " markers) for " +
+                   std::to_string(count.unknowns) +
                    (placement.empty() ? " parameters" : " parameters and poses of the waist") +
                    "; record more postures or hold parameters");
 }
@@ -186,22 +198,25 @@ OutlierVerdict JudgeOutliers(const FitProblem& problem, const Selection& selecti
 }
 
 /// Fits without the outliers of a verdict and judges anew, until the verdict stands. An observation
-/// at the edge may be left out and taken back by turns: it stays out then.
+/// at the edge may be left out and taken back by turns: it stays out then. Where too few equations
+/// would be left, all are kept: so many are no outliers, and what is wrong is not known yet.
 OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& base,
                               const std::vector<int>& free, OutlierVerdict verdict,
-                              Selection& selection, Fit& fit) {
+                              Selection& selection, Fit& fit, bool& too_many) {
   const auto fit_to = [&](const OutlierVerdict& without) {
     if (problem.options.outliers == OutlierPolicy::kRemove) {
       Selection next = Without(problem.model, problem.recording, without);
+      too_many = !CountEquations(problem, fit.placement, next, base, free).enough();
+      if (too_many) next = SelectAll(problem.model, problem.recording);
       fit.weights = WeightsIn(next, selection, fit.weights);
       selection = std::move(next);
     }
-    CheckEquations(problem, fit.placement, selection, base, free, without.markers.size());
     fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
   };
   std::vector<OutlierVerdict> earlier;
   for (;;) {
     fit_to(verdict);
+    if (too_many) return verdict;
     OutlierVerdict next = JudgeOutliers(problem, selection, free, fit);
     if (problem.options.outliers == OutlierPolicy::kKeep || Same(next, verdict)) return next;
     if (earlier.size() == kMaxVerdicts) {
@@ -226,7 +241,7 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
   const Recording& recording = problem.recording;
   Selection selection = fixed != nullptr ? *fixed : SelectAll(problem.model, recording);
   OutlierVerdict verdict;
-  CheckEquations(problem, fit.placement, selection, base, free, 0);
+  CheckEquations(problem, fit.placement, selection, base, free);
   if (fixed == nullptr) {
     fit = FitParameters(problem, selection, free, fit, Robustness::kMedians);
     verdict = JudgeOutliers(problem, selection, free, fit);
@@ -236,7 +251,8 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
     fit = FitParameters(problem, selection, free, fit, Robustness::kMoments,
                         joints ? kMaxUpdates : kExternalUpdates);
   } else {
-    verdict = SettleOutliers(problem, base, free, std::move(verdict), selection, fit);
+    verdict = SettleOutliers(problem, base, free, std::move(verdict), selection, fit,
+                             result.too_many_outliers);
   }
   Polish(problem, selection, free, fit);
   UpdatePosterior(problem, selection, free, fit);
@@ -266,7 +282,7 @@ void Estimate(const ErrorModel& model, const Recording& recording, const BasePar
   const std::vector<int> externals = OfKind(model, base, ModelKind::kUncalibrated, waist_moves);
   const Fit start = StartFit(problem, selection, delta);
   if (waist_moves) FindFootings(model, recording, options.slip, &result.slips);
-  CheckEquations(problem, start.placement, selection, base, externals, 0);
+  CheckEquations(problem, start.placement, selection, base, externals);
   const Fit fit =
       FitParameters(problem, selection, externals, start,
                     fixed == nullptr ? Robustness::kMedians : Robustness::kMoments, kFewUpdates);

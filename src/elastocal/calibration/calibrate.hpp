@@ -67,6 +67,7 @@ struct CalibrationResult {
 
   ObservationMask used;                      ///< observations that took part
   std::vector<Outlier> outliers;             ///< those that did not, and why
+  bool too_many_outliers = false;            ///< without them, too few equations: they took part
   std::vector<char> tied;                    ///< postures whose support constraint took part
   std::vector<LooseFooting> loose_footings;  ///< those on one foot whose did not, and why
   std::vector<ShortModel> short_models;      ///< bodies that count less, the furthest off first
@@ -93,7 +94,7 @@ struct CalibrationResult {
 /// 1. waist pose by registration (of trials: in each posture), then waist and marker positions
 /// alone;
 /// 2. all parameters of the kind, with the noise by medians; measurements gone wrong are named and
-///    left out (FindOutliers);
+///    left out (FindOutliers), unless too few equations would be left;
 /// 3. least squares with Gaussian prior on the rest. The sources of noise (NoiseSource) follow from
 ///    the residuals, the factors that widen the prior from the estimates, and a body that is
 ///    further off than the noise explains counts less.

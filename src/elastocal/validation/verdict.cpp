@@ -76,6 +76,12 @@ void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& v
 void JudgeOutliers(const CalibrationResult& result, const Recording& recording, Verdict& verdict) {
   const ObservationMask seen = SeenMask(recording);
   const ObservationMask out = seen && !result.used;
+  if (result.too_many_outliers) {
+    verdict.objections.push_back(
+        std::to_string(result.outliers.size()) + " of " + std::to_string(seen.count()) +
+        " observations contradict the others, and without them too few are left to calibrate by." +
+        kAdvice);
+  }
   if (static_cast<double>(out.count()) > kMostOutliers * static_cast<double>(seen.count())) {
     verdict.objections.push_back(PerCent(out.count(), seen.count()) +
                                  " of the observations are outliers." + kAdvice);
