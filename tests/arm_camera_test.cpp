@@ -19,6 +19,11 @@ class ArmWithCamera : public ArmWithTracker {
   /// mounting of the inertial unit known or not.
   Project ProjectWith(double size_mm, double third_mm, bool tracker = false,
                       bool unit_known = true) const {
+    return ParseProject(TextOf(size_mm, third_mm, tracker, unit_known),
+                        (folder_.path() / "camera.yaml").string());
+  }
+
+  static std::string TextOf(double size_mm, double third_mm, bool tracker, bool unit_known) {
     const char* const ways[] = {"0, 0, 0",  "90, 0, 0",  "-90, 0, 0",
                                 "0, 90, 0", "0, -90, 0", "180, 0, 0"};
     std::string text = "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() + "}\n" +
@@ -37,6 +42,14 @@ class ArmWithCamera : public ArmWithTracker {
               "], size_mm: " + FormatNumber(i == 2 ? third_mm : size_mm) +
               ", mounting_sd_mm: 20, mounting_sd_deg: 5}\n";
     }
+    return text;
+  }
+
+  /// The same, where the attitude of the camera is that of its body: x ahead, z up.
+  Project ProjectOfCameraAsBody() const {
+    std::string text = TextOf(kRightMm, kRightMm, false, true);
+    const std::string right = "rpy_deg: [-90, 0, 90], focal_px";
+    text.replace(text.find(right), right.size(), "rpy_deg: [0, 0, 180], focal_px");
     return ParseProject(text, (folder_.path() / "camera.yaml").string());
   }
 
@@ -169,6 +182,16 @@ TEST_F(ArmWithCamera, AWrongSizeOfAllTagsIsNamed) {
   }
   ExpectInputError([&] { CalibrateBy(ProjectWith(82.0, 82.0), {"scale=1.025"}); },
                    {"no instrument measures lengths", "size_mm"});
+}
+
+TEST_F(ArmWithCamera, TheAttitudeOfACamerasBodyIsNamed) {
+  Observations seen = Seen(ModelOf(ProjectWith(kRightMm, kRightMm)));
+  std::erase_if(seen.all, [](const Observation& of) { return of.measured.size() != 8; });
+  const auto found = FindObservedMistakes(ModelOf(ProjectOfCameraAsBody()), seen);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0],
+            "rpy_deg of cameras is that of a body with x ahead and z up: that of z ahead, x to the "
+            "right of the image and y down was expected");
 }
 
 // Here other lengths tell it: those of the other tags, or of a tracker.

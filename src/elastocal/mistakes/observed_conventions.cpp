@@ -2,12 +2,15 @@
 #include "elastocal/mistakes/observed_conventions.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/observation/observation_fault.hpp"
 #include "elastocal/observation/seen_tag.hpp"
 
 namespace elastocal {
@@ -174,6 +177,31 @@ void AddOfInertialUnits(Conventions& conventions) {
 }
 
 }  // namespace
+
+std::optional<WrittenConvention> CamerasAsBodies(const ObservedRobot& model,
+                                                 const Observations& observations) {
+  std::set<int> cameras;  // quantities
+  for (const Observation& of : observations.all) {
+    const Instrument& instrument = model.instrument(of.instrument);
+    if (TagSeenBy(instrument) >= 0) cameras.insert(instrument.quantities.front());
+  }
+  if (cameras.empty()) return std::nullopt;
+  Eigen::Matrix3d R_body_camera;
+  R_body_camera << 0, 0, 1,  //
+      -1, 0, 0,              //
+      0, -1, 0;
+  ObservedRobot robot = model;
+  for (const int camera : cameras) {
+    Transform& origin = robot.setup.quantities[Size(camera)].origin;
+    origin.linear() = (origin.linear() * R_body_camera).eval();
+  }
+  return WrittenConvention{.what = "rpy_deg of cameras is that of a body with x ahead and z up",
+                           .right = "that of z ahead, x to the right of the image and y down",
+                           .family = "",
+                           .undone = observations,
+                           .turns_mountings = true,
+                           .robot = std::move(robot)};
+}
 
 std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
                                                   const Observations& observations) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,14 @@ struct WrittenConvention {
   std::string family;   ///< what it is if others of the family explain as much; empty: none
   Observations undone;  ///< rewritten in the convention of the tables
   bool turns_mountings = false;  ///< fits by mountings that are turned far, at least in part
+  /// Of a convention of the project: the robot in the right one; `undone` is as it was.
+  std::optional<ObservedRobot> robot = {};
 };
+
+/// Cameras whose attitudes in the project are those of their bodies, x ahead and z up, as robot
+/// descriptions have them. Nothing where there are no images.
+std::optional<WrittenConvention> CamerasAsBodies(const ObservedRobot& model,
+                                                 const Observations& observations);
 
 /// For what trackers measured: quaternions with w first, attitudes and poses from the other frame,
 /// left-handed axes. For images: u and v exchanged, v upwards, corners that run clockwise (in

@@ -60,6 +60,11 @@ class MistakeSearch {
       const auto values = part_.q.col(c);
       if (values.maxCoeff() > values.minCoeff()) moving.push_back(c);
     }
+    if (const auto cameras = CamerasAsBodies(model_, part_)) {
+      TryConvention(*cameras);
+      std::vector<std::string> found = Found();
+      if (!found.empty()) return found;  // all others would begin with cameras turned far
+    }
     for (const int c : moving) TrySign(c);
     for (int rows = -kMostRowsOff; rows <= kMostRowsOff; ++rows) {
       if (rows != 0) TryShift(rows);
@@ -97,7 +102,8 @@ class MistakeSearch {
 
   /// Of tags and inertial units the mounting counts: it is turned far where a convention is wrong.
   void TryConvention(const WrittenConvention& convention) {
-    const ObservedMisfit after = MisfitOfNominal(model_, convention.undone);
+    const ObservedRobot& robot = convention.robot ? *convention.robot : model_;
+    const ObservedMisfit after = MisfitOfNominal(robot, convention.undone);
     const double share = convention.turns_mountings ? ShareOf(after.squares + after.turned,
                                                               before_.squares + before_.turned)
                                                     : ShareOf(after.squares, before_.squares);

@@ -56,6 +56,12 @@ TEST_F(VerdictTest, NoConvergence) {
   ExpectObjection("not converged");
 }
 
+TEST_F(VerdictTest, TooManyOutliersToLeaveThemOut) {
+  comparison_.results[2].outliers.resize(150);
+  comparison_.results[2].too_many_outliers = true;
+  ExpectObjection("150 of 180 observations contradict the others");
+}
+
 TEST_F(VerdictTest, ImplausibleNoiseNamesTheFurthestParameter) {
   CalibrationResult& result = comparison_.results[2];
   result.marker_sd = 6e-3;
