@@ -182,9 +182,9 @@ TEST(CalibratedMjcf, NamesWhatDoesNotBelongToTheUrdf) {
       {"no body has a joint", "it includes 'bodies.xml'"});
   refused("quat=", "euler=\"0 0 0\" quat=", "'quat' was expected");
   refused("<joint name=\"" + tree.joints[0].name, "<joint name=\"other", "no body has a joint");
-  refused("<joint name=\"" + tree.joints[1].name, "<joint name=\"other\"/><joint name=\"more",
+  refused("<joint name=\"" + tree.joints[1].name, R"(<joint name="other"/><joint name="more)",
           "no body has a joint '" + tree.joints[1].name);
-  refused("<body", "<body><joint name=\"" + tree.joints[3].name + "\"/></body><body",
+  refused("<body", "<body><joint name=\"" + tree.joints[3].name + R"("/></body><body)",
           "is carried by ''");
   refused("<joint name", "<joint pos=\"0 0 0.1\" name", "not in the origin");
   refused("pos=\"", "pos=\"1", "from where the URDF");
@@ -235,8 +235,8 @@ TEST(CalibratedMjcf, FindsItsFilesFromAnotherFolder) {
   WriteFile(from / "meshes/corner.obj",
             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   const auto model = [](const std::string& compiler, const std::string& file) {
-    return "<mujoco>" + compiler + "<asset><mesh name=\"c\" file=\"" + file +
-           "\"/></asset><worldbody><geom type=\"mesh\" mesh=\"c\"/></worldbody></mujoco>";
+    return "<mujoco>" + compiler + R"(<asset><mesh name="c" file=")" + file +
+           R"("/></asset><worldbody><geom type="mesh" mesh="c"/></worldbody></mujoco>)";
   };
   const auto loads = [&](const std::string& text) {
     std::array<char, 1000> error{};

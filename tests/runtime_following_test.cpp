@@ -71,10 +71,10 @@ TEST(RuntimeFollowing, CommandsTakeAJointThroughItsPlay) {
   EXPECT_LT(Largest(played.residual_m), 1e-6);
   Compensator again(model), straight = PlanarLeg(0.0, -2.3, 2.3).Make();
   int off = 0;
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    again.Command(plans[i], kNoTorque, 0);
+  for (const Eigen::VectorXd& plan : plans) {
+    again.Command(plan, kNoTorque, 0);
     real.Forward(again.command(), kNoTorque, 0);
-    straight.Forward(plans[i], kNoTorque, 0);
+    straight.Forward(plan, kNoTorque, 0);
     const double error =
         (real.link_pose(0).translation() - straight.link_pose(0).translation()).norm();
     EXPECT_LT(error, 1.01 * kLag * (kShank + kFoot));

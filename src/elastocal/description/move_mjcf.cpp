@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "elastocal/description/calibrated_mjcf.hpp"
 #include "elastocal/files/xml_edit.hpp"
 
@@ -26,10 +31,10 @@ AssetFiles FindAssetFiles(const XmlElement& root) {
 }
 
 bool Includes(const XmlElement& within) {
-  for (const XmlElement& child : within.Children()) {
-    if (child.Tag() == "include" || Includes(child)) return true;
-  }
-  return false;
+  const std::vector<XmlElement> children = within.Children();
+  return std::any_of(children.begin(), children.end(), [](const XmlElement& child) {
+    return child.Tag() == "include" || Includes(child);
+  });
 }
 
 }  // namespace

@@ -145,8 +145,10 @@ class NpyReader {
     const auto next_text = [&] {
       text = Trim(text);
       const char quote = text.empty() ? ' ' : text[0];
-      const std::size_t end = quote == '\'' || quote == '"' ? text.find(quote, 1) : text.npos;
-      if (end == text.npos) Fail("its records have fields within fields, or cannot be read");
+      const std::size_t end =
+          quote == '\'' || quote == '"' ? text.find(quote, 1) : std::string_view::npos;
+      if (end == std::string_view::npos)
+        Fail("its records have fields within fields, or cannot be read");
       const std::string_view found = text.substr(1, end - 1);
       text = Trim(text.substr(end + 1));
       return found;
