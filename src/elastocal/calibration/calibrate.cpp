@@ -99,8 +99,8 @@ void Join(OutlierVerdict& into, const OutlierVerdict& others) {
 
 struct EquationCount {
   Eigen::Index equations = 0;
-  Eigen::Index unknowns =
-      0;  ///< that could be identified, and are not told by an earlier calibration
+  /// That could be identified, and are not told by an earlier calibration.
+  Eigen::Index unknowns = 0;
   bool enough() const { return equations >= unknowns; }
 };
 

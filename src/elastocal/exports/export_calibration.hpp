@@ -30,10 +30,10 @@ struct ExportOptions {
   /// Of these joints, only those are exported that gain more than this on data that the calibration
   /// has not seen (FindHeldOutGains, of what the format carries), m; the others stay nominal.
   std::optional<double> least_gain = {};
-  std::vector<std::string> mjcf_joints =
-      {};  ///< joints that are called otherwise there: ReadMjcfJointNames
-  std::filesystem::path output =
-      {};  ///< the file that the text is for: an MJCF finds its meshes from there
+  /// Joints that are called otherwise there (ReadMjcfJointNames).
+  std::vector<std::string> mjcf_joints = {};
+  /// The file that the text is for: an MJCF finds its meshes from there.
+  std::filesystem::path output = {};
   bool mjcf_springs = false;  ///< of format mjcf: with springs in series with the joints
   /// Of rigid formats: with the geometry of the elastic model (that of c99 and runtime), for
   /// programs that correct elasticity themselves. Without, that of the URDF by calibrate.

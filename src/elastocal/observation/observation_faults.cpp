@@ -18,10 +18,9 @@ namespace {
 
 constexpr double kDerivativeStep = 1e-6;  // rad, m
 constexpr double kLeastShare = 0.1;
-constexpr double kCertain = 4.0;  // standard deviations, in noise that has the fault in it
-constexpr double kLeastMoved =
-    0.01;  // of the squares by which a joint moves what is measured elsewhere
-constexpr int kSplitsTried = 12;  // of the table, after which a fault may begin
+constexpr double kCertain = 4.0;      // standard deviations, in noise that has the fault in it
+constexpr double kLeastMoved = 0.01;  // of what a joint moves elsewhere, in squares
+constexpr int kSplitsTried = 12;      // of the table, after which a fault may begin
 constexpr double kOneDegree = M_PI / 180.0;
 
 /// Sizes from which a fault is none that a good robot and good instruments may have.
