@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -65,13 +64,11 @@ void WatchInterruption() {
   }
 }
 
-/// Says how far it has come, and ends as the signal would have ended it. mpirun, which then ends
-/// its ranks, does not pass on what one says that is gone before it looks, and kills it after a
-/// second.
-[[noreturn]] void EndInterrupted(const BatchInterrupted& at, bool is_rank) {
+/// Says how far it has come, and ends as the signal would have ended it. (mpirun, which ends its
+/// ranks then, mostly drops what they say last.)
+[[noreturn]] void EndInterrupted(const BatchInterrupted& at) {
   spdlog::warn("interrupted: {} of {} tasks are done; the same command does the rest", at.done,
                at.all);
-  if (is_rank) std::this_thread::sleep_for(std::chrono::milliseconds(300));
   std::signal(interrupted, SIG_DFL);
   std::raise(interrupted);
   std::abort();
@@ -290,7 +287,7 @@ int Batch(const BatchCommand& command) {
     outputs.Set(command.common.json_file, files.front());
     outputs.Publish();
   } catch (const BatchInterrupted& at) {
-    EndInterrupted(at, ranks != nullptr);
+    EndInterrupted(at);
   } catch (...) {
     if (ranks) ranks->Dismiss();
     throw;
