@@ -126,7 +126,7 @@ class Search {
     const Eigen::MatrixXd& information = fitted.information;
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
     const Eigen::VectorXd gradient = fit.gradient(at);
-    const double inflation = Inflation(fit, at, fitted.step, factor);
+    const double inflation = Inflation(at, fitted.step, factor);
     finding.score = gradient.dot(factor.solve(gradient)) / static_cast<double>(count) / inflation;
     finding.p = FisherUpperTail(std::max(0.0, finding.score), static_cast<double>(count),
                                 study_.degrees_of_freedom);
@@ -143,26 +143,28 @@ class Search {
     return finding;
   }
 
-  /// The columns of all causes in each posture, beside the base.
+  /// The columns of all causes in each posture, beside the base, and what the base leaves.
   void PlaceBeside(const BaseFit& fit) {
     beside_.resize(study_.postures.size());
+    left_.resize(study_.postures.size());
     for (int i : postures_) {
       const auto posture = static_cast<std::size_t>(i);
       beside_[posture] = fit.Beside(study_.postures[posture]);
+      left_[posture] = fit.Residual(study_.postures[posture]);
     }
   }
 
   /// The scatter of the postures' scores, the cause being fitted, over what the noise model
   /// expects, at least 1.
-  double Inflation(const BaseFit& fit, const std::vector<int>& at, const Eigen::VectorXd& step,
+  double Inflation(const std::vector<int>& at, const Eigen::VectorXd& step,
                    const Eigen::LLT<Eigen::MatrixXd>& factor) const {
     double found = 0.0;
     double count = 0.0;
     for (int i : postures_) {
-      const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
-      if (posture.residual.size() == 0) continue;
-      const Eigen::MatrixXd columns = beside_[static_cast<std::size_t>(i)](Eigen::all, at);
-      const Eigen::VectorXd score = columns.transpose() * (fit.Residual(posture) + columns * step);
+      const auto posture = static_cast<std::size_t>(i);
+      if (left_[posture].size() == 0) continue;
+      const Eigen::MatrixXd columns = beside_[posture](Eigen::all, at);
+      const Eigen::VectorXd score = columns.transpose() * (left_[posture] + columns * step);
       found += score.dot(factor.solve(score));
       count += 1.0;
     }
@@ -227,7 +229,11 @@ class Search {
     for (int i : fold) training.Add(study_.postures[static_cast<std::size_t>(i)], -1.0);
     const BaseFit fit(study_, training, taken);
     std::vector<Eigen::VectorXd> steps;
-    for (int cause : causes_) steps.push_back(FitCause(study_, fit, cause).step);
+    std::vector<std::vector<int>> at;
+    for (int cause : causes_) {
+      steps.push_back(FitCause(study_, fit, cause).step);
+      at.push_back(fit.Positions(study_, cause));
+    }
     for (int i : fold) {
       const LinearStudy::Posture& posture = study_.postures[static_cast<std::size_t>(i)];
       if (posture.residual.size() == 0) continue;
@@ -235,9 +241,8 @@ class Search {
       const Eigen::MatrixXd beside = fit.Beside(posture);
       squares(i, 0) += std::pow(ErrorOf(posture, residual), 2);
       for (std::size_t k = 0; k < causes_.size(); ++k) {
-        const std::vector<int> at = fit.Positions(study_, causes_[k]);
         squares(i, static_cast<Eigen::Index>(k) + 1) +=
-            std::pow(ErrorOf(posture, residual + beside(Eigen::all, at) * steps[k]), 2);
+            std::pow(ErrorOf(posture, residual + beside(Eigen::all, at[k]) * steps[k]), 2);
       }
     }
   }
@@ -271,6 +276,7 @@ class Search {
   std::uint64_t seed_;
   std::vector<int> causes_;              // of the findings in hand
   std::vector<Eigen::MatrixXd> beside_;  // by posture
+  std::vector<Eigen::VectorXd> left_;    // by posture
   double error_ = 0.0;
 };
 

@@ -98,18 +98,14 @@ std::vector<Footing> FindFootings(const ErrorModel& model, const Recording& reco
 Placement RegisterPlacement(const ErrorModel& model, const Recording& recording, double slip_m) {
   Placement placement;
   if (!HasPoseByPosture(recording)) return placement;
-  std::vector<int> unseen;
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    int seen = 0;
-    for (int m = 0; m < recording.marker_count(); ++m) seen += Seen(recording, i, m) ? 1 : 0;
-    placement.T_ref_waist.push_back(
-        seen < 3 ? Transform::Identity() : RegisterWaist(model, SelectPostures(recording, {i})));
-    if (seen < 3) unseen.push_back(i);
+  const auto poses = RegisterWaistByPosture(model, recording);
+  for (const auto& pose : poses) {
+    placement.T_ref_waist.push_back(pose.value_or(Transform::Identity()));
   }
-  for (int i : unseen) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (poses[i]) continue;
     placement.T_ref_waist[i] =
-        placement.T_ref_waist[i > 0 ? i - 1
-                                    : std::min<std::size_t>(1, placement.T_ref_waist.size() - 1)];
+        placement.T_ref_waist[i > 0 ? i - 1 : std::min<std::size_t>(1, poses.size() - 1)];
   }
   placement.footings = FindFootings(model, recording, slip_m);
   placement.footing.assign(recording.posture_count(), -1);

@@ -8,27 +8,55 @@
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
+namespace {
 
-Transform RegisterWaist(const ErrorModel& model, const Recording& recording) {
-  ErrorModel at_origin = model;
-  at_origin.T_ref_waist = Transform::Identity();
-  const Geometry geometry =
-      ApplyErrors(at_origin, Eigen::VectorXd::Zero(at_origin.parameter_count()));
-  std::vector<Eigen::Vector3d> nominal, measured;
-  for (int i = 0; i < recording.posture_count(); ++i) {
+using Points = std::vector<Eigen::Vector3d>;
+
+/// Nominal positions of markers in the waist, and the measured ones.
+class NominalMarkers {
+ public:
+  NominalMarkers(const ErrorModel& model, const Recording& recording)
+      : model_(model), recording_(recording) {
+    model_.T_ref_waist = Transform::Identity();
+    geometry_ = ApplyErrors(model_, Eigen::VectorXd::Zero(model_.parameter_count()));
+  }
+
+  void Add(int posture, Points& nominal, Points& measured) const {
     InterruptionPoint();
     const Eigen::Matrix3Xd p_waist_marker =
-        MarkerPositions(at_origin, geometry, recording.q.row(i).transpose());
-    for (int m = 0; m < recording.marker_count(); ++m) {
-      if (!Seen(recording, i, m)) continue;
+        MarkerPositions(model_, geometry_, recording_.q.row(posture).transpose());
+    for (int m = 0; m < recording_.marker_count(); ++m) {
+      if (!Seen(recording_, posture, m)) continue;
       nominal.emplace_back(p_waist_marker.col(m));
-      measured.push_back(MarkerPosition(recording, i, m));
+      measured.push_back(MarkerPosition(recording_, posture, m));
     }
   }
-  if (nominal.empty()) return Transform::Identity();
-  using Points = Eigen::Map<const Eigen::Matrix3Xd>;
-  const auto count = static_cast<Eigen::Index>(nominal.size());
-  return FitRigid(Points(nominal[0].data(), 3, count), Points(measured[0].data(), 3, count));
+
+ private:
+  ErrorModel model_;  // its waist at the origin
+  const Recording& recording_;
+  Geometry geometry_;
+};
+
+}  // namespace
+
+Transform RegisterWaist(const ErrorModel& model, const Recording& recording) {
+  const NominalMarkers markers(model, recording);
+  Points nominal, measured;
+  for (int i = 0; i < recording.posture_count(); ++i) markers.Add(i, nominal, measured);
+  return FitRigid(nominal, measured).value_or(Transform::Identity());
+}
+
+std::vector<std::optional<Transform>> RegisterWaistByPosture(const ErrorModel& model,
+                                                             const Recording& recording) {
+  const NominalMarkers markers(model, recording);
+  std::vector<std::optional<Transform>> poses;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    Points nominal, measured;
+    markers.Add(i, nominal, measured);
+    poses.push_back(FitRigid(nominal, measured));
+  }
+  return poses;
 }
 
 }  // namespace elastocal

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/robot/error_model.hpp"
 
@@ -10,5 +13,10 @@ namespace elastocal {
 /// measured ones (least squares over all postures, closed form): the starting point for T0, about
 /// which nothing is known beforehand. As good as the nominal marker positions are.
 Transform RegisterWaist(const ErrorModel& model, const Recording& recording);
+
+/// The same of each posture by itself: as many as the recording has postures. None where fewer than
+/// three markers were seen.
+std::vector<std::optional<Transform>> RegisterWaistByPosture(const ErrorModel& model,
+                                                             const Recording& recording);
 
 }  // namespace elastocal

@@ -205,7 +205,7 @@ TEST(Draft, MissingMeshesAreOneWarning) {
   EXPECT_NE(large.warnings[0].find("200 m"), std::string::npos) << large.warnings[0];
 }
 
-TEST(Draft, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
+TEST(DraftStudy, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
   for (const char* robot : {"models/talos/talos.urdf", "tests/robots/mini_humanoid.urdf"}) {
     const ScratchFolder folder;
     const Project project = ReadBack(DraftFile(robot), folder);

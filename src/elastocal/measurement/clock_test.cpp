@@ -88,7 +88,7 @@ TEST(EstimateClock, FindsLagAndDriftInNoise) {
   }
 }
 
-TEST(EstimateClock, SaysHowSureItIs) {
+TEST(EstimateClockStudy, SaysHowSureItIs) {
   const Speed speed = Postures(300.0);
   const Clocks clocks;
   const PredictedSpeed predicted = Predict(speed, clocks, 0.0, 300.0);

@@ -96,7 +96,8 @@ std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
   const auto error_of = [&](Recording corrected) {
     AddUnseenMarkers(comparison.largest().model, corrected);
     try {
-      return MeanError(comparison, JudgeOnTrials(comparison, corrected, project.calibration).table);
+      return MeanError(comparison,
+                       JudgeLargestOnTrials(comparison, corrected, project.calibration).table);
     } catch (const InputError&) {
       return std::numeric_limits<double>::infinity();
     }
@@ -172,7 +173,7 @@ std::optional<Exchange> ExchangeWithinCluster(const Project& project, const Reco
                                               const Recording& held_out,
                                               const ModelComparison& comparison) {
   const auto squares_of = [&](const Recording& judged) -> Eigen::ArrayXXd {
-    const HeldOut result = JudgeOnTrials(comparison, judged, project.calibration);
+    const HeldOut result = JudgeLargestOnTrials(comparison, judged, project.calibration);
     const auto& distances =
         result.predictions[static_cast<std::size_t>(comparison.largest_kind())].distances;
     return distances.array().isFinite().select(distances.array().square(), 0.0);

@@ -39,6 +39,7 @@ class BalancedWalker : public testing::Test {
   Walker walker_;
   StandingRobot robot_;
 };
+using BalancedWalkerStudy = BalancedWalker;
 
 TEST_F(BalancedWalker, PlacesItsFeetWhereItIsTold) {
   Random random(1);
@@ -255,7 +256,7 @@ TEST(SinesOfAMotion, AreFiniteForAJointWithoutLimits) {
   EXPECT_GT(planned.motion.q.col(0).maxCoeff(), 0.3);
 }
 
-TEST_F(BalancedWalker, ThreadsDoNotMatter) {
+TEST_F(BalancedWalkerStudy, ThreadsDoNotMatter) {
   std::vector<PostureTour> sets;
   for (const int foot : {0, 1}) {
     sets.push_back({.name = "set", .standing = {foot}, .postures = {Posture(0.2, 0.1, 0.4)}});

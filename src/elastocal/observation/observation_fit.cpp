@@ -238,9 +238,10 @@ void WidenByDoubt(const Eigen::VectorXd& freedom, double usual, Eigen::MatrixXd&
   covariance = (factors.asDiagonal() * covariance * factors.asDiagonal()).eval();
 }
 
-/// One step with all that follows from its linearisation; whether all came to rest.
+/// One step with all that follows from its linearisation; whether all came to rest. The covariance
+/// is that of the last step: what comes of standard deviations takes no part in the steps.
 bool UpdateFit(const ObservedRobot& model, const Observations& observations,
-               const ObservationFitOptions& options, ObservationFit& fit) {
+               const ObservationFitOptions& options, bool last, ObservationFit& fit) {
   if (options.freedom.robot) fit.loads = ObservedLoads(model, observations, fit.values.robot);
   ObservationResiduals residuals(model, observations, fit.loads, fit.spread, fit.weights,
                                  options.freedom, fit.values);
@@ -266,13 +267,18 @@ bool UpdateFit(const ObservedRobot& model, const Observations& observations,
   if (options.estimate_spread) {
     const std::vector<SourceSum> sums = SumBySource(residuals, model, observations, explained);
     fit.spread_freedom = FreedomBySource(sums, model.setup.sources);
-    WidenByDoubt(FreedomOfEntries(residuals, observations.count(), covariance, fit),
-                 fit.degrees_of_freedom, covariance);
     change = UpdateSpread(sums, model.setup.sources, options.robust, fit.spread);
   }
-  TakeCovariance(model, observations, residuals, covariance, fit);
   change = std::max(change, UpdateWeights(residuals, model, observations, fit.spread, fit.weights));
-  return options.robust ? change < kRoughlySettled : change < kSettled && small;
+  const bool settled = options.robust ? change < kRoughlySettled : change < kSettled && small;
+  if (settled || last) {
+    if (options.estimate_spread) {
+      WidenByDoubt(FreedomOfEntries(residuals, observations.count(), covariance, fit),
+                   fit.degrees_of_freedom, covariance);
+    }
+    TakeCovariance(model, observations, residuals, covariance, fit);
+  }
+  return settled;
 }
 
 }  // namespace
@@ -291,7 +297,8 @@ ObservationFit FitObservations(const ObservedRobot& model, const Observations& o
   ObservationFit fit = start;
   fit.settled = false;
   for (int update = 0; update < options.max_updates && !fit.settled; ++update) {
-    fit.settled = UpdateFit(model, observations, options, fit);
+    const bool last = update + 1 == options.max_updates;
+    fit.settled = UpdateFit(model, observations, options, last, fit);
   }
   fit.termination = fit.settled ? Termination::kConverged : Termination::kNoConvergence;
   return fit;

@@ -73,7 +73,7 @@ TEST(FindWorst, BothReadingsOfAlgorithm1) {
   EXPECT_NE(FindWorst(set, Criterion::kO1, WorstIndex::kLeastLoss, {least}), least);
 }
 
-TEST(Cocp, TheReadingByTheTextIsBetterThanTheOneAsPrinted) {
+TEST(CocpStudy, TheReadingByTheTextIsBetterThanTheOneAsPrinted) {
   double by_text = 0.0, as_printed = 0.0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     LegProblem leg;
@@ -87,7 +87,7 @@ TEST(Cocp, TheReadingByTheTextIsBetterThanTheOneAsPrinted) {
   EXPECT_GT(by_text, as_printed);
 }
 
-TEST(Nocp, ReachesThePlateauWithinTheBound) {
+TEST(NocpStudy, ReachesThePlateauWithinTheBound) {
   LegProblem leg;
   const DesignResult result = Nocp(leg.problem, 1, Quick(32));
   EXPECT_EQ(result.status, DesignResult::Status::kPlateau);
@@ -100,7 +100,7 @@ TEST(Nocp, ReachesThePlateauWithinTheBound) {
   EXPECT_LE(certificate.attained, certificate.bound);
 }
 
-TEST(Nocp, SameSeedSamePostures) {
+TEST(NocpStudy, SameSeedSamePostures) {
   LegProblem a, b;
   const DesignResult first = Nocp(a.problem, 5, Quick(8)), second = Nocp(b.problem, 5, Quick(8));
   ASSERT_EQ(first.set.size(), second.set.size());

@@ -27,7 +27,7 @@ VirtualExperimentOptions Short() {
   return options;
 }
 
-TEST(VirtualExperiment, TheSameSeedGivesTheSameNumbers) {
+TEST(VirtualExperimentStudy, TheSameSeedGivesTheSameNumbers) {
   const VirtualExperiment first = PrepareExperiment(DescribedBiped(), Short());
   const VirtualExperiment again = PrepareExperiment(DescribedBiped(), Short());
   RunTrial(again, 0);  // the order of trials does not matter
@@ -86,7 +86,7 @@ TEST(VirtualExperiment, APerfectRobotFollowsTheForwardKinematics) {
 }
 
 // A rest, a way, and given samples with two rests: the leg is measured in the mean of the three.
-TEST(VirtualExperiment, LegsAreMeasuredInTheMeanOfTheirRests) {
+TEST(VirtualExperimentStudy, LegsAreMeasuredInTheMeanOfTheirRests) {
   const DescribedRobot described = DescribedBiped();
   const VirtualExperiment plain = PrepareExperiment(described, Short(), {});
   const Eigen::VectorXd stand = plain.legs[1].posture;
@@ -114,7 +114,7 @@ TEST(VirtualExperiment, LegsAreMeasuredInTheMeanOfTheirRests) {
   EXPECT_EQ(PrepareExperiment(described, Short(), {trial}).legs[0].posture, stand);
 }
 
-TEST(VirtualExperiment, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
+TEST(VirtualExperimentStudy, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
   VirtualExperimentOptions options = Short();
   options.truth.leg_geometry_scale = 0.0;
   const VirtualExperiment experiment = PrepareExperiment(DescribedBiped(), options);

@@ -31,6 +31,37 @@ std::vector<int> PosturesOf(const Recording& recording, int trial) {
   return postures;
 }
 
+HeldOut Judge(const ModelComparison& comparison, const std::vector<ModelKind>& kinds,
+              const Recording& recording, const CalibrationOptions& options) {
+  HeldOut held_out;
+  for (ModelKind kind : kinds) {
+    const auto k = static_cast<int>(kind);
+    const CalibrationResult& result = comparison.results[k];
+    held_out.predictions[k] = Predict(result.model, result.delta, recording, options);
+  }
+  const ErrorModel& model = comparison.largest().model;
+  const std::vector<std::string> groups = TrialGroups(model, recording);
+  const ObservationMask seen = SeenMask(recording);
+  std::vector<TrialErrors> trials;
+  for (std::size_t t = 0; t < recording.trials.size(); ++t) {
+    const int trial = static_cast<int>(t);
+    const std::vector<int> postures = PosturesOf(recording, trial);
+    if (postures.empty()) continue;
+    TrialResiduals residuals{recording.trials[t].name,
+                             recording.trials[t].kind,
+                             groups[t],
+                             MarkersOf(seen, recording, trial),
+                             {}};
+    for (ModelKind kind : kinds) {
+      residuals.distances[kind] =
+          held_out.predictions[static_cast<int>(kind)].distances(postures, Eigen::all);
+    }
+    trials.push_back(ComputeTrialErrors(residuals));
+  }
+  held_out.table = MakeErrorTable(std::move(trials));
+  return held_out;
+}
+
 }  // namespace
 
 std::vector<std::string> TrialGroups(const ErrorModel& model, const Recording& recording) {
@@ -58,33 +89,12 @@ std::vector<std::string> TrialGroups(const ErrorModel& model, const Recording& r
 
 HeldOut JudgeOnTrials(const ModelComparison& comparison, const Recording& recording,
                       const CalibrationOptions& options) {
-  HeldOut held_out;
-  for (ModelKind kind : comparison.kinds) {
-    const auto k = static_cast<int>(kind);
-    const CalibrationResult& result = comparison.results[k];
-    held_out.predictions[k] = Predict(result.model, result.delta, recording, options);
-  }
-  const ErrorModel& model = comparison.largest().model;
-  const std::vector<std::string> groups = TrialGroups(model, recording);
-  const ObservationMask seen = SeenMask(recording);
-  std::vector<TrialErrors> trials;
-  for (std::size_t t = 0; t < recording.trials.size(); ++t) {
-    const int trial = static_cast<int>(t);
-    const std::vector<int> postures = PosturesOf(recording, trial);
-    if (postures.empty()) continue;
-    TrialResiduals residuals{recording.trials[t].name,
-                             recording.trials[t].kind,
-                             groups[t],
-                             MarkersOf(seen, recording, trial),
-                             {}};
-    for (ModelKind kind : comparison.kinds) {
-      residuals.distances[kind] =
-          held_out.predictions[static_cast<int>(kind)].distances(postures, Eigen::all);
-    }
-    trials.push_back(ComputeTrialErrors(residuals));
-  }
-  held_out.table = MakeErrorTable(std::move(trials));
-  return held_out;
+  return Judge(comparison, comparison.kinds, recording, options);
+}
+
+HeldOut JudgeLargestOnTrials(const ModelComparison& comparison, const Recording& recording,
+                             const CalibrationOptions& options) {
+  return Judge(comparison, {comparison.largest_kind()}, recording, options);
 }
 
 double WaistError(const Placement& predicted, const std::vector<std::optional<Transform>>& truth) {

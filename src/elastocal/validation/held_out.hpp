@@ -26,6 +26,10 @@ struct HeldOut {
 HeldOut JudgeOnTrials(const ModelComparison& comparison, const Recording& recording,
                       const CalibrationOptions& options);
 
+/// The same of the largest model alone, in a fraction of the time: for a search that judges often.
+HeldOut JudgeLargestOnTrials(const ModelComparison& comparison, const Recording& recording,
+                             const CalibrationOptions& options);
+
 /// Error of the waist in postures on one foot: root mean square of the distance between the true
 /// origin of the root link and the one that the model predicts from the support foot, m.
 /// `predicted` must be made with FootingBy::kFootMarkers. The place of the model's frame in the
