@@ -253,9 +253,13 @@ TEST_F(Pipeline, AFaultBesideAKnockIsNamedByTheHeldOutTrial) {
   const ModelComparison comparison =
       CompareModels(Calibrate(robot.model, recording, robot.base, ModelKind::kGeometric, {}),
                     robot.model, recording, robot.base, {});
+  const ErrorTable judged = JudgeOnTrials(comparison, held_out, {}).table;
+  const auto of_largest = JudgeLargestOnTrials(comparison, held_out, {}).table.mean_rmse_3d;
+  ASSERT_EQ(of_largest.size(), 1u);
+  EXPECT_EQ(of_largest.begin()->second, judged.mean_rmse_3d.at(of_largest.begin()->first));
+  EXPECT_EQ(of_largest.begin()->first, comparison.largest_kind());
   const std::vector<std::string> found =
-      FindContradictions(project_, robot, recording, held_out, comparison,
-                         JudgeOnTrials(comparison, held_out, {}).table);
+      FindContradictions(project_, robot, recording, held_out, comparison, judged);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NE(found[0].find(project_.tree.joints[2].name + ": its positions are off by"),
             std::string::npos)

@@ -37,6 +37,26 @@ TEST(Registration, FindsTheWaistOfANominalRobot) {
   EXPECT_LT((found.matrix() - model.T_ref_waist.matrix()).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(Registration, FindsTheWaistOfEachPostureThatShowsThreeMarkers) {
+  ErrorModel model = TalosLegModel();
+  const ErrorModel nominal = model;
+  model.T_ref_waist = FromXyzRpy({3.0, -2.0, 1.0}, {2.0, -1.0, 3.0});
+  Recording recording = RecordFrom(model, 3);
+  const Transform moved = FromXyzRpy({0.5, 0.0, 0.0}, {0.0, 0.0, 0.7});
+  for (int m = 0; m < model.marker_count(); ++m) {
+    recording.markers.block<1, 3>(2, 3 * m) = (moved * MarkerPosition(recording, 2, m)).transpose();
+  }
+  recording.markers.row(1)
+      .tail(3 * (model.marker_count() - 2))
+      .setConstant(std::numeric_limits<double>::quiet_NaN());
+  const auto found = RegisterWaistByPosture(nominal, recording);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_FALSE(found[1]);
+  ASSERT_TRUE(found[0] && found[2]);
+  EXPECT_TRUE(found[0]->isApprox(model.T_ref_waist, 1e-12));
+  EXPECT_TRUE(found[2]->isApprox(moved * model.T_ref_waist, 1e-12));
+}
+
 TEST(Registration, MirrorsNothingForPointsInAPlane) {
   // Markers of a planar arm lie in a plane, which a reflection would fit as well as a rotation.
   RobotTree arm = PlanarArm();
