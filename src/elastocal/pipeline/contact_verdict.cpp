@@ -225,6 +225,7 @@ void JudgeContacts(ContactRun& run) {
     verdict.objections.emplace_back(
         "the estimate has not converged: variances did not come to rest");
   }
+  if (!run.mostly_air.empty()) verdict.objections.push_back(run.mostly_air);
   const auto left_out = static_cast<double>(run.calibrated.estimate.outliers.size());
   if (left_out > kMostLeftOut * run.observations.count()) {
     verdict.objections.push_back(
