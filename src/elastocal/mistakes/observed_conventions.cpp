@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/observation/flush_contact.hpp"
 #include "elastocal/observation/observation_fault.hpp"
 #include "elastocal/observation/seen_tag.hpp"
 
@@ -147,6 +148,26 @@ class Conventions {
       any = true;
     }
     if (any) Take(std::move(convention));
+  }
+
+  /// The project has the plate's face on the other side of the hand.
+  void AddSideOfPlates() {
+    WrittenConvention convention{"the normal of plates points into the table", "out of the table",
+                                 "", observations_};
+    ObservedRobot robot = model_;
+    for (std::size_t k = 0; k < robot.setup.plates.size(); ++k) {
+      const auto* plate = dynamic_cast<const FlushContact*>(robot.setup.instruments[k].get());
+      if (plate == nullptr || !Holds(*plate)) continue;
+      auto other = std::make_shared<FlushContact>(*plate);
+      other->face.R_link_face = (other->face.R_link_face * RotX(M_PI).linear()).eval();
+      robot.setup.plates[k].face = other->face;
+      robot.setup.instruments[k] = std::move(other);
+      convention.robot = robot;
+    }
+    if (convention.robot) {
+      convention.robot = std::move(robot);
+      Take(std::move(convention));
+    }
   }
 
   std::vector<WrittenConvention> found;
@@ -287,6 +308,7 @@ std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
                                 });
   if ((kind.empty() || kind == "tag") && tags) AddOfTags(conventions);
   if (kind.empty() || kind == "gravity") AddOfInertialUnits(conventions);
+  if (kind.empty() || kind == "flush contact") conventions.AddSideOfPlates();
   if (kind.empty() || kind == "plane distance") {
     conventions.Add(
         {"plane distance"},

@@ -2,6 +2,7 @@
 #include "elastocal/pipeline/leave_out_touches.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/observation/touches_in_the_air.hpp"
 
 namespace elastocal {
 namespace {
@@ -42,32 +42,37 @@ std::string HeightsInWords(const std::vector<TouchInTheAir>& touches) {
 }
 
 /// Touches of each plate that some observations have.
-std::vector<int> TouchesByPlate(const ContactRun& run, const Observations& observations) {
-  std::vector<int> touches(run.model.setup.plates.size(), 0);
+std::vector<int> TouchesByPlate(const ObservedRobot& model, const Observations& observations) {
+  std::vector<int> touches(model.setup.plates.size(), 0);
   for (const Observation& of : observations.all) {
-    if (run.model.IsPlate(of.instrument)) ++touches[Size(of.instrument)];
+    if (model.IsPlate(of.instrument)) ++touches[Size(of.instrument)];
   }
   return touches;
 }
 
 }  // namespace
 
+std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observations& observations,
+                                    const std::vector<TouchInTheAir>& air) {
+  const std::vector<int> touches = TouchesByPlate(model, observations);
+  return fmt::format(
+      "{} of {} touches seem to be none: by the others, the plate stood {} mm above its table in "
+      "{}",
+      air.size(), std::accumulate(touches.begin(), touches.end(), 0), HeightsInWords(air),
+      PlacesOf(air, observations));
+}
+
 bool LeaveOutTouchesInTheAir(ContactRun& run) {
   const std::vector<TouchInTheAir> air = FindTouchesInTheAir(run.model, run.observations);
   if (air.empty()) return false;
   Observations without = WithoutTouches(run.observations, air);
-  const std::vector<int> before = TouchesByPlate(run, run.observations);
-  const std::vector<int> after = TouchesByPlate(run, without);
-  int touches = 0;
+  const std::vector<int> before = TouchesByPlate(run.model, run.observations);
+  const std::vector<int> after = TouchesByPlate(run.model, without);
   bool many = false;
   for (std::size_t plate = 0; plate < before.size(); ++plate) {
-    touches += before[plate];
     many = many || before[plate] - after[plate] > kMostInTheAir * before[plate];
   }
-  const std::string text = fmt::format(
-      "{} of {} touches seem to be none: by the others, the plate stood {} mm above its table in "
-      "{}",
-      air.size(), touches, HeightsInWords(air), PlacesOf(air, run.observations));
+  const std::string text = DescribeTouchesInTheAir(run.model, run.observations, air);
   run.observations = std::move(without);
   if (many) {
     run.mostly_air = text + ". Record them again, or delete these rows if nothing was touched";
