@@ -2,6 +2,9 @@
 // A fixed arm whose tool carries tags that a camera in the room sees, and an inertial unit.
 #include <functional>
 
+#include "elastocal/mistakes/observed_conventions.hpp"
+#include "elastocal/mistakes/observed_faults.hpp"
+#include "elastocal/mistakes/observed_misfit.hpp"
 #include "elastocal/mistakes/observed_mistakes.hpp"
 #include "elastocal/observation/seen_tag.hpp"
 #include "elastocal/tables/text.hpp"
@@ -137,16 +140,19 @@ class ArmWithCamera : public ArmWithTracker {
     return CalibrateContacts(project, {file, of_corners}, {.folds = 5, .accept = accept});
   }
 
-  /// What is named where there are measurements of this size alone, spoilt.
+  /// What is named where there are measurements of this size alone, spoilt (of an instrument
+  /// alone).
   std::string MistakeOf(int size, const std::function<void(Eigen::VectorXd&)>& spoil,
-                        bool unit_known = true) const {
+                        bool unit_known = true, const std::string& alone = "") const {
     const ObservedRobot model = ModelOf(ProjectWith(kRightMm, kRightMm, false, unit_known));
     Observations spoilt = Seen(model);
     bool odd = false;  // one in two tells as much, in half the time
     std::erase_if(spoilt.all, [&](const Observation& of) {
       return of.measured.size() != size || (size == 8 && (odd = !odd));
     });
-    for (Observation& of : spoilt.all) spoil(of.measured);
+    for (Observation& of : spoilt.all) {
+      if (alone.empty() || model.instrument(of.instrument).name == alone) spoil(of.measured);
+    }
     std::string found;
     for (const std::string& one : FindObservedMistakes(model, spoilt)) {
       found += (found.empty() ? "" : "; or ") + one;
@@ -228,6 +234,53 @@ TEST_F(ArmWithCamera, OtherConventionsOfImagesAreNamed) {
               std::string("the corners of tags run clockwise from ") + place +
                   ": counterclockwise from below left was expected");
   }
+  const auto from_below_right = [](Eigen::VectorXd& uv) {
+    const Eigen::VectorXd right = uv;
+    for (int i = 0; i < 4; ++i) uv.segment<2>(2 * i) = right.segment<2>(2 * ((i + 1) % 4));
+  };
+  EXPECT_EQ(MistakeOf(8, from_below_right),
+            "the corners of tags are counted from below right, or tags are turned by 90 degrees "
+            "about their z: counterclockwise from below left of a tag that stands as rpy_deg says "
+            "was expected");
+}
+
+TEST_F(ArmWithCamera, AnotherOrderOfTheCornersOfOneTagIsNamed) {
+  const auto clockwise = [](Eigen::VectorXd& uv) {
+    const Eigen::VectorXd right = uv;
+    for (int i = 0; i < 4; ++i) uv.segment<2>(2 * i) = right.segment<2>(2 * ((4 - i) % 4));
+  };
+  EXPECT_EQ(MistakeOf(8, clockwise, true, "cam/tag1"),
+            "the corners of tags run clockwise from below left (tag1 alone): counterclockwise from "
+            "below left was expected");
+}
+
+TEST_F(ArmWithCamera, TagsInAnotherUnitAreNamed) {
+  Observations seen = Seen(ModelOf(ProjectWith(kRightMm, kRightMm)));
+  std::erase_if(seen.all, [](const Observation& of) { return of.measured.size() != 8; });
+  seen = SelectPostures(seen, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
+  const ObservedRobot larger = ModelOf(ProjectWith(10.0 * kRightMm, 10.0 * kRightMm));
+  const WrittenConvention cm = TagsInOtherUnits(larger, seen).front();
+  EXPECT_EQ(cm.what, "size_mm of tags is 10 times too large");
+  EXPECT_LT(MisfitOfNominal(*cm.robot, seen).squares, 0.1 * MisfitOfNominal(larger, seen).squares);
+  // Of small tags, cameras that stand elsewhere explain much.
+  const ObservedRobot smaller = ModelOf(ProjectWith(0.1 * kRightMm, 0.1 * kRightMm));
+  const ObservationFit fit = EstimateObserved(smaller, seen, {}).fit;
+  const std::string fault = FindObservedFault(smaller, seen, fit);
+  EXPECT_EQ(fault.find("size_mm of tags is 10 times too small"), 0u) << fault;
+}
+
+// The result is right, but a project that is so far off may mean another tag.
+TEST_F(ArmWithCamera, AMountingFarFromTheProjectIsSaid) {
+  std::string text = TextOf(kRightMm, kRightMm, false, true);
+  const std::string right = "centre_px: [640, 480]", of_tag = "rpy_deg: [90, 0, 0]";
+  text.replace(text.find(right), right.size(), "centre_px: [480, 640]");
+  text.replace(text.find(of_tag), of_tag.size(), "rpy_deg: [90, -90, 0]");
+  const ContactRun run = CalibrateBy(ParseProject(text, (folder_.path() / "far.yaml").string()));
+  EXPECT_EQ(First(run), "");
+  std::string remarks;
+  for (const std::string& remark : run.verdict.remarks) remarks += remark + "\n";
+  EXPECT_NE(remarks.find("cam.centre by "), std::string::npos) << remarks;
+  EXPECT_NE(remarks.find("tag1.mounting_turn by "), std::string::npos) << remarks;
 }
 
 TEST_F(ArmWithCamera, LeftHandedInertialUnitsAreNamed) {

@@ -2,6 +2,7 @@
 // What goes wrong with the table of an arm that instruments see.
 #include <functional>
 
+#include "elastocal/mistakes/observed_faults.hpp"
 #include "elastocal/mistakes/observed_mistakes.hpp"
 #include "tests/arm_with_tracker.hpp"
 #include "tests/expect_input_error.hpp"
@@ -295,6 +296,64 @@ TEST_F(ArmWithTwoBodies, OtherConventionsAreNamed) {
               of.measured[1] *= -1.0;
             }).find("y of the positions of bodies is reversed, but not in their attitudes: "),
             0u);
+}
+
+TEST_F(ArmWithTwoBodies, AnotherConventionOfOneBodyIsNamed) {
+  EXPECT_EQ(MistakeOf([](Observation& of) {
+              if (of.instrument != 1) return;
+              const Eigen::Vector4d xyzw = of.measured.tail<4>();
+              of.measured.tail<4>() << xyzw[3], xyzw.head<3>();
+            }),
+            "w comes first in the quaternions of bodies (arm alone): x, y, z, w was expected");
+}
+
+// A height gauge is all that tells a length beside the robot's own.
+TEST_F(ArmWithTracker, MistakesOfAGaugeAreNamed) {
+  const Project project = ParseProject(
+      "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() +
+          "}\nrecording: {not_recorded_mm: {finger_left_joint: 10}}\ninstruments:\n"
+          "  planes: [{name: floor}]\n  distances: [{name: gauge, link: tool, plane: floor, "
+          "point_mm: [10, 0, 80]}]\n  inertial_units: [{name: imu, link: flange, rpy_deg: [10, 0, "
+          "90], mounting_sd_deg: 5}]\n",
+      (folder_.path() / "gauge.yaml").string());
+  const ObservedRobot model =
+      MakeObservedRobot(project.tree, project.placement, project.contact->setup, {}, {});
+  ObservedValues truth;
+  truth.robot = truth_.robot;
+  for (const Quantity& quantity : model.setup.quantities) {
+    truth.quantities.push_back({quantity.origin, Eigen::VectorXd::Zero(quantity.size())});
+  }
+  Observations seen;
+  seen.files = {"table.csv"};
+  seen.q = q_;
+  for (int i = 0; i < kPostures; ++i) {
+    seen.postures.push_back({0, i + 2});
+    for (int k = 0; k < 2; ++k) seen.all.push_back({i, k, {}, {}});
+  }
+  Random random(5);
+  const auto sights = SightsOf(model, seen, truth, ObservedLoads(model, seen, truth.robot));
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const Instrument& instrument = model.instrument(seen.all[i].instrument);
+    const Eigen::VectorXd shown = instrument.Predict(sights[i]);
+    const double noise = shown.size() == 1 ? 5e-5 : 0.01;
+    seen.all[i].measured = shown + random.NormalVector(static_cast<int>(shown.size()), noise);
+  }
+  const auto with = [&](double factor) {
+    Observations spoilt = seen;
+    for (Observation& of : spoilt.all) {
+      if (of.measured.size() == 1) of.measured *= factor;
+    }
+    return spoilt;
+  };
+  const auto fault_of = [&](const Observations& of) {
+    return FindObservedFault(model, of, EstimateObserved(model, of, {}).fit);
+  };
+  EXPECT_EQ(fault_of(seen), "");
+  const std::string scale = fault_of(with(1.03));
+  EXPECT_EQ(scale.find("lengths as they were measured seem 1.0"), 0u) << scale;
+  const auto sign = FindObservedMistakes(model, with(-1.0));
+  ASSERT_EQ(sign.size(), 1u);
+  EXPECT_EQ(sign[0].find("heights have the opposite sign: "), 0u) << sign[0];
 }
 
 TEST_F(ArmWithTwoBodies, ExchangedLabelsAreNamed) {

@@ -188,6 +188,10 @@ TEST(CalibratedUrdf, BrokenWristAndParallelAxesAreWarnedOf) {
   EXPECT_NE(all.find("1.000 mm"), std::string::npos) << all;
   EXPECT_NE(all.find("leg_left_3_joint, leg_left_4_joint"), std::string::npos);
   EXPECT_NE(all.find("0.573 deg"), std::string::npos) << all;
+  // Less than half a millimetre, and half a millimetre over half a metre, is no matter to a hand.
+  calibration.delta[FindParameter(parameters, "arm_left_6_joint.d")] = 0.4e-3;
+  calibration.delta[FindParameter(parameters, "leg_left_4_joint.beta")] = 0.8e-3;
+  EXPECT_TRUE(MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin).warnings.empty());
 }
 
 TEST(CalibratedUrdf, CorrectionsThatMoveUnrecordedBranchesAreWarnedOf) {

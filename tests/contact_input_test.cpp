@@ -173,7 +173,7 @@ TEST_F(ObservationTableInput, APlateUpsideDownIsNamed) {
   EXPECT_EQ(ReadObservationTables({file_}, ProjectOf(contact("1"), ignore)).observations.count(),
             3);
   ExpectInputError([&] { ReadObservationTables({file_}, ProjectOf(contact("-1"), ignore)); },
-                   {"upside down"});
+                   {"plate 'p' lies upside down in 3 of 3 postures"});
 }
 
 TEST_F(ObservationTableInput, SessionsAreToldByCountsOfEncoders) {

@@ -85,10 +85,11 @@ inline Eigen::VectorXd TouchingPosture(const ObservedRobot& model, Random& rando
 
 /// Touches of a robot with the errors `truth`: random postures in which the last three joints of
 /// the arm that touches, found by Newton's method, leave what `noise` draws (height, tilts). The
-/// plates take turns, and each plate has `sessions` sessions in turn.
+/// plates take turns, and each plate has `sessions` sessions in turn. `above`: how high over the
+/// table each of the first touches is besides, m.
 inline Observations SimulateTouches(const ObservedRobot& model, const ObservedValues& truth,
                                     int count, int sessions, const Eigen::Vector3d& noise,
-                                    Random& random) {
+                                    Random& random, const std::vector<double>& above = {}) {
   Observations touches;
   touches.files = {"synthetic"};
   const int plates = static_cast<int>(model.setup.plates.size());
@@ -103,7 +104,8 @@ inline Observations SimulateTouches(const ObservedRobot& model, const ObservedVa
     one.q = TouchingPosture(model, random).transpose();
     const std::vector<int> joints =
         JointsToBody(model.robot.tree, model.robot.tree.links[model.setup.plates[plate].link].body);
-    const Eigen::Vector3d wanted = Eigen::Vector3d(random.NormalVector(3, 1.0)).cwiseProduct(noise);
+    Eigen::Vector3d wanted = Eigen::Vector3d(random.NormalVector(3, 1.0)).cwiseProduct(noise);
+    if (static_cast<std::size_t>(i) < above.size()) wanted[0] += above[static_cast<std::size_t>(i)];
     const auto left_of = [&](const Observations& of) {
       return Eigen::Vector3d(LeftOf(model, of, truth)[0] - wanted);
     };

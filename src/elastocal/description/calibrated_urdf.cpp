@@ -158,18 +158,22 @@ double LargestDifference(const CalibrationResult& calibration, const RobotTree& 
   return largest;
 }
 
+/// Where inverse kinematics in closed form is off by what matters to a hand: half a millimetre, of
+/// axes that are no longer parallel over half a metre.
 std::vector<std::string> BrokenGeometry(const RobotTree& nominal, const RobotTree& calibrated) {
-  constexpr double kBroken = 1e-6;
+  constexpr double kBrokenWrist = 0.5e-3;   // m
+  constexpr double kBrokenParallel = 1e-3;  // rad
   std::vector<std::string> warnings;
   for (const SpecialGeometry& group : FindSpecialGeometry(nominal)) {
     const double deviation = Deviation(calibrated, group);
-    if (deviation <= kBroken) continue;
+    const bool wrist = group.kind == SpecialGeometry::Kind::kSphericalWrist;
+    if (deviation <= (wrist ? kBrokenWrist : kBrokenParallel)) continue;
     std::string names;
     for (int joint : group.joints) {
       names += (names.empty() ? "" : ", ") + nominal.joints[joint].name;
     }
     warnings.push_back(
-        group.kind == SpecialGeometry::Kind::kSphericalWrist
+        wrist
             ? fmt::format("the axes of {} no longer meet in a point ({:.3f} mm apart): inverse "
                           "kinematics in closed form for a spherical wrist is off by as much",
                           names, 1e3 * deviation)

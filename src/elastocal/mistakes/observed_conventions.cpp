@@ -2,7 +2,10 @@
 #include "elastocal/mistakes/observed_conventions.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <set>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -10,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/observation/flush_contact.hpp"
 #include "elastocal/observation/observation_fault.hpp"
 #include "elastocal/observation/seen_tag.hpp"
 
@@ -78,10 +82,52 @@ Eigen::VectorXd Counterclockwise(const Eigen::VectorXd& corners, int first) {
   return turned;
 }
 
+/// Of corners that run counterclockwise from that of this number.
+Eigen::VectorXd FromBelowLeft(const Eigen::VectorXd& corners, int first) {
+  Eigen::VectorXd turned = corners;
+  for (int corner = 0; corner < 4; ++corner) {
+    turned.segment<2>(2 * corner) = corners.segment<2>(2 * ((4 + corner - first) % 4));
+  }
+  return turned;
+}
+
+/// With all tags `factor` times as large, or those that `holds` alone.
+ObservedRobot WithTagsOf(const ObservedRobot& model, double factor, const auto& holds) {
+  ObservedRobot robot = model;
+  for (auto& instrument : robot.setup.instruments) {
+    const auto* tag = dynamic_cast<const SeenTag*>(instrument.get());
+    if (tag == nullptr || !holds(*instrument)) continue;
+    auto other = std::make_shared<SeenTag>(*tag);
+    other->p_tag_corner *= factor;
+    instrument = std::move(other);
+  }
+  return robot;
+}
+
 class Conventions {
  public:
-  Conventions(const ObservedRobot& model, const Observations& observations)
-      : model_(model), observations_(observations) {}
+  /// `of`: what one of several alike measured; empty: what all did.
+  Conventions(const ObservedRobot& model, const Observations& observations,
+              std::optional<MeasuredBy> of)
+      : model_(model), observations_(observations), of_(std::move(of)) {}
+
+  bool Holds(const Instrument& instrument) const {
+    return !of_ || (of_->quantity < 0
+                        ? instrument.name == of_->name
+                        : std::find(instrument.quantities.begin(), instrument.quantities.end(),
+                                    of_->quantity) != instrument.quantities.end());
+  }
+
+  /// The project has all tags with a multiple of their size.
+  void AddSizeOfTags(double factor) {
+    WrittenConvention convention{"size_mm of tags is " +
+                                     std::to_string(std::lround(std::max(factor, 1.0 / factor))) +
+                                     (factor > 1.0 ? " times too large" : " times too small"),
+                                 "the edge of the black square in mm", "", observations_};
+    convention.robot =
+        WithTagsOf(model_, 1.0 / factor, [&](const Instrument& tag) { return Holds(tag); });
+    Take(std::move(convention));
+  }
 
   /// Rewrites what instruments of these kinds measured, if there are any.
   void Add(const std::vector<std::string_view>& kinds, const auto& rewrite, const std::string& what,
@@ -93,6 +139,7 @@ class Conventions {
       const Instrument& instrument = model_.instrument(observation.instrument);
       const std::string_view kind = instrument.kind();
       if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) continue;
+      if (!Holds(instrument)) continue;
       if constexpr (std::is_invocable_v<decltype(rewrite), Instrument, Eigen::VectorXd>) {
         observation.measured = rewrite(instrument, observation.measured);
       } else {
@@ -100,14 +147,43 @@ class Conventions {
       }
       any = true;
     }
-    if (any) found.push_back(std::move(convention));
+    if (any) Take(std::move(convention));
+  }
+
+  /// The project has the plate's face on the other side of the hand.
+  void AddSideOfPlates() {
+    WrittenConvention convention{"the normal of plates points into the table", "out of the table",
+                                 "", observations_};
+    ObservedRobot robot = model_;
+    for (std::size_t k = 0; k < robot.setup.plates.size(); ++k) {
+      const auto* plate = dynamic_cast<const FlushContact*>(robot.setup.instruments[k].get());
+      if (plate == nullptr || !Holds(*plate)) continue;
+      auto other = std::make_shared<FlushContact>(*plate);
+      other->face.R_link_face = (other->face.R_link_face * RotX(M_PI).linear()).eval();
+      robot.setup.plates[k].face = other->face;
+      robot.setup.instruments[k] = std::move(other);
+      convention.robot = robot;
+    }
+    if (convention.robot) {
+      convention.robot = std::move(robot);
+      Take(std::move(convention));
+    }
   }
 
   std::vector<WrittenConvention> found;
 
  private:
+  void Take(WrittenConvention convention) {
+    if (of_) {
+      convention.what += " (" + of_->name + " alone)";
+      if (!convention.family.empty()) convention.family += " (" + of_->name + " alone)";
+    }
+    found.push_back(std::move(convention));
+  }
+
   const ObservedRobot& model_;
   const Observations& observations_;
+  std::optional<MeasuredBy> of_;
 };
 
 void AddOfBodies(Conventions& conventions) {
@@ -140,6 +216,13 @@ void AddOfImages(Conventions& conventions) {
                   "u to the right and v down");
   conventions.Add({"image"}, WithVDownwards, "v of the corners of tags is counted upwards",
                   "v from the upper edge of the image down");
+}
+
+void AddUnitsOfTags(Conventions& conventions) {
+  for (const double factor : {10.0, 0.1}) conventions.AddSizeOfTags(factor);
+}
+
+void AddOfTags(Conventions& conventions) {
   const char* const places[] = {"below left", "below right", "above right", "above left"};
   for (int first = 0; first < 4; ++first) {
     const auto counterclockwise = [first](const Eigen::VectorXd& corners) {
@@ -148,6 +231,15 @@ void AddOfImages(Conventions& conventions) {
     conventions.Add({"image"}, counterclockwise,
                     std::string("the corners of tags run clockwise from ") + places[first],
                     "counterclockwise from below left", "the corners of tags run clockwise");
+    if (first == 0) continue;
+    const auto from_below_left = [first](const Eigen::VectorXd& corners) {
+      return FromBelowLeft(corners, first);
+    };
+    conventions.Add({"image"}, from_below_left,
+                    std::string("the corners of tags are counted from ") + places[first] +
+                        ", or tags are turned by " +
+                        std::to_string(90 * std::min(first, 4 - first)) + " degrees about their z",
+                    "counterclockwise from below left of a tag that stands as rpy_deg says");
   }
 }
 
@@ -204,12 +296,60 @@ std::optional<WrittenConvention> CamerasAsBodies(const ObservedRobot& model,
 }
 
 std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
-                                                  const Observations& observations) {
-  Conventions conventions(model, observations);
-  AddOfBodies(conventions);
-  AddOfImages(conventions);
-  AddOfInertialUnits(conventions);
+                                                  const Observations& observations,
+                                                  const std::optional<MeasuredBy>& of) {
+  Conventions conventions(model, observations, of);
+  const std::string kind = of ? of->kind : "";
+  if (kind.empty() || kind == "pose") AddOfBodies(conventions);
+  if (kind.empty() || kind == "camera") AddOfImages(conventions);
+  const bool tags = std::any_of(observations.all.begin(), observations.all.end(),
+                                [&](const Observation& observation) {
+                                  return TagSeenBy(model.instrument(observation.instrument)) >= 0;
+                                });
+  if ((kind.empty() || kind == "tag") && tags) AddOfTags(conventions);
+  if (kind.empty() || kind == "gravity") AddOfInertialUnits(conventions);
+  if (kind.empty() || kind == "flush contact") conventions.AddSideOfPlates();
+  if (kind.empty() || kind == "plane distance") {
+    conventions.Add(
+        {"plane distance"},
+        [](const Eigen::VectorXd& height) -> Eigen::VectorXd { return -height; },
+        "heights have the opposite sign", "how far the point is from its plane along the normal");
+  }
   return std::move(conventions.found);
+}
+
+std::vector<WrittenConvention> TagsInOtherUnits(const ObservedRobot& model,
+                                                const Observations& observations) {
+  Conventions conventions(model, observations, std::nullopt);
+  AddUnitsOfTags(conventions);
+  return std::move(conventions.found);
+}
+
+std::vector<MeasuredBy> SeveralAlike(const ObservedRobot& model, const Observations& observations) {
+  std::vector<MeasuredBy> all;
+  const auto add = [&](const std::string& kind, const std::string& name, int quantity) {
+    const bool known = std::any_of(all.begin(), all.end(), [&](const MeasuredBy& of) {
+      return of.kind == kind && of.name == name;
+    });
+    if (!known) all.push_back({kind, name, quantity});
+  };
+  for (const Observation& of : observations.all) {
+    const Instrument& instrument = model.instrument(of.instrument);
+    if (TagSeenBy(instrument) < 0) {
+      add(instrument.kind(), instrument.name, -1);
+      continue;
+    }
+    const std::size_t between = instrument.name.find('/');
+    add("camera", instrument.name.substr(0, between), instrument.quantities.front());
+    add("tag", instrument.name.substr(between + 1), TagSeenBy(instrument));
+  }
+  std::vector<MeasuredBy> several;
+  for (const MeasuredBy& of : all) {
+    const auto alike = std::count_if(
+        all.begin(), all.end(), [&](const MeasuredBy& other) { return other.kind == of.kind; });
+    if (alike > 1) several.push_back(of);
+  }
+  return several;
 }
 
 }  // namespace elastocal

@@ -25,11 +25,25 @@ struct WrittenConvention {
 std::optional<WrittenConvention> CamerasAsBodies(const ObservedRobot& model,
                                                  const Observations& observations);
 
+/// One of several that measure alike: an instrument of the kind, a "camera" or a "tag".
+struct MeasuredBy {
+  std::string kind, name;
+  int quantity = -1;  ///< of a camera or a tag: its pose
+};
+
 /// For what trackers measured: quaternions with w first, attitudes and poses from the other frame,
-/// left-handed axes. For images: u and v exchanged, v upwards, corners that run clockwise (in
-/// another order counterclockwise, they are those of a tag that is mounted another way). For
-/// inertial units: axes that are left-handed.
+/// left-handed axes. For images: u and v exchanged, v upwards, corners that run clockwise or are
+/// counted from another one. For inertial units: axes
+/// that are left-handed. For heights: the sign. `of`: what this one measured alone.
 std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
-                                                  const Observations& observations);
+                                                  const Observations& observations,
+                                                  const std::optional<MeasuredBy>& of = {});
+
+/// Tags of ten times their size, or a tenth: cm, or a slip of the point.
+std::vector<WrittenConvention> TagsInOtherUnits(const ObservedRobot& model,
+                                                const Observations& observations);
+
+/// Bodies, cameras, tags, inertial units and gauges of which there are two or more.
+std::vector<MeasuredBy> SeveralAlike(const ObservedRobot& model, const Observations& observations);
 
 }  // namespace elastocal

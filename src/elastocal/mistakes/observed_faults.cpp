@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/observed_conventions.hpp"
 #include "elastocal/mistakes/observed_corrections.hpp"
 #include "elastocal/mistakes/observed_scale.hpp"
 #include "elastocal/observation/observation_faults.hpp"
@@ -101,6 +102,32 @@ std::optional<CommonScale> ScaleBesideRails(const ObservedRobot& model,
   return std::nullopt;
 }
 
+/// The largest noise of cameras, in units of what was expected.
+double NoiseOfCameras(const ObservedRobot& model, const Spread& spread) {
+  const std::vector<Source>& sources = model.setup.sources;
+  double most = 0.0;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    if (sources[s].unit == SourceUnit::kPixel) most = std::max(most, spread.sd[s] / sources[s].sd);
+  }
+  return most;
+}
+
+/// Tags of another unit, of which cameras that may be elsewhere explain so much that only their
+/// noise is far above what was expected.
+std::string UnitOfTags(const ObservedRobot& model, const Observations& observations,
+                       const ObservationFit& fit) {
+  constexpr double kNoisy = 4.0;
+  const double before = NoiseOfCameras(model, fit.spread);
+  if (before < kNoisy) return "";
+  for (const WrittenConvention& other : TagsInOtherUnits(model, observations)) {
+    const ObservationFit without = EstimateObserved(*other.robot, observations, {}).fit;
+    if (NoiseOfCameras(model, without.spread) < kHalved * before) {
+      return other.what + ": " + other.right + " was expected";
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string DescribeWithRemedy(const ObservationFault& fault, const ObservedRobot& model,
@@ -111,6 +138,7 @@ std::string DescribeWithRemedy(const ObservationFault& fault, const ObservedRobo
 
 std::string FindObservedFault(const ObservedRobot& model, const Observations& observations,
                               const ObservationFit& fit) {
+  if (std::string unit = UnitOfTags(model, observations, fit); !unit.empty()) return unit;
   std::vector<ObservationFault> faults = FindObservationFaults(model, observations, fit);
   if (const auto scale = ScaleBesideRails(model, observations, faults)) {
     return DescribeScale(*scale, model, observations);

@@ -15,6 +15,7 @@ namespace elastocal {
 namespace {
 
 constexpr int kMostMisfitPostures = 24;
+constexpr int kMostUpdates = 50;           // what is no place by then is none
 constexpr double kLeastTurn = M_PI / 4.0;  // rad
 constexpr double kManySds = 3.0;
 
@@ -59,8 +60,9 @@ double SquaresOf(const ObservedRobot& model, const Observations& some,
 
 ObservedValues PlacedAmong(const ObservedRobot& model, const Observations& some) {
   InterruptionPoint();
-  return FitObservations(model, some, StartFit(model, some),
-                         {.freedom = {.robot = false}, .estimate_spread = false})
+  return FitObservations(
+             model, some, StartFit(model, some),
+             {.freedom = {.robot = false}, .estimate_spread = false, .max_updates = kMostUpdates})
       .values;
 }
 

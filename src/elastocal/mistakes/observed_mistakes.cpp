@@ -74,6 +74,16 @@ class MistakeSearch {
     }
     std::vector<std::string> found = Found();
     if (!found.empty()) return found;
+    for (const WrittenConvention& convention : TagsInOtherUnits(model_, part_)) {
+      TryConvention(convention);
+    }
+    for (const MeasuredBy& of : SeveralAlike(model_, part_)) {
+      for (const WrittenConvention& convention : WrittenConventions(model_, part_, of)) {
+        TryConvention(convention);
+      }
+    }
+    found = Found();
+    if (!found.empty()) return found;
     for (std::size_t a = 0; a < moving.size(); ++a) {  // hundreds of a humanoid
       for (std::size_t b = a + 1; b < moving.size(); ++b) {
         if (Slides(moving[a]) == Slides(moving[b])) TryExchange(moving[a], moving[b]);

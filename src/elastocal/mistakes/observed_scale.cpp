@@ -13,17 +13,19 @@
 namespace elastocal {
 namespace {
 
-bool AnyThat(const ObservedRobot& model, const Observations& observations, const auto& holds) {
-  return std::any_of(observations.all.begin(), observations.all.end(),
-                     [&](const Observation& of) { return holds(model.instrument(of.instrument)); });
-}
-
+/// A tip that touches a plane measures the length 0, which no scale changes.
 bool LengthsWereMeasured(const ObservedRobot& model, const Observations& observations) {
-  return AnyThat(model, observations, [](const Instrument& of) { return LengthsMeasured(of) > 0; });
+  constexpr double kNoLength = 1e-3;  // m
+  return std::any_of(observations.all.begin(), observations.all.end(), [&](const Observation& of) {
+    const int lengths = LengthsMeasured(model.instrument(of.instrument));
+    return lengths > 0 && of.measured.head(lengths).cwiseAbs().maxCoeff() > kNoLength;
+  });
 }
 
 bool TagsWereSeen(const ObservedRobot& model, const Observations& observations) {
-  return AnyThat(model, observations, [](const Instrument& of) { return TagSeenBy(of) >= 0; });
+  return std::any_of(observations.all.begin(), observations.all.end(), [&](const Observation& of) {
+    return TagSeenBy(model.instrument(of.instrument)) >= 0;
+  });
 }
 
 /// "100 or 82", and what they are over a factor: "97.66 or 80.08", mm.
@@ -78,12 +80,12 @@ std::string DescribeScale(const CommonScale& scale, const ObservedRobot& model,
             ", or describe the robot with its own size";
   } else if (TagsWereSeen(model, observations)) {
     text += fmt::format(
-        "check the scale of the trackers and the size of the tags ({}), or describe "
+        "check the scale of trackers and gauges and the size of the tags ({}), or describe "
         "the robot with its own size",
         WriteSizeOfTags(model, observations, -1, factor));
   } else if (accepted) {
     text += fmt::format(
-        "check the scale of the trackers, or describe the robot with its own size "
+        "check the scale of trackers and gauges, or describe the robot with its own size "
         "(--accept scale={:.5f} corrects it)",
         factor);
   } else {

@@ -36,7 +36,7 @@ void AddEffect(const ObservedRobot& model, int quantity, int posture, Observatio
 int LengthsMeasured(const Instrument& instrument) {
   const std::string_view kind = instrument.kind();
   if (kind == "pose" || kind == "position") return 3;
-  return kind == "wire" ? 1 : 0;
+  return kind == "wire" || kind == "plane distance" ? 1 : 0;
 }
 
 int TagSeenBy(const Instrument& instrument) {

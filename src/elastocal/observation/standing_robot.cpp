@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/robot/shared_support.hpp"
 
@@ -13,6 +14,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kFlat = 20.0 * M_PI / 180.0;  // more than any robot errs
+constexpr int kFewestUpside = 3;               // postures
 constexpr double kClosed = 1e-4;               // m
 constexpr double kClosedAngle = 0.01 * M_PI / 180.0;
 
@@ -69,7 +71,7 @@ std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetu
                                     const Eigen::MatrixXd& q, const std::string& source) {
   std::vector<int> touching;
   Eigen::VectorXd least(q.rows());
-  Eigen::VectorXd most(q.rows());
+  std::vector<int> flat(setup.plates.size(), 0), upside(setup.plates.size(), 0);  // postures
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const std::vector<Transform> T = LinkTransforms(tree, Eigen::VectorXd(q.row(i)));
     const Transform root = NominalRoot(setup, T);
@@ -81,17 +83,27 @@ std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetu
     const auto flattest = std::min_element(tilts.begin(), tilts.end());
     touching.push_back(static_cast<int>(flattest - tilts.begin()));
     least[i] = *flattest;
-    most[i] = *std::max_element(tilts.begin(), tilts.end());
+    const auto steepest = std::max_element(tilts.begin(), tilts.end());
+    if (*flattest <= std::min(kFlat, M_PI - *steepest)) {
+      ++flat[Size(touching.back())];
+    } else if (M_PI - *steepest <= kFlat) {
+      ++upside[Size(steepest - tilts.begin())];
+    }
+  }
+  for (std::size_t p = 0; p < setup.plates.size(); ++p) {
+    if (upside[p] < kFewestUpside || upside[p] <= flat[p]) continue;
+    throw InputError(source + ": by nominal kinematics plate '" + setup.plates[p].name +
+                     "' lies upside down in " + std::to_string(upside[p]) + " of " +
+                     std::to_string(q.rows()) +
+                     " postures, in which no other lies as flat: its normal points out of the "
+                     "table, contact.plates of the project says which way that is");
   }
   if (Median(least) <= kFlat) return touching;
-  const bool upside_down = Median(most) > M_PI - kFlat;
   throw InputError(
       source + ": by nominal kinematics no plate lies flat on a level table; the flattest is at " +
       Rounded(DegreesOf(Median(least)), "%.0f") + " degrees in the median" +
-      (upside_down ? ": a plate is upside down; its normal points out of the table, contact.plates "
-                     "of the project says which way that is"
-                   : "; plates within 20 degrees of level were expected (contact.plates and "
-                     "contact.feet of the project)"));
+      "; plates within 20 degrees of level were expected (contact.plates and contact.feet of the "
+      "project)");
 }
 
 ClosureEvidence CheckClosure(const ObservedRobot& model, const Eigen::MatrixXd& q) {

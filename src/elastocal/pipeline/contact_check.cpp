@@ -25,6 +25,7 @@
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
+#include "elastocal/pipeline/leave_out_touches.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -149,6 +150,14 @@ class AlternativeSearch {
         FindObservationFaults(calibrated_, run_.observations, estimate_.fit);
     if (faults.size() > kMostTried) faults.resize(kMostTried);
     std::vector<std::string> found;
+    const Observations& all = run_.observations;
+    const std::vector<TouchInTheAir> air = FindTouchesInTheAir(calibrated_, all);
+    if (!air.empty()) {
+      const Observations without = WithoutTouches(all, air);
+      if (without.posture_count() >= kFewestChecked && Holds(without)) {
+        found.push_back(DescribeTouchesInTheAir(calibrated_, all, air));
+      }
+    }
     for (const ObservationFault& fault : faults) {
       // Beside errors as small as a moved joint's, some split of the rows explains them by chance;
       // from the first row on, that is a joint or a mounting that has moved.

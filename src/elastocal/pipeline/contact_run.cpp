@@ -16,6 +16,7 @@
 #include "elastocal/observation/observed_study.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
+#include "elastocal/pipeline/leave_out_touches.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
@@ -289,6 +290,10 @@ ContactRun CalibrateContacts(const Project& project,
       folds = 0;
       run.uncalibrated.held_out = {};
     }
+  }
+  if ((!run.mistakes || run.mistakes->empty()) && LeaveOutTouchesInTheAir(run)) {
+    folds = std::min(folds, run.observations.posture_count());
+    run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
   }
   run.calibrated = Estimate(run.model, run.observations, true, options, folds);
   if (earlier) {

@@ -128,6 +128,41 @@ void RemarkOnNoise(ContactRun& run) {
   }
 }
 
+/// Mountings, and numbers of cameras, that are far from where the project has them: what is typed
+/// wrong there is estimated all the same, but it may be the wrong tag, link or camera.
+void RemarkOnMountings(ContactRun& run) {
+  constexpr double kFarSds = 6.0;
+  const std::vector<Source>& sources = run.model.setup.sources;
+  const std::vector<QuantityValue>& values = run.calibrated.estimate.fit.values.quantities;
+  std::vector<std::string> far;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const std::vector<int>& of = run.model.setup.quantities[k].sources;
+    for (std::size_t first = 0, end = 0; first < of.size(); first = end) {
+      while (end < of.size() && of[end] == of[first]) ++end;
+      if (of[first] < kCommonSources) continue;  // of nobody's project
+      const Source& source = sources[static_cast<std::size_t>(of[first])];
+      const auto count = static_cast<Eigen::Index>(end - first);
+      const auto at = static_cast<Eigen::Index>(first);
+      const bool turn = source.unit == SourceUnit::kRadian && count == 3;
+      const double off =
+          turn ? RotationAngle(run.model.setup.quantities[k].origin.linear().transpose() *
+                               values[k].Rotation(static_cast<int>(first)))
+               : values[k].x.segment(at, count).norm();
+      if (!(off > kFarSds * source.sd)) continue;
+      const bool share = source.unit == SourceUnit::kNone;  // of the focal lengths
+      const ShownUnit unit = ShownUnitOf(source.unit);
+      far.push_back(fmt::format("{} by {:.3g} {} (within {:.3g} expected)", source.name,
+                                share ? 1e2 * off : unit.factor * off, share ? "%" : unit.name,
+                                share ? 1e2 * source.sd : unit.factor * source.sd));
+    }
+  }
+  if (far.empty()) return;
+  run.verdict.remarks.push_back(fmt::format(
+      "far from where the project has it: {}. Is it the right one, and its axes, corners "
+      "and centre as the project has them?",
+      fmt::join(far, "; ")));
+}
+
 /// A covariance of poses in other units, or with rotations first, is not of what is left of them.
 void RemarkOnCovariances(ContactRun& run) {
   constexpr double kOtherShape = 10.0;  // model errors change the shape by less
@@ -225,6 +260,7 @@ void JudgeContacts(ContactRun& run) {
     verdict.objections.emplace_back(
         "the estimate has not converged: variances did not come to rest");
   }
+  if (!run.mostly_air.empty()) verdict.objections.push_back(run.mostly_air);
   const auto left_out = static_cast<double>(run.calibrated.estimate.outliers.size());
   if (left_out > kMostLeftOut * run.observations.count()) {
     verdict.objections.push_back(
@@ -253,6 +289,7 @@ void JudgeContacts(ContactRun& run) {
   }
   if (verdict.objections.empty()) RemarkOnNoise(run);
   RemarkOnCovariances(run);
+  if (verdict.objections.empty()) RemarkOnMountings(run);
   if (!held_out && !mistaken) {
     verdict.remarks.push_back("no " + std::string(touches ? "touch" : "posture") +
                               " was left out (--kfold 0): nothing was validated");

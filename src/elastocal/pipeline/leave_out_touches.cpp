@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/pipeline/leave_out_touches.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "elastocal/math/numbers.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kMostInTheAir = 0.25;  // share of the touches of a plate
+
+/// "left.csv:7, 12, right.csv:3": where touches are.
+std::string PlacesOf(const std::vector<TouchInTheAir>& touches, const Observations& observations) {
+  std::string text;
+  int file = -1;
+  for (const TouchInTheAir& touch : touches) {
+    const int posture = observations.all[Size(touch.observation)].posture;
+    const PosturePlace& place = observations.postures[Size(posture)];
+    text += text.empty() ? "" : ", ";
+    if (place.file != file) text += observations.files[Size(place.file)] + ":";
+    text += std::to_string(place.line);
+    file = place.file;
+  }
+  return text;
+}
+
+/// "12", "5.9 to 39": mm.
+std::string HeightsInWords(const std::vector<TouchInTheAir>& touches) {
+  const auto [low, high] =
+      std::minmax_element(touches.begin(), touches.end(),
+                          [](const auto& a, const auto& b) { return a.height < b.height; });
+  const std::string least = fmt::format("{:.2g}", 1e3 * low->height);
+  const std::string most = fmt::format("{:.2g}", 1e3 * high->height);
+  return least == most ? least : least + " to " + most;
+}
+
+/// Touches of each plate that some observations have.
+std::vector<int> TouchesByPlate(const ObservedRobot& model, const Observations& observations) {
+  std::vector<int> touches(model.setup.plates.size(), 0);
+  for (const Observation& of : observations.all) {
+    if (model.IsPlate(of.instrument)) ++touches[Size(of.instrument)];
+  }
+  return touches;
+}
+
+}  // namespace
+
+std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observations& observations,
+                                    const std::vector<TouchInTheAir>& air) {
+  const std::vector<int> touches = TouchesByPlate(model, observations);
+  return fmt::format(
+      "{} of {} touches seem to be none: by the others, the plate stood {} mm above its table in "
+      "{}",
+      air.size(), std::accumulate(touches.begin(), touches.end(), 0), HeightsInWords(air),
+      PlacesOf(air, observations));
+}
+
+bool LeaveOutTouchesInTheAir(ContactRun& run) {
+  const std::vector<TouchInTheAir> air = FindTouchesInTheAir(run.model, run.observations);
+  if (air.empty()) return false;
+  Observations without = WithoutTouches(run.observations, air);
+  const std::vector<int> before = TouchesByPlate(run.model, run.observations);
+  const std::vector<int> after = TouchesByPlate(run.model, without);
+  bool many = false;
+  for (std::size_t plate = 0; plate < before.size(); ++plate) {
+    many = many || before[plate] - after[plate] > kMostInTheAir * before[plate];
+  }
+  const std::string text = DescribeTouchesInTheAir(run.model, run.observations, air);
+  run.observations = std::move(without);
+  if (many) {
+    run.mostly_air = text + ". Record them again, or delete these rows if nothing was touched";
+  } else {
+    run.warnings.push_back(text + "; left out: was there contact?");
+  }
+  return true;
+}
+
+}  // namespace elastocal

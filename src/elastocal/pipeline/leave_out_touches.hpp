@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/observation/touches_in_the_air.hpp"
+#include "elastocal/pipeline/contact_run.hpp"
+
+namespace elastocal {
+
+/// "5 of 40 touches seem to be none: by the others, the plate stood 5.9 to 39 mm above its table in
+/// left.csv:7, 12".
+std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observations& observations,
+                                    const std::vector<TouchInTheAir>& air);
+
+/// Leaves touches in the air (FindTouchesInTheAir) out of the observations; whether there were
+/// some. A few are a warning; where they are more than a quarter of a plate's touches, as of
+/// outliers, `mostly_air` is the objection: too few are left to tell which are right.
+bool LeaveOutTouchesInTheAir(ContactRun& run);
+
+}  // namespace elastocal
