@@ -245,6 +245,22 @@ TEST_F(GeneralFaults, AFitThatIsFarFromTheDataHidesNoGain) {
   EXPECT_NEAR(found[0].size, 0.01, 0.001);  // by one linear step
 }
 
+// Ten postures: the gain is most of the noise that it would be judged by.
+TEST_F(GeneralFaults, AGainIsJudgedByTheNoiseWithoutIt) {
+  recorded_ = SelectPostures(recorded_, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  EXPECT_EQ(Said(), "");
+  recorded_.q.col(CoordinateOf("bend_joint")) *= 1.01;
+  ExpectIn(Said(), "bend_joint: its positions are 1.01");
+}
+
+// Half a percent is little for a gear, and much for a lead or the scale of the cameras.
+TEST_F(GeneralFaults, AGainOfASlideCountsFromAFifthOfAPercentOn) {
+  recorded_.q.col(CoordinateOf("rail_joint")) *= 1.003;
+  const std::string said = Said();
+  ExpectIn(said, "rail_joint: its positions are 1.003");
+  ExpectIn(said, "if its scale is right, the cameras' is 0.99");
+}
+
 // With -z up, springs take up a part of a gain beside a slip; both explain all with z up.
 TEST_F(GeneralFaults, AGainBesideASlipIsNoOtherAxisUp) {
   recorded_.q.col(CoordinateOf("shoulder_joint")) *= 1.025;
