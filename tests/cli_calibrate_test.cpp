@@ -166,12 +166,21 @@ TEST_F(Program, AVerdictSaysWhatItRestsOn) {
     if (length) truth[i] += random.Normal(5e-3);
   }
   Recording recording = MakeSyntheticRecording(model, truth, {.postures = 30, .seed = 5});
-  const auto said = [&] {
-    return Calibrate(project_, WriteTable(scratch_, project, recording), "--kfold 0").out;
+  const auto said = [&](const std::string& of_project) {
+    return Calibrate(of_project, WriteTable(scratch_, project, recording), "--kfold 0").out;
   };
   const std::string scale = "The scale of the cameras is taken as right";
-  const std::string clean = said();
+  const std::string told = said(project_);  // by the travel of the rail
+  EXPECT_EQ(told.find(scale), std::string::npos) << told;
+  std::string text = ReadFile(project_);
+  text.replace(text.find("arm6.urdf"), 9, SourceFile("tests/robots/arm6.urdf").string());
+  const std::string lead =
+      scratch_.Write("lead.yaml", text + "\ncalibration: {extra: [rail_joint.gear]}\n");
+  const std::string clean = said(lead);
   EXPECT_NE(clean.find(scale), std::string::npos) << clean;
+  const std::size_t open = clean.find("only tell that it is 0.9");
+  ASSERT_NE(open, std::string::npos) << clean;
+  EXPECT_NE(clean.find("m from the root link up to ", open), std::string::npos) << clean;
   EXPECT_EQ(clean.find("of a body as a whole"), std::string::npos) << clean;
   for (int i = 0; i < recording.posture_count(); ++i) {
     const Eigen::RowVector3d shift = random.NormalVector(3, 6e-4).transpose();
@@ -181,7 +190,7 @@ TEST_F(Program, AVerdictSaysWhatItRestsOn) {
       }
     }
   }
-  const std::string swinging = said();
+  const std::string swinging = said(project_);
   EXPECT_NE(swinging.find("of a body as a whole 0."), std::string::npos) << swinging;
 }
 

@@ -2,9 +2,12 @@
 // What is said of faults that a fit leaves, when they are not one simple fault.
 #include "elastocal/mistakes/general_fault.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/coarse_positions.hpp"
+#include "elastocal/calibration/loose_clusters.hpp"
 #include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
@@ -243,6 +246,51 @@ TEST_F(GeneralFaults, AFitThatIsFarFromTheDataHidesNoGain) {
   EXPECT_EQ(found[0].kind, FaultKind::kJointGain);
   EXPECT_EQ(found[0].coordinate, CoordinateOf("elbow_joint"));
   EXPECT_NEAR(found[0].size, 0.01, 0.001);  // by one linear step
+}
+
+// Ten postures: the gain is most of the noise that it would be judged by.
+TEST_F(GeneralFaults, AGainIsJudgedByTheNoiseWithoutIt) {
+  recorded_ = SelectPostures(recorded_, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  EXPECT_EQ(Said(), "");
+  recorded_.q.col(CoordinateOf("bend_joint")) *= 1.01;
+  ExpectIn(Said(), "bend_joint: its positions are 1.01");
+}
+
+// Half a percent is little for a gear, and much for a lead or the scale of the cameras.
+TEST_F(GeneralFaults, AGainOfASlideCountsFromAFifthOfAPercentOn) {
+  recorded_.q.col(CoordinateOf("rail_joint")) *= 1.003;
+  const std::string said = Said();
+  ExpectIn(said, "rail_joint: its positions are 1.003");
+  ExpectIn(said, "if its scale is right, the cameras' is 0.99");
+}
+
+// As by a plate that is screwed on loosely, or by a base that swings.
+TEST_F(GeneralFaults, MarkersThatAreElsewhereInEachPostureAreNamed) {
+  const auto said = [&](const std::vector<std::string>& clusters, double sd) -> std::string {
+    Random random(4);
+    Recording moved = recorded_;
+    for (int i = 0; i < moved.posture_count(); ++i) {
+      const Eigen::RowVector3d by = random.NormalVector(3, sd).transpose();
+      for (int m = 0; m < moved.marker_count(); ++m) {
+        const std::string& name = moved.marker_names[static_cast<std::size_t>(m)];
+        const bool is_moved = std::any_of(clusters.begin(), clusters.end(),
+                                          [&](const auto& one) { return name.starts_with(one); });
+        if (is_moved) moved.markers.block<1, 3>(i, 3 * m) += by;
+      }
+    }
+    const auto loose =
+        FindLooseCluster(Calibrate(model_, moved, base_, kKind, project_.calibration), moved,
+                         SeenClusters(project_, moved), project_.calibration);
+    return loose ? Describe(*loose) + (IsTooLoose(*loose) ? " too loose" : "") : "";
+  };
+  EXPECT_EQ(said({}, 0.0), "");
+  const std::string cluster = said({"FOREARM"}, 5e-3), little = said({"TOOL"}, 8e-4),
+                    robot = said({"FOREARM", "WRIST", "TOOL"}, 2e-3);
+  EXPECT_EQ(cluster.find("cluster FOREARM: its markers are elsewhere"), 0u) << cluster;
+  ExpectIn(cluster, "too loose");
+  EXPECT_EQ(little.find("cluster TOOL: its markers are elsewhere"), 0u) << little;
+  EXPECT_EQ(little.find("too loose"), std::string::npos) << little;
+  EXPECT_EQ(robot.find("the robot as a whole is elsewhere"), 0u) << robot;
 }
 
 // With -z up, springs take up a part of a gain beside a slip; both explain all with z up.

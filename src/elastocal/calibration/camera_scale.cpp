@@ -158,6 +158,11 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
   return scale;
 }
 
+std::pair<double, double> CompatibleScales(const CommonScale& scale) {
+  const double width = StudentQuantile(0.975, scale.degrees_of_freedom) * scale.sd;
+  return {scale.size - width, scale.size + width};
+}
+
 bool IsDoubtful(const CommonScale& scale) {
   constexpr double kOneInFifty = 0.02;
   return std::abs(scale.size) > kLeastScale &&

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "elastocal/calibration/calibrate.hpp"
 
@@ -26,6 +27,10 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
 /// recording in a thousand has by Student's t (3.5 for a humanoid, 4.6 for an arm of seven joints).
 std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
                                           const CalibrationOptions& options);
+
+/// The least and the largest scale of the cameras, less 1, that the lengths do not contradict (95
+/// %): no other data tell it.
+std::pair<double, double> CompatibleScales(const CommonScale& scale);
 
 /// Whether it is more than 0.3 %, and more than one clean recording in fifty has: too little to
 /// object to, too much to say nothing.

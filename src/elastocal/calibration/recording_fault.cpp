@@ -39,7 +39,9 @@ bool IsReached(const Recording& recording, int posture) {
 
 double LeastSize(FaultKind kind, bool slides) {
   if (kind == FaultKind::kJointLag) return 0.005;
-  if (kind == FaultKind::kJointGain) return 0.005;
+  // A lead is made more exactly than a gear's play lets an angle be known; what is more is the
+  // scale of the cameras.
+  if (kind == FaultKind::kJointGain) return slides ? 0.002 : 0.005;
   if (kind == FaultKind::kUnfinished) return 0.003;
   if (kind == FaultKind::kCameraScale || IsInCameraSpace({kind})) return 0.0015;
   return slides ? 1e-3 : 0.25 * M_PI / 180.0;

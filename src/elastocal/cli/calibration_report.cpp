@@ -47,15 +47,34 @@ std::string WithoutOutliersText(const CalibrationRun& run) {
   return text;
 }
 
-/// A scale of the cameras is a robot of another size: no residual shows it. What it rests on, where
-/// neither a known length nor the robot's own ones tell it well; else empty.
+/// Whether a joint slid far enough to tell the scale of the cameras: its gear is not estimated.
+bool SlideTellsScale(const CalibrationRun& run) {
+  constexpr double kFar = 0.1;  // m
+  const ErrorModel& model = run.comparison.largest().model;
+  return std::any_of(model.active_joints.begin(), model.active_joints.end(), [&](const int joint) {
+    const Joint& slide = model.tree.joints[static_cast<std::size_t>(joint)];
+    const auto moved = run.recording.q.col(slide.coordinate);
+    return slide.type == JointType::kPrismatic && moved.maxCoeff() - moved.minCoeff() > kFar &&
+           std::find(run.extra.begin(), run.extra.end(), slide.name + ".gear") == run.extra.end();
+  });
+}
+
+/// A scale of the cameras is a robot of another size: no residual shows it. Where neither a known
+/// length nor a slide tells it, what the robot's own lengths leave open, if that is more than the
+/// error that the verdict states; else empty.
 std::string ScaleText(const CalibrationRun& run) {
-  constexpr double kWell = 2e-3;
-  if (!run.common_scale || run.common_scale->sd < kWell || ScaleIsKnown(run.trials)) return "";
+  if (!run.common_scale || ScaleIsKnown(run.trials) || SlideTellsScale(run)) return "";
+  const auto [least, most] = CompatibleScales(*run.common_scale);
+  const double reach = 0.5 * RobotSize(run.comparison.largest().model.tree);
+  const double open = std::max(std::abs(least), std::abs(most)) * reach;
+  const Deployment& deployment = run.deployment;
+  if (!(open > std::fmin(deployment.urdf, deployment.compensated))) return "";
   return fmt::format(
       "  The scale of the cameras is taken as right: no known length was in view, and the robot's "
-      "own lengths tell it to {:.2g} % (sd) only.\n",
-      100.0 * run.common_scale->sd);
+      "own lengths only tell that it is {:.4f} to {:.4f} times the true one (95 %). That may put "
+      "what is {:.2g} m from the root link up to {:.2g} mm off, which no error above shows "
+      "(recording.reference_lengths tells).\n",
+      1.0 + least, 1.0 + most, reach, 1e3 * open);
 }
 
 /// One sentence for whoever reads no table.

@@ -9,6 +9,7 @@
 
 #include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/calibration/coarse_positions.hpp"
+#include "elastocal/calibration/loose_clusters.hpp"
 #include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/up_check.hpp"
@@ -190,6 +191,15 @@ std::vector<std::string> OddBesideCalibrated(const Project& project, const Recor
   return said;
 }
 
+/// Markers that are so far off in each posture that nothing is worth calibrating by them.
+std::vector<std::string> TooLoose(const Project& project, const Recording& recording,
+                                  const CalibrationResult& result) {
+  const auto loose =
+      FindLooseCluster(result, recording, SeenClusters(project, recording), project.calibration);
+  if (!loose || !IsTooLoose(*loose)) return {};
+  return {Describe(*loose)};
+}
+
 }  // namespace
 
 bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
@@ -265,10 +275,12 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     if (!faults.empty()) return faults;
     const auto scattered =
         FindScatteredPositions(comparison.largest(), recording, project.calibration);
-    if (scattered && IsTooLoose(*scattered, project.tree)) {
-      faults.push_back(Describe(*scattered, project.tree));
+    if (scattered) {
+      if (IsTooLoose(*scattered, project.tree))
+        faults.push_back(Describe(*scattered, project.tree));
+      return faults;
     }
-    return faults;
+    return TooLoose(project, recording, comparison.largest());
   }
   const std::string of_slide =
       scale_is_known ? ""
@@ -277,6 +289,8 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
   if (!few->complete) {
     const auto odd = OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
     if (!odd.empty()) return odd;
+    const auto loose = TooLoose(project, recording, comparison.largest());
+    if (!loose.empty()) return loose;
   }
   return {few->text};
 }

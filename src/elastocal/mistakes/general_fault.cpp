@@ -195,6 +195,7 @@ class FaultExplanation {
     std::erase_if(faults_, [&](const RecordingFault& one) {
       return faults_.size() > 1 && std::abs(one.size) < kFewestSds * one.sd;
     });
+    complete_ = std::abs(faults_.front().size) >= kFewestSds * faults_.front().sd;
   }
 
   /// A cluster that is elsewhere on its link from where the first fault begins, if that leaves less

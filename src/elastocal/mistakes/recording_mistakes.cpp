@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/calibration/row_shift.hpp"
 #include "elastocal/calibration/table_check.hpp"
+#include "elastocal/calibration/turned_axes.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
@@ -34,8 +34,7 @@ constexpr double kLeftByLeavingOut = 0.3;
 // No robot whose errors are estimated leaves more, m and as a share of its size.
 constexpr double kExplained = 0.02;
 constexpr double kExplainedShare = 0.008;
-constexpr double kNoWorse = 1.2;  // of what is left without the postures
-constexpr double kRightAngle = 0.5 * std::numbers::pi;
+constexpr double kNoWorse = 1.2;       // of what is left without the postures
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
 
 /// A suspicion of any kind.
@@ -67,21 +66,42 @@ void AddUndone(const LogSuspicion& one, const RobotTree& tree, const Recording& 
   }
 }
 
-/// Joints whose axes the fit turned by more than a right angle: the sign of their positions is
-/// suspect, even where the nominal robot does not show it.
-std::vector<LogSuspicion> TurnedAxes(const CalibrationResult& result, const Recording& recording) {
+std::vector<int> AllPostures(const Recording& recording) {
+  std::vector<int> all(static_cast<std::size_t>(recording.posture_count()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+LogSuspicion SignOf(int coordinate, const Recording& recording) {
+  return {.kind = LogContradiction::kSign,
+          .coordinate = coordinate,
+          .postures = AllPostures(recording)};
+}
+
+/// Those of all joints that move: where nothing explains a recording, none is beyond suspicion.
+std::vector<LogSuspicion> AllSigns(const RobotTree& tree, const Recording& recording) {
+  std::vector<LogSuspicion> signs;
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    const auto positions = recording.q.col(c);
+    if (positions.maxCoeff() > positions.minCoeff()) signs.push_back(SignOf(c, recording));
+  }
+  return signs;
+}
+
+/// Suspect signs of a fit whose axes are turned by more than a right angle: of each such joint and
+/// of the one before it, which may be the one that is turned in truth, even where the nominal robot
+/// does not show it.
+std::vector<LogSuspicion> SignsOfTurnedAxes(const CalibrationResult& result,
+                                            const Recording& recording) {
   std::vector<LogSuspicion> suspicions;
-  for (int p = 0; p < result.model.parameter_count(); ++p) {
-    const Parameter& parameter = result.model.parameters[static_cast<std::size_t>(p)];
-    const bool turns_axis = parameter.kind == ParameterKind::kAlpha ||
-                            parameter.kind == ParameterKind::kBeta ||
-                            parameter.kind == ParameterKind::kGamma;
-    if (!turns_axis || std::abs(result.delta[p]) < kRightAngle) continue;
-    const Joint& joint = result.model.tree.joints[static_cast<std::size_t>(parameter.joint)];
-    LogSuspicion sign{.kind = LogContradiction::kSign, .coordinate = joint.coordinate};
-    sign.postures.resize(static_cast<std::size_t>(recording.posture_count()));
-    std::iota(sign.postures.begin(), sign.postures.end(), 0);
-    suspicions.push_back(std::move(sign));
+  std::set<int> coordinates;
+  for (const int joint : TurnedAxes(result)) {
+    const std::vector<Joint>& joints = result.model.tree.joints;
+    const int before = joints[Size(joint)].parent_body - 1;
+    for (const int k : {joint, before}) {
+      if (k < 0 || !coordinates.insert(joints[Size(k)].coordinate).second) continue;
+      suspicions.push_back(SignOf(joints[Size(k)].coordinate, recording));
+    }
   }
   return suspicions;
 }
@@ -113,12 +133,6 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
                      WithoutShift(recording, *shift), WithoutPartner(*shift, recording)});
   }
   return tried;
-}
-
-std::vector<int> AllPostures(const Recording& recording) {
-  std::vector<int> all(static_cast<std::size_t>(recording.posture_count()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
 }
 
 /// The signs of the joints that move in these postures, undone in all.
@@ -182,13 +196,15 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
   shown.insert(named_done.begin(), named_done.end());
 }
 
-/// Whether the prior had to be widened beyond what an error of a robot can be: axes turned by half
-/// a turn explain a reversed sign perfectly.
-bool IsNoRobot(const PriorScale& scale) {
+/// Whether an estimate is beyond what an error of a robot can be, by an axis or by the width of the
+/// prior: axes turned by half a turn explain a reversed sign perfectly.
+bool IsNoRobot(const CalibrationResult& result) {
+  const PriorScale& scale = result.prior_scale;
   const auto at_most = [&](PriorGroup group) {
     return scale.factor[static_cast<std::size_t>(group)] >= kLikeTheMost * MostWidening(group);
   };
-  return at_most(PriorGroup::kAngles) || at_most(PriorGroup::kLengths);
+  return at_most(PriorGroup::kAngles) || at_most(PriorGroup::kLengths) ||
+         !TurnedAxes(result).empty();
 }
 
 /// Calibrates the robot from recordings of the same trials.
@@ -241,7 +257,7 @@ std::vector<RecordingMistake> Explained(const RobotTree& tree,
 
 double FitError(const CalibrationResult& result, const Recording& recording,
                 const CalibrationOptions& options) {
-  if (IsNoRobot(result.prior_scale)) return std::numeric_limits<double>::infinity();
+  if (IsNoRobot(result)) return std::numeric_limits<double>::infinity();
   return MarkerError(result, recording, options);
 }
 
@@ -336,11 +352,15 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result) {
   Refitting refitting(project, seed, measured);
+  const bool unexplained = result.marker_sd > project.calibration.plausible_marker_sd;
   return Explained(project.tree,
                    FindMistakesBy(
                        project, measured.calibration, FitError(result, fitted, project.calibration),
                        [&](const Recording& recording) { return refitting.Error(recording); },
-                       [&](const Recording& recording) { return TurnedAxes(result, recording); }));
+                       [&](const Recording& recording) {
+                         return unexplained ? AllSigns(project.tree, recording)
+                                            : SignsOfTurnedAxes(result, recording);
+                       }));
 }
 
 std::vector<std::string> AcceptMistakes(const Project& project,

@@ -2,6 +2,7 @@
 #include "elastocal/mistakes/up_by_loads.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
@@ -21,6 +23,9 @@ constexpr double kLeftOfStated = 0.6;  // at most, with another axis up
 constexpr double kLeftOfRigid = 0.75;
 constexpr double kShareOfFound = 0.2;      // of what it explains is explained with the stated axis
 constexpr double kLeftOfCalibrated = 0.9;  // of what causes explain with the stated axis
+constexpr double kMostOfNoise = 30.0;  // of real arms 0.5 to 4 mm are left where cameras see 0.1
+constexpr double kLikeNoise = 5.0;
+constexpr double kOfMedian = 1.4826;  // a normal deviation's sd over its median size
 constexpr int kLeastRows = 10;
 constexpr int kMostRows = 60;
 
@@ -50,13 +55,38 @@ double ErrorOfFit(const RecordedModel& robot, const Recording& recording,
   return MarkerError(FitOf(robot, recording, options), recording, options);
 }
 
+/// rms distance of the markers by their noise alone, m, as the distances between two on one body
+/// tell, whatever the robot does; infinite without such a pair.
+double NoiseByDistances(const ErrorModel& model, const Recording& recording) {
+  const auto body = [&](int m) { return model.tree.links[Size(model.markers[Size(m)].link)].body; };
+  std::vector<double> noises;
+  for (int a = 0; a < recording.marker_count(); ++a) {
+    for (int b = a + 1; b < recording.marker_count(); ++b) {
+      if (body(a) != body(b)) continue;
+      std::vector<double> distances;
+      for (int i = 0; i < recording.posture_count(); ++i) {
+        if (!Seen(recording, i, a) || !Seen(recording, i, b)) continue;
+        distances.push_back(
+            (MarkerPosition(recording, i, a) - MarkerPosition(recording, i, b)).norm());
+      }
+      if (distances.size() < Size(kLeastRows)) continue;
+      const double usual = Median(distances);
+      for (double& distance : distances) distance = std::abs(distance - usual);
+      // Both ends are noisy; the distance of a marker from its model has three coordinates.
+      noises.push_back(kOfMedian * std::sqrt(3.0 / 2.0) * Median(distances));
+    }
+  }
+  if (noises.empty()) return std::numeric_limits<double>::infinity();
+  return Median(noises);
+}
+
 /// Whether springs explain much with that axis up, as good as nothing with the stated one, and
-/// more than all that was found with the stated one: noise may be most of both errors.
-bool OnlyItExplains(const UpByLoads& found, double rigid, double calibrated) {
+/// more than all that was found with the stated one: where noise is most of both errors.
+bool OnlyItExplains(const UpByLoads& found, double rigid, double calibrated, double noise) {
   const double by_found = rigid * rigid - found.found * found.found;
   const double by_stated = rigid * rigid - found.stated * found.stated;
   return found.found < kLeftOfRigid * rigid && by_stated < kShareOfFound * by_found &&
-         found.found < kLeftOfCalibrated * calibrated;
+         found.found < kLeftOfCalibrated * calibrated && found.found < kLikeNoise * noise;
 }
 
 }  // namespace
@@ -91,8 +121,12 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
   } catch (const InputError&) {  // fewer equations than a robot with springs has unknowns
     return std::nullopt;
   }
+  // What is wrong explains the recording: to leave less than another axis is not enough.
+  const double noise = NoiseByDistances(robot.model, recording);
   const bool far_better = found.found < kLeftOfStated * found.stated;
-  if (!far_better && !OnlyItExplains(found, rigid, calibrated)) return std::nullopt;
+  const bool explains = far_better ? found.found < kMostOfNoise * noise
+                                   : OnlyItExplains(found, rigid, calibrated, noise);
+  if (!explains) return std::nullopt;
   return found;
 }
 

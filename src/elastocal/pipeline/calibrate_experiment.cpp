@@ -11,6 +11,7 @@
 
 #include "elastocal/calibration/coarse_positions.hpp"
 #include "elastocal/calibration/gauge.hpp"
+#include "elastocal/calibration/loose_clusters.hpp"
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -183,6 +184,10 @@ void WarnOfWhatWasRecorded(Work& work) {
   }
   if (const auto loose = FindScatteredPositions(fit, work.recording(), work.settings())) {
     run.warnings.push_back(Describe(*loose, work.project.tree));
+  } else if (const auto cluster =
+                 FindLooseCluster(fit, work.recording(),
+                                  SeenClusters(work.project, work.recording()), work.settings())) {
+    run.warnings.push_back(Describe(*cluster));
   }
   if (run.common_scale && IsDoubtful(*run.common_scale) && !ScaleIsKnown(trials)) {
     run.warnings.push_back(DescribeDoubt(*run.common_scale));

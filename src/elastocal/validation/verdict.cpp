@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "elastocal/calibration/turned_axes.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -50,6 +52,15 @@ void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options
         " are more than ten times what the prior expects, which is not an error "
         "of a robot." +
         kAdvice);
+  }
+  for (const int joint : TurnedAxes(result)) {
+    const std::vector<Joint>& joints = result.model.tree.joints;
+    const int before = joints[joint].parent_body - 1;
+    verdict.objections.push_back(
+        "the axis of " + joints[joint].name +
+        " seems to be turned by more than a right angle, which is not an error of a robot. Check "
+        "the sign of its positions" +
+        (before < 0 ? "." : " and of those of " + joints[before].name + "."));
   }
 }
 

@@ -22,8 +22,8 @@ struct Verdict {
 
 /// Judges a calibration. Objections are: no convergence; noise above
 /// CalibrationOptions::plausible_marker_sd; a prior that would have to be widened beyond
-/// MostWidening; dependent columns; more than a quarter of the observations outliers. `validation`
-/// may have no folds.
+/// MostWidening; an axis turned by more than a right angle; dependent columns; more than a quarter
+/// of the observations outliers. `validation` may have no folds.
 Verdict Judge(const ModelComparison& comparison, const CrossValidation& validation,
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options);

@@ -77,6 +77,14 @@ TEST_F(VerdictTest, PriorAtItsLimit) {
   ExpectObjection("lengths are more than ten times");
 }
 
+// A perfect fit may have it: of a sliding joint before it the sign is reversed.
+TEST_F(VerdictTest, AnAxisTurnedByHalfATurnIsNoRobots) {
+  CalibrationResult& result = comparison_.results[2];
+  result.delta[FindParameter(result.model.parameters, "leg_3.alpha")] = 3.1;
+  ExpectObjection("the axis of leg_3");
+  EXPECT_NE(Judged().objections[0].find("leg_2"), std::string::npos) << Judged().objections[0];
+}
+
 TEST_F(VerdictTest, ParametersThatLeanOnThePriorAlone) {
   excitation_.parameters = {6, 7, 8, 9};
   excitation_.parameter_sd = Eigen::Vector4d(0.1, 0.1, 1e-4, 1e-4);
