@@ -50,6 +50,22 @@ TEST_F(CalibratedTalos, CompensatedHandsAreWhereThePlanMeant) {
   }
 }
 
+TEST_F(CalibratedTalos, JointsThatTheMotionLeavesOpenAreNamed) {
+  const std::string motion = scratch_.Write("short.csv", "time,head_1_joint\n0,0\n0.5,0\n1,0\n");
+  const std::string deploy = "simulate " + ProjectFile() + " --deploy " +
+                             (scratch_.path() / "out").string() + " --motion " + motion + " -o " +
+                             (scratch_.path() / "played").string() +
+                             " --as compensated --stabiliser without";
+  for (const ProgramResult& result : {Compensate(motion), RunProgram(deploy)}) {
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::size_t at = result.out.find("At rest, since the motion has no column of them: ");
+    ASSERT_NE(at, std::string::npos) << result.out;
+    const std::string line = result.out.substr(at, result.out.find('\n', at) - at);
+    EXPECT_NE(line.find("head_2_joint"), std::string::npos) << line;
+    EXPECT_EQ(line.find("head_1_joint"), std::string::npos) << line;
+  }
+}
+
 TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {
   // At limits of a leg of six joints, which has none that could take over: the correction moves
   // some beyond them.

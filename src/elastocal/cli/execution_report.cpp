@@ -20,6 +20,12 @@ std::string LandingCell(const PlaceError& error) {
 
 }  // namespace
 
+std::string DescribeOpenJoints(const std::vector<std::string>& names) {
+  if (names.empty()) return "";
+  return fmt::format("At rest, since the motion has no column of them: {}\n",
+                     fmt::join(names, ", "));
+}
+
 std::string DescribeExecutions(const std::vector<Execution>& executions) {
   TextTable table({"controller knows", "stabiliser", "stood", "hands mm", "swinging feet mm",
                    "waist mm", "centre of mass mm", "landing, largest", "shift mm", "zmp mm"});
