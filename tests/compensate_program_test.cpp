@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/cli/execution_report.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/motion_file.hpp"
 #include "tests/calibrated_talos.hpp"
@@ -64,6 +65,15 @@ TEST_F(CalibratedTalos, JointsThatTheMotionLeavesOpenAreNamed) {
     EXPECT_NE(line.find("head_2_joint"), std::string::npos) << line;
     EXPECT_EQ(line.find("head_1_joint"), std::string::npos) << line;
   }
+}
+
+TEST(ExecutionReport, ARobotThatWasNotPlayedHasNoFigures) {
+  Execution refused;
+  refused.stabilised = true;
+  refused.refused = "a limit";
+  const std::string said = cli::DescribeExecutions({refused});
+  EXPECT_NE(said.find("not played"), std::string::npos) << said;
+  EXPECT_EQ(said.find("0.0"), std::string::npos) << said;
 }
 
 TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {
