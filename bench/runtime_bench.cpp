@@ -33,13 +33,28 @@ void Correct(benchmark::State& state) {
 }
 BENCHMARK(Correct)->Unit(benchmark::kMicrosecond);
 
+/// Along a motion: all joints to and fro by 0.1 rad, 1 mrad a call.
 void Command(benchmark::State& state) {
+  constexpr double kStep = 1e-3;
+  constexpr int kSteps = 100;
   Calls calls;
+  int call = 0;
   for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
+    calls.q.array() += call++ / kSteps % 2 == 0 ? -kStep : kStep;
     benchmark::DoNotOptimize(calls.robot.Command(calls.q, calls.none, 1));
   }
 }
 BENCHMARK(Command)->Unit(benchmark::kMicrosecond);
+
+/// Each call by itself.
+void CommandAlone(benchmark::State& state) {
+  Calls calls;
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
+    calls.robot.Forget();
+    benchmark::DoNotOptimize(calls.robot.Command(calls.q, calls.none, 1));
+  }
+}
+BENCHMARK(CommandAlone)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace elastocal

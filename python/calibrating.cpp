@@ -6,6 +6,8 @@
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/planning/next_postures.hpp"
+#include "elastocal/report/version.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal::python {
 namespace {
@@ -26,6 +28,8 @@ struct PyCalibration {
   double held_out_rmse;  ///< m, of the same URDF; NaN where nothing was held out
   CalibrationResult result;
   std::map<std::string, std::string> files;
+  RunRecord record = {};                ///< for runs.json; `command_line` is made when saved
+  std::vector<std::string> words = {};  ///< of a command line that gives the same
 };
 
 /// What calibrate() was told.
@@ -40,6 +44,42 @@ struct CalibrateArguments {
   Names accept;
   StepProgress progress;
 };
+
+/// The command line that gives the same, but for its output.
+std::vector<std::string> CommandWords(const Project& project, const Paths& files,
+                                      const CalibrateArguments& given) {
+  std::vector<std::string> words = {"elastocal", "calibrate", project.file.string(), "--recording"};
+  for (const Path& file : files) words.push_back(file.string());
+  const auto add = [&](const char* option, const std::string& value) {
+    words.insert(words.end(), {option, value});
+  };
+  if (given.folds) add("--kfold", std::to_string(*given.folds));
+  if (given.fold_by != "posture") add("--fold-by", given.fold_by);
+  if (given.seed) add("--seed", std::to_string(*given.seed));
+  if (given.zero_offsets == ZeroOffsets::kEncoder) add("--zero-offsets", "encoder");
+  if (!given.prior.empty()) {
+    add("--prior", given.prior.string());
+    add("--days", FormatNumber(given.days));
+  }
+  for (const std::string& mistake : given.accept) add("--accept", mistake);
+  return words;
+}
+
+RunRecord RecordOf(const Project& project, const Paths& files, const CalibrateArguments& given) {
+  Paths inputs = InputFiles(project, files);
+  if (!given.prior.empty()) {
+    const CalibrationFiles earlier = FindCalibrationFiles(given.prior);
+    inputs.insert(inputs.end(), {earlier.calibration, earlier.covariance});
+  }
+  std::error_code unknown;  // a folder that was removed
+  return {.command = "calibrate",
+          .command_line = {},
+          .version = ProgramVersion(),
+          .seed = given.seed,
+          .inputs = RecordInputs(inputs),
+          .folder = std::filesystem::current_path(unknown).string(),
+          .assumptions = Assumptions{given.accept, given.prior.string(), given.days}};
+}
 
 PyCalibration CalibrateMarkers(const Project& project, const Paths& files,
                                const CalibrateArguments& given) {
@@ -116,20 +156,27 @@ PyCalibration CalibrateFiles(const Project& project, const py::object& recording
       accept,
       progress};
   return Unlocked([&] {
-    return project.contact ? CalibrateInstruments(project, files, given)
-                           : CalibrateMarkers(project, files, given);
+    PyCalibration found = project.contact ? CalibrateInstruments(project, files, given)
+                                          : CalibrateMarkers(project, files, given);
+    found.record = RecordOf(project, files, given);
+    found.words = CommandWords(project, files, given);
+    return found;
   });
 }
 
-/// Only the files of the calibration: the record of runs and the page are the program's.
+/// What `elastocal calibrate -o` writes.
 void Save(const PyCalibration& calibration, const Path& folder) {
+  RunRecord record = calibration.record;
+  std::vector<std::string> words = calibration.words;
+  words.insert(words.end(), {"-o", folder.string()});
+  record.command_line = QuoteCommandLine(words);
   OutputSet outputs;
-  outputs.Protect({calibration.project.file, calibration.project.urdf});
-  for (const std::string& name : CalibrationFileNames(calibration.project)) {
-    outputs.Declare(folder / name);
-  }
+  Paths inputs;
+  for (const InputRecord& input : record.inputs) inputs.emplace_back(input.file);
+  outputs.Protect(inputs);
+  DeclareResults(folder, CalibrationFileNames(calibration.project), outputs);
   outputs.Prepare();
-  for (const auto& [name, text] : calibration.files) outputs.Set(folder / name, text);
+  SetResults(folder, calibration.files, record, outputs);
   outputs.Publish();
 }
 
@@ -256,7 +303,9 @@ void AddCalibrationClass(py::module_& module) {
       .def_property_readonly(
           "files", [](const PyCalibration& c) { return c.files; },
           "Texts of the files that `elastocal calibrate` writes, by name.")
-      .def("save", Save, "folder"_a, "Writes these files.", py::call_guard<LongCall>());
+      .def("save", Save, "folder"_a,
+           "Writes these files, runs.json and the report, as `elastocal calibrate -o` does.",
+           py::call_guard<LongCall>());
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ class Calibration:
     def files(self) -> dict[str, str]:
         """Texts of the files that `elastocal calibrate` writes, by name."""
     def save(self, folder: _Path) -> None:
-        """Writes these files."""
+        """Writes these files, runs.json and the report, as `elastocal calibrate -o` does."""
 
 class Design:
     """Calibration postures that design() found."""

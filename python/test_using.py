@@ -36,6 +36,16 @@ class Using(unittest.TestCase):
         return subprocess.run([os.environ["ELASTOCAL_PROGRAM"], *map(str, words), "--quiet"], capture_output=True,
                               text=True)
 
+    def test_a_saved_calibration_has_the_record_of_the_program(self):
+        words = ["calibrate", str(ARM), "--recording", str(self.folder / "recording"), "-o", str(self.folder / "calibrated")]
+        self.assertEqual(self.program(*words).returncode, 0)
+        here, there = (json.loads((self.folder / name / "runs.json").read_text())["calibrate"] for name in ("out", "calibrated"))
+        for key in ("inputs", "folder", "version", "seed", "accept", "prior", "days"):
+            self.assertEqual(here[key], there[key], key)
+        self.assertEqual(here["command_line"] + " --quiet", there["command_line"].replace("/calibrated ", "/out "))
+        self.assertEqual(*({file.name for file in (self.folder / name).iterdir()} for name in ("out", "calibrated")))
+        elastocal.compensate(self.folder / "out", self.motion)  # finds its project
+
     def test_exports_have_the_bytes_of_the_program(self):
         for name in ("urdf", "c99", "pal"):
             here, there = self.folder / f"python.{name}", self.folder / f"program.{name}"

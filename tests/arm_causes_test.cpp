@@ -206,5 +206,18 @@ TEST_F(ArmWithCause, NothingIsNamedWhereNothingIs) {
   EXPECT_FALSE(report.search.findings.empty());
 }
 
+// "by 0.00 mm" said nothing of good recordings.
+TEST_F(ArmWithCause, SmallErrorsHaveTwoDigits) {
+  CauseReport report;
+  report.in_metres = true;
+  report.search.findings.resize(1);
+  report.search.findings[0].p_adjusted = 1.0;
+  report.search.findings[0].visible = 4.3e-7;
+  const std::string words = DescribeDiagnosis(report)[0];
+  EXPECT_NE(words.find("by 0.00043 mm"), std::string::npos) << words;
+  report.search.findings[0].visible = 1.234e-3;
+  EXPECT_NE(DescribeDiagnosis(report)[0].find("by 1.23 mm"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/cli/execution_report.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/motion_file.hpp"
 #include "tests/calibrated_talos.hpp"
@@ -48,6 +49,31 @@ TEST_F(CalibratedTalos, CompensatedHandsAreWhereThePlanMeant) {
     EXPECT_LT((place(real, corrected, i) - wanted).norm(), 2e-4);
     EXPECT_GT((place(real, plan, i) - wanted).norm(), 3e-3);
   }
+}
+
+TEST_F(CalibratedTalos, JointsThatTheMotionLeavesOpenAreNamed) {
+  const std::string motion = scratch_.Write("short.csv", "time,head_1_joint\n0,0\n0.5,0\n1,0\n");
+  const std::string deploy = "simulate " + ProjectFile() + " --deploy " +
+                             (scratch_.path() / "out").string() + " --motion " + motion + " -o " +
+                             (scratch_.path() / "played").string() +
+                             " --as compensated --stabiliser without";
+  for (const ProgramResult& result : {Compensate(motion), RunProgram(deploy)}) {
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::size_t at = result.out.find("At rest, since the motion has no column of them: ");
+    ASSERT_NE(at, std::string::npos) << result.out;
+    const std::string line = result.out.substr(at, result.out.find('\n', at) - at);
+    EXPECT_NE(line.find("head_2_joint"), std::string::npos) << line;
+    EXPECT_EQ(line.find("head_1_joint"), std::string::npos) << line;
+  }
+}
+
+TEST(ExecutionReport, ARobotThatWasNotPlayedHasNoFigures) {
+  Execution refused;
+  refused.stabilised = true;
+  refused.refused = "a limit";
+  const std::string said = cli::DescribeExecutions({refused});
+  EXPECT_NE(said.find("not played"), std::string::npos) << said;
+  EXPECT_EQ(said.find("0.0"), std::string::npos) << said;
 }
 
 TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {

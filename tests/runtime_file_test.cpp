@@ -43,6 +43,19 @@ TEST(RuntimeFile, NamesMayHaveBlanks) {
   EXPECT_EQ(read.link_names, model.link_names);
 }
 
+TEST(RuntimeFile, OneOfAnotherVersionSaysWhatToDo) {
+  std::istringstream in("elastocal-runtime-model 99\nrobot talos\n");
+  try {
+    ReadRuntimeModel(in, "model.txt");
+    FAIL() << "it was read";
+  } catch (const std::runtime_error& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("model.txt: line 1: "), std::string::npos) << said;
+    EXPECT_NE(said.find("found 'elastocal-runtime-model 99'"), std::string::npos) << said;
+    EXPECT_NE(said.find("same version as this library"), std::string::npos) << said;
+  }
+}
+
 TEST(RuntimeFile, ADamagedOneIsRefused) {
   std::ostringstream out;
   WriteRuntimeModel(TalosModel(), out);

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/execution_report.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
@@ -47,12 +48,7 @@ std::string DescribeCompensation(const CompensatedMotion& result, const RobotTre
   add_of_joint("joint to its limit", result.position);
   add("velocity, % of limit", result.velocity, 100.0);
   if (result.has_clearance) add("least distance of parts, mm", result.clearance, 1e3);
-  std::string at_rest;
-  if (!result.at_rest.empty()) {
-    at_rest = fmt::format("At rest, since the motion has no column of them: {}\n",
-                          fmt::join(result.at_rest, ", "));
-  }
-  return table.Render() + at_rest +
+  return table.Render() + DescribeOpenJoints(result.at_rest) +
          fmt::format("Left at hands, feet and waist: at most {:.3f} mm and {:.4f} deg\n",
                      1e3 * result.residual_m, result.residual_rad * kDegreesARadian);
 }

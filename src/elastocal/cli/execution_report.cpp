@@ -20,18 +20,25 @@ std::string LandingCell(const PlaceError& error) {
 
 }  // namespace
 
+std::string DescribeOpenJoints(const std::vector<std::string>& names) {
+  if (names.empty()) return "";
+  return fmt::format("At rest, since the motion has no column of them: {}\n",
+                     fmt::join(names, ", "));
+}
+
 std::string DescribeExecutions(const std::vector<Execution>& executions) {
   TextTable table({"controller knows", "stabiliser", "stood", "hands mm", "swinging feet mm",
                    "waist mm", "centre of mass mm", "landing, largest", "shift mm", "zmp mm"});
   for (const Execution& one : executions) {
+    const bool played = one.refused.empty();
     table.Add({DeployName(one.as), one.stabilised ? "yes" : "no",
-               !one.refused.empty() ? "not played"
-               : one.run.stood      ? "yes"
-                                    : fmt::format("fell at {:.0f} s", one.run.time_s),
+               !played         ? "not played"
+               : one.run.stood ? "yes"
+                               : fmt::format("fell at {:.0f} s", one.run.time_s),
                PlaceCell(one.hands), PlaceCell(one.swinging_feet), PlaceCell(one.waist),
                PlaceCell(one.centre_of_mass), LandingCell(one.landing),
-               one.stabilised ? fmt::format("{:.1f}", 1e3 * one.run.largest_shift) : "",
-               fmt::format("{:.1f}", 1e3 * one.run.least_zmp_margin)});
+               played && one.stabilised ? fmt::format("{:.1f}", 1e3 * one.run.largest_shift) : "",
+               played ? fmt::format("{:.1f}", 1e3 * one.run.least_zmp_margin) : ""});
   }
   std::string refused;
   for (const Execution& one : executions) {

@@ -19,6 +19,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/execute_motion.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/planning/simulation_settings.hpp"
@@ -112,16 +113,16 @@ int Deploy(const SimulateCommand& command) {
   options.until_s = command.until_s;
   const bool quiet = command.common.Silent();
   const StoredCalibration stored = ReadCalibration(calibration.calibration);
+  const JointMotion motion = ReadMotion(command.motion, project);
   const std::vector<Execution> executions =
-      PlayExecutions(project, stored, ReadMotion(command.motion, project), options,
-                     TerminalProgress("executed motion", quiet));
+      PlayExecutions(project, stored, motion, options, TerminalProgress("executed motion", quiet));
   const std::string json = FormatExecutions(project.tree, stored.fingerprint, executions);
   outputs.Set(command.common.json_file, json);
   const std::string no_report =
       SetResults(command.output, {{"deployment.json", json}},
                  MakeRunRecord("simulate --deploy", command.common, RecordInputs(inputs)), outputs);
   outputs.Publish();
-  Print(quiet, DescribeExecutions(executions));
+  Print(quiet, DescribeOpenJoints(OpenJoints(project, motion)) + DescribeExecutions(executions));
   PrintReportPlace(command.output, no_report, quiet);
   return kFine;
 }

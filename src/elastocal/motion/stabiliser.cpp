@@ -180,8 +180,8 @@ void Stabiliser::LearnHeight(const StandingSense& sense, double interval_s) {
   height_ = std::clamp(height_, -largest, largest);
 }
 
-void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense& sense,
-                            double interval_s) {
+std::optional<Eigen::Vector2d> Stabiliser::Off(const Eigen::VectorXd& planned,
+                                               const StandingSense& sense) const {
   const Transform T_reference_root = T_root_sole_[Size(reference_)].inverse();
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < legs_.size(); ++i) {
@@ -191,11 +191,25 @@ void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense&
     force += pressed;
     moment += T.linear() * wrench.tail<3>() + T.translation().cross(pressed);
   }
+  if (!(force.z() > options_.least_pressure * weight_)) return std::nullopt;
+  const Eigen::Vector3d com =
+      T_reference_root * (CentreOfMass(tree_, inertias_, planned) + com_off_);
+  return ZeroMomentPoint(force, moment) - com.head<2>();
+}
+
+void Stabiliser::TakeRest(const Eigen::VectorXd& planned, const std::vector<int>& support,
+                          const StandingSense& sense) {
+  PlaceSoles(planned, support);
+  const std::optional<Eigen::Vector2d> off = Off(planned, InSoleAxes(planned, sense));
+  if (off) com_off_ += T_root_sole_[Size(reference_)].linear() * Level(*off);
+}
+
+void Stabiliser::LearnShift(const Eigen::VectorXd& planned, const StandingSense& sense,
+                            double interval_s) {
   shift_ = Blend(shifts_);
-  if (!(force.z() > options_.least_pressure * weight_)) return;
-  const Eigen::Vector3d com = T_reference_root * CentreOfMass(tree_, inertias_, planned);
-  const Eigen::Vector2d off = ZeroMomentPoint(force, moment) - com.head<2>();
-  off_ += std::min(1.0, interval_s / options_.filter_s) * (off - off_);
+  const std::optional<Eigen::Vector2d> off = Off(planned, sense);
+  if (!off) return;
+  off_ += std::min(1.0, interval_s / options_.filter_s) * (*off - off_);
   Learn(-options_.shift_rate * frequency_ * interval_s * off_, options_.largest_shift * leg_length_,
         shifts_);
   shift_ = Blend(shifts_);

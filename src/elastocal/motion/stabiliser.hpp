@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -52,8 +53,9 @@ struct StabiliserOptions {
 /// Turn and shift are learned for each foot by its planned share of the weight, because every leg
 /// has errors of its own: what it learned on a foot is used again when the weight comes back.
 /// It knows the robot by its description, without errors and elasticity, and takes planned
-/// positions for those of a robot at rest. The paper's robot has its own stabiliser, for which
-/// section 3.6 plans.
+/// positions for those of a robot at rest. Whoever knows the robot better tells it the rest
+/// (TakeRest), or it moves a root link that is right until described masses are over the feet. The
+/// paper's robot has its own stabiliser, for which section 3.6 plans.
 class Stabiliser {
  public:
   /// Keeps a reference to the tree. Throws InputError if a sole is not at the end of a leg
@@ -66,6 +68,12 @@ class Stabiliser {
   /// planned to stand. A leg that cannot reach its target keeps the correction that it had.
   Eigen::VectorXd Correct(const Eigen::VectorXd& planned, const std::vector<int>& support,
                           const StandingSense& sense, double interval_s);
+
+  /// For a robot that is known to stand as planned: where its zero-moment point is then off the
+  /// planned centre of mass, at rest, is taken for an error of the described masses that moves with
+  /// the root link, and is no reason to shift.
+  void TakeRest(const Eigen::VectorXd& planned, const std::vector<int>& support,
+                const StandingSense& sense);
 
   const Eigen::Vector2d& shift() const { return shift_; }  ///< of the root link, m
   const Eigen::Vector2d& turn() const { return turn_; }    ///< of the root link, rad
@@ -86,6 +94,10 @@ class Stabiliser {
   bool BothPressed(const StandingSense& sense) const;
   void LearnFeet(const StandingSense& sense, double interval_s);
   void LearnHeight(const StandingSense& sense, double interval_s);
+  /// Zero-moment point less planned centre of mass, in the axes of the reference; none where the
+  /// feet are hardly pressed.
+  std::optional<Eigen::Vector2d> Off(const Eigen::VectorXd& planned,
+                                     const StandingSense& sense) const;
   void LearnShift(const Eigen::VectorXd& planned, const StandingSense& sense, double interval_s);
   Eigen::VectorXd Corrected(const Eigen::VectorXd& planned) const;
 
@@ -96,9 +108,11 @@ class Stabiliser {
   std::vector<Eigen::Vector2d> middle_;     ///< of the soles, in their axes, m
   double leg_length_ = 1.0, weight_ = 0.0;  ///< m, N
   double frequency_ = 1.0;                  ///< of the sway, rad/s
-  std::vector<Transform> T_root_sole_;      ///< as planned
-  int reference_ = 0;                       ///< the sole in whose axes turn and shift are expressed
-  Eigen::VectorXd share_;                   ///< of the planned weight, by sole
+  /// Of the centre of mass from the described one, in the root link's axes, m.
+  Eigen::Vector3d com_off_ = Eigen::Vector3d::Zero();
+  std::vector<Transform> T_root_sole_;  ///< as planned
+  int reference_ = 0;                   ///< the sole in whose axes turn and shift are expressed
+  Eigen::VectorXd share_;               ///< of the planned weight, by sole
   std::vector<Eigen::Vector2d> shifts_, turns_;  ///< by sole, in its axes
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero(), turn_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d off_ = Eigen::Vector2d::Zero();   ///< filtered error of the zero-moment point, m

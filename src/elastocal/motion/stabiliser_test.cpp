@@ -80,6 +80,19 @@ TEST_F(BipedStabiliser, ShiftsBackWhatPressesAheadOfItsPlan) {
   EXPECT_NEAR(moved.translation().y(), 0.0, 1e-6);
 }
 
+// Its kinematics are known: a load that is off at rest is one of masses, and only more moves it.
+TEST_F(BipedStabiliser, LeavesAloneWhatWasOffInTheRest) {
+  for (Eigen::Index i = 0; i < 2; ++i) sense_.wrenches(4, i) -= kHalf * 0.03;  // 3 cm ahead
+  const std::vector<int> support = {soles_[0].link, soles_[1].link};
+  Stabiliser stabiliser(tree_, soles_);
+  stabiliser.TakeRest(planned_, support, sense_);
+  for (int i = 0; i < 10; ++i) stabiliser.Correct(planned_, support, sense_, 0.01);
+  EXPECT_LT(stabiliser.shift().norm(), 1e-9);
+  for (Eigen::Index i = 0; i < 2; ++i) sense_.wrenches(4, i) -= kHalf * 0.03;
+  for (int i = 0; i < 10; ++i) stabiliser.Correct(planned_, support, sense_, 0.01);
+  EXPECT_LT(stabiliser.shift().x(), -1e-5);
+}
+
 TEST_F(BipedStabiliser, TurnsFeetUntilBothArePressedAlike) {
   sense_.wrenches(4, 0) -= kHalf * 0.05;  // the left one on its toes: they are to be lifted
   sense_.wrenches(4, 1) += kHalf * 0.05;  // the right one on its heel

@@ -118,15 +118,20 @@ const char* UnitInWords(const CauseReport& report) {
 }
 
 /// "2.66 mm", "1.02 standard deviations of noise".
+/// Decimals of a number: two, or as many as two significant digits take.
+int DecimalsOf(double number) {
+  return number > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(number))), 2, 6) : 2;
+}
+
 std::string ErrorInWords(const CauseReport& report, double error) {
-  return fmt::format("{:.2f} {}", report.error_factor() * error, UnitInWords(report));
+  const double shown = report.error_factor() * error;
+  return fmt::format("{:.{}f} {}", shown, DecimalsOf(shown), UnitInWords(report));
 }
 
 /// "from 2.66 to 2.30 mm": their difference has two significant digits or more.
 std::string FallInWords(const CauseReport& report, double before, double after) {
   const double factor = report.error_factor(), fall = factor * std::abs(before - after);
-  const int decimals =
-      fall > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(fall))), 2, 6) : 2;
+  const int decimals = DecimalsOf(fall);
   return fmt::format("from {:.{}f} to {:.{}f} {}", factor * before, decimals, factor * after,
                      decimals, UnitInWords(report));
 }

@@ -156,6 +156,15 @@ StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
   return feet;
 }
 
+std::vector<std::string> OpenJoints(const Project& project, const JointMotion& motion) {
+  std::vector<std::string> names;
+  for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
+    if (!motion.q.col(c).array().isNaN().all()) continue;
+    names.push_back(CoordinateName(project.tree, c));
+  }
+  return names;
+}
+
 JointMotion WithOpenJointsAtRest(const Project& project, JointMotion motion) {
   for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
     if (!motion.q.col(c).array().isNaN().all()) continue;
@@ -177,11 +186,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     throw InputError(project.file.string() + ": " + NothingToCorrect());
   }
   CompensatedMotion result;
-  for (Eigen::Index c = 0; c < given.q.cols(); ++c) {
-    if (given.q.col(c).array().isNaN().all()) {
-      result.at_rest.push_back(CoordinateName(project.tree, c));
-    }
-  }
+  result.at_rest = OpenJoints(project, given);
   const JointMotion planned = WithOpenJointsAtRest(project, given);
   result.planned.motion = planned;
   JointMotion& motion = result.planned.motion;

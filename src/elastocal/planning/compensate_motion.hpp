@@ -43,6 +43,9 @@ struct CompensatedMotion {
   std::vector<std::string> broken;
 };
 
+/// Names of the coordinates of which the motion says nothing.
+std::vector<std::string> OpenJoints(const Project& project, const JointMotion& motion);
+
 /// The motion with joints that it leaves open as they are in the robot's posture of rest.
 JointMotion WithOpenJointsAtRest(const Project& project, JointMotion motion);
 

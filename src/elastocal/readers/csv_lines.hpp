@@ -13,6 +13,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/utf8.hpp"
 #include "elastocal/readers/byte_source.hpp"
+#include "elastocal/readers/decimal_numbers.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -74,14 +75,7 @@ class CsvLines {
 
   /// A finite number as the file writes them.
   std::optional<double> Parse(std::string_view cell) {
-    const std::size_t mark = cell.find_first_of(".,");
-    const bool comma = mark != std::string_view::npos && cell[mark] == ',' && separator_ != ',';
-    std::string changed;
-    if (comma) cell = changed.assign(cell).replace(mark, 1, ".");
-    const std::optional<double> number = ParseNumber(cell);
-    if (!number || mark == std::string_view::npos) return number;
-    if (decimal_ == '\0') decimal_ = comma ? ',' : '.';
-    return (decimal_ == ',') == comma ? number : std::nullopt;
+    return separator_ == ',' ? ParseNumber(cell) : numbers_.Parse(cell);
   }
 
   /// A finite number; NaN for a gap. Throws InputError for anything else.
@@ -120,14 +114,13 @@ class CsvLines {
 
  private:
   [[noreturn]] void FailNumber(std::size_t i, const std::string& end) const {
-    FailCell(i, decimal_ == ',' ? "a number with a decimal comma, as others above" + end
-                                : "a number with a decimal point" + end);
+    FailCell(i, numbers_.expected() + end);
   }
 
   SourceStream stream_;
   LineReader reader_;
   char separator_;
-  char decimal_ = '\0';  ///< point or comma, when a number has told
+  DecimalNumbers numbers_;
   std::vector<std::string_view> cells_;
 };
 

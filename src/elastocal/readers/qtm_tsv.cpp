@@ -12,6 +12,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/utf8.hpp"
 #include "elastocal/readers/byte_source.hpp"
+#include "elastocal/readers/decimal_numbers.hpp"
 #include "elastocal/readers/marker_rows.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
@@ -45,6 +46,7 @@ struct QtmFrames {
 struct QtmLines {
   LineReader reader;
   std::vector<std::string_view> cells = {};  ///< of the line read last
+  DecimalNumbers numbers = {};
 
   bool Next() {
     std::span<char> line;
@@ -98,7 +100,7 @@ class HeaderReader {
     }
     if (lines_.blank()) return true;
     const std::string_view first = lines_.cells[0];
-    if (header_.leading_columns || IsGap(first) || ParseNumber(first)) return false;
+    if (header_.leading_columns || IsGap(first) || lines_.numbers.Parse(first)) return false;
     std::vector<std::string> cells(lines_.cells.begin(), lines_.cells.end());
     while (cells.size() > 1 && cells.back().empty()) cells.pop_back();
     if (first == "Frame" || first == "Time" || first.ends_with(" X")) {
@@ -128,7 +130,7 @@ class HeaderReader {
                   "; 3D, positions of markers, was expected");
     }
     if (key != "FREQUENCY") return;
-    header_.rate_hz = ParseNumber(value).value_or(0.0);
+    header_.rate_hz = lines_.numbers.Parse(value).value_or(0.0);
     if (header_.rate_hz <= 0.0) {
       lines_.Fail("FREQUENCY: found " + Quote(value) +
                   "; frames per second, above 0, were expected");
@@ -271,9 +273,9 @@ class FrameReader {
 
   /// NaN for a gap.
   double Number(std::size_t i) const {
-    if (const std::optional<double> number = ParseNumber(lines_.cells[i])) return *number;
+    if (const std::optional<double> number = lines_.numbers.Parse(lines_.cells[i])) return *number;
     if (IsGap(lines_.cells[i])) return kNaN;
-    Fail(i, "a number with a decimal point");
+    Fail(i, lines_.numbers.expected());
   }
 
   /// Throws about a cell; its column may have a name.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/readers/qtm_tsv.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -91,7 +92,7 @@ TEST(QtmTsv, FindsTheRate) {
   ExpectTsvError(names + "4\t1\t2\t3\n5\t1\t2\t3\n", {"rate is not known", advice});
   ExpectTsvError(names + "4\t0.1\t1\t2\t3\n", {"rate is not known", advice});
   ExpectTsvError("FREQUENCY\t0\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'0'"});
-  ExpectTsvError("FREQUENCY\t100,5\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'100,5'"});
+  ExpectTsvError("FREQUENCY\t100;5\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'100;5'"});
 }
 
 TEST(QtmTsv, FramesFollowEachOther) {
@@ -106,6 +107,26 @@ TEST(QtmTsv, FramesFollowEachOther) {
   ExpectTsvError(head + "7\t0" + cells + "8\t.012" + cells + "9\t.024" + cells + "10\t.036" + cells,
                  {"t.tsv:7: ", "Time", "0.036 s", "FREQUENCY, 100", "0.03 s"});
   EXPECT_EQ(ParseTsv(head + "7\t5.00" + cells + "8\t5.01" + cells).rate_hz, 100.0);
+}
+
+// QTM writes numbers as Windows has them in the user's country.
+TEST(QtmTsv, DecimalCommasAreThoseOfAllNumbers) {
+  const std::string points =
+      "FREQUENCY\t99.5\nMARKER_NAMES\tA\tB\nFrame\tTime\tA X\tA Y\tA Z\tB X\tB Y\tB Z\n"
+      "1\t0.00000\t1.250\t-2.500\t3\t\t\t\n2\t0.01005\t1.5\t2.5\t3.5\t4\t5\t6.25\n";
+  std::string commas = points;
+  std::replace(commas.begin(), commas.end(), '.', ',');
+  const MarkerTrajectories expected = ParseTsv(points), found = ParseTsv(commas);
+  EXPECT_EQ(found.rate_hz, expected.rate_hz);
+  const Eigen::MatrixXd seen = expected.positions.array().isNaN().select(-1.0, expected.positions);
+  EXPECT_EQ(found.positions.array().isNaN().select(-1.0, found.positions).matrix(), seen);
+  EXPECT_NEAR(found.positions(0, 1), -2.5e-3, 1e-12);
+  std::string mixed = commas;
+  mixed.replace(mixed.rfind("6,25"), 4, "6.25");
+  ExpectTsvError(mixed, {"t.tsv:5: column 8 (B Z)", "'6.25'", "decimal comma, as others above"});
+  mixed = points;
+  mixed.replace(mixed.rfind("6.25"), 4, "6,25");
+  ExpectTsvError(mixed, {"t.tsv:5: column 8 (B Z)", "'6,25'", "decimal point"});
 }
 
 TEST(QtmTsv, GapsHaveManyShapes) {
@@ -123,7 +144,8 @@ TEST(QtmTsv, GapsHaveManyShapes) {
 
 TEST(QtmTsv, NamesWrongCells) {
   const std::string good = "1\t2\t3\t4\t5\t6\n";
-  for (const char* wrong : {"1,5", "abc", "inf", "-inf", "1e999", "2 3", "0x10", "--1"}) {
+  for (const char* wrong :
+       {"1,234,5", "1.234,5", "abc", "inf", "-inf", "1e999", "2 3", "0x10", "--1"}) {
     ExpectTsvError(kShortTsv + good + "1\t2\t3\t4\t" + wrong + "\t6\n",
                    {"t.tsv:4: column 5 (B Y)", "'" + std::string(wrong) + "'", "decimal point"});
   }

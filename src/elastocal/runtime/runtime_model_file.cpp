@@ -12,7 +12,8 @@
 namespace elastocal {
 namespace {
 
-constexpr const char* kHeading = "elastocal-runtime-model 5";
+constexpr const char* kKind = "elastocal-runtime-model ";
+constexpr int kFormat = 5;
 constexpr int kMost = 10000;  // entries of a list: a robot has some dozens
 
 // One description of the file serves both directions: `archive(name, value)` writes a line, or
@@ -256,7 +257,9 @@ void CheckSizes(const RuntimeModel& model, Reader& reader) {
     reader.Check(Within(shift.joint, joints) && Within(shift.source, joints) &&
                      shift.function >= EC_SIN && shift.function <= EC_HYSTERESIS &&
                      shift.scale > 0.0 && std::isfinite(shift.amount + shift.centre),
-                 "shift", "a joint, a known function of the posture, and numbers");
+                 "shift",
+                 "a joint, a function of the posture that this library knows (another version of "
+                 "elastocal may know more), and numbers");
   }
   reader.Check(model.lower.size() == coordinates && model.upper.size() == coordinates, "lower",
                "an entry for each coordinate");
@@ -265,7 +268,7 @@ void CheckSizes(const RuntimeModel& model, Reader& reader) {
 }  // namespace
 
 void WriteRuntimeModel(const RuntimeModel& model, std::ostream& out) {
-  out << kHeading << '\n';
+  out << kKind << kFormat << '\n';
   Writer writer(out);
   RuntimeModel copy = model;
   Entries(writer, copy);
@@ -275,9 +278,15 @@ void WriteRuntimeModel(const RuntimeModel& model, std::ostream& out) {
 RuntimeModel ReadRuntimeModel(std::istream& in, const std::string& source) {
   std::string heading;
   std::getline(in, heading);
-  if (heading != kHeading) {
-    throw std::runtime_error(source + ": line 1: '" + kHeading +
-                             "' was expected (elastocal export --format runtime)");
+  while (!heading.empty() && heading.back() == '\r') heading.pop_back();
+  if (const std::string expected = kKind + std::to_string(kFormat); heading != expected) {
+    std::string message =
+        source + ": line 1: '" + expected + "' was expected (elastocal export --format runtime)";
+    if (heading.rfind(kKind, 0) == 0) {
+      message += "; found '" + heading +
+                 "': export it again by an elastocal of the same version as this library";
+    }
+    throw std::runtime_error(message);
   }
   RuntimeModel model;
   Reader reader(in, source);

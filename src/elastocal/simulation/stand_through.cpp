@@ -121,6 +121,10 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
     body.Settle(kLongestSettling);
     if (options.R_world_root_at_rest) {
       R_root_unit = body.WaistPose().linear().transpose() * *options.R_world_root_at_rest;
+      if (options.stabiliser != nullptr) {
+        options.stabiliser->TakeRest(motion.q.row(0).transpose(), motion.support.front(),
+                                     Sense(body, soles.size(), R_root_unit));
+      }
     }
   } else {  // the hands let go slowly, so that a robot with errors stands by itself at the end
     Hands hands(robot, body, height);

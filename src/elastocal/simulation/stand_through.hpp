@@ -31,8 +31,9 @@ struct StandThroughOptions {
   Stabiliser* stabiliser = nullptr;  ///< none: nothing controls the balance
   /// Orientation of the root link in the rest at the beginning, as the controller's model has it:
   /// the mounting of the inertial unit is taken from this rest. Markers leave the root frame of a
-  /// calibration open (the gauge), so that it may be inclined to the true one. Without it, the unit
-  /// sits in the root frame of the robot description.
+  /// calibration open (the gauge), so that it may be inclined to the true one. What the zero-moment
+  /// point is off in this rest is taken for an error of masses (Stabiliser::TakeRest). Without it,
+  /// the unit sits in the root frame of the robot description, and masses are as described.
   std::optional<Eigen::Matrix3d> R_world_root_at_rest = {};
   /// What the joints are commanded where that is not the motion itself, for instance corrected by a
   /// calibration. Times and support are those of the motion.

@@ -131,6 +131,24 @@ TEST_F(BipedStandsThrough, TheInertialUnitIsMountedAsTheFirstRestShows) {
   EXPECT_LT(turn(Eigen::Matrix3d::Identity()), 0.1 * kLean);
 }
 
+// Its trunk is heavier in front than described, which turns nothing of its kinematics.
+TEST_F(BipedStandsThrough, MassesThatAreOffInTheFirstRestMoveNoRootThatIsKnown) {
+  PutWeightAhead(0.03);
+  JointMotion motion = Bow(0.0);
+  motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 12.0);
+  const auto shift = [&](const std::optional<Eigen::Matrix3d>& R_world_root_at_rest) {
+    Stabiliser stabiliser(biped_.tree, soles_);
+    const StandingRun run =
+        StandThrough(robot_, soles_, motion, {},
+                     {.stabiliser = &stabiliser, .R_world_root_at_rest = R_world_root_at_rest});
+    EXPECT_TRUE(run.stood);
+    return stabiliser.shift().norm();
+  };
+  constexpr double kOff = 29.0 / 60.0 * 0.03;
+  EXPECT_NEAR(shift(std::nullopt), kOff, 0.3 * kOff);
+  EXPECT_LT(shift(Eigen::Matrix3d::Identity()), 0.1 * kOff);
+}
+
 // Where no posture on one leg has the other foot in its workspace, the robot is held.
 TEST(PostureSampler, StandsOnlyWherePosturesOnEitherLegAreFound) {
   const Biped biped = MakeBiped();
