@@ -25,6 +25,11 @@ constexpr int kTrialSplits = 6;  // of a trial, after which one may begin that e
 
 using Blocks = std::vector<Eigen::VectorXd>;
 
+/// What a robot with play or hysteresis shows as well: it is no fault of the recording.
+bool LooksLikePlay(FaultKind kind) {
+  return kind == FaultKind::kJointLag || kind == FaultKind::kUnfinished;
+}
+
 class FaultSearch {
  public:
   /// `only`: the fault that is looked for; none: all.
@@ -176,7 +181,8 @@ class FaultSearch {
         Measured(equations, covariance, derivative, trials);
     for (std::size_t k = 0; k < trials.size(); ++k) {
       const RecordingFault& fault = measured[k];
-      const double left = std::sqrt(std::max(0.0, 1.0 - fault.share));
+      const double left =
+          LooksLikePlay(fault.kind) ? 1.0 : std::sqrt(std::max(0.0, 1.0 - fault.share));
       const bool certain =
           std::abs(fault.size) > std::max(kLeastOfGiven, kLeastSds * left) * fault.sd;
       const bool matters = std::abs(fault.size) > LeastSize(fault.kind, slides) &&

@@ -20,8 +20,9 @@ namespace elastocal {
 /// trials (a scale of all of them looks like a robot all of whose lengths are off). Only faults
 /// that no good robot has are returned, the one that explains most first: of a size that matters
 /// (gain 0.5 %, of a sliding joint 0.2 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain (six
-/// standard deviations by the noise without it, four by that of the fit) and a part of what is
-/// left (6 %, of a clean ergoCub 4 %; or half of what is left of the chains that it is in).
+/// standard deviations by the noise without it, four by that of the fit; six of what play looks
+/// like) and a part of what is left (6 %, of a clean ergoCub 4 %; or half of what is left of the
+/// chains that it is in).
 std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
                                                 const Recording& recording,
                                                 const CalibrationOptions& options);

@@ -276,8 +276,9 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
     const auto scattered =
         FindScatteredPositions(comparison.largest(), recording, project.calibration);
     if (scattered) {
-      if (IsTooLoose(*scattered, project.tree))
+      if (IsTooLoose(*scattered, project.tree)) {
         faults.push_back(Describe(*scattered, project.tree));
+      }
       return faults;
     }
     return TooLoose(project, recording, comparison.largest());
