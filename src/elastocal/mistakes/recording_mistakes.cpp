@@ -36,6 +36,7 @@ constexpr double kExplained = 0.02;
 constexpr double kExplainedShare = 0.008;
 constexpr double kNoWorse = 1.2;       // of what is left without the postures
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
+constexpr std::size_t kMostSigns = 12;
 
 /// A suspicion of any kind.
 struct TriedCorrection {
@@ -79,12 +80,14 @@ LogSuspicion SignOf(int coordinate, const Recording& recording) {
 }
 
 /// Those of all joints that move: where nothing explains a recording, none is beyond suspicion.
+/// None of a robot with many joints, each of which takes a fit of seconds.
 std::vector<LogSuspicion> AllSigns(const RobotTree& tree, const Recording& recording) {
   std::vector<LogSuspicion> signs;
   for (int c = 0; c < tree.coordinate_count(); ++c) {
     const auto positions = recording.q.col(c);
     if (positions.maxCoeff() > positions.minCoeff()) signs.push_back(SignOf(c, recording));
   }
+  if (signs.size() > kMostSigns) signs.clear();
   return signs;
 }
 
@@ -286,7 +289,7 @@ std::vector<RecordingMistake> FindMistakesBy(
   Recording current = recording;
   while (mistakes.size() < kMostMistakes) {
     std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
-    if (more) {
+    if (more && !(error < most_left)) {
       for (const LogSuspicion& one : more(current)) AddUndone(one, project.tree, current, tried);
     }
     // A joint that rests while another limb is measured looks frozen where that limb is wrong.
@@ -358,8 +361,10 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                        project, measured.calibration, FitError(result, fitted, project.calibration),
                        [&](const Recording& recording) { return refitting.Error(recording); },
                        [&](const Recording& recording) {
-                         return unexplained ? AllSigns(project.tree, recording)
-                                            : SignsOfTurnedAxes(result, recording);
+                         auto signs = SignsOfTurnedAxes(result, recording);
+                         if (!unexplained) return signs;
+                         auto all = AllSigns(project.tree, recording);
+                         return all.empty() ? signs : all;
                        }));
 }
 
