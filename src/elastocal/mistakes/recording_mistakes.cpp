@@ -289,7 +289,7 @@ std::vector<RecordingMistake> FindMistakesBy(
   Recording current = recording;
   while (mistakes.size() < kMostMistakes) {
     std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
-    if (more && !(error < most_left)) {
+    if (more) {
       for (const LogSuspicion& one : more(current)) AddUndone(one, project.tree, current, tried);
     }
     // A joint that rests while another limb is measured looks frozen where that limb is wrong.
@@ -355,17 +355,18 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result) {
   Refitting refitting(project, seed, measured);
-  const bool unexplained = result.marker_sd > project.calibration.plausible_marker_sd;
-  return Explained(project.tree,
-                   FindMistakesBy(
-                       project, measured.calibration, FitError(result, fitted, project.calibration),
-                       [&](const Recording& recording) { return refitting.Error(recording); },
-                       [&](const Recording& recording) {
-                         auto signs = SignsOfTurnedAxes(result, recording);
-                         if (!unexplained) return signs;
-                         auto all = AllSigns(project.tree, recording);
-                         return all.empty() ? signs : all;
-                       }));
+  // Once one mistake is undone, what remains is not worth a fit for each joint.
+  bool unexplained = result.marker_sd > project.calibration.plausible_marker_sd;
+  const auto signs = [&](const Recording& recording) {
+    std::vector<LogSuspicion> all;
+    if (std::exchange(unexplained, false)) all = AllSigns(project.tree, recording);
+    return all.empty() ? SignsOfTurnedAxes(result, recording) : all;
+  };
+  return Explained(
+      project.tree,
+      FindMistakesBy(
+          project, measured.calibration, FitError(result, fitted, project.calibration),
+          [&](const Recording& recording) { return refitting.Error(recording); }, signs));
 }
 
 std::vector<std::string> AcceptMistakes(const Project& project,
