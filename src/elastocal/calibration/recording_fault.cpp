@@ -55,6 +55,13 @@ double LargestSize(FaultKind kind, bool slides) {
   return slides ? 1.0 : M_PI;
 }
 
+bool IsCertain(const RecordingFault& fault) {
+  constexpr double kLeastSds = 6.0, kLeastOfGiven = 4.0;
+  const bool like_play = fault.kind == FaultKind::kJointLag || fault.kind == FaultKind::kUnfinished;
+  const double left = like_play ? 1.0 : std::sqrt(std::max(0.0, 1.0 - fault.share));
+  return std::abs(fault.size) > std::max(kLeastOfGiven, kLeastSds * left) * fault.sd;
+}
+
 Eigen::MatrixXd MovesOf(const Recording& recording) {
   Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(recording.q.rows(), recording.q.cols());
   for (int i = 1; i < recording.posture_count(); ++i) {

@@ -50,6 +50,11 @@ double LeastSize(FaultKind kind, bool slides);
 /// anything with a size large enough.
 double LargestSize(FaultKind kind, bool slides);
 
+/// Whether it is more than chance: six standard deviations by the noise that is left without it,
+/// and four by that of the fit, which it is a part of. What a robot with play or hysteresis shows
+/// as well (lags, unfinished moves): six by that of the fit.
+bool IsCertain(const RecordingFault& fault);
+
 /// From the held posture before in the same trial or table, of all joints: postures x coordinates;
 /// in motions 0.
 Eigen::MatrixXd MovesOf(const Recording& recording);

@@ -17,18 +17,11 @@ namespace {
 constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
 constexpr double kLeastExplained = 0.06;
 constexpr double kLeastOfChains = 0.5;  // of what is left of the chains that it is in
-constexpr double kLeastSds = 6.0;       // by the noise that is left without it
-constexpr double kLeastOfGiven = 4.0;   // by the noise of the fit, which it is a part of
 constexpr int kLeastSide = 3;           // postures before and after it
 constexpr int kSplits = 12;      // of the recording, after which an offset of a joint may begin
 constexpr int kTrialSplits = 6;  // of a trial, after which one may begin that ends with the trial
 
 using Blocks = std::vector<Eigen::VectorXd>;
-
-/// What a robot with play or hysteresis shows as well: it is no fault of the recording.
-bool LooksLikePlay(FaultKind kind) {
-  return kind == FaultKind::kJointLag || kind == FaultKind::kUnfinished;
-}
 
 class FaultSearch {
  public:
@@ -181,13 +174,9 @@ class FaultSearch {
         Measured(equations, covariance, derivative, trials);
     for (std::size_t k = 0; k < trials.size(); ++k) {
       const RecordingFault& fault = measured[k];
-      const double left =
-          LooksLikePlay(fault.kind) ? 1.0 : std::sqrt(std::max(0.0, 1.0 - fault.share));
-      const bool certain =
-          std::abs(fault.size) > std::max(kLeastOfGiven, kLeastSds * left) * fault.sd;
       const bool matters = std::abs(fault.size) > LeastSize(fault.kind, slides) &&
                            std::abs(fault.size) < LargestSize(fault.kind, slides);
-      if (!certain || !matters) continue;
+      if (!IsCertain(fault) || !matters) continue;
       const bool explains =
           fault.share > kLeastExplained ||
           fault.share * squares_ > kLeastOfChains * SquaresOfChains(derivative, trials[k].factor);

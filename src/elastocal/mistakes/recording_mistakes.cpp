@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -20,6 +19,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/mistakes/suspected_signs.hpp"
 
 namespace elastocal {
 namespace {
@@ -36,7 +36,6 @@ constexpr double kExplained = 0.02;
 constexpr double kExplainedShare = 0.008;
 constexpr double kNoWorse = 1.2;       // of what is left without the postures
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
-constexpr std::size_t kMostSigns = 12;
 
 /// A suspicion of any kind.
 struct TriedCorrection {
@@ -65,48 +64,6 @@ void AddUndone(const LogSuspicion& one, const RobotTree& tree, const Recording& 
     tried.push_back(Undone(one, tree, recording));
   } catch (const InputError&) {
   }
-}
-
-std::vector<int> AllPostures(const Recording& recording) {
-  std::vector<int> all(static_cast<std::size_t>(recording.posture_count()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
-LogSuspicion SignOf(int coordinate, const Recording& recording) {
-  return {.kind = LogContradiction::kSign,
-          .coordinate = coordinate,
-          .postures = AllPostures(recording)};
-}
-
-/// Those of all joints that move: where nothing explains a recording, none is beyond suspicion.
-/// None of a robot with many joints, each of which takes a fit of seconds.
-std::vector<LogSuspicion> AllSigns(const RobotTree& tree, const Recording& recording) {
-  std::vector<LogSuspicion> signs;
-  for (int c = 0; c < tree.coordinate_count(); ++c) {
-    const auto positions = recording.q.col(c);
-    if (positions.maxCoeff() > positions.minCoeff()) signs.push_back(SignOf(c, recording));
-  }
-  if (signs.size() > kMostSigns) signs.clear();
-  return signs;
-}
-
-/// Suspect signs of a fit whose axes are turned by more than a right angle: of each such joint and
-/// of the one before it, which may be the one that is turned in truth, even where the nominal robot
-/// does not show it.
-std::vector<LogSuspicion> SignsOfTurnedAxes(const CalibrationResult& result,
-                                            const Recording& recording) {
-  std::vector<LogSuspicion> suspicions;
-  std::set<int> coordinates;
-  for (const int joint : TurnedAxes(result)) {
-    const std::vector<Joint>& joints = result.model.tree.joints;
-    const int before = joints[Size(joint)].parent_body - 1;
-    for (const int k : {joint, before}) {
-      if (k < 0 || !coordinates.insert(joints[Size(k)].coordinate).second) continue;
-      suspicions.push_back(SignOf(joints[Size(k)].coordinate, recording));
-    }
-  }
-  return suspicions;
 }
 
 /// What the nominal robot makes one suspect, with the recording that is left once it is undone; at
@@ -145,9 +102,7 @@ std::vector<TriedCorrection> SignsIn(const std::vector<int>& postures, const Rob
   for (int c = 0; c < tree.coordinate_count(); ++c) {
     const Eigen::VectorXd positions = recording.q.col(c)(postures);
     if (!(positions.maxCoeff() > positions.minCoeff())) continue;
-    const LogSuspicion sign{
-        .kind = LogContradiction::kSign, .coordinate = c, .postures = AllPostures(recording)};
-    signs.push_back(Undone(sign, tree, recording));
+    signs.push_back(Undone(SignOf(c, recording), tree, recording));
   }
   return signs;
 }
