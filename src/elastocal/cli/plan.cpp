@@ -89,6 +89,40 @@ bool Refuse(const MotionPlan& plan, bool unbalanced) {
   return refused;
 }
 
+/// Lengths of the command line are in mm.
+MotionPlanOptions PlanOptions(const PlanCommand& command) {
+  MotionPlanOptions options = command.options;
+  if (command.zmp_margin_mm) options.limits.zmp_margin = 1e-3 * *command.zmp_margin_mm;
+  if (command.lift_mm) options.plan.lift_m = 1e-3 * *command.lift_mm;
+  if (command.inset_mm) options.plan.inset = 1e-3 * *command.inset_mm;
+  if (command.approach_mm) options.approach.height = 1e-3 * *command.approach_mm;
+  options.plan.balanced = !command.unbalanced;
+  return options;
+}
+
+MotionTrialOptions TrialOptions(const PlanCommand& command) {
+  MotionTrialOptions options = command.tries;
+  options.seed = command.common.seed.value_or(1);
+  options.stabilised = !command.unstabilised;
+  options.threads = command.options.threads;
+  return options;
+}
+
+void PrintPlan(const Project& project, const MotionPlan& plan, const CommonOptions& common) {
+  PrintWarnings(plan.left_out, common.verbose);
+  const bool quiet = common.Silent();
+  if (project.soles.empty()) {
+    Print(quiet, "The project has no soles: the root link is held still, nothing is balanced\n\n");
+  }
+  Print(quiet, SetTable(plan));
+  if (plan.impossible.empty()) {
+    Print(quiet, "\n" + LimitTable(plan.limits) +
+                     fmt::format("\n{:.1f} s of motion planned and checked in {:.1f} s\n",
+                                 static_cast<double>(plan.whole.motion.q.rows()) / plan.rate_hz,
+                                 plan.seconds));
+  }
+}
+
 int Plan(const PlanCommand& command) {
   const Project project = ReadProject(command.project);
   std::vector<ChainPostures> postures;
@@ -113,31 +147,13 @@ int Plan(const PlanCommand& command) {
 
   const bool quiet = command.common.Silent();
   const Progress progress = TerminalProgress("planned chain", quiet);
-  MotionPlanOptions options = command.options;
-  if (command.zmp_margin_mm) options.limits.zmp_margin = 1e-3 * *command.zmp_margin_mm;
-  if (command.lift_mm) options.plan.lift_m = 1e-3 * *command.lift_mm;
-  if (command.inset_mm) options.plan.inset = 1e-3 * *command.inset_mm;
-  if (command.approach_mm) options.approach.height = 1e-3 * *command.approach_mm;
-  options.plan.balanced = !command.unbalanced;
-  MotionTrialOptions tries = command.tries;
-  tries.seed = command.common.seed.value_or(1);
-  tries.stabilised = !command.unstabilised;
-  tries.threads = options.threads;
+  const MotionPlanOptions options = PlanOptions(command);
+  const MotionTrialOptions tries = TrialOptions(command);
   const MotionPlan plan =
       command.kind.empty()
           ? PlanMotion(project, postures, options, progress)
           : PlanValidationMotion(project, KindNamed(command.kind), tries.seed, options, progress);
-  PrintWarnings(plan.left_out, command.common.verbose);
-  if (project.soles.empty()) {
-    Print(quiet, "The project has no soles: the root link is held still, nothing is balanced\n\n");
-  }
-  Print(quiet, SetTable(plan));
-  if (plan.impossible.empty()) {
-    Print(quiet, "\n" + LimitTable(plan.limits) +
-                     fmt::format("\n{:.1f} s of motion planned and checked in {:.1f} s\n",
-                                 static_cast<double>(plan.whole.motion.q.rows()) / plan.rate_hz,
-                                 plan.seconds));
-  }
+  PrintPlan(project, plan, command.common);
   if (Refuse(plan, command.unbalanced)) return kNotConverged;
 
   const std::vector<MotionTrial> trials =
@@ -160,6 +176,101 @@ int Plan(const PlanCommand& command) {
   return fell > 0 ? kNotConverged : kFine;
 }
 
+void AddNumber(CLI::App& command, const std::string& name, double& value, const char* help) {
+  command.add_option(name, value, help)->check(InBounds("plan " + name))->capture_default_str();
+}
+
+/// Without it, the robot's own size decides.
+void AddLength(CLI::App& command, const std::string& name, std::optional<double>& value,
+               const char* help) {
+  command.add_option(name, value, help)->check(InBounds("plan " + name));
+}
+
+/// Which postures or motion.
+void AddWhat(CLI::App& command, PlanCommand& options) {
+  auto* postures = command
+                       .add_option("--postures", options.postures,
+                                   "Posture file (YAML; docs/formats.md), as design writes it")
+                       ->type_name("FILE");
+  command
+      .add_option("--kind", options.kind,
+                  "Plan a validation motion of this kind, of all chains, instead")
+      ->transform(CLI::IsMember({"sine", "random", "repeatability"}, CLI::ignore_case))
+      ->excludes(postures);
+  command
+      .add_option("--count", options.options.validation.random_postures,
+                  "Postures of each chain, of --kind random")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+}
+
+void AddFiles(CLI::App& command, PlanCommand& options) {
+  command.add_option("-o,--output", options.output, "Motion (CSV; docs/formats.md, Motion)")
+      ->required()
+      ->check(IsNamed)
+      ->type_name("FILE");
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "Also as a ROS trajectory_msgs/JointTrajectory (YAML)")
+      ->type_name("FILE");
+  command
+      .add_option("--per-chain", options.folder,
+                  "Also a motion for each chain in this folder, without the changes of support: "
+                  "what simulate --motion plays as a trial")
+      ->type_name("DIR");
+}
+
+/// Times, and the limits that the motion keeps.
+void AddLimits(CLI::App& command, PlanCommand& options) {
+  MotionPlanOptions& plan = options.options;
+  AddNumber(command, "--move-s", plan.plan.path.duration_s, "Time between two postures, s");
+  AddNumber(command, "--rest-s", plan.plan.hold_s, "At rest in each posture, s");
+  AddLength(
+      command, "--zmp-margin-mm", options.zmp_margin_mm,
+      "Least distance of the zero-moment point to the edge of the support, mm; default: 0.3 of "
+      "half the width of the sole");
+  AddLength(
+      command, "--lift-mm", options.lift_mm,
+      "Height to which a foot is lifted before its leg moves freely, mm; default: 0.123 of the "
+      "leg's length");
+  AddLength(command, "--inset-mm", options.inset_mm,
+            "How far the zero-moment point stays from the middle of a sole, towards the foot that "
+            "leaves or meets the floor, mm; default: 0.54 of half the width of the sole");
+  AddLength(
+      command, "--approach-mm", options.approach_mm,
+      "Of touches: height above its table from which a plate goes straight down, mm; default: 50");
+  command
+      .add_option("--torque-share", plan.torque_share,
+                  "Share of the torque limits to be used; default: design.motion_effort_share of "
+                  "the project, which is 0.9 where it is not given")
+      ->check(InBounds("plan --torque-share"));
+  AddNumber(command, "--velocity-share", plan.limits.velocity_share,
+            "Share of the velocity limits to be used");
+}
+
+/// Robots that play it, and balance.
+void AddRobots(CLI::App& command, PlanCommand& options) {
+  AddNumber(command, "--floor-friction", options.tries.floor_friction,
+            "Friction of the floor that --robots stand on");
+  command
+      .add_option("--threads", options.options.threads,
+                  "Chains planned, and robots tried, at a time")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command
+      .add_option("--robots", options.tries.robots,
+                  "Play the motion on as many robots with errors, standing free")
+      ->check(CLI::Range(0, 1000));
+  AddNumber(command, "--leg-geometry-scale", options.tries.leg_errors,
+            "Factor on the errors of their legs' geometry");
+  command.add_flag("--no-stabiliser", options.unstabilised,
+                   "They follow the motion blindly: nothing corrects it by what the feet and the "
+                   "inertial unit feel");
+  command.add_flag("--no-balance", options.unbalanced,
+                   "Do not balance, to see what comes of it: the motion is written although it "
+                   "breaks its limits");
+}
+
 }  // namespace
 
 void AddPlan(CLI::App& app, Action& action) {
@@ -167,85 +278,20 @@ void AddPlan(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "plan", "Plan a motion through calibration postures that the robot does standing by itself");
   command->add_option("project", options->project, "Project file (YAML)")->required();
-  auto* postures = command
-                       ->add_option("--postures", options->postures,
-                                    "Posture file (YAML; docs/formats.md), as design writes it")
-                       ->type_name("FILE");
-  command
-      ->add_option("--kind", options->kind,
-                   "Plan a validation motion of this kind, of all chains, instead")
-      ->transform(CLI::IsMember({"sine", "random", "repeatability"}, CLI::ignore_case))
-      ->excludes(postures);
-  auto* count = command
-                    ->add_option("--count", options->options.validation.random_postures,
-                                 "Postures of each chain, of --kind random")
-                    ->check(CLI::Range(1, 1000))
-                    ->capture_default_str();
-  command->add_option("-o,--output", options->output, "Motion (CSV; docs/formats.md, Motion)")
-      ->required()
-      ->check(IsNamed)
-      ->type_name("FILE");
-  command
-      ->add_option("--trajectory", options->trajectory,
-                   "Also as a ROS trajectory_msgs/JointTrajectory (YAML)")
-      ->type_name("FILE");
-  command
-      ->add_option("--per-chain", options->folder,
-                   "Also a motion for each chain in this folder, without the changes of support: "
-                   "what simulate --motion plays as a trial")
-      ->type_name("DIR");
-  const auto number = [&](const std::string& name, double& value, const char* help) {
-    command->add_option(name, value, help)->check(InBounds("plan " + name))->capture_default_str();
-  };
-  MotionPlanOptions& plan = options->options;
-  number("--move-s", plan.plan.path.duration_s, "Time between two postures, s");
-  number("--rest-s", plan.plan.hold_s, "At rest in each posture, s");
-  const auto length = [&](const std::string& name, std::optional<double>& value, const char* help) {
-    command->add_option(name, value, help)->check(InBounds("plan " + name));
-  };
-  length("--zmp-margin-mm", options->zmp_margin_mm,
-         "Least distance of the zero-moment point to the edge of the support, mm; default: 0.3 of "
-         "half the width of the sole");
-  length("--lift-mm", options->lift_mm,
-         "Height to which a foot is lifted before its leg moves freely, mm; default: 0.123 of the "
-         "leg's length");
-  length("--inset-mm", options->inset_mm,
-         "How far the zero-moment point stays from the middle of a sole, towards the foot that "
-         "leaves or meets the floor, mm; default: 0.54 of half the width of the sole");
-  length(
-      "--approach-mm", options->approach_mm,
-      "Of touches: height above its table from which a plate goes straight down, mm; default: 50");
-  command
-      ->add_option("--torque-share", plan.torque_share,
-                   "Share of the torque limits to be used; default: design.motion_effort_share of "
-                   "the project, which is 0.9 where it is not given")
-      ->check(InBounds("plan --torque-share"));
-  number("--velocity-share", plan.limits.velocity_share, "Share of the velocity limits to be used");
-  number("--floor-friction", options->tries.floor_friction,
-         "Friction of the floor that --robots stand on");
-  command->add_option("--threads", plan.threads, "Chains planned, and robots tried, at a time")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  command
-      ->add_option("--robots", options->tries.robots,
-                   "Play the motion on as many robots with errors, standing free")
-      ->check(CLI::Range(0, 1000));
-  number("--leg-geometry-scale", options->tries.leg_errors,
-         "Factor on the errors of their legs' geometry");
-  command->add_flag("--no-stabiliser", options->unstabilised,
-                    "They follow the motion blindly: nothing corrects it by what the feet and the "
-                    "inertial unit feel");
-  command->add_flag("--no-balance", options->unbalanced,
-                    "Do not balance, to see what comes of it: the motion is written although it "
-                    "breaks its limits");
+  AddWhat(*command, *options);
+  AddFiles(*command, *options);
+  AddLimits(*command, *options);
+  AddRobots(*command, *options);
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal plan models/talos/project.yaml --postures postures.yaml -o motion.csv");
-  command->callback([&action, options, count] {
+  command->callback([&action, options, command] {
     if (options->postures.empty() && options->kind.empty()) {
       throw CLI::RequiredError("--postures or --kind");
     }
-    if (*count && options->kind != "random") throw CLI::RequiresError("--count", "--kind random");
+    if (command->count("--count") > 0 && options->kind != "random") {
+      throw CLI::RequiresError("--count", "--kind random");
+    }
     action = [options] { return Plan(*options); };
   });
 }

@@ -172,6 +172,101 @@ int Simulate(const SimulateCommand& command) {
   return kFine;
 }
 
+/// What the robot plays.
+void AddMotionOptions(CLI::App& command, SimulateCommand& options) {
+  command
+      .add_option("--trials", options.trials,
+                  "Which are played: all, calibration, validation, or the name of one")
+      ->capture_default_str();
+  auto* postures =
+      command
+          .add_option(
+              "--postures", options.postures,
+              "Plays these postures instead, move_s + rest_s apart (CSV or a posture file, YAML)")
+          ->type_name("FILE");
+  command
+      .add_option("--count", options.count,
+                  "With contact or instruments and no --postures: so many random postures (30) "
+                  "for each plate, and for instruments")
+      ->check(CLI::Range(1, 1000))
+      ->excludes(postures);
+  command
+      .add_option("--motion", options.motion, "Plays this joint trajectory instead (CSV with time)")
+      ->excludes(postures)
+      ->type_name("FILE");
+  command
+      .add_option("--chains", options.chains, "Chains that they exercise; default: those that move")
+      ->type_name("NAME");
+  command
+      .add_option("--kind", options.kind,
+                  "What they are for: calibration, sine, random or repeatability; default: "
+                  "calibration where the robot rests, else sine")
+      ->transform(
+          CLI::IsMember({"calibration", "sine", "random", "repeatability"}, CLI::ignore_case));
+}
+
+/// Robots that execute a motion by what a calibration says of them.
+void AddDeployOptions(CLI::App& command, SimulateCommand& options) {
+  auto* deploy =
+      command
+          .add_option("--deploy", options.deploy,
+                      "Executes --motion on the robot that was calibrated (the same --seed and "
+                      "options), whose controller uses the calibration in this folder: how far "
+                      "are hands, feet and waist from the plan?")
+          ->type_name("DIR");
+  command
+      .add_option("--as", options.as,
+                  "What the controller of --deploy knows: nominal, urdf (the calibrated one) or "
+                  "compensated; default: each in turn")
+      ->needs(deploy)
+      ->transform(CLI::IsMember({"nominal", "urdf", "compensated"}, CLI::ignore_case));
+  command
+      .add_option("--stabiliser", options.stabiliser,
+                  "Whether the robots of --deploy are balanced by what feet and inertial unit "
+                  "feel: with, without, or both, which takes twice as long")
+      ->needs(deploy)
+      ->transform(CLI::IsMember({"with", "without", "both"}, CLI::ignore_case))
+      ->capture_default_str();
+  command
+      .add_option("--until-s", options.until_s,
+                  "Time of the motion until which the robots of --deploy play it, s; default: to "
+                  "its end")
+      ->needs(deploy)
+      ->check(CLI::Range(1.0, 1e6));
+}
+
+/// How it is played and recorded.
+void AddPlayOptions(CLI::App& command, SimulateCommand& options) {
+  command.add_option("--threads", options.threads, "Trials played at a time")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command
+      .add_option("--settings", options.settings,
+                  "File with any of the options below (YAML; docs/formats.md)")
+      ->type_name("FILE");
+  command.add_flag("--nominal", options.nominal,
+                   "Begin with a robot and sensors without any imperfection");
+  command.add_flag("--matched", options.matched,
+                   "The truth is the estimator's own error model at rest at every instant, instead "
+                   "of physics: to see whether it finds what it models");
+  command.add_flag("--free", options.free,
+                   "Feet lie on the floor by contact instead of being part of it");
+  command.add_flag("--force", options.force,
+                   "Replace recordings in the folder that were not simulated");
+}
+
+/// The same settings as in --settings, each a flag.
+void AddSettings(CLI::App& command, SimulateCommand& options) {
+  VirtualExperimentOptions defaults;
+  for (const SimulationSetting& setting : SimulationSettings(defaults)) {
+    const std::string value = SettingText(setting);
+    command
+        .add_option(FlagName(setting.key), options.flags[setting.key],
+                    setting.help + (value.empty() ? "" : " [" + value + "]"))
+        ->group(setting.group);
+  }
+}
+
 }  // namespace
 
 void AddSimulate(CLI::App& app, Action& action) {
@@ -183,94 +278,16 @@ void AddSimulate(CLI::App& app, Action& action) {
       ->required()
       ->check(IsNamed)
       ->type_name("DIR");
-  command
-      ->add_option("--trials", options->trials,
-                   "Which are played: all, calibration, validation, or the name of one")
-      ->capture_default_str();
-  auto* postures =
-      command
-          ->add_option(
-              "--postures", options->postures,
-              "Plays these postures instead, move_s + rest_s apart (CSV or a posture file, YAML)")
-          ->type_name("FILE");
-  command
-      ->add_option("--count", options->count,
-                   "With contact or instruments and no --postures: so many random postures (30) "
-                   "for each plate, and for instruments")
-      ->check(CLI::Range(1, 1000))
-      ->excludes(postures);
-  command
-      ->add_option("--motion", options->motion,
-                   "Plays this joint trajectory instead (CSV with time)")
-      ->excludes(postures)
-      ->type_name("FILE");
-  command
-      ->add_option("--chains", options->chains,
-                   "Chains that they exercise; default: those that move")
-      ->type_name("NAME");
-  command
-      ->add_option("--kind", options->kind,
-                   "What they are for: calibration, sine, random or repeatability; default: "
-                   "calibration where the robot rests, else sine")
-      ->transform(
-          CLI::IsMember({"calibration", "sine", "random", "repeatability"}, CLI::ignore_case));
-  auto* deploy =
-      command
-          ->add_option("--deploy", options->deploy,
-                       "Executes --motion on the robot that was calibrated (the same --seed and "
-                       "options), whose controller uses the calibration in this folder: how far "
-                       "are hands, feet and waist from the plan?")
-          ->type_name("DIR");
-  command
-      ->add_option("--as", options->as,
-                   "What the controller of --deploy knows: nominal, urdf (the calibrated one) or "
-                   "compensated; default: each in turn")
-      ->needs(deploy)
-      ->transform(CLI::IsMember({"nominal", "urdf", "compensated"}, CLI::ignore_case));
-  command
-      ->add_option("--stabiliser", options->stabiliser,
-                   "Whether the robots of --deploy are balanced by what feet and inertial unit "
-                   "feel: with, without, or both, which takes twice as long")
-      ->needs(deploy)
-      ->transform(CLI::IsMember({"with", "without", "both"}, CLI::ignore_case))
-      ->capture_default_str();
-  command
-      ->add_option("--until-s", options->until_s,
-                   "Time of the motion until which the robots of --deploy play it, s; default: to "
-                   "its end")
-      ->needs(deploy)
-      ->check(CLI::Range(1.0, 1e6));
-  command->add_option("--threads", options->threads, "Trials played at a time")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  command
-      ->add_option("--settings", options->settings,
-                   "File with any of the options below (YAML; docs/formats.md)")
-      ->type_name("FILE");
-  command->add_flag("--nominal", options->nominal,
-                    "Begin with a robot and sensors without any imperfection");
-  command->add_flag(
-      "--matched", options->matched,
-      "The truth is the estimator's own error model at rest at every instant, instead "
-      "of physics: to see whether it finds what it models");
-  command->add_flag("--free", options->free,
-                    "Feet lie on the floor by contact instead of being part of it");
-  command->add_flag("--force", options->force,
-                    "Replace recordings in the folder that were not simulated");
+  AddMotionOptions(*command, *options);
+  AddDeployOptions(*command, *options);
+  AddPlayOptions(*command, *options);
   AddCommonOptions(*command, options->common);
   command
       ->add_option("--robot-seed", options->robot_seed,
                    "Seed of the robot's errors, if another than --seed: the same robot, recorded "
                    "again with other postures and noise")
       ->check(IsSeed);
-  VirtualExperimentOptions defaults;
-  for (const SimulationSetting& setting : SimulationSettings(defaults)) {
-    const std::string value = SettingText(setting);
-    command
-        ->add_option(FlagName(setting.key), options->flags[setting.key],
-                     setting.help + (value.empty() ? "" : " [" + value + "]"))
-        ->group(setting.group);
-  }
+  AddSettings(*command, *options);
   command->footer("Example: elastocal simulate models/talos/project.yaml -o recording");
   command->callback([&action, options] { action = [options] { return Simulate(*options); }; });
 }

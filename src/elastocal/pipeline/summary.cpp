@@ -104,9 +104,9 @@ Json CoverageJson(const CalibrationRun& run) {
   return json;
 }
 
-/// What only recordings of trials have.
+/// The trials; the clock of the first whose drift is known, or else of the first; and the samples
+/// of all that calibrate.
 void AddTrials(const CalibrationRun& run, Json& json) {
-  if (run.trials.empty()) return;
   int samples = 0;
   json["trials"] = Json::array();
   for (const TrialSummary& trial : run.trials) {
@@ -128,41 +128,52 @@ void AddTrials(const CalibrationRun& run, Json& json) {
     if (calibration && trial.refused.empty() && better) json["clock"] = ClockJson(trial);
   }
   json["samples"] = samples;
-  if (run.held_out) {
-    for (const ErrorTableRow& row : run.held_out->table.groups) {
-      for (const auto& [kind, metrics] : row.metrics) {
-        json["held_out"][row.group]["rmse_3d_mm"][ModelKindName(kind)] =
-            Finite(1e3 * metrics.rmse_3d);
-        json["held_out"][row.group]["max_mm"][ModelKindName(kind)] = Finite(1e3 * metrics.maximum);
-      }
-    }
-    for (const auto& [kind, mean] : run.held_out->table.mean_rmse_3d) {
-      json["held_out_rmse_3d_mm"][ModelKindName(kind)] = Finite(1e3 * mean);
+}
+
+/// Errors on the trials for validation.
+void AddHeldOut(const CalibrationRun& run, Json& json) {
+  if (!run.held_out) return;
+  for (const ErrorTableRow& row : run.held_out->table.groups) {
+    for (const auto& [kind, metrics] : row.metrics) {
+      json["held_out"][row.group]["rmse_3d_mm"][ModelKindName(kind)] =
+          Finite(1e3 * metrics.rmse_3d);
+      json["held_out"][row.group]["max_mm"][ModelKindName(kind)] = Finite(1e3 * metrics.maximum);
     }
   }
+  for (const auto& [kind, mean] : run.held_out->table.mean_rmse_3d) {
+    json["held_out_rmse_3d_mm"][ModelKindName(kind)] = Finite(1e3 * mean);
+  }
+}
+
+/// Where the truth of a simulation is beside the recording.
+void AddWaistErrors(const CalibrationRun& run, Json& json) {
   for (ModelKind kind : run.comparison.kinds) {
     const double error = run.waist_error[static_cast<int>(kind)];
     if (std::isfinite(error)) json["waist_error_mm"][ModelKindName(kind)] = 1e3 * error;
   }
+}
+
+Json LegJson(const LegStiffness& leg) {
+  Json stiffness = Json::array();
+  Json interval = Json::array();
+  Json known = Json::array();
+  for (int axis = 0; axis < 6; ++axis) {
+    const double unit = axis < 3 ? 1e-3 : 1.0;
+    stiffness.push_back(Finite(unit * leg.stiffness[axis]));
+    interval.push_back({Finite(unit * leg.low[axis]), Finite(unit * leg.high[axis])});
+    known.push_back(leg.known(axis));
+  }
+  Json posture;
+  for (const auto& [joint, position] : leg.posture) posture[joint] = position;
+  return {{"name", leg.leg},        {"posture_rad", posture},  {"load_share", leg.load_share},
+          {"stiffness", stiffness}, {"interval_95", interval}, {"known", known}};
+}
+
+/// The legs, and where a foot or a cluster moved that should not.
+void AddStance(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
   for (const LegStiffness& leg : AssessLegs(result, run.recording)) {
-    Json stiffness = Json::array();
-    Json interval = Json::array();
-    Json known = Json::array();
-    for (int axis = 0; axis < 6; ++axis) {
-      const double unit = axis < 3 ? 1e-3 : 1.0;
-      stiffness.push_back(Finite(unit * leg.stiffness[axis]));
-      interval.push_back({Finite(unit * leg.low[axis]), Finite(unit * leg.high[axis])});
-      known.push_back(leg.known(axis));
-    }
-    Json posture;
-    for (const auto& [joint, position] : leg.posture) posture[joint] = position;
-    json["legs"].push_back({{"name", leg.leg},
-                            {"posture_rad", posture},
-                            {"load_share", leg.load_share},
-                            {"stiffness", stiffness},
-                            {"interval_95", interval},
-                            {"known", known}});
+    json["legs"].push_back(LegJson(leg));
   }
   json["loose_footings"] = Json::array();
   for (const LooseFooting& footing : result.loose_footings) {
@@ -235,11 +246,9 @@ Json ShortModels(const CalibrationRun& run) {
   return json;
 }
 
-}  // namespace
-
-std::string MakeSummaryJson(const CalibrationRun& run) {
+/// Whether the result may be used, and of what.
+void AddOutcome(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
-  Json json;
   json["status"] = RunStatus(run);
   json["message"] = result.message;
   json["settled"] = result.settled;
@@ -247,6 +256,11 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["objections"] = run.verdict.objections;
   json["chains"] = CoverageJson(run);
   json["remarks"] = run.verdict.remarks;
+}
+
+/// What was measured, and how many parameters it can tell.
+void AddProblem(const CalibrationRun& run, Json& json) {
+  const CalibrationResult& result = run.comparison.largest();
   json["robot"] = result.model.tree.name;
   json["recording"] = run.recording.source;
   json["postures"] = run.recording.posture_count();
@@ -255,29 +269,45 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["identifiable"] = run.base.geometric_count;
   json["identifiable_theory"] = run.base.theoretical_count;
   json["equations"] = result.equations;
-  json["marker_sd_mm"] = 1e3 * result.marker_sd;
+}
+
+Json PriorScaleJson(const CalibrationResult& result) {
+  Json json;
   for (int g = 0; g < kPriorGroupCount; ++g) {
     const bool corrections = g == static_cast<int>(PriorGroup::kCorrections);
     if (corrections && result.model.elasticity.corrections.empty()) continue;
-    json["prior_scale"][PriorGroupName(static_cast<PriorGroup>(g))] = result.prior_scale.factor[g];
+    json[PriorGroupName(static_cast<PriorGroup>(g))] = result.prior_scale.factor[g];
   }
+  return json;
+}
+
+/// Of one group of postures. A waist that does not move has no noise.
+Json NoiseJson(const Noise& noise, std::size_t group, bool waist_moves) {
+  Json json;
+  for (int source = 0; source < kNoiseSourceCount; ++source) {
+    const std::string name = NoiseSourceName(static_cast<NoiseSource>(source));
+    if (name.starts_with("waist") && !waist_moves) continue;
+    const bool angle = name.ends_with("rotation");
+    json[name + (angle ? "_sd_mrad" : "_sd_mm")] =
+        1e3 * noise.sd(static_cast<Eigen::Index>(group), source);
+  }
+  if (group < noise.motion.size()) {
+    const MotionCorrelation& motion = noise.motion[group];
+    json["motion_correlation"] = motion.bodies.lag_one;
+    json["motion_samples_each"] = motion.bodies.samples_each;
+    json["waist_motion_correlation"] = motion.waist.lag_one;
+    json["waist_motion_samples_each"] = motion.waist.samples_each;
+  }
+  return json;
+}
+
+/// The noise, and what else weighs the measurements.
+void AddStatistics(const CalibrationRun& run, Json& json) {
+  const CalibrationResult& result = run.comparison.largest();
+  json["marker_sd_mm"] = 1e3 * result.marker_sd;
+  json["prior_scale"] = PriorScaleJson(result);
   for (std::size_t g = 0; g < static_cast<std::size_t>(result.noise.group_count()); ++g) {
-    Json noise;
-    for (int source = 0; source < kNoiseSourceCount; ++source) {
-      const std::string name = NoiseSourceName(static_cast<NoiseSource>(source));
-      if (name.starts_with("waist") && run.trials.empty()) continue;  // it does not move
-      const bool angle = name.ends_with("rotation");
-      noise[name + (angle ? "_sd_mrad" : "_sd_mm")] =
-          1e3 * result.noise.sd(static_cast<Eigen::Index>(g), source);
-    }
-    if (g < result.noise.motion.size()) {
-      const MotionCorrelation& motion = result.noise.motion[g];
-      noise["motion_correlation"] = motion.bodies.lag_one;
-      noise["motion_samples_each"] = motion.bodies.samples_each;
-      noise["waist_motion_correlation"] = motion.waist.lag_one;
-      noise["waist_motion_samples_each"] = motion.waist.samples_each;
-    }
-    json["noise"].push_back(noise);
+    json["noise"].push_back(NoiseJson(result.noise, g, !run.trials.empty()));
   }
   json["cluster_factor"] = result.posterior.cluster_factor;
   json["gauge"] = GaugeText(result.gauge);
@@ -287,43 +317,68 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
                             {"degrees_of_freedom", run.common_scale->degrees_of_freedom}};
   }
   json["effective_parameters"] = result.posterior.effective_parameters;
-  json["rmse_3d_mm"] =
-      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::rmse_3d);
-  json["rmse_coordinate_mm"] =
-      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::rmse_coordinate);
-  json["max_mm"] =
-      FigureByModel(run.comparison.kinds, run.comparison.metrics, &ErrorMetrics::maximum);
-  json["rmse_3d_mm_with_outliers"] =
-      FigureByModel(run.comparison.kinds, run.comparison.metrics_all, &ErrorMetrics::rmse_3d);
-  if (run.cross_validation.folds > 0) {
-    const ByModel<ErrorMetrics>& metrics = run.cross_validation.metrics;
-    json["kfold"]["folds"] = run.cross_validation.folds;
-    json["kfold"]["rmse_3d_mm"] =
-        FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::rmse_3d);
-    json["kfold"]["rmse_coordinate_mm"] =
-        FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::rmse_coordinate);
-    json["kfold"]["max_mm"] = FigureByModel(run.comparison.kinds, metrics, &ErrorMetrics::maximum);
-    json["kfold"]["rmse_3d_mm_without_outliers"] =
-        FigureByModel(run.comparison.kinds, run.cross_validation.metrics_without_outliers,
-                      &ErrorMetrics::rmse_3d);
-    json["kfold"]["unconverged"] = run.cross_validation.unconverged;
-    json["kfold"]["not_predicted"] = run.cross_validation.not_predicted;
-    json["kfold"]["decided_once"] = run.decided_once;
-  }
-  AddTrials(run, json);
-  json["outliers"] = Outliers(run);
-  json["short_models"] = ShortModels(run);
+}
+
+/// In the fit, and by folds.
+void AddErrors(const CalibrationRun& run, Json& json) {
+  const auto figure = [&](const ByModel<ErrorMetrics>& metrics, double ErrorMetrics::*of) {
+    return FigureByModel(run.comparison.kinds, metrics, of);
+  };
+  const ByModel<ErrorMetrics>& fit = run.comparison.metrics;
+  json["rmse_3d_mm"] = figure(fit, &ErrorMetrics::rmse_3d);
+  json["rmse_coordinate_mm"] = figure(fit, &ErrorMetrics::rmse_coordinate);
+  json["max_mm"] = figure(fit, &ErrorMetrics::maximum);
+  json["rmse_3d_mm_with_outliers"] = figure(run.comparison.metrics_all, &ErrorMetrics::rmse_3d);
+  const CrossValidation& folds = run.cross_validation;
+  if (folds.folds == 0) return;
+  json["kfold"] = {{"folds", folds.folds},
+                   {"rmse_3d_mm", figure(folds.metrics, &ErrorMetrics::rmse_3d)},
+                   {"rmse_coordinate_mm", figure(folds.metrics, &ErrorMetrics::rmse_coordinate)},
+                   {"max_mm", figure(folds.metrics, &ErrorMetrics::maximum)},
+                   {"rmse_3d_mm_without_outliers",
+                    figure(folds.metrics_without_outliers, &ErrorMetrics::rmse_3d)},
+                   {"unconverged", folds.unconverged},
+                   {"not_predicted", folds.not_predicted},
+                   {"decided_once", run.decided_once}};
+}
+
+/// Springs and causes that were chosen or looked for.
+void AddChoices(const CalibrationRun& run, Json& json) {
   json["elasticity_tried"] = ElasticityJson(run.elasticity);
   if (!run.extra.empty()) json["extra"] = run.extra;
   if (run.causes) {
     json["diagnosis"] = DescribeDiagnosis(*run.causes);
     json["diagnosis_pictures"] = CausePicturesJson(*run.causes);
   }
-  json["excitation"] = ExcitationJson(run);
+}
+
+void AddSolution(const CalibrationResult& result, Json& json) {
   json["iterations"] = result.iterations;
   json["initial_cost"] = result.initial_cost;
   json["final_cost"] = result.final_cost;
   json["solve_seconds"] = result.solve_seconds;
+}
+
+}  // namespace
+
+std::string MakeSummaryJson(const CalibrationRun& run) {
+  const CalibrationResult& result = run.comparison.largest();
+  Json json;
+  AddOutcome(run, json);
+  AddProblem(run, json);
+  AddStatistics(run, json);
+  AddErrors(run, json);
+  if (!run.trials.empty()) {
+    AddTrials(run, json);
+    AddHeldOut(run, json);
+    AddWaistErrors(run, json);
+    AddStance(run, json);
+  }
+  json["outliers"] = Outliers(run);
+  json["short_models"] = ShortModels(run);
+  AddChoices(run, json);
+  json["excitation"] = ExcitationJson(run);
+  AddSolution(result, json);
   json["warnings"] = run.warnings;
   json["correlations"] = Correlations(result);
   json["parameters"] = Parameters(result);
