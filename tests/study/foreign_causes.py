@@ -41,12 +41,21 @@ TRUNK = [
     ("elbow", "a4", (0.02, 0, -0.13), (0, 0, 0), (0, 1, 0), 1.3, 40, 1.2, (0, 0, -0.08)),
     ("wrist", "a5", (-0.02, 0, -0.24), (0, 0, 0), (0, 0, 1), 2.2, 20, 0.8, (0, 0.01, -0.06)),
 ]
+# The nut of its ball screw with splines turns and lifts the tool.
+SCARA = [
+    ("pan", "s1", (0, 0, 0.36), (0, 0, 0), (0, 0, 1), 2.2, 90, 6.0, (0.15, 0, 0)),
+    ("elbow", "s2", (0.32, 0, 0.04), (0, 0, 0), (0, 0, 1), 2.3, 60, 4.0, (0.13, 0, 0.03)),
+    ("nut", "s3", (0.26, 0, -0.02), (0, 0, 0), (0, 0, -1), 2.8, 20, 0.4, (0, 0, 0.02)),
+    ("quill", "s4", (0, 0, 0), (0, 0, 0), (0, 0, -1), (0.0, 0.2), 100, 0.6, (0, 0, -0.1), "prismatic"),
+]
 # Joints, scale of lengths, factor of compliances.
 ARMS = {"desk": (SIX, 0.45, 12.0), "small": (JOINTS, 0.6, 4.0), "cobot": (SIX, 1.0, 1.0), "seven": (JOINTS, 1.0, 1.0),
-        "long": (SIX, 1.45, 0.7), "trunk": (TRUNK, 1.0, 1.0)}
+        "long": (SIX, 1.45, 0.7), "trunk": (TRUNK, 1.0, 1.0),
+        "scara": (SCARA, 1.0, 1.0)}
 CAUSES = ("none", "eccentricity", "gear", "backlash", "hysteresis", "coupling", "mass", "suspension", "tilt")
 SIZES = {"eccentricity": 1.2e-3, "gear": 2e-3, "backlash": 1.5e-3, "hysteresis": 1.5e-3, "coupling": 2e-3, "mass": 0.25,
          "suspension": 1.5e-3, "tilt": np.radians(1.0)}  # suspension: at the largest moment
+SLIDE = 0.15  # m for a radian, in sizes and offsets
 
 
 def scaled(joints, scale):
@@ -66,7 +75,7 @@ class Robot(Arm):
         near = size * np.array([(1, 0.1, 0.8), (-0.8, 0.9, 1.0), (0.1, -1.1, 0.5), (1.2, 0.1, 1.4), (-1, 1.1, 1.6), (0.1, -1.3, 0.7)])
         super().__init__(joints, bodies, near)
         self.kind, self.cause, self.nominal = kind, cause, near
-        self.offset = np.radians(rng.uniform(0.1, 1.0, count) * rng.choice([-1, 1], count))
+        self.offset = np.radians(rng.uniform(0.1, 1.0, count) * rng.choice([-1, 1], count)) * np.where(self.slides, SLIDE, 1)
         self.places = [(turned(rng.normal(size=3) * np.radians(0.12)) @ turn, place + rng.normal(size=3) * 1e-3)
                        for turn, place in self.places]
         self.compliance = softness * rng.uniform(10e-6, 60e-6, count)
@@ -78,7 +87,7 @@ class Robot(Arm):
         if joint is not None:
             self.joint = [j[0] for j in joints].index(joint)
         self.phase, self.sign = rng.uniform(0, 2 * np.pi), rng.choice([-1, 1])
-        self.size = self.sign * SIZES.get(cause, 0)
+        self.size = self.sign * SIZES.get(cause, 0) * (SLIDE if self.slides[self.joint] and cause != "gear" else 1)
         if cause == "mass":
             self.masses[self.joint] *= 1 + SIZES["mass"]
         if cause == "tilt":

@@ -40,6 +40,8 @@ double InUserUnits(const Parameter& parameter, double value) {
     case ParameterUnit::kMetrePerNewton:
       return value * 1e6;
     case ParameterUnit::kMetrePerHour:
+    case ParameterUnit::kMetrePerRadian:
+    case ParameterUnit::kRadianPerMetre:
       return value * 1e3;
     case ParameterUnit::kPerNewton:
       return value * 1e6;
@@ -62,6 +64,10 @@ const char* UserUnit(const Parameter& parameter) {
       return "um/N";
     case ParameterUnit::kMetrePerHour:
       return "mm/h";
+    case ParameterUnit::kMetrePerRadian:
+      return "mm/rad";
+    case ParameterUnit::kRadianPerMetre:
+      return "mrad/m";
     case ParameterUnit::kPerNewton:
       return "um/(N.m)";
     case ParameterUnit::kRatio:

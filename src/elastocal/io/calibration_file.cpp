@@ -2,11 +2,12 @@
 #include "elastocal/io/calibration_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -27,29 +28,29 @@ constexpr std::int64_t kMostEstimates = 1000000;
 /// Units that a parameter can have by the last part of its name, and the largest value that is a
 /// deviation of a robot and not a damaged file.
 struct NamedUnits {
-  std::array<const char*, 2> units;
+  std::vector<std::string> units;
   double most = std::numeric_limits<double>::infinity();
 };
 
 NamedUnits UnitsOf(const std::string& parameter) {
   const std::string suffix = parameter.substr(parameter.rfind('.') + 1);
   for (const char* angle : {"theta", "alpha", "beta", "gamma", "zero", "tilt_x", "tilt_y"}) {
-    if (suffix == angle) return {{"rad", "rad"}, M_PI};
+    if (suffix == angle) return {{"rad"}, M_PI};
   }
   if (suffix == "torque_bias") return {{"N.m", "N"}};
-  if (suffix == "gear" || suffix.starts_with("coupling_")) return {{"1", "1"}, 1.0};
-  if (suffix.starts_with("suspension_r")) return {{"rad/(N.m)", "rad/(N.m)"}};
-  if (suffix.starts_with("suspension_")) return {{"1/N", "1/N"}};
-  if (suffix.starts_with("drift_") || suffix.starts_with("creep_")) return {{"m/h", "m/h"}};
-  if (suffix == "mass") return {{"kg", "kg"}};
-  if (suffix.starts_with("moment_")) return {{"kg.m", "kg.m"}};
+  if (suffix == "gear") return {{"1"}, 1.0};
+  if (suffix.starts_with("coupling_")) return {{"1", "m/rad", "rad/m"}, M_PI};
+  if (suffix.starts_with("suspension_r")) return {{"rad/(N.m)"}};
+  if (suffix.starts_with("suspension_")) return {{"1/N"}};
+  if (suffix.starts_with("drift_") || suffix.starts_with("creep_")) return {{"m/h"}};
+  if (suffix == "mass") return {{"kg"}};
+  if (suffix.starts_with("moment_")) return {{"kg.m"}};
   for (const char* correction : {"eccentricity_sin", "eccentricity_cos", "ellipticity_sin",
                                  "ellipticity_cos", "backlash", "hysteresis", "stiffening"}) {
     if (suffix == correction) return {{"rad", "m"}, M_PI};
   }
   if (suffix.starts_with("compliance_")) return {{"rad/(N.m)", "m/N"}};
-  constexpr double kLongest = 1000.0;  // m: markers and waist in the frame of any laboratory
-  return {{"m", "m"}, kLongest};
+  return {{"m"}, 1000.0};  // markers and waist in the frame of any laboratory
 }
 
 void EmitParameter(const CalibrationResult& result, int i, YAML::Emitter& yaml) {
@@ -153,9 +154,8 @@ ParameterEstimate ReadParameter(const YamlValue& item) {
   const YamlValue unit = item.Get("unit");
   parameter.unit = unit.Text();
   const auto [units, most] = UnitsOf(parameter.name);
-  const std::string either = units[0] == units[1] ? "" : std::string(" or ") + units[1];
-  unit.Expect(parameter.unit == units[0] || parameter.unit == units[1],
-              units[0] + either + ", the unit of " + Quote(parameter.name));
+  unit.Expect(std::find(units.begin(), units.end(), parameter.unit) != units.end(),
+              fmt::format("{}, the unit of {}", fmt::join(units, " or "), Quote(parameter.name)));
   parameter.external =
       parameter.name.starts_with("waist.T0.") || parameter.name.starts_with("marker.");
   parameter.value = ReadError(item.Get("value"), most);

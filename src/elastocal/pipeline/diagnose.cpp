@@ -73,6 +73,10 @@ Shown ShownAs(ParameterUnit unit) {
       return {1e6, "um/(N.m)"};
     case ParameterUnit::kMetrePerHour:
       return {1e3, "mm/h"};
+    case ParameterUnit::kMetrePerRadian:
+      return {1e3, "mm/rad"};
+    case ParameterUnit::kRadianPerMetre:
+      return {1e3, "mrad/m"};
     default:
       return {1.0, UnitName(unit)};
   }

@@ -14,11 +14,12 @@ constexpr double kLeastLoad = 0.05;  // N.m or N, where the effort is unknown
 constexpr double kTypicalAngle = 2e-3, kTypicalPlay = 3e-3, kTypicalSlide = 2e-4;  // rad, rad, m
 constexpr double kTypicalStiffening = 0.075;  // rad at the effort: 3e-3 at a fifth of it
 constexpr double kTypicalRatio = 3e-3;
-constexpr double kTypicalTilt = 2e-5, kTypicalShift = 1e-5;            // rad/(N.m) and 1/N
-constexpr double kTypicalDrift = 1e-3;                                 // m/h
-constexpr double kTypicalMassShare = 0.1, kTypicalShiftOfMass = 0.02;  // m
-constexpr double kLeastMass = 0.1;                                     // kg, for these two
-constexpr double kTypicalGravityTilt = 0.01;                           // rad
+constexpr double kTypicalSlideByTurn = 2e-4, kTypicalTurnBySlide = 3e-3;  // m/rad, rad/m
+constexpr double kTypicalTilt = 2e-5, kTypicalShift = 1e-5;               // rad/(N.m) and 1/N
+constexpr double kTypicalDrift = 1e-3;                                    // m/h
+constexpr double kTypicalMassShare = 0.1, kTypicalShiftOfMass = 0.02;     // m
+constexpr double kLeastMass = 0.1;                                        // kg, for these two
+constexpr double kTypicalGravityTilt = 0.01;                              // rad
 
 bool KnowsEffort(const Joint& joint) {
   return std::isfinite(joint.limits.effort) && joint.limits.effort > 0.0;
@@ -77,6 +78,19 @@ double Evaluate(const RobotTree& tree, const Correction& correction, const Eigen
 double Middle(const Joint& joint) {
   const double middle = 0.5 * (joint.limits.lower + joint.limits.upper);
   return std::isfinite(middle) ? middle : 0.0;
+}
+
+struct CouplingSize {
+  ParameterUnit unit;
+  double typical;
+};
+
+/// Of two joints that turn (tendons, differentials), or one that slides: a spindle with splines is
+/// both.
+CouplingSize Coupled(bool turns, bool neighbour_turns) {
+  if (turns && neighbour_turns) return {ParameterUnit::kRatio, kTypicalRatio};
+  if (turns) return {ParameterUnit::kRadianPerMetre, kTypicalTurnBySlide};
+  return {ParameterUnit::kMetrePerRadian, kTypicalSlideByTurn};
 }
 
 class Catalogue {
@@ -182,10 +196,11 @@ class Catalogue {
       const Joint& neighbour = tree_.joints[joints_[other]];
       const bool adjacent =
           neighbour.parent_body == k + 1 || joint.parent_body == joints_[other] + 1;
-      if (!adjacent || !turns || neighbour.type != JointType::kRevolute) continue;
+      const bool neighbour_turns = neighbour.type == JointType::kRevolute;
+      if (!adjacent || (!turns && !neighbour_turns)) continue;
+      const auto [unit, typical] = Coupled(turns, neighbour_turns);
       const std::string name = "coupling_" + neighbour.name;
-      add(name, name, Shape::kCoupling, ParameterUnit::kRatio, kTypicalRatio, joints_[other],
-          Middle(neighbour));
+      add(name, name, Shape::kCoupling, unit, typical, joints_[other], Middle(neighbour));
     }
     add("backlash", "backlash", Shape::kBacklash, own, play);
     add("hysteresis", "hysteresis", Shape::kHysteresis, own, play);

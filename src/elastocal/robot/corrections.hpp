@@ -20,7 +20,8 @@ enum class CorrectionShape {
   kSinTwice,      ///< sin 2q: the disc is an ellipse, or tilted
   kCosTwice,      ///< cos 2q
   kGear,          ///< q - centre: an error of the gear's ratio, or of a spindle's lead
-  kCoupling,      ///< position of another joint - centre: tendons, differentials
+  kCoupling,      ///< position of another joint - centre: tendons, differentials, ball screws with
+                  ///< splines
   kBacklash,      ///< sign of the load, smooth where it is below a fiftieth of the effort
   kHysteresis,    ///< sign of the last motion: friction before the elastic part of a drive
   kStiffening,    ///< m_z |m_z| / effort^2: a spring whose stiffness depends on the load

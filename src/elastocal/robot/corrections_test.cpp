@@ -52,6 +52,26 @@ TEST(Corrections, ShapesHaveTheirHandValues) {
   EXPECT_DOUBLE_EQ(of("waist.drift_y"), 1.5);
 }
 
+// The ball screw with splines of a SCARA lifts its tool when it turns it.
+TEST(Corrections, ASlideAndAJointThatTurnsAreCoupled) {
+  RobotTree tree = PlanarArm();
+  for (Joint& joint : tree.joints) joint.limits = {-1.0, 2.0, 1.0, 10.0};
+  tree.joints[1].type = JointType::kPrismatic;
+  const std::vector<Correction> all = PossibleCorrections(tree, std::nullopt);
+  const std::vector<Correction> lifted = CorrectionsOf(all, {"elbow.coupling_shoulder"});
+  const std::vector<Correction> turned = CorrectionsOf(all, {"shoulder.coupling_elbow"});
+  ASSERT_EQ(lifted.size(), 1u);
+  ASSERT_EQ(turned.size(), 1u);
+  EXPECT_STREQ(UnitName(lifted[0].unit), "m/rad");
+  EXPECT_STREQ(UnitName(turned[0].unit), "rad/m");
+  const Eigen::VectorXd q = Eigen::Vector2d(0.3, 0.7);
+  EXPECT_DOUBLE_EQ(Shapes(tree, lifted, q, 0.0, {})[0], 0.3 - 0.5);
+  EXPECT_DOUBLE_EQ(Shapes(tree, turned, q, 0.0, {})[0], 0.7 - 0.5);
+  tree.joints[0].type = JointType::kPrismatic;  // two slides have nothing to do with each other
+  EXPECT_TRUE(
+      CorrectionsOf(PossibleCorrections(tree, std::nullopt), {"elbow.coupling_shoulder"}).empty());
+}
+
 TEST(Corrections, DriftNeedsTimesAndMimicJointsHaveNone) {
   RobotTree tree = PlanarArm();
   MakeLastJointMimic(tree, 0, 2.0, 0.1);

@@ -49,7 +49,8 @@ const char* KindName(ParameterKind kind) {
 
 const char* UnitName(ParameterUnit unit) {
   static constexpr std::array<const char*, kParameterUnitCount> kNames = {
-      "rad", "m", "rad/(N.m)", "m/N", "N.m", "N", "1", "1/N", "m/h", "kg", "kg.m"};
+      "rad", "m",   "rad/(N.m)", "m/N",  "N.m",   "N",    "1",
+      "1/N", "m/h", "kg",        "kg.m", "m/rad", "rad/m"};
   return kNames[static_cast<int>(unit)];
 }
 

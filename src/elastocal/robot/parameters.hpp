@@ -45,9 +45,11 @@ enum class ParameterUnit {
   kPerNewton,
   kMetrePerHour,
   kKilogram,
-  kKilogramMetre
+  kKilogramMetre,
+  kMetrePerRadian,
+  kRadianPerMetre
 };
-inline constexpr int kParameterUnitCount = 11;
+inline constexpr int kParameterUnitCount = 13;
 inline constexpr int kRootAxis = 3;
 
 /// One entry of the vector of errors: a deviation from the nominal model, zero at nominal.
@@ -75,7 +77,8 @@ struct Parameter {
 /// torsion, bending, base_force, base_moment, torque_bias, correction, rod, motor_zero.
 const char* KindName(ParameterKind kind);
 
-/// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N, 1, 1/N, m/h, kg, kg.m.
+/// SI text of a unit: rad, m, rad/(N.m), m/N, N.m, N, 1, 1/N, m/h, kg, kg.m, m/rad,
+/// rad/m.
 const char* UnitName(ParameterUnit unit);
 
 /// Whether a kind of joint parameter is an angle: theta, alpha, beta, gamma, motor_zero.

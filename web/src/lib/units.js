@@ -9,6 +9,9 @@ const USER = {
   'm/N': {unit: 'µm/N', factor: 1e6, digits: 2},
   'N.m': {unit: 'N·m', factor: 1, digits: 2},
   'N': {unit: 'N', factor: 1, digits: 1},
+  'm/h': {unit: 'mm/h', factor: 1e3, digits: 2},
+  'm/rad': {unit: 'mm/rad', factor: 1e3, digits: 3},
+  'rad/m': {unit: 'mrad/m', factor: 1e3, digits: 3},
 };
 
 export const userUnit = (si) => USER[si] ?? {unit: si, factor: 1, digits: 4};
