@@ -65,15 +65,16 @@ recording:
   const std::filesystem::path training_ = SharedFile("data/tiago_mocap/training.csv");
 };
 
-TEST_F(TiagoCauses, HysteresisOfTheWristIsFoundAndHelpsOnAnotherDay) {
+TEST_F(TiagoCauses, HysteresisOfTheWristAndTwistOfTheColumnHelpOnAnotherDay) {
   std::vector<std::string> none, chosen;
   const double without = Validate("none", none);
   const double with = Validate("auto", chosen);
   EXPECT_TRUE(none.empty());
   ASSERT_FALSE(chosen.empty());
   EXPECT_EQ(chosen.front(), "arm_6_joint.hysteresis");
+  EXPECT_NE(std::ranges::find(chosen, "arm_1_joint.coupling_torso_lift_joint"), chosen.end());
   EXPECT_NEAR(without, 2.737e-3, 5e-6);  // docs/accuracy.md
-  EXPECT_LT(with, 2.4e-3);
+  EXPECT_LT(with, 2.1e-3);
 }
 
 // By the defaults, everything being decided anew in each fold.
@@ -84,7 +85,7 @@ TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
   const double foretold = run.cross_validation.metrics[static_cast<int>(ModelKind::kFull)].rmse_3d;
   const double found = OnAnotherDay(project, run).rmse_3d;
   EXPECT_NEAR(foretold, found, 0.25 * found);
-  EXPECT_NEAR(foretold, 2.377e-3, 5e-5);  // docs/accuracy.md
+  EXPECT_NEAR(foretold, 1.982e-3, 5e-5);  // docs/accuracy.md
 }
 
 // Ten postures, with all joints open, do not tell how far the model errs from one to the next: the
@@ -108,7 +109,7 @@ TEST_F(TiagoCauses, CheckKnowsTheScatterAndThePlayOfTheFirstDay) {
   ASSERT_EQ(many.check.moved.size(), 1u);
   const std::string joint = many.check.moved[0].joint;
   EXPECT_TRUE(std::ranges::any_of(many.warnings, [&](const std::string& text) {
-    return text.starts_with(joint + ": the calibration has hysteresis there, 0.78 degrees");
+    return text.starts_with(joint + ": the calibration has hysteresis there, 0.77 degrees");
   }));
 }
 
