@@ -116,7 +116,7 @@ TEST(CompensateMotion, CorrectionsKeepTheSpeedOfTheJoints) {
     return (q.tail(100) - q.head(100)).cwiseAbs().maxCoeff() / 0.01;
   };
   const double limit = 0.5 * largest_speed();
-  EXPECT_GT(limit, 0.05);
+  EXPECT_GT(limit, 0.01);
   head.limits.velocity = limit;
   EXPECT_LE(largest_speed(), limit);
 }

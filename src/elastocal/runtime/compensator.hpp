@@ -68,7 +68,8 @@ class Compensator {
 
   /// From now on the commands of calls along a motion (see Command) change by at most so much from
   /// one call to the next, by coordinate, rad or m: the largest speed of a joint times the time
-  /// between calls. A joint that the plan itself moves further moves as far as the plan does. An
+  /// between calls. Beside the plan a joint moves by at most a tenth of that. A joint that the plan
+  /// itself moves further moves as far as the plan does. An
   /// entry that is negative or not a number is no limit, and an empty vector has none.
   void LimitChanges(const Eigen::Ref<const Eigen::VectorXd>& most) noexcept;
 

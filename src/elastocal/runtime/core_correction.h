@@ -47,8 +47,8 @@ static inline unsigned ec_take(const ec_robot* robot, const double* q, const dou
 static inline void ec_forget(ec_memory* memory) { memory->has_last = 0; }
 
 /* From now on a command changes by at most so much from the last one, by coordinate, rad or m (the
-   speed of a joint times the time between calls), unless the plan itself does. NULL, or an entry
-   that is negative or not finite: no such limit. */
+   speed of a joint times the time between calls), unless the plan itself does, and beside the plan
+   by at most a tenth of it. NULL, or an entry that is negative or not finite: no such limit. */
 static inline void ec_limit_changes(const ec_robot* robot, const double* most, ec_memory* memory) {
   int c;
   for (c = 0; c < robot->coordinates; ++c) {

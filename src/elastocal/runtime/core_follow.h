@@ -14,6 +14,9 @@
 #define EC_FOLLOW 1.0
 #define EC_CREEP 2e-4
 #define EC_SLIDE 0.1
+/* Beside the plan a joint moves by at most this share of its largest change, where that is known: a
+   trunk that leans at full speed for an arm that is too short for a moment throws a robot over. */
+#define EC_GENTLE 0.1
 
 /* How far the plan is from that of the last command: the largest change of a joint, or of a target
    where `moves` says that these are not the plan's. Negative: they have nothing to do with each
@@ -52,7 +55,8 @@ static inline void ec_stay_near(const ec_robot* robot, const double* nominal, co
     }
   }
   for (c = 0; c < robot->coordinates; ++c) {
-    const double last = memory->last_command[c], more = memory->lowest[c];
+    const double last = memory->last_command[c], gentle = EC_GENTLE * memory->most_change[c];
+    const double more = memory->lowest[c] < gentle ? memory->lowest[c] : gentle;
     const double planned = nominal[c] - memory->last_q[c];
     const double start = ec_within(robot, memory, nominal, c, last + planned);
     double most = memory->most_change[c];
