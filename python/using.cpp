@@ -51,7 +51,8 @@ struct PyCompensation {
 };
 
 PyCompensation Compensate(const Path& calibration, const py::object& motion, const Path& project,
-                          const std::string& content, const std::string& loads) {
+                          const std::string& content, const std::string& loads,
+                          double most_left_mm) {
   const auto with = Named<MotionLoads>(
       "loads", loads, {{"statics", MotionLoads::kStatics}, {"planned", MotionLoads::kPlanned}});
   const auto wanted = Named<RuntimeContent>(
@@ -62,7 +63,7 @@ PyCompensation Compensate(const Path& calibration, const py::object& motion, con
   const LongCall guard;
   made.result = CompensateMotion(
       made.robot.project, MakeRuntimeModel(made.robot.project, made.robot.calibration, wanted),
-      given, with);
+      given, {.loads = with, .most_left_m = 1e-3 * most_left_mm});
   std::string why;
   for (const std::string& reason : made.result.broken) why += (why.empty() ? "" : "; ") + reason;
   if (!why.empty()) throw Infeasible("the corrected motion must not be played: " + why);
@@ -108,11 +109,13 @@ void AddUsing(py::module_& module) {
   module.def(
       "compensate", Compensate, "calibration"_a, "motion"_a, py::kw_only(), "project"_a = "",
       "content"_a = "everything", "loads"_a = "statics",
+      "most_left_mm"_a = 1e3 * CompensateMotionOptions{}.most_left_m,
       "Corrects a planned motion so that hands, feet and waist go where the plan meant, like the "
       "command of that name. motion: a Plan, a file (CSV), or a dict of time_s, positions and "
       "perhaps support. content: 'everything', or 'geometry' (without elasticity). loads: "
       "'statics', or 'planned' for fast motion. Raises InfeasibleError where a limit would be "
-      "broken.");
+      "broken, or limits leave more than most_left_mm at the end of a limb (a degree counts "
+      "5.2 mm).");
 }
 
 }  // namespace elastocal::python

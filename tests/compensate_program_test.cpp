@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command `compensate` as its users run it, and calibrations of another robot.
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -74,6 +75,15 @@ TEST(ExecutionReport, ARobotThatWasNotPlayedHasNoFigures) {
   const std::string said = cli::DescribeExecutions({refused});
   EXPECT_NE(said.find("not played"), std::string::npos) << said;
   EXPECT_EQ(said.find("0.0"), std::string::npos) << said;
+}
+
+TEST(ExecutionReport, ARobotThatFellHasNoInfiniteFigures) {
+  Execution fallen;
+  fallen.run.stood = false;
+  fallen.run.least_zmp_margin = -std::numeric_limits<double>::infinity();
+  const std::string said = cli::DescribeExecutions({fallen});
+  EXPECT_EQ(said.find("inf"), std::string::npos) << said;
+  EXPECT_NE(said.find("no foot down"), std::string::npos) << said;
 }
 
 TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {

@@ -43,6 +43,7 @@ TEST(RuntimeAllocation, NoCallAllocates) {
   std::vector<Eigen::Isometry3d> targets(robot.model().tips.size(), Eigen::Isometry3d::Identity());
   allocations = 0;
   counting = true;
+  robot.LimitChanges(q);
   for (StandingFeet feet : {0U, 1U, 2U, 3U, 7U}) {
     robot.Forward(q, none, feet);
     robot.Correct(q, torque, feet);

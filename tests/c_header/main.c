@@ -13,10 +13,13 @@ static void print(const double* values, int count) {
 }
 
 int main(void) {
-  double q[ROBOT_Q_COUNT], out[ROBOT_Q_COUNT], six[6], residual[2];
+  double q[ROBOT_Q_COUNT], out[ROBOT_Q_COUNT], most[ROBOT_Q_COUNT], six[6], residual[2];
   ec_pose links[ROBOT_LINK_COUNT], root;
   unsigned feet;
+  int c;
   robot_init(&state);
+  for (c = 0; c < ROBOT_Q_COUNT; ++c) most[c] = c % 2 ? 0.005 : -1.0;
+  robot_limit_changes(&state, most);
   while (scanf("%u", &feet) == 1) {
     int i;
     for (i = 0; i < ROBOT_Q_COUNT; ++i) {

@@ -36,7 +36,9 @@ int main(int argc, char** argv) {
     std::snprintf(text, sizeof text, "%a\n", value);
     expected << text;
   };
-  Eigen::VectorXd q;
+  Eigen::VectorXd q, most = project.motion.rest;
+  for (Eigen::Index c = 0; c < most.size(); ++c) most[c] = c % 2 != 0 ? 0.005 : -1.0;
+  robot.LimitChanges(most);
   for (int i = 0; i < 60; ++i) {
     const bool goes_on = i >= 40;  // near the last one: Command follows
     if (!goes_on) q = project.motion.rest;

@@ -27,7 +27,29 @@ struct CompensateOptions {
   CommonOptions common;
   std::string calibration, project, motion, output;
   std::string as = "compensated", loads = "statics";
+  double most_left_mm = 1e3 * CompensateMotionOptions{}.most_left_m;
 };
+
+/// By limb, where any that does not yield has more left than nothing.
+std::string DescribeLeft(const CompensatedMotion& result) {
+  if (std::none_of(result.left.begin(), result.left.end(),
+                   [](const LeftAtLimb& one) { return !one.yields && one.samples > 0; })) {
+    return "";
+  }
+  const Eigen::VectorXd& time_s = result.planned.motion.time_s;
+  const Eigen::Index last = result.planned.motion.q.rows() - 1;
+  const bool timed = time_s.size() > 1;
+  const double period = timed ? (time_s[last] - time_s[0]) / static_cast<double>(last) : 1.0;
+  TextTable table(
+      {"left at the end of", "most, mm", "at s",
+       fmt::format("{} above {} mm", timed ? "seconds" : "samples", 1e3 * kLeftOver_m)});
+  for (const LeftAtLimb& one : result.left) {
+    table.Add({one.limb + (one.yields ? " (yields)" : ""),
+               fmt::format("{:.2f}", 1e3 * one.most.value), fmt::format("{:.2f}", one.most.time_s),
+               fmt::format("{:.{}f}", period * one.samples, timed ? 2 : 0)});
+  }
+  return table.Render() + "A degree counts 5.2 mm; a limb that yields has fewer than six joints\n";
+}
 
 std::string DescribeCompensation(const CompensatedMotion& result, const RobotTree& tree) {
   TextTable table({"over all samples", "worst", "at s", "where"});
@@ -48,7 +70,7 @@ std::string DescribeCompensation(const CompensatedMotion& result, const RobotTre
   add_of_joint("joint to its limit", result.position);
   add("velocity, % of limit", result.velocity, 100.0);
   if (result.has_clearance) add("least distance of parts, mm", result.clearance, 1e3);
-  return table.Render() + DescribeOpenJoints(result.at_rest) +
+  return table.Render() + DescribeOpenJoints(result.at_rest) + DescribeLeft(result) +
          fmt::format("Left at hands, feet and waist: at most {:.3f} mm and {:.4f} deg\n",
                      1e3 * result.residual_m, result.residual_rad * kDegreesARadian);
 }
@@ -69,9 +91,10 @@ int Compensate(const CompensateOptions& options) {
   const RuntimeContent content =
       options.as == "urdf" ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
   const RuntimeModel model = MakeRuntimeModel(robot.project, robot.calibration, content);
-  const CompensatedMotion result =
-      CompensateMotion(robot.project, model, planned,
-                       options.loads == "planned" ? MotionLoads::kPlanned : MotionLoads::kStatics);
+  const CompensatedMotion result = CompensateMotion(
+      robot.project, model, planned,
+      {.loads = options.loads == "planned" ? MotionLoads::kPlanned : MotionLoads::kStatics,
+       .most_left_m = 1e-3 * options.most_left_mm});
   const bool fine = result.broken.empty();
   if (fine) outputs.Set(options.output, FormatMotionTable(robot.project.tree, result.planned));
   outputs.Set(options.common.json_file, MakeCompensationJson(result));
@@ -80,6 +103,7 @@ int Compensate(const CompensateOptions& options) {
   const bool quiet = options.common.Silent();
   Print(quiet, DescribeCompensation(result, robot.project.tree));
   WarnOfExtra(robot, options.as == "compensated");
+  for (const std::string& reason : result.warnings) spdlog::warn("{}", reason);
   for (const std::string& reason : result.broken) spdlog::error("{}", reason);
   if (!fine) {
     spdlog::error("the corrected motion must not be played: nothing was written");
@@ -116,9 +140,16 @@ void AddCompensate(CLI::App& app, Action& action) {
                    "(torques of the motion, for fast ones)")
       ->transform(CLI::IsMember({"statics", "planned"}, CLI::ignore_case))
       ->capture_default_str();
+  command
+      ->add_option("--most-left-mm", options->most_left_mm,
+                   "Refuse a motion where limits leave more at the end of a limb of six joints or "
+                   "more; a degree counts 5.2 mm")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
   AddOutputOptions(*command, options->common);
   command->footer(
-      "Ends with 4, and writes nothing, where the corrected motion would break a limit.\n"
+      "Ends with 4, and writes nothing, where the corrected motion would break a limit, or leaves "
+      "too much.\n"
       "Example: elastocal compensate out --motion motion.csv -o corrected.csv");
   command->callback([&action, options] { action = [options] { return Compensate(*options); }; });
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/cli/execution_report.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "elastocal/cli/text_table.hpp"
@@ -16,6 +18,10 @@ std::string PlaceCell(const PlaceError& error) {
 std::string LandingCell(const PlaceError& error) {
   if (error.samples == 0) return "";
   return fmt::format("{:.2f} mm {:.2f} deg", 1e3 * error.max_m, error.max_rad * 180.0 / M_PI);
+}
+
+std::string ZmpCell(double margin_m) {
+  return std::isfinite(margin_m) ? fmt::format("{:.1f}", 1e3 * margin_m) : "no foot down";
 }
 
 }  // namespace
@@ -38,7 +44,7 @@ std::string DescribeExecutions(const std::vector<Execution>& executions) {
                PlaceCell(one.hands), PlaceCell(one.swinging_feet), PlaceCell(one.waist),
                PlaceCell(one.centre_of_mass), LandingCell(one.landing),
                played && one.stabilised ? fmt::format("{:.1f}", 1e3 * one.run.largest_shift) : "",
-               played ? fmt::format("{:.1f}", 1e3 * one.run.least_zmp_margin) : ""});
+               played ? ZmpCell(one.run.least_zmp_margin) : ""});
   }
   std::string refused;
   for (const Execution& one : executions) {

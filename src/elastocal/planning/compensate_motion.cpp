@@ -99,6 +99,49 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
   }
 }
 
+/// By coordinate: what no command exceeds, with room for the rounding of its file.
+Eigen::VectorXd Speeds(const RobotTree& tree) {
+  constexpr double kShare = 1.0 - 1e-6;
+  Eigen::VectorXd speeds(static_cast<Eigen::Index>(tree.coordinate_joint.size()));
+  for (Eigen::Index c = 0; c < speeds.size(); ++c) {
+    const int joint = tree.coordinate_joint[static_cast<std::size_t>(c)];
+    speeds[c] = kShare * tree.joints[static_cast<std::size_t>(joint)].limits.velocity;
+  }
+  return speeds;
+}
+
+std::vector<LeftAtLimb> NothingLeft(const RuntimeModel& model) {
+  std::vector<LeftAtLimb> left;
+  for (std::size_t t = 0; t < model.tips.size(); ++t) {
+    left.push_back({.limb = model.tip_names[t], .most = {}, .yields = model.tips[t].yields != 0});
+  }
+  return left;
+}
+
+void LookAtLimbs(const Compensator& compensator, double time_s, std::vector<LeftAtLimb>& left) {
+  for (std::size_t t = 0; t < left.size(); ++t) {
+    const double now = compensator.tip_left_m(static_cast<int>(t));
+    KeepLarger(now, time_s, left[t].limb, left[t].most);
+    if (now > kLeftOver_m) ++left[t].samples;
+  }
+}
+
+/// `reasons`: the limits that leave it.
+void JudgeLeft(std::vector<std::string> reasons, double most_left_m, CompensatedMotion& result) {
+  const LeftAtLimb* worst = nullptr;
+  for (const LeftAtLimb& one : result.left) {
+    if (!one.yields && (worst == nullptr || one.most.value > worst->most.value)) worst = &one;
+  }
+  if (worst == nullptr || worst->most.value <= most_left_m) {
+    result.warnings = std::move(reasons);
+    return;
+  }
+  result.broken = std::move(reasons);
+  result.broken.push_back(
+      fmt::format("{:.2f} mm are left at the end of {} at {:.2f} s, more than {:.2f} mm",
+                  1e3 * worst->most.value, worst->limb, worst->most.time_s, 1e3 * most_left_m));
+}
+
 /// Distances of the calibrated robot's parts: its links where the last Forward has them.
 class CalibratedClearance {
  public:
@@ -174,7 +217,8 @@ JointMotion WithOpenJointsAtRest(const Project& project, JointMotion motion) {
 }
 
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
-                                   const JointMotion& given, MotionLoads loads) {
+                                   const JointMotion& given,
+                                   const CompensateMotionOptions& options) {
   for (const Sole& sole : project.soles) {
     if (!sole.ball_radius) continue;
     throw InputError(project.file.string() + ": sole '" +
@@ -197,7 +241,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     CheckMotion(*robot, ToSampled(*robot, planned), &forces);
     result.planned.zmp = forces.zmp;
     result.planned.torques = forces.torques;
-  } else if (loads == MotionLoads::kPlanned) {
+  } else if (options.loads == MotionLoads::kPlanned) {
     throw InputError(planned.source +
                      ": torques of the plan need its times and support, and the project's soles");
   }
@@ -208,6 +252,8 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   const StandingFeet all = (StandingFeet{1} << model.feet.size()) - 1;
   CompensatorStatus status = 0;
   StoppedJoints stopped(project.tree);
+  result.left = NothingLeft(model);
+  const Eigen::VectorXd speeds = Speeds(project.tree);
   Eigen::VectorXd torque;
   for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
     const Eigen::VectorXd nominal = planned.q.row(i).transpose();
@@ -215,11 +261,15 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
         planned.support.empty()
             ? all
             : FeetOfLinks(project, model, planned.support[static_cast<std::size_t>(i)]);
-    if (loads == MotionLoads::kPlanned) {
+    if (options.loads == MotionLoads::kPlanned) {
       torque = JointTorques(project.tree, result.planned.torques.row(i).transpose());
+    }
+    if (i > 0 && planned.time_s.size() > 0) {
+      compensator.LimitChanges((planned.time_s[i] - planned.time_s[i - 1]) * speeds);
     }
     status |= compensator.Command(nominal, torque, feet);
     stopped.Look(compensator, TimeAt(planned, i));
+    LookAtLimbs(compensator, TimeAt(planned, i), result.left);
     motion.q.row(i) = compensator.command().transpose();
     result.residual_m = std::max(result.residual_m, compensator.residual_m());
     result.residual_rad = std::max(result.residual_rad, compensator.residual_rad());
@@ -230,7 +280,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     compensator.Forward(compensator.command(), torque, feet);
     clearance.Look(compensator, TimeAt(planned, i), result.clearance);
   }
-  result.broken = stopped.Describe(static_cast<int>(motion.q.rows()));
+  JudgeLeft(stopped.Describe(static_cast<int>(motion.q.rows())), options.most_left_m, result);
   status &= ~CompensatorStatus{EC_JOINT_LIMIT | EC_CORRECTION_CUT};
   if (status != 0) result.broken.push_back(DescribeStatus(status));
   CheckLimits(project, result);

@@ -24,23 +24,45 @@ struct MotionExtreme {
   std::string where = {};  ///< a joint or a pair of parts
 };
 
+/// What limits leave at the end of a limb over a motion: a distance, to which an angle counts as
+/// its displacement at 0.3 m.
+struct LeftAtLimb {
+  std::string limb;  ///< a chain of the project
+  MotionExtreme most;
+  int samples = 0;  ///< in which it is more than kLeftOver_m
+  /// It has fewer than six joints and shares some with a limb of six, which goes first: the end of
+  /// a head on a trunk that carries arms.
+  bool yields = false;
+};
+
+inline constexpr double kLeftOver_m = 2e-4;
+
 /// A planned motion with other joint positions: those with which the calibrated robot has hands,
 /// feet and waist where the plan meant.
 struct CompensatedMotion {
   std::vector<std::string> at_rest;  ///< joints that the motion leaves open
   PlannedMotion planned;             ///< zero-moment points and torques are those of the plan
   MotionExtreme correction;          ///< largest change of a joint, rad or m
-  double residual_m = 0.0, residual_rad = 0.0;  ///< largest that is left at the end of a limb
-  MotionExtreme position;                       ///< least distance to a joint's limit, rad or m
-  MotionExtreme velocity;                       ///< largest share of a joint's velocity limit
+  double residual_m = 0.0, residual_rad = 0.0;  ///< largest that is left at limbs that do not yield
+  std::vector<LeftAtLimb> left;
+  MotionExtreme position;  ///< least distance to a joint's limit, rad or m
+  MotionExtreme velocity;  ///< largest share of a joint's velocity limit
   /// Least distance of parts that can touch, of the calibrated robot with these positions, m; where
   /// there are any.
   MotionExtreme clearance;
   bool has_clearance = false;
-  /// Why the motion must not be played, a sentence each with what a user can do: a limit that keeps
-  /// the end of a limb from its place, a joint beyond its limit or faster than it, parts that
-  /// touch. Empty: it may be played.
+  /// Why the motion must not be played, a sentence each with what a user can do: limits that keep
+  /// the end of a limb too far from its place, a joint beyond its limit or faster than it, parts
+  /// that touch. Empty: it may be played.
   std::vector<std::string> broken;
+  /// The same of limits that leave less than that.
+  std::vector<std::string> warnings;
+};
+
+struct CompensateMotionOptions {
+  MotionLoads loads = MotionLoads::kStatics;
+  /// A motion is refused where more is left at the end of a limb that does not yield (LeftAtLimb).
+  double most_left_m = 5e-3;
 };
 
 /// Names of the coordinates of which the motion says nothing.
@@ -49,13 +71,14 @@ std::vector<std::string> OpenJoints(const Project& project, const JointMotion& m
 /// The motion with joints that it leaves open as they are in the robot's posture of rest.
 JointMotion WithOpenJointsAtRest(const Project& project, JointMotion motion);
 
-/// Corrects every sample of a motion (Compensator::Command). The motion has times or not; joints
+/// Corrects every sample of a motion (Compensator::Command). No joint is faster than its limit for
+/// it, or than the plan where that is faster. The motion has times or not; joints
 /// that it leaves open are at rest. Its support may be left open: then all feet stand, or the root
 /// link is held where there are none. Throws InputError for a support that is no foot of the model,
 /// and for feet that are balls.
 CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
                                    const JointMotion& given,
-                                   MotionLoads loads = MotionLoads::kStatics);
+                                   const CompensateMotionOptions& options = {});
 
 /// As JSON: what `compensate --json` writes.
 std::string MakeCompensationJson(const CompensatedMotion& result);

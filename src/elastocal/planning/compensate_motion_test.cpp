@@ -57,11 +57,68 @@ TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
   ASSERT_LT(knee, model.lower.size());
   EXPECT_TRUE(CompensateMotion(project, model, plan).broken.empty());
   model.lower[knee] = model.upper[knee] = plan.q(0, static_cast<Eigen::Index>(knee));
-  const CompensatedMotion result = CompensateMotion(project, model, plan);
-  ASSERT_FALSE(result.broken.empty());
+  const CompensatedMotion result = CompensateMotion(project, model, plan, {.most_left_m = 1e-3});
+  ASSERT_EQ(result.broken.size(), 2U);
+  EXPECT_NE(
+      result.broken[1].find("mm are left at the end of leg_left at 0.00 s, more than 1.00 mm"),
+      std::string::npos)
+      << result.broken[1];
   EXPECT_EQ(result.broken[0].find("stopped by a joint's limit: leg_left_4_joint ("), 0U)
       << result.broken[0];
   EXPECT_NE(result.broken[0].find("plan the motion further from this limit"), std::string::npos);
+}
+
+// Less than what is asked is a warning that names the limb, and the motion is played.
+TEST(CompensateMotion, WhatLimitsLeaveIsSaidAndNotRefused) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
+  JointMotion plan;
+  plan.q = project.motion.rest.transpose();
+  const Eigen::Index knee =
+      project.tree.joints[static_cast<std::size_t>(FindJoint(project.tree, "leg_left_4_joint"))]
+          .coordinate;
+  model.lower[static_cast<std::size_t>(knee)] = plan.q(0, knee);
+  model.upper[static_cast<std::size_t>(knee)] = plan.q(0, knee);
+  const CompensatedMotion result = CompensateMotion(project, model, plan, {.most_left_m = 0.05});
+  EXPECT_TRUE(result.broken.empty());
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(result.warnings[0].find("stopped by a joint's limit: leg_left_4_joint ("), 0U);
+  for (const LeftAtLimb& one : result.left) {
+    EXPECT_EQ(one.samples, one.most.value > kLeftOver_m ? 1 : 0);
+    if (!one.yields) {
+      EXPECT_EQ(one.samples > 0, one.limb == "leg_left") << one.limb;
+    }
+  }
+}
+
+// Where a nearly stretched arm has the trunk move, the head makes up for it: at most as fast as its
+// joints are.
+TEST(CompensateMotion, CorrectionsKeepTheSpeedOfTheJoints) {
+  Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
+  const auto joint = [&](const char* name) -> Joint& {
+    return project.tree.joints[static_cast<std::size_t>(FindJoint(project.tree, name))];
+  };
+  JointMotion plan;
+  plan.time_s = Eigen::VectorXd::LinSpaced(101, 0.0, 1.0);
+  plan.q = project.motion.rest.transpose().replicate(101, 1);
+  for (Eigen::Index i = 0; i <= 100; ++i) {
+    plan.q(i, joint("arm_right_4_joint").coordinate) =
+        -0.22 - 0.45 * (1.0 + std::cos(2.0 * M_PI * plan.time_s[i]));
+  }
+  Joint& head = joint("head_1_joint");
+  const auto largest_speed = [&] {
+    const CompensatedMotion result = CompensateMotion(project, model, plan);
+    EXPECT_TRUE(result.broken.empty()) << result.broken[0];
+    const Eigen::VectorXd q = result.planned.motion.q.col(head.coordinate);
+    return (q.tail(100) - q.head(100)).cwiseAbs().maxCoeff() / 0.01;
+  };
+  const double limit = 0.5 * largest_speed();
+  EXPECT_GT(limit, 0.01);
+  head.limits.velocity = limit;
+  EXPECT_LE(largest_speed(), limit);
 }
 
 // Motions of arms often lack the fingers, or the legs.

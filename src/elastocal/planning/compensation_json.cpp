@@ -20,11 +20,20 @@ std::string MakeCompensationJson(const CompensatedMotion& result) {
   json["correction"] = MotionExtremeJson(result.correction);
   json["residual_mm"] = 1e3 * result.residual_m;
   json["residual_deg"] = result.residual_rad * 180.0 / M_PI;
+  json["left"] = nlohmann::ordered_json::array();
+  for (const LeftAtLimb& one : result.left) {
+    json["left"].push_back({{"limb", one.limb},
+                            {"most_mm", 1e3 * one.most.value},
+                            {"time_s", one.most.time_s},
+                            {"samples", one.samples},
+                            {"yields", one.yields}});
+  }
   json["to_joint_limit"] = MotionExtremeJson(result.position);
   json["velocity_share"] = MotionExtremeJson(result.velocity);
   if (result.has_clearance) json["clearance_m"] = MotionExtremeJson(result.clearance);
   json["at_rest"] = result.at_rest;
   json["broken"] = result.broken;
+  json["warnings"] = result.warnings;
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

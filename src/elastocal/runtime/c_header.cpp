@@ -257,10 +257,10 @@ class CHeaderWriter {
     array("double", "work_q", robot_.coordinates);
     array("double", "best_q", robot_.coordinates);
     array("double", "kept_q", robot_.coordinates);
-    array("double", "near_q", robot_.coordinates);
     array("double", "start_q", robot_.coordinates);
     array("double", "lowest", robot_.coordinates);
     array("double", "highest", robot_.coordinates);
+    array("double", "most_change", robot_.coordinates);
     array("double", "last_q", robot_.coordinates);
     array("double", "last_command", robot_.coordinates);
     array("ec_pose", "last_target", robot_.tips);
@@ -274,14 +274,19 @@ class CHeaderWriter {
     out_ << "/* To be called once before anything else. */\nstatic inline void " << name_
          << "_init(" << name_ << "_state* s) {\n  ec_memory* m = &s->memory;\n";
     for (const char* name :
-         {"body",        "twisted",   "target",  "sole",   "motion",      "axis",   "beyond",
-          "load",        "root_load", "normal",  "factor", "gradient",    "step",   "held",
-          "loosed",      "search",    "column",  "good_q", "good_torque", "work_q", "best_q",
-          "kept_q",      "near_q",    "start_q", "lowest", "highest",     "last_q", "last_command",
-          "last_target", "stopped",   "shift",   "side",   "from",        "centre", "share"}) {
+         {"body",        "twisted", "target",       "sole",        "motion",      "axis",
+          "beyond",      "load",    "root_load",    "normal",      "factor",      "gradient",
+          "step",        "held",    "loosed",       "search",      "column",      "good_q",
+          "good_torque", "work_q",  "best_q",       "kept_q",      "start_q",     "lowest",
+          "highest",     "last_q",  "last_command", "most_change", "last_target", "stopped",
+          "shift",       "side",    "from",         "centre",      "share"}) {
       out_ << "  m->" << name << " = s->" << name << ";\n";
     }
     out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";
+    out_ << "/* No command changes by more from the last one, see ec_limit_changes above. */\n"
+            "static inline void "
+         << name_ << "_limit_changes(" << name_ << "_state* s, const double* most) {\n"
+         << "  ec_limit_changes(&" << name_ << "_robot, most, &s->memory);\n}\n\n";
     out_ << "/* Forgets the last command, see ec_forget above. */\nstatic inline void " << name_
          << "_forget(" << name_ << "_state* s) { ec_forget(&s->memory); }\n\n";
   }

@@ -121,10 +121,10 @@ void Compensator::Allocate() {
                                               {&memory_.work_q, coordinates},
                                               {&memory_.best_q, coordinates},
                                               {&memory_.kept_q, coordinates},
-                                              {&memory_.near_q, coordinates},
                                               {&memory_.start_q, coordinates},
                                               {&memory_.lowest, coordinates},
                                               {&memory_.highest, coordinates},
+                                              {&memory_.most_change, coordinates},
                                               {&memory_.last_q, coordinates},
                                               {&memory_.last_command, coordinates},
                                               {&memory_.shift, joints},
@@ -197,6 +197,10 @@ CompensatorStatus Compensator::Command(const Eigen::Isometry3d* T_root_tip, cons
                           command_.data(), residual_);
 }
 
+void Compensator::LimitChanges(const Vector& most) noexcept {
+  ec_limit_changes(&robot_, most.size() == robot_.coordinates ? most.data() : nullptr, &memory_);
+}
+
 void Compensator::Forget() noexcept { ec_forget(&memory_); }
 
 Eigen::Isometry3d Compensator::link_pose(int link) const noexcept {
@@ -206,6 +210,14 @@ Eigen::Isometry3d Compensator::link_pose(int link) const noexcept {
 double Compensator::left_m(int coordinate) const noexcept {
   const int branch = robot_.branch_of_coordinate[coordinate];
   return branch < 0 ? 0.0 : std::sqrt(search_[static_cast<std::size_t>(branch)].left);
+}
+
+double Compensator::tip_left_m(int tip) const noexcept {
+  ec_pose now;
+  double error[6];
+  ec_tip_pose(&robot_, tip, &memory_, &now);
+  ec_tip_error(&now, &memory_.target[tip], error);
+  return std::sqrt(ec_dot(error, error) + ec_dot(&error[3], &error[3]));
 }
 
 Eigen::Isometry3d Compensator::root_pose() const noexcept { return ToIsometry(root_); }

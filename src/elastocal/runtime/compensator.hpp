@@ -66,6 +66,13 @@ class Compensator {
   /// anew. Of joints with hysteresis the plan keeps the side on which they lie.
   void Forget() noexcept;
 
+  /// From now on the commands of calls along a motion (see Command) change by at most so much from
+  /// one call to the next, by coordinate, rad or m: the largest speed of a joint times the time
+  /// between calls. Beside the plan a joint moves by at most a tenth of that. A joint that the plan
+  /// itself moves further moves as far as the plan does. An
+  /// entry that is negative or not a number is no limit, and an empty vector has none.
+  void LimitChanges(const Eigen::Ref<const Eigen::VectorXd>& most) noexcept;
+
   /// Forward kinematics with deflection (eq. 3, 5, 6): fills link_pose() and root_pose().
   CompensatorStatus Forward(const Eigen::Ref<const Eigen::VectorXd>& q,
                             const Eigen::Ref<const Eigen::VectorXd>& torque,
@@ -129,6 +136,10 @@ class Compensator {
   /// Of the last Command: the largest error that is left at the ends of the limbs that a coordinate
   /// can move, m; an angle counts as its displacement at 0.3 m. 0 for one that moves none.
   double left_m(int coordinate) const noexcept;
+
+  /// Of the last Command: what is left at the end of a limb, by tip of the model, m; an angle
+  /// counts as its displacement at 0.3 m. Until another function is called.
+  double tip_left_m(int tip) const noexcept;
 
   /// The same robot for the functions of core_correction.h.
   const ec_robot& robot() const noexcept { return robot_; }

@@ -46,6 +46,16 @@ static inline unsigned ec_take(const ec_robot* robot, const double* q, const dou
    place. */
 static inline void ec_forget(ec_memory* memory) { memory->has_last = 0; }
 
+/* From now on a command changes by at most so much from the last one, by coordinate, rad or m (the
+   speed of a joint times the time between calls), unless the plan itself does, and beside the plan
+   by at most a tenth of it. NULL, or an entry that is negative or not finite: no such limit. */
+static inline void ec_limit_changes(const ec_robot* robot, const double* most, ec_memory* memory) {
+  int c;
+  for (c = 0; c < robot->coordinates; ++c) {
+    memory->most_change[c] = most && most[c] >= 0.0 ? most[c] : HUGE_VAL;
+  }
+}
+
 /* Forgets all input. To be called once before anything else. Until a good position comes, the
    robot is taken to be at position 0 of all coordinates, within their limits. */
 static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
@@ -56,7 +66,10 @@ static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
     if (q > robot->upper[c]) q = robot->upper[c];
     memory->good_q[c] = q;
   }
-  for (c = 0; c < robot->coordinates; ++c) memory->stopped[c] = EC_FINE;
+  for (c = 0; c < robot->coordinates; ++c) {
+    memory->stopped[c] = EC_FINE;
+    memory->most_change[c] = HUGE_VAL;
+  }
   for (k = 0; k < robot->branches; ++k) memory->search[k].left = 0.0;
   for (k = 0; k < 2 * robot->shifts; ++k) {
     memory->side[k] = 0.0;

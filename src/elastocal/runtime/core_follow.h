@@ -14,9 +14,9 @@
 #define EC_FOLLOW 1.0
 #define EC_CREEP 2e-4
 #define EC_SLIDE 0.1
-/* Another solution is gone to where that beside the last command leaves more than so many times as
-   much. */
-#define EC_TWICE 2.0
+/* Beside the plan a joint moves by at most this share of its largest change, where that is known: a
+   trunk that leans at full speed for an arm that is too short for a moment throws a robot over. */
+#define EC_GENTLE 0.1
 
 /* How far the plan is from that of the last command: the largest change of a joint, or of a target
    where `moves` says that these are not the plan's. Negative: they have nothing to do with each
@@ -42,7 +42,7 @@ static inline double ec_change(const ec_robot* robot, const double* nominal, int
 /* Where to start: the nominal positions with the last correction. And how far the command may go:
    it may stay where it was as well as go along with the plan, and a little further to both sides;
    as far as ever where other feet stand than then, or loads come from elsewhere, because the
-   corrections then jump. */
+   corrections then jump. In no case faster than a joint may move, but for a plan that does. */
 static inline void ec_stay_near(const ec_robot* robot, const double* nominal, const double* torque,
                                 unsigned support, double change, ec_memory* memory) {
   const int same = support == memory->last_support && (torque ? 1 : 0) == memory->had_torque;
@@ -55,38 +55,17 @@ static inline void ec_stay_near(const ec_robot* robot, const double* nominal, co
     }
   }
   for (c = 0; c < robot->coordinates; ++c) {
-    const double last = memory->last_command[c], more = memory->lowest[c];
-    const double start =
-        ec_within(robot, memory, nominal, c, last + (nominal[c] - memory->last_q[c]));
+    const double last = memory->last_command[c], gentle = EC_GENTLE * memory->most_change[c];
+    const double more = memory->lowest[c] < gentle ? memory->lowest[c] : gentle;
+    const double planned = nominal[c] - memory->last_q[c];
+    const double start = ec_within(robot, memory, nominal, c, last + planned);
+    double most = memory->most_change[c];
+    if (most < fabs(planned)) most = fabs(planned);
     memory->start_q[c] = start;
     memory->lowest[c] = (start < last ? start : last) - more;
     memory->highest[c] = (start > last ? start : last) + more;
-  }
-}
-
-/* The command of a branch between two: `command` as the search from the plan gives it, and near_q.
-   That has one as far from start_q towards the former as it may be, but for a near_q that comes
-   about as near to it by itself. */
-static inline void ec_go_over(const ec_robot* robot, int branch, const ec_memory* memory,
-                              double* command) {
-  double share = 1.0, all = 0.0, left = 0.0;
-  int c;
-  for (c = 0; c < robot->coordinates; ++c) {
-    const double way = command[c] - memory->start_q[c];
-    const double most = (way < 0.0 ? memory->lowest[c] : memory->highest[c]) - memory->start_q[c];
-    const double rest = command[c] - memory->near_q[c];
-    if (robot->branch_of_coordinate[c] != branch) continue;
-    if (fabs(share * way) > fabs(most)) share = most / way;
-    all += way * way;
-    left += rest * rest;
-  }
-  if (left <= (1.0 - 0.5 * share) * (1.0 - 0.5 * share) * all) {
-    ec_copy_branch(robot, branch, memory->near_q, command);
-    return;
-  }
-  for (c = 0; c < robot->coordinates; ++c) {
-    if (robot->branch_of_coordinate[c] != branch) continue;
-    command[c] = memory->start_q[c] + share * (command[c] - memory->start_q[c]);
+    if (memory->lowest[c] < last - most) memory->lowest[c] = last - most;
+    if (memory->highest[c] > last + most) memory->highest[c] = last + most;
   }
 }
 
@@ -104,14 +83,12 @@ static inline int ec_still_does(const ec_robot* robot, const ec_memory* memory) 
   return 1;
 }
 
-/* Beside the last command: the same solution a little further on. Where it has become clearly worse
-   than another, goes there, but no faster than a command may change. */
+/* Beside the last command: the same solution a little further on. */
 static inline unsigned ec_follow(const ec_robot* robot, const double* nominal, const double* torque,
                                  unsigned support, double change, ec_memory* memory,
                                  double* command, unsigned* status) {
-  const double reached = EC_REACHED * EC_REACHED;
   unsigned at_end = EC_FINE;
-  int c, branch, any = 0;
+  int c;
   for (c = 0; c < robot->coordinates; ++c) command[c] = memory->start_q[c];
   ec_start(robot, torque, support, memory, command, status);
   memory->is_bound = 1;
@@ -124,27 +101,6 @@ static inline unsigned ec_follow(const ec_robot* robot, const double* nominal, c
     at_end = EC_FINE;
   }
   ec_search_all(robot, nominal, torque, support, memory, command);
-  ec_walk_command(robot, command, torque, support, memory, &at_end);
-  ec_all_cost(robot, nominal, command, memory);
-  for (branch = 0; branch < robot->branches; ++branch) {
-    ec_search* search = &memory->search[branch];
-    search->near_left = search->left;
-    if (search->left > reached) any = 1;
-  }
-  if (!any) return at_end;
-  for (c = 0; c < robot->coordinates; ++c) memory->near_q[c] = command[c];
-  memory->is_bound = 0;
-  ec_search_anew(robot, nominal, torque, support, memory, command, status);
-  memory->is_bound = 1;
-  for (branch = 0; branch < robot->branches; ++branch) {
-    const ec_search* search = &memory->search[branch];
-    if (search->near_left <= reached || search->near_left <= EC_TWICE * EC_TWICE * search->left) {
-      ec_copy_branch(robot, branch, memory->near_q, command);
-    } else {
-      ec_go_over(robot, branch, memory, command);
-    }
-  }
-  at_end = EC_FINE;
   ec_walk_command(robot, command, torque, support, memory, &at_end);
   ec_all_cost(robot, nominal, command, memory);
   return at_end;

@@ -112,7 +112,6 @@ typedef struct {
   double cost, left, first; /* squared errors: the best, of its furthest limb, the plan's */
   double kept, kept_left;   /* those of the first start */
   double last_left;         /* what the last command leaves */
-  double near_left;         /* what the search beside the last command leaves */
 } ec_search;
 
 /* Working memory, of the sizes given; all of one call, but the last good input and command. */
@@ -134,10 +133,10 @@ typedef struct {
   ec_search* search;    /* branches */
   double* best_q;       /* coordinates: the best so far ... */
   double* kept_q;       /* ... and that of the first start */
-  double* near_q;       /* coordinates: where the search beside the last command ends */
   double* start_q;      /* coordinates: the nominal positions with the last correction ... */
   double* lowest;       /* ... and how low and ... */
   double* highest;      /* ... how high a command may be, while `is_bound` */
+  double* most_change;  /* coordinates: limits of a command's change, or infinite */
   double* last_q;       /* coordinates: nominal positions of the last command ... */
   double* last_command; /* ... and that */
   ec_pose* last_target; /* tips: what it was for */

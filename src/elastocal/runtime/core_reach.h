@@ -12,9 +12,12 @@
    square metres. */
 #define EC_SHARE_LEFT 1e-3
 #define EC_SQUARE_LEFT 2.5e-11
-/* The damping of a step becomes so much smaller after a good one and larger after a bad one. */
-#define EC_EASE 0.25
-#define EC_LEAST_DAMPING 0.1
+/* The damping of a step becomes so much smaller after a good one and larger after a bad one. Beside
+   the last command it stays larger, so that what the ends of the limbs do not determine goes along
+   slowly; a search from the plan would take ten steps to have it where it belongs. */
+#define EC_EASE 0.1
+#define EC_LEAST_DAMPING 0.01
+#define EC_LEAST_BESIDE 0.1
 #define EC_MOST_DAMPING 1e6
 /* A tip is reached within this, m or EC_ARM's radians. */
 #define EC_REACHED 2e-4
@@ -64,6 +67,7 @@ static inline void ec_advance(const ec_robot* robot, int branch, const double* n
   ec_search* search = &memory->search[branch];
   double* best = memory->best_q;
   double left, largest = 0.0;
+  const double least = memory->is_bound ? EC_LEAST_BESIDE : EC_LEAST_DAMPING;
   const double cost = ec_cost(robot, branch, nominal, command, memory, &left);
   int c;
   /* Loads follow the other branches, so that errors of some micrometres tell nothing of a step. */
@@ -75,7 +79,7 @@ static inline void ec_advance(const ec_robot* robot, int branch, const double* n
     search->bad = 0;
     search->gain = ec_bounded_step(robot, branch, nominal, best, damping, memory, command);
     search->state = EC_TRYING;
-    if (search->damping > EC_LEAST_DAMPING) search->damping *= EC_EASE;
+    if (search->damping > least) search->damping *= EC_EASE;
     if (search->gain > EC_SHARE_LEFT * cost + EC_SQUARE_LEFT) return;
     search->state = EC_DONE;
     for (c = 0; c < robot->coordinates; ++c) {
