@@ -104,6 +104,11 @@ ObservedRobot WithTagsOf(const ObservedRobot& model, double factor, const auto& 
   return robot;
 }
 
+bool IsOf(const Instrument& instrument, const MeasuredBy& of) {
+  if (of.quantity < 0) return instrument.name == of.name;
+  return std::ranges::find(instrument.quantities, of.quantity) != instrument.quantities.end();
+}
+
 class Conventions {
  public:
   /// `of`: what one of several alike measured; empty: what all did.
@@ -111,12 +116,7 @@ class Conventions {
               std::optional<MeasuredBy> of)
       : model_(model), observations_(observations), of_(std::move(of)) {}
 
-  bool Holds(const Instrument& instrument) const {
-    return !of_ || (of_->quantity < 0
-                        ? instrument.name == of_->name
-                        : std::find(instrument.quantities.begin(), instrument.quantities.end(),
-                                    of_->quantity) != instrument.quantities.end());
-  }
+  bool Holds(const Instrument& instrument) const { return !of_ || IsOf(instrument, *of_); }
 
   /// The project has all tags with a multiple of their size.
   void AddSizeOfTags(double factor) {
@@ -323,6 +323,11 @@ std::vector<WrittenConvention> TagsInOtherUnits(const ObservedRobot& model,
   Conventions conventions(model, observations, std::nullopt);
   AddUnitsOfTags(conventions);
   return std::move(conventions.found);
+}
+
+bool IsMeasuredBy(const ObservedRobot& model, const Observation& observation,
+                  const MeasuredBy& of) {
+  return IsOf(model.instrument(observation.instrument), of);
 }
 
 std::vector<MeasuredBy> SeveralAlike(const ObservedRobot& model, const Observations& observations) {

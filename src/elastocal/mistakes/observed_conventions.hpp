@@ -43,6 +43,9 @@ std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
 std::vector<WrittenConvention> TagsInOtherUnits(const ObservedRobot& model,
                                                 const Observations& observations);
 
+/// Whether an observation is of this one.
+bool IsMeasuredBy(const ObservedRobot& model, const Observation& observation, const MeasuredBy& of);
+
 /// Bodies, cameras, tags, inertial units and gauges of which there are two or more.
 std::vector<MeasuredBy> SeveralAlike(const ObservedRobot& model, const Observations& observations);
 
