@@ -157,6 +157,7 @@ TEST_F(ArmWithTracker, ValidationKnowsWhatTheCalibrationLeft) {
   EXPECT_TRUE(slightly.better());
   ASSERT_FALSE(slightly.warnings.empty());
   EXPECT_NE(slightly.warnings.back().find("where the calibration left"), std::string::npos);
+  EXPECT_EQ(slightly.warnings.back().find("without"), std::string::npos);  // no row is off alone
   EXPECT_FALSE(validate(1.02).better());
   // Two rows that are off alone are named; the others are as good as before.
   Eigen::MatrixXd q = q_;

@@ -45,7 +45,7 @@ std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
 /// are off alone are named.
 void CompareWithCalibration(const Spread& spread, const PredictObservations& predict,
                             ContactValidation& run) {
-  constexpr double kLarger = 4.0, kFarLarger = 10.0, kMatters = 0.1;
+  constexpr double kAsBefore = 2.0, kLarger = 4.0, kFarLarger = 10.0, kMatters = 0.1;
   const char* cause =
       run.surroundings_refitted
           ? "has the robot, or what is measured on it, changed, or is the table wrong?"
@@ -54,7 +54,8 @@ void CompareWithCalibration(const Spread& spread, const PredictObservations& pre
     const double noise = NoiseOf(run.model, row, spread);
     if (row.unit == SourceUnit::kNone || !(row.rms > kLarger * noise)) continue;
     const ShownUnit unit = ShownUnitOf(row.unit);
-    const OffAlone alone = FindOffAlone(run.model, run.observations, row, kLarger * noise, predict);
+    const OffAlone alone =
+        FindOffAlone(run.model, run.observations, row, kAsBefore * noise, predict);
     const std::string why =
         alone.observations.empty()
             ? cause
