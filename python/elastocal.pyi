@@ -249,16 +249,17 @@ def compare(a: _Path, b: _Path, *, level: float = 0.05, new_markers: bool = Fals
     between."""
 def read(
     file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...,
-    salvage: bool = False
+    salvage: bool = False, time_unit: str = ""
 ) -> _Recording:
     """Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, NaN where not seen, and
     'joints' with time_s (samples), positions (samples, joints), rad or m, and torques (samples, joints), N.m or N.
     unit: of lengths, where the file does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame:
     the cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all that move in it.
-    salvage: reads a bag that was not closed or was cut off, up to where it ends, which 'notes' then say."""
+    salvage: reads a bag that was not closed or was cut off, up to where it ends, which 'notes' then say. time_unit: of a
+    joint log that does not state it ('ns'; by default s)."""
 def info(
     file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...,
-    salvage: bool = False
+    salvage: bool = False, time_unit: str = ""
 ) -> dict[str, Any]:
     """What is in a recording or a posture table: the dict of `elastocal info --json`."""
 def write_table(

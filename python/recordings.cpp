@@ -24,9 +24,13 @@ py::dict ToDict(const MarkerTrajectories& markers, const RecordingFile& file) {
 
 /// What the file holds, under its own names.
 py::dict Read(const Path& path, const std::string& unit, const std::string& topic,
-              const std::string& tf_frame, const Names& tf_bodies, bool salvage) {
-  const ReaderOptions options{unit, topic, tf_frame, tf_bodies, salvage};
+              const std::string& tf_frame, const Names& tf_bodies, bool salvage,
+              const std::string& time_unit) {
+  const ReaderOptions options{unit, time_unit, topic, tf_frame, tf_bodies, salvage};
   RecordingFile file = Unlocked([&] { return ReadAnyRecording(path, options); });
+  if (file.postures && !file.postures->columns.empty()) {
+    throw InputError(path.string() + ": this is no recording: " + file.why_no_joints);
+  }
   if (file.postures) {
     throw InputError(path.string() +
                      ": this is a posture table (info tells of it); a recording of cameras or a "
@@ -50,11 +54,12 @@ py::dict Read(const Path& path, const std::string& unit, const std::string& topi
 }
 
 py::object Info(const Path& file, const std::string& unit, const std::string& topic,
-                const std::string& tf_frame, const Names& tf_bodies, bool salvage) {
+                const std::string& tf_frame, const Names& tf_bodies, bool salvage,
+                const std::string& time_unit) {
   constexpr int kPictureColumns = 48;
   return FromJson(Unlocked([&] {
     return MakeInfoJson(DescribeRecording(
-        file.string(), {unit, topic, tf_frame, tf_bodies, salvage}, kPictureColumns));
+        file.string(), {unit, time_unit, topic, tf_frame, tf_bodies, salvage}, kPictureColumns));
   }));
 }
 
@@ -89,16 +94,17 @@ void WriteTable(const Project& project, const Path& file, const RowMajor& positi
 
 void AddRecordings(py::module_& module) {
   module.def("read", Read, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
-             "tf_frame"_a = "", "tf_bodies"_a = Names(), "salvage"_a = false,
+             "tf_frame"_a = "", "tf_bodies"_a = Names(), "salvage"_a = false, "time_unit"_a = "",
              "Reads a recording of any format: 'markers' with positions (frames, markers, 3) in m, "
              "NaN where not seen, and 'joints' with time_s (samples), positions (samples, joints), "
              "rad or m, and torques (samples, joints), N.m or N. unit: of lengths, where the file "
              "does not say it ('mm'). topic: of the joints, in a bag with several. tf_frame: the "
              "cameras' frame in the tf of a bag; tf_bodies: frames that are bodies, by default all "
              "that move in it. salvage: reads a bag that was not closed or was cut off, up to "
-             "where it ends, which 'notes' then say.");
+             "where it ends, which 'notes' then say. time_unit: of a joint log that does not state "
+             "it ('ns'; by default s).");
   module.def("info", Info, "file"_a, py::kw_only(), "unit"_a = "", "topic"_a = "",
-             "tf_frame"_a = "", "tf_bodies"_a = Names(), "salvage"_a = false,
+             "tf_frame"_a = "", "tf_bodies"_a = Names(), "salvage"_a = false, "time_unit"_a = "",
              "What is in a recording or a posture table: the dict of `elastocal info --json`.");
   module.def("write_table", WriteTable, "project"_a, "file"_a, "positions"_a, "markers"_a,
              py::kw_only(), "marker_names"_a = std::nullopt,

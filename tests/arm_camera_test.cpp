@@ -210,6 +210,17 @@ TEST_F(ArmWithCamera, AWrongSizeBesideRightLengthsIsNamed) {
   EXPECT_NEAR(NumberAfter(all, "size_mm of all tags is "), 1.1, 0.01);
 }
 
+// A tag whose size is far off contradicts the others in every image.
+TEST_F(ArmWithCamera, ATagThatIsWrongAsAWholeIsNamed) {
+  const ContactRun run = CalibrateBy(ProjectWith(kRightMm, kRightMm / 25.4));
+  std::string said;
+  for (const std::string& text : run.verdict.objections) said += text + "\n";
+  for (const std::string& text : run.verdict.remarks) said += text + "\n";
+  EXPECT_NE(said.find("observations of tag 'tag2' contradict the others"), std::string::npos)
+      << said;
+  EXPECT_NEAR(NumberAfter(said, "In its images it is about "), 25.4, 2.0) << said;
+}
+
 TEST_F(ArmWithCamera, OtherConventionsOfImagesAreNamed) {
   EXPECT_EQ(MistakeOf(8,
                       [](Eigen::VectorXd& uv) {

@@ -157,7 +157,19 @@ TEST_F(ArmWithTracker, ValidationKnowsWhatTheCalibrationLeft) {
   EXPECT_TRUE(slightly.better());
   ASSERT_FALSE(slightly.warnings.empty());
   EXPECT_NE(slightly.warnings.back().find("where the calibration left"), std::string::npos);
+  EXPECT_EQ(slightly.warnings.back().find("without"), std::string::npos);  // no row is off alone
   EXPECT_FALSE(validate(1.02).better());
+  // Two rows that are off alone are named; the others are as good as before.
+  Eigen::MatrixXd q = q_;
+  for (const int row : {3, 7}) q(row, Coordinate("elbow_joint")) += 0.05;
+  for (const bool refit : {false, true}) {
+    const ContactValidation two =
+        ValidateContacts(project_, folder_.path() / "calibration.yaml", {Table(q)}, refit);
+    std::string said;
+    for (const std::string& text : two.objections) said += text + "\n";
+    for (const std::string& text : two.warnings) said += text + "\n";
+    EXPECT_NE(said.find(".csv:5, 9 it is "), std::string::npos) << refit << said;
+  }
 }
 
 }  // namespace

@@ -354,6 +354,8 @@ TEST_F(ArmWithTracker, MistakesOfAGaugeAreNamed) {
   const auto sign = FindObservedMistakes(model, with(-1.0));
   ASSERT_EQ(sign.size(), 1u);
   EXPECT_EQ(sign[0].find("heights have the opposite sign: "), 0u) << sign[0];
+  EXPECT_EQ(FindObservedMistakes(model, with(1.0 / 0.0254)),
+            std::vector<std::string>{"heights are in inches: m was expected"});
 }
 
 TEST_F(ArmWithTwoBodies, ExchangedLabelsAreNamed) {

@@ -5,6 +5,7 @@
 
 #include "elastocal/mistakes/observed_conventions.hpp"
 #include "elastocal/mistakes/observed_mistakes.hpp"
+#include "elastocal/mistakes/two_tables.hpp"
 #include "elastocal/pipeline/leave_out_touches.hpp"
 #include "tests/touching_biped.hpp"
 
@@ -82,6 +83,23 @@ TEST(ObservedMistakes, APlateUpsideDownIsNamed) {
   EXPECT_EQ(found[0],
             "the normal of plates points into the table (left alone): out of the table was "
             "expected");
+}
+
+// Of two tables of one plate, tens of millimetres apart, the nominal robot tells.
+TEST(ObservedMistakes, TwoTablesOfOnePlateAreNamed) {
+  const ObservedRobot model = MakeTouchingBiped();
+  Random random(5);
+  const ObservedValues truth = RandomTruth(model, 1, random);
+  std::vector<double> above(40, 0.0);  // the plates take turns
+  for (std::size_t i = 20; i < 40; i += 2) above[i] = 0.15;
+  const Observations two = SimulateTouches(model, truth, 40, 1, kNoiseOfTouches, random, above);
+  const std::vector<std::string> found = FindObservedMistakes(model, two);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].find("plate 'left' touches two tables in synthetic: 10 touches (lines 22, 24"),
+            0u)
+      << found[0];
+  const Observations one = SimulateTouches(model, truth, 40, 1, kNoiseOfTouches, random);
+  EXPECT_TRUE(FindTwoTables(model, one).empty());
 }
 
 // Noise that is larger, or that the geometry leaves because joints give way, lies on both sides.

@@ -31,3 +31,7 @@ records["t"], records["q"], records["tau"] = t, q, 2 * q
 np.savez_compressed("joints_records_matrix.npz", state=records, names=np.array(["elbow", "shoulder"]),
                     about=np.array([{"robot": 1}], dtype=object))
 np.savez("joints_pickled.npz", t=np.array([{"a": 1}], dtype=object))
+milliseconds = np.arange(4) * 100
+np.savez("joints_datetime.npz", time=(1700000000000 + milliseconds).astype("datetime64[ms]").astype("datetime64[ns]"),
+         elbow=np.ones(4))
+np.savez("joints_timedelta.npz", t=(milliseconds * 1000).astype("timedelta64[us]"), elbow=np.ones(4))

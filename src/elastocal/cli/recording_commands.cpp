@@ -152,6 +152,10 @@ void AddRecording(CLI::App& command, RecordingCommand& options) {
       .add_option("--unit", options.reading.unit, "Unit of length of a file that does not state it")
       ->transform(CLI::IsMember({"mm", "cm", "m", "in"}, CLI::ignore_case));
   command
+      .add_option("--time-unit", options.reading.time_unit,
+                  "Unit of the time of a joint log that does not state it (default: s)")
+      ->transform(CLI::IsMember({"s", "ms", "us", "ns"}, CLI::ignore_case));
+  command
       .add_option("--topic", options.reading.joints_topic,
                   "Topic of the joint states, where a bag has several")
       ->type_name("NAME");

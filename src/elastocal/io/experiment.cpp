@@ -14,6 +14,7 @@
 #include "elastocal/project/project_sections.hpp"
 #include "elastocal/readers/byte_source.hpp"
 #include "elastocal/readers/lengths.hpp"
+#include "elastocal/readers/times.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -95,8 +96,8 @@ fs::path ReadFileName(const YamlValue& value, const fs::path& folder, std::vecto
 TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Project& project,
                      std::vector<fs::path>& used) {
   value.ExpectKeys({"name", "kind", "samples", "chain", "chains", "support", "markers", "joints",
-                    "markers_unit", "joints_topic", "tf_frame", "tf_bodies", "expected_lag_s",
-                    "truth"});
+                    "markers_unit", "joints_time_unit", "joints_topic", "tf_frame", "tf_bodies",
+                    "expected_lag_s", "truth"});
   TrialFiles trial;
   CheckFileName(value.Get("name"));
   trial.name = value.Get("name").Text();
@@ -116,6 +117,10 @@ TrialFiles ReadTrial(const YamlValue& value, const fs::path& folder, const Proje
   if (const auto unit = value.Find("markers_unit")) {
     trial.reading.unit = unit->Text();
     unit->Expect(MetresIn(trial.reading.unit) > 0.0, "mm, cm, m or in");
+  }
+  if (const auto unit = value.Find("joints_time_unit")) {
+    trial.reading.time_unit = unit->Text();
+    unit->Expect(SecondsIn(trial.reading.time_unit) > 0.0, "s, ms, us or ns");
   }
   if (const auto topic = value.Find("joints_topic")) trial.reading.joints_topic = topic->Text();
   if (const auto frame = value.Find("tf_frame")) trial.reading.tf_frame = frame->Text();
@@ -168,6 +173,7 @@ void EmitTrial(const TrialFiles& trial, const fs::path& folder, const Project& p
   emit_file("markers", trial.markers);
   emit_file("joints", trial.joints);
   if (!trial.reading.unit.empty()) emit("markers_unit", trial.reading.unit);
+  if (!trial.reading.time_unit.empty()) emit("joints_time_unit", trial.reading.time_unit);
   if (!trial.reading.joints_topic.empty()) emit("joints_topic", trial.reading.joints_topic);
   if (!trial.reading.tf_frame.empty()) emit("tf_frame", trial.reading.tf_frame);
   if (!trial.reading.tf_bodies.empty()) {

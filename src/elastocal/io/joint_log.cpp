@@ -11,6 +11,7 @@
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/readers/times.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -51,6 +52,14 @@ ColumnRoles LogRoles(const Table& table, const Project& project) {
   }
   // Where one of these is the name of another joint, it is that joint.
   roles.emplace("time", 0);
+  const auto in_seconds = [&](const std::string& column) {
+    return column == project.recording.time || column == "time";
+  };
+  if (std::ranges::none_of(table.header(), in_seconds)) {
+    for (const std::string& column : table.header()) {
+      if (TimeUnitOfName(column)) roles.emplace(column, 0);
+    }
+  }
   for (int k = 0; k < count; ++k) {
     const std::string column = JointColumn(project, joints[k].name);
     roles.emplace(column + "_position", role(k, 1 + k));
@@ -80,7 +89,7 @@ JointColumns FindJointColumns(const Table& table, const Project& project) {
   columns.time = found[0];
   if (columns.time < 0) {
     table.Fail("there is no column of the time in s; expected " + Quote(project.recording.time) +
-               " or 'time'");
+               " or 'time' (or 'time_ns' and the like: the unit at the end)");
   }
   std::map<int, int> joint_of_column;
   for (std::size_t k = 0; k < joints.size(); ++k) {
@@ -127,7 +136,8 @@ void CheckTorques(const Eigen::Ref<const Eigen::VectorXd>& torques, const std::s
 /// Reads the numbers of all rows: time, positions, torques and wrenches of the log. Rows without
 /// any position above the first one that has some are passed over: loggers write them until the
 /// robot answers. Gives the line of the first sample.
-int ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
+int ReadNumbers(const JointColumns& columns, const std::string& time_unit, Table& table,
+                JointLog& log) {
   std::vector<double> time, positions, torques, wrenches;
   int first_line = 0;
   while (table.Next()) {
@@ -156,6 +166,8 @@ int ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
                                            ? ": no row below the header"
                                            : ": no row below the header has a position"));
   }
+  ToSeconds(TimeUnitOfName(table.header()[columns.time]).value_or(""), time_unit, table.source(),
+            time);
   log.time_s = StackRows(time, rows);
   log.positions = StackRows(positions, rows);
   log.torques = StackRows(torques, rows);
@@ -164,12 +176,12 @@ int ReadNumbers(const JointColumns& columns, Table& table, JointLog& log) {
 }
 
 /// The log of joints, or of motors where the project names these.
-JointLog ReadColumns(Table& table, const Project& project) {
+JointLog ReadColumns(Table& table, const Project& project, const std::string& time_unit) {
   const std::string& source = table.source();
   const JointColumns columns = FindJointColumns(table, project);
   JointLog log;
   log.source = source;
-  const int first_line = ReadNumbers(columns, table, log);
+  const int first_line = ReadNumbers(columns, time_unit, table, log);
   for (int sensor : columns.sensors) {
     log.wrench_sensors.push_back(project.force_torque_sensors[sensor]);
   }
@@ -187,14 +199,16 @@ JointLog ReadColumns(Table& table, const Project& project) {
 
 }  // namespace
 
-JointLog ReadJointLog(const std::filesystem::path& file, const Project& project) {
+JointLog ReadJointLog(const std::filesystem::path& file, const Project& project,
+                      const std::string& time_unit) {
   std::istringstream stream = OpenTable(file);
-  return ReadJointLog(stream, file.string(), project);
+  return ReadJointLog(stream, file.string(), project, time_unit);
 }
 
-JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& project) {
+JointLog ReadJointLog(std::istream& stream, const std::string& source, const Project& project,
+                      const std::string& time_unit) {
   Table table(stream, source);
-  JointLog log = ReadColumns(table, WithMotors(project, table.header(), source));
+  JointLog log = ReadColumns(table, WithMotors(project, table.header(), source), time_unit);
   MotorsToJoints(project.tree, log);
   return log;
 }

@@ -10,6 +10,7 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/recorded_files.hpp"
+#include "elastocal/tables/text.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/test_files.hpp"
 
@@ -25,9 +26,10 @@ Project LogProject(const std::string& recording = "{}", const std::string& more 
       SourceFile("tests/robots/p.yaml"));
 }
 
-JointLog ReadLog(const std::string& text, const Project& project = LogProject()) {
+JointLog ReadLog(const std::string& text, const Project& project = LogProject(),
+                 const std::string& time_unit = "") {
   std::istringstream stream(text);
-  return ReadJointLog(stream, "j.csv", project);
+  return ReadJointLog(stream, "j.csv", project, time_unit);
 }
 
 void ExpectLogError(const std::string& text, std::initializer_list<std::string> parts) {
@@ -141,6 +143,20 @@ TEST(JointLog, TimeIncreases) {
   const std::string header = "time,elbow_joint\n";
   ExpectLogError(header + "1,0\n2,0\n2,0\n", {"j.csv:4: column 'time'", "2 after 2", "increase"});
   ExpectLogError(header + "1,0\n2,0\n1.5,0\n", {"j.csv:4: ", "1.5 after 2"});
+}
+
+// Twenty rows and more, most of which would be a second apart or more, are in another unit.
+TEST(JointLog, TimeIsInTheUnitThatIsStated) {
+  const auto text = [](const std::string& name, double unit) {
+    std::string rows = name + ",elbow_joint\n";
+    for (int i = 0; i < 20; ++i) rows += FormatNumber(std::round(0.01 / unit) * i) + ",0.1\n";
+    return rows;
+  };
+  EXPECT_NEAR(ReadLog(text("time_us", 1e-6)).time_s[19], 0.19, 1e-12);
+  EXPECT_NEAR(ReadLog(text("stamp", 1e-3), LogProject("{columns: {time: stamp}}"), "ms").time_s[19],
+              0.19, 1e-12);
+  ExpectLogError(text("t", 1e-9), {"j.csv: most samples would be 1e+07 s apart", "time_unit"});
+  EXPECT_EQ(ReadLog(text("t", 1e-3), LogProject(), "s").time_s[19], 190.0);
 }
 
 TEST(JointLog, SuspectsDegrees) {

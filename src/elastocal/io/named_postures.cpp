@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/readers/times.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -49,15 +52,40 @@ std::optional<PostureTableColumns> NameColumns(const Table& table, NamedPostures
 /// Whether times are those of a log and not of postures that are held.
 bool AreSamples(const std::vector<double>& time) {
   constexpr double kLongest = 0.1;  // s between samples
-  if (time.size() < 2) return false;
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < time.size(); ++i) intervals.push_back(time[i] - time[i - 1]);
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle < kLongest;
+  return time.size() > 1 && MedianInterval(time) < kLongest;
+}
+
+/// Why a table is no joint log; empty where it is one.
+std::string WhyNoLog(const ByteSource& source, const std::string& time_unit) {
+  SourceStream stream(source);
+  Table table(stream, source.name());
+  const std::vector<std::string> header = table.header();
+  const std::ptrdiff_t at = FindTime(header);
+  if (at == std::ssize(header)) return "there is no column 't' or 'time'";
+  if (!time_unit.empty() || !TimeUnitOfName(header[Size(at)])->empty()) return "";
+  std::vector<double> time;
+  while (table.Next()) {
+    const std::optional<double> number = ParseNumber(table.Cell(static_cast<int>(at)));
+    if (!number || !std::isfinite(*number)) return "";  // whoever reads the log says so
+    time.push_back(*number);
+  }
+  if (MayBeSamples(time)) return "";
+  return "most rows are " + FormatNumber(MedianInterval(time)) + " apart by the column " +
+         Quote(header[Size(at)]) +
+         ", too much for the samples of a joint log in s (if it is one, say the unit of its time: "
+         "--time-unit ms)";
 }
 
 }  // namespace
+
+std::ptrdiff_t FindTime(const std::vector<std::string>& header) {
+  for (const char* name : {"t", "time"}) {
+    const auto at = std::ranges::find(header, name);
+    if (at != header.end()) return at - header.begin();
+  }
+  const auto named = [](const std::string& name) { return TimeUnitOfName(name).has_value(); };
+  return std::ranges::find_if(header, named) - header.begin();
+}
 
 std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source) {
   SourceStream stream(source);
@@ -79,14 +107,14 @@ std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source) {
   return postures;
 }
 
-std::optional<NamedPostures> ReadColumnsAsTheyAre(const ByteSource& source) {
+std::optional<NamedPostures> ReadColumnsAsTheyAre(const ByteSource& source,
+                                                  const std::string& time_unit, std::string& why) {
+  why = WhyNoLog(source, time_unit);
+  if (why.empty()) return std::nullopt;
   SourceStream stream(source);
   Table table(stream, source.name());
   NamedPostures table_of;
-  for (const std::string& name : table.header()) {
-    if (name == "t" || name == "time") return std::nullopt;
-    table_of.columns.push_back({name});
-  }
+  for (const std::string& name : table.header()) table_of.columns.push_back({name});
   if (table_of.columns.size() < 2) return std::nullopt;
   while (table.Next()) {
     ++table_of.count;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "elastocal/readers/byte_source.hpp"
 #include "elastocal/readers/recording_file.hpp"
@@ -15,8 +18,15 @@ namespace elastocal {
 std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source);
 
 /// A table with a header row whose names nobody knows without its project (touches, poses, corners
-/// of tags, markers of other names): what its columns hold. Nothing where a column is the time, `t`
-/// or `time`, and for one column alone. Throws InputError where Table does.
-std::optional<NamedPostures> ReadColumnsAsTheyAre(const ByteSource& source);
+/// of tags, markers of other names): what its columns hold, and `why` it is no joint log. Nothing
+/// where a column is the time of samples (MayBeSamples, or there is a unit of time, by its name or
+/// given), and for one column alone.
+/// Throws InputError where Table does.
+std::optional<NamedPostures> ReadColumnsAsTheyAre(const ByteSource& source,
+                                                  const std::string& time_unit, std::string& why);
+
+/// The column of the time among those of a CSV: `t`, else `time`, else one of these with the unit
+/// at its end (TimeUnitOfName); the number of columns where there is none.
+std::ptrdiff_t FindTime(const std::vector<std::string>& header);
 
 }  // namespace elastocal

@@ -15,6 +15,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/readers/joint_columns.hpp"
 #include "elastocal/readers/qtm_tsv.hpp"
+#include "elastocal/readers/times.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -172,7 +173,7 @@ void UnwrapTurns(const RobotTree& tree, JointLog& log) {
 
 JointLog ReadAnyLog(const fs::path& file, const ReaderOptions& options, const Project& project) {
   const ByteSource source = ByteSource::Open(file);
-  if (!RecogniseRecording(source)) return ReadJointLog(file, project);
+  if (!RecogniseRecording(source)) return ReadJointLog(file, project, options.time_unit);
   const RecordingFile read = ReadRecordingFile(source, options);
   if (!read.joints) {
     throw InputError(source.name() + " (" + read.format +
@@ -216,17 +217,15 @@ bool IsSurelyQtm(const ByteSource& source) {
 }
 
 /// A CSV with a column of the time, all of whose other columns are numbers of joints.
-JointLog ReadPlainLog(const ByteSource& source) {
+JointLog ReadPlainLog(const ByteSource& source, const std::string& time_unit) {
   SourceStream stream(source);
   Table table(stream, source.name());
   const std::vector<std::string>& header = table.header();
-  auto at = std::find(header.begin(), header.end(), "t");
-  if (at == header.end()) at = std::find(header.begin(), header.end(), "time");
+  const auto at = header.begin() + FindTime(header);
   if (at == header.end()) {
     table.Fail(
         "this is no recording of a known format, nor a joint log: there is no column 't' or "
-        "'time' (tables of postures, observations and detections have none: `calibrate` reads "
-        "them with their project)");
+        "'time'");
   }
   std::vector<double> time;
   std::map<std::string, std::vector<double>> columns;
@@ -253,6 +252,7 @@ JointLog ReadPlainLog(const ByteSource& source) {
   for (const auto& [name, column] : columns) {
     if (column.size() != time.size()) table.Fail("two columns " + Quote(name));
   }
+  ToSeconds(TimeUnitOfName(*at).value(), time_unit, source.name(), time);
   return JoinColumns(source.name(), time, std::move(columns));
 }
 
@@ -271,16 +271,17 @@ RecordingFile ReadAnyRecording(const fs::path& file, const ReaderOptions& option
     read.format = "posture table (CSV)";
     read.why_no_markers = "a posture table has no frames";
     read.why_no_joints = "a posture table has no log";
-  } else if ((read.postures = ReadColumnsAsTheyAre(source))) {
+  } else if ((read.postures =
+                  ReadColumnsAsTheyAre(source, options.time_unit, read.why_no_joints))) {
     read.format = "table (CSV)";
-    read.why_no_markers = "a table without a column of the time has no frames";
-    read.why_no_joints = "a table without a column of the time has no log";
-    read.notes.emplace_back(
-        "there is no column 't' or 'time', so that it is no joint log; what the columns of a table "
-        "of postures, observations or corners are, its project says");
+    read.why_no_markers = "a table of no known names has no frames";
+    read.notes.push_back(read.why_no_joints +
+                         "; it is no joint log, and what the columns of a table of postures, "
+                         "observations or corners are, "
+                         "its project says");
   } else {
     read.format = "joint log (CSV)";
-    read.joints = ReadPlainLog(source);
+    read.joints = ReadPlainLog(source, options.time_unit);
     read.why_no_markers = "a joint log has joint positions only";
   }
   return read;

@@ -32,8 +32,9 @@ JointLog ReadJointFile(const std::filesystem::path& file, const ReaderOptions& o
                        const Project& project);
 
 /// Reads a file of any of these formats, or the program's own (Qualisys TSV, joint log as CSV), by
-/// itself: without a project, under the names of the file. Of a CSV, every column but `t` or `time`
-/// is a joint's, unless it is a posture table (ReadNamedPostures), of which `postures` tells.
+/// itself: without a project, under the names of the file. Of a CSV, every column but the time
+/// (FindTime) is a joint's, unless it is a table of postures or of something else
+/// (ReadNamedPostures, ReadColumnsAsTheyAre), of which `postures` tells.
 /// RecordingFile::up is "z" for a Qualisys TSV, by custom.
 RecordingFile ReadAnyRecording(const std::filesystem::path& file, const ReaderOptions& options);
 

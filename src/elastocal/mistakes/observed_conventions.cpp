@@ -104,6 +104,11 @@ ObservedRobot WithTagsOf(const ObservedRobot& model, double factor, const auto& 
   return robot;
 }
 
+bool IsOf(const Instrument& instrument, const MeasuredBy& of) {
+  if (of.quantity < 0) return instrument.name == of.name;
+  return std::ranges::find(instrument.quantities, of.quantity) != instrument.quantities.end();
+}
+
 class Conventions {
  public:
   /// `of`: what one of several alike measured; empty: what all did.
@@ -111,12 +116,7 @@ class Conventions {
               std::optional<MeasuredBy> of)
       : model_(model), observations_(observations), of_(std::move(of)) {}
 
-  bool Holds(const Instrument& instrument) const {
-    return !of_ || (of_->quantity < 0
-                        ? instrument.name == of_->name
-                        : std::find(instrument.quantities.begin(), instrument.quantities.end(),
-                                    of_->quantity) != instrument.quantities.end());
-  }
+  bool Holds(const Instrument& instrument) const { return !of_ || IsOf(instrument, *of_); }
 
   /// The project has all tags with a multiple of their size.
   void AddSizeOfTags(double factor) {
@@ -243,6 +243,20 @@ void AddOfTags(Conventions& conventions) {
   }
 }
 
+/// Lengths that trackers, gauges or wires measured, in another unit than m.
+void AddUnits(Conventions& conventions, const std::vector<std::string_view>& kinds,
+              const std::string& what) {
+  const std::pair<const char*, double> units[] = {
+      {"mm", 1e-3}, {"cm", 1e-2}, {"inches", 0.0254}, {"feet", 0.3048}};
+  for (const auto& [unit, metres] : units) {
+    const auto in_metres = [m = metres](Eigen::VectorXd measured) {
+      measured.head(std::min<Eigen::Index>(3, measured.size())) *= m;
+      return measured;
+    };
+    conventions.Add(kinds, in_metres, what + " are in " + unit, "m");
+  }
+}
+
 void AddOfInertialUnits(Conventions& conventions) {
   const std::string right = "9.81 m/s^2 along the axis that points up while the robot is at rest";
   const std::string family =
@@ -314,6 +328,11 @@ std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
         {"plane distance"},
         [](const Eigen::VectorXd& height) -> Eigen::VectorXd { return -height; },
         "heights have the opposite sign", "how far the point is from its plane along the normal");
+    AddUnits(conventions, {"plane distance"}, "heights");
+  }
+  if (kind.empty() || kind == "wire") AddUnits(conventions, {"wire"}, "lengths of wires");
+  if (kind.empty() || kind == "pose" || kind == "position") {
+    AddUnits(conventions, {"pose", "position"}, "positions that trackers measured");
   }
   return std::move(conventions.found);
 }
@@ -323,6 +342,11 @@ std::vector<WrittenConvention> TagsInOtherUnits(const ObservedRobot& model,
   Conventions conventions(model, observations, std::nullopt);
   AddUnitsOfTags(conventions);
   return std::move(conventions.found);
+}
+
+bool IsMeasuredBy(const ObservedRobot& model, const Observation& observation,
+                  const MeasuredBy& of) {
+  return IsOf(model.instrument(observation.instrument), of);
 }
 
 std::vector<MeasuredBy> SeveralAlike(const ObservedRobot& model, const Observations& observations) {

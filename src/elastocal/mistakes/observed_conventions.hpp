@@ -31,10 +31,10 @@ struct MeasuredBy {
   int quantity = -1;  ///< of a camera or a tag: its pose
 };
 
-/// For what trackers measured: quaternions with w first, attitudes and poses from the other frame,
-/// left-handed axes. For images: u and v exchanged, v upwards, corners that run clockwise or are
-/// counted from another one. For inertial units: axes
-/// that are left-handed. For heights: the sign. `of`: what this one measured alone.
+/// For lengths: other units than m. For what trackers measured: quaternions with w first, attitudes
+/// and poses from the other frame, left-handed axes. For images: u and v exchanged, v upwards,
+/// corners that run clockwise or are counted from another one. For inertial units: axes that are
+/// left-handed. For heights: the sign. `of`: what this one measured alone.
 std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
                                                   const Observations& observations,
                                                   const std::optional<MeasuredBy>& of = {});
@@ -42,6 +42,9 @@ std::vector<WrittenConvention> WrittenConventions(const ObservedRobot& model,
 /// Tags of ten times their size, or a tenth: cm, or a slip of the point.
 std::vector<WrittenConvention> TagsInOtherUnits(const ObservedRobot& model,
                                                 const Observations& observations);
+
+/// Whether an observation is of this one.
+bool IsMeasuredBy(const ObservedRobot& model, const Observation& observation, const MeasuredBy& of);
 
 /// Bodies, cameras, tags, inertial units and gauges of which there are two or more.
 std::vector<MeasuredBy> SeveralAlike(const ObservedRobot& model, const Observations& observations);

@@ -14,6 +14,7 @@
 #include "elastocal/mistakes/observed_conventions.hpp"
 #include "elastocal/mistakes/observed_corrections.hpp"
 #include "elastocal/mistakes/observed_misfit.hpp"
+#include "elastocal/mistakes/two_tables.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -267,7 +268,8 @@ std::vector<std::string> FindInFile(const ObservedRobot& model, const Observatio
 
 std::vector<std::string> FindObservedMistakes(const ObservedRobot& model,
                                               const Observations& observations) {
-  std::vector<std::string> found = FindFarRows(model, observations);
+  std::vector<std::string> found = FindTwoTables(model, observations);
+  if (found.empty()) found = FindFarRows(model, observations);
   if (found.empty()) found = MistakeSearch(model, observations, "", "").Run();
   if (!found.empty()) return found;
   struct File {

@@ -15,6 +15,8 @@ namespace elastocal {
 /// sees, in two dozen postures; it is a mistake if a tenth of the squares is left (of each kind of
 /// row over LargestError), and less than twice what the best one leaves.
 ///
+/// Before all, plates that touch two tables in one file are named (FindTwoTables).
+///
 /// First, up to three rows (one in ten) that contradict all others are named: whatever is tried on
 /// all rows would be judged by them.
 ///

@@ -191,4 +191,16 @@ Observations SelectPostures(const Observations& observations, const std::vector<
   return selected;
 }
 
+Observations WithoutObservations(const Observations& observations, const std::set<int>& out) {
+  Observations without = observations;
+  without.all.clear();
+  std::set<int> showing;
+  for (int i = 0; i < observations.count(); ++i) {
+    if (out.contains(i)) continue;
+    without.all.push_back(observations.all[Size(i)]);
+    showing.insert(without.all.back().posture);
+  }
+  return SelectPostures(without, {showing.begin(), showing.end()});
+}
+
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -99,5 +100,8 @@ void NoteApproach(Observations& observations);
 
 /// The observations in some postures, which keep their order.
 Observations SelectPostures(const Observations& observations, const std::vector<int>& postures);
+
+/// All but these observations; postures that show nothing else are left out.
+Observations WithoutObservations(const Observations& observations, const std::set<int>& out);
 
 }  // namespace elastocal

@@ -167,15 +167,7 @@ Observations WithoutTouches(const Observations& observations,
                             const std::vector<TouchInTheAir>& touches) {
   std::set<int> out;
   for (const TouchInTheAir& touch : touches) out.insert(touch.observation);
-  Observations without = observations;
-  without.all.clear();
-  std::set<int> showing;
-  for (int i = 0; i < observations.count(); ++i) {
-    if (out.contains(i)) continue;
-    without.all.push_back(observations.all[Size(i)]);
-    showing.insert(without.all.back().posture);
-  }
-  return SelectPostures(without, {showing.begin(), showing.end()});
+  return WithoutObservations(observations, out);
 }
 
 }  // namespace elastocal

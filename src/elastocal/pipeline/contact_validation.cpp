@@ -17,12 +17,14 @@
 #include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
+#include "elastocal/pipeline/off_alone.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
 std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
+                                           const Observations& observations,
                                            const StoredContact& stored,
                                            const Eigen::VectorXd& errors) {
   ObservedValues values{errors, {}, {}};
@@ -34,26 +36,38 @@ std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
             : QuantityValue{quantity.origin, Eigen::VectorXd::Zero(quantity.size())});
   }
   return run.surroundings_refitted
-             ? LeftAfterRegistration(run.model, run.observations, values, stored.spread)
-             : LeftOf(run.model, run.observations, values);
+             ? LeftAfterRegistration(run.model, observations, values, stored.spread)
+             : LeftOf(run.model, observations, values);
 }
 
 /// A robot that is as it was calibrated errs by about the noise that the calibration left. Errors
-/// that are far larger are a warning, and an objection where they matter.
-void CompareWithCalibration(const Spread& spread, ContactValidation& run) {
-  constexpr double kLarger = 4.0, kFarLarger = 10.0, kMatters = 0.1;
+/// that are far larger are a warning, and an objection where they matter. Rows of the tables that
+/// are off alone are named.
+void CompareWithCalibration(const Spread& spread, const PredictObservations& predict,
+                            ContactValidation& run) {
+  constexpr double kAsBefore = 2.0, kLarger = 4.0, kFarLarger = 10.0, kMatters = 0.1;
   const char* cause =
       run.surroundings_refitted
           ? "has the robot, or what is measured on it, changed, or is the table wrong?"
-          : "were trackers or tables moved since? --refit table registers them anew";
+          : "were trackers, cameras or tables moved since? --refit table registers them anew";
   for (const RowErrors& row : run.calibrated.rows) {
     const double noise = NoiseOf(run.model, row, spread);
     if (row.unit == SourceUnit::kNone || !(row.rms > kLarger * noise)) continue;
     const ShownUnit unit = ShownUnitOf(row.unit);
+    const OffAlone alone =
+        FindOffAlone(run.model, run.observations, row, kAsBefore * noise, predict);
+    const std::string why =
+        alone.observations.empty()
+            ? cause
+            : fmt::format("without {} it is {:.2g} {}: {}",
+                          PlacesOf(alone.observations, run.observations),
+                          unit.factor * alone.rms_of_others, unit.name,
+                          run.model.IsPlate(row.instrument) ? "was there contact?"
+                                                            : "was it measured there?");
     const std::string text =
         fmt::format("{} of {} off by {:.3g} {}, where the calibration left {:.2g} ({})", row.row,
                     run.model.instrument(row.instrument).name, unit.factor * row.rms, unit.name,
-                    unit.factor * noise, cause);
+                    unit.factor * noise, why);
     const bool grave =
         row.rms > kFarLarger * noise && row.rms > kMatters * LargestError(run.model, row.unit);
     (grave ? run.objections : run.warnings).push_back(text);
@@ -91,10 +105,14 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   for (const std::string& what : CorrectObservations(accept, run.model, run.observations)) {
     run.warnings.push_back("corrected on request: " + what);
   }
-  const std::vector<Eigen::VectorXd> before = PredictStored(
-      run, contacts.uncalibrated, Eigen::VectorXd::Zero(run.model.robot.parameter_count()));
-  const std::vector<Eigen::VectorXd> after =
-      PredictStored(run, contacts.calibrated, ErrorsByName(run.model.robot, stored.joint_errors));
+  const std::vector<Eigen::VectorXd> before =
+      PredictStored(run, run.observations, contacts.uncalibrated,
+                    Eigen::VectorXd::Zero(run.model.robot.parameter_count()));
+  const Eigen::VectorXd errors = ErrorsByName(run.model.robot, stored.joint_errors);
+  const auto predict = [&](const Observations& observations) {
+    return PredictStored(run, observations, contacts.calibrated, errors);
+  };
+  const std::vector<Eigen::VectorXd> after = predict(run.observations);
   run.uncalibrated = MakeFigures(run.model, run.observations, before);
   run.calibrated = MakeFigures(run.model, run.observations, after);
   run.gain_in_sds =
@@ -108,7 +126,7 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
       run.objections.push_back("no calibrated robot errs like this: " + row);
     }
   }
-  CompareWithCalibration(contacts.calibrated.spread, run);
+  CompareWithCalibration(contacts.calibrated.spread, predict, run);
   if (!(run.gain_in_sds > 0.0)) {
     run.objections.emplace_back("calibrated is no better than uncalibrated here");
   }

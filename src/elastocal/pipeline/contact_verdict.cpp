@@ -10,6 +10,9 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/posterior.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
+#include "elastocal/mistakes/observed_conventions.hpp"
 #include "elastocal/mistakes/observed_faults.hpp"
 #include "elastocal/mistakes/observed_mistakes.hpp"
 #include "elastocal/observation/observed_posture.hpp"
@@ -190,6 +193,61 @@ void RemarkOnCovariances(ContactRun& run) {
   }
 }
 
+/// How many times as large the tag seems as the project says, by its images that were left out; 1
+/// for what is no tag.
+double SizeInImages(const ContactRun& run, const std::vector<ObservationOutlier>& left_out) {
+  std::vector<double> ratios;
+  for (const ObservationOutlier& one : left_out) {
+    const Eigen::VectorXd& seen = run.observations.all[Size(one.observation)].measured;
+    if (seen.size() != 8) return 1.0;
+    const auto around = [](const Eigen::VectorXd& corners) {
+      double length = 0.0;
+      for (Eigen::Index i = 0; i < 4; ++i) {
+        length += (corners.segment<2>(2 * i) - corners.segment<2>(2 * ((i + 1) % 4))).norm();
+      }
+      return length;
+    };
+    ratios.push_back(around(seen) / around(seen + one.left));
+  }
+  return Median(ratios);
+}
+
+/// Of instruments of which there are several, those most of whose observations were left out, if
+/// they are left out more than all others: a sentence each. Such a thing is wrong as a whole.
+std::vector<std::string> WrongAsAWhole(const ContactRun& run) {
+  constexpr double kMost = 0.6;
+  constexpr std::size_t kFewest = 4;
+  constexpr double kOtherSize = 1.1;
+  std::vector<std::string> texts;
+  double largest = kMost;
+  for (const MeasuredBy& of : SeveralAlike(run.model, run.observations)) {
+    std::vector<ObservationOutlier> left_out;
+    for (const ObservationOutlier& outlier : run.calibrated.estimate.outliers) {
+      if (IsMeasuredBy(run.model, run.observations.all[Size(outlier.observation)], of)) {
+        left_out.push_back(outlier);
+      }
+    }
+    const auto all =
+        std::count_if(run.observations.all.begin(), run.observations.all.end(),
+                      [&](const Observation& one) { return IsMeasuredBy(run.model, one, of); });
+    const double share = static_cast<double>(left_out.size()) / static_cast<double>(all);
+    if (left_out.size() < kFewest || share < largest) continue;
+    if (share > largest) texts.clear();
+    largest = share;
+    std::string text = fmt::format(
+        "{} of {} observations of {} '{}' contradict the others and are left out: is it where the "
+        "project has it, and in the right unit?",
+        left_out.size(), all, of.kind, of.name);
+    const double ratio = of.kind == "tag" ? SizeInImages(run, left_out) : 1.0;
+    if (std::max(ratio, 1.0 / ratio) > kOtherSize) {
+      text +=
+          fmt::format(" In its images it is about {:.2g} times as large as size_mm says", ratio);
+    }
+    texts.push_back(text);
+  }
+  return texts;
+}
+
 /// Of what no robot explains, one sentence; nothing where all is plausible.
 void ObjectToNonsense(ContactRun& run) {
   std::vector<std::string> nonsense = WidePriors(run);
@@ -287,6 +345,10 @@ void JudgeContacts(ContactRun& run) {
         FindObservedFault(run.model, run.observations, run.calibrated.estimate.fit);
     if (!fault.empty()) verdict.objections.insert(verdict.objections.begin(), fault);
   }
+  const std::vector<std::string> wrong = WrongAsAWhole(run);
+  std::vector<std::string>& said =
+      verdict.objections.empty() ? verdict.remarks : verdict.objections;
+  said.insert(said.begin(), wrong.begin(), wrong.end());
   if (verdict.objections.empty()) RemarkOnNoise(run);
   RemarkOnCovariances(run);
   if (verdict.objections.empty()) RemarkOnMountings(run);

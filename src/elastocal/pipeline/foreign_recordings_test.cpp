@@ -110,6 +110,13 @@ TEST_F(ForeignRecordingsTest, WhatTheFileDoesNotSayIsAskedFor) {
   ExpectInputError([&] { Read("a.c3d", "a.csv", "", ", markers_unit: furlong"); },
                    {"experiment.yaml", "furlong", "mm, cm"});
   ExpectInputError([&] { Read("a.csv.npz", "a.csv"); }, {"a.csv.npz"});
+  JointLog in_ms = played_.log;
+  in_ms.time_s *= 1e3;
+  WriteJointLog(folder_.path() / "ms.csv", in_ms);
+  ExpectInputError([&] { Read("a.tsv", "ms.csv"); }, {"ms.csv: most samples", "joints_time_unit"});
+  ExpectSame(Read("a.tsv", "ms.csv", "", ", joints_time_unit: ms"), 2e-7);
+  ExpectInputError([&] { Read("a.tsv", "ms.csv", "", ", joints_time_unit: min"); },
+                   {"experiment.yaml", "min", "s, ms, us or ns"});
   folder_.Write("b.npz", NpzBytes({{"t", played_.log.time_s}, {"nose", played_.log.time_s}}));
   ExpectInputError([&] { Read("a.tsv", "b.npz"); }, {"b.npz", "'nose'", "recording.ignore"});
   ExpectInputError([&] { Read("b.npz", "a.csv"); }, {"b.npz", "no markers"});

@@ -10,26 +10,12 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/off_alone.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr double kMostInTheAir = 0.25;  // share of the touches of a plate
-
-/// "left.csv:7, 12, right.csv:3": where touches are.
-std::string PlacesOf(const std::vector<TouchInTheAir>& touches, const Observations& observations) {
-  std::string text;
-  int file = -1;
-  for (const TouchInTheAir& touch : touches) {
-    const int posture = observations.all[Size(touch.observation)].posture;
-    const PosturePlace& place = observations.postures[Size(posture)];
-    text += text.empty() ? "" : ", ";
-    if (place.file != file) text += observations.files[Size(place.file)] + ":";
-    text += std::to_string(place.line);
-    file = place.file;
-  }
-  return text;
-}
 
 /// "12", "5.9 to 39": mm.
 std::string HeightsInWords(const std::vector<TouchInTheAir>& touches) {
@@ -55,11 +41,13 @@ std::vector<int> TouchesByPlate(const ObservedRobot& model, const Observations& 
 std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observations& observations,
                                     const std::vector<TouchInTheAir>& air) {
   const std::vector<int> touches = TouchesByPlate(model, observations);
+  std::vector<int> in_the_air;
+  for (const TouchInTheAir& touch : air) in_the_air.push_back(touch.observation);
   return fmt::format(
       "{} of {} touches seem to be none: by the others, the plate stood {} mm above its table in "
       "{}",
       air.size(), std::accumulate(touches.begin(), touches.end(), 0), HeightsInWords(air),
-      PlacesOf(air, observations));
+      PlacesOf(in_the_air, observations));
 }
 
 bool LeaveOutTouchesInTheAir(ContactRun& run) {
@@ -75,7 +63,9 @@ bool LeaveOutTouchesInTheAir(ContactRun& run) {
   const std::string text = DescribeTouchesInTheAir(run.model, run.observations, air);
   run.observations = std::move(without);
   if (many) {
-    run.mostly_air = text + ". Record them again, or delete these rows if nothing was touched";
+    run.mostly_air = text +
+                     ". Record them again, or delete these rows if nothing was touched; touches "
+                     "of another table belong into a file of their own";
   } else {
     run.warnings.push_back(text + "; left out: was there contact?");
   }

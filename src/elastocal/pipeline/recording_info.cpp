@@ -195,10 +195,9 @@ ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions
   RecordingFile file = ReadAnyRecording(path, options);
   if (file.postures && !file.postures->columns.empty()) {
     throw InputError(
-        path +
-        ": this is no recording of a known format, nor a joint log: there is no column "
-        "'t' or 'time' (tables of postures, observations and detections have none: "
-        "`calibrate` reads them with their project)");
+        path + ": this is no recording of a known format, nor a joint log: " + file.why_no_joints +
+        " (`calibrate` reads tables of postures, observations and detections with "
+        "their project)");
   }
   if (file.postures) {
     throw InputError(path +
@@ -218,7 +217,16 @@ ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions
     part = file.joints ? RecordingPart::kJoints : RecordingPart::kMarkers;
   }
   if (part == RecordingPart::kMarkers) {
-    if (file.markers) return {ConvertMarkers(file, up), file.salvaged};
+    if (file.markers) {
+      ConvertedRecording converted{ConvertMarkers(file, up), file.salvaged};
+      if (file.joints && file.markers_start_s) {
+        converted.warnings.push_back(
+            "the file begins at 0 and not on the clock of the bag; beside the bag's joint log, "
+            "experiment.yaml needs expected_lag_s: " +
+            FormatNumber(-*file.markers_start_s));
+      }
+      return converted;
+    }
     throw InputError(path + " (" + file.format +
                      "): there are no markers in it: " + file.why_no_markers);
   }

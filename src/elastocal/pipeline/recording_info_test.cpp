@@ -59,6 +59,23 @@ TEST(RecordingInfoTest, ShowsTheColumnsOfOtherTables) {
   ExpectInputError([&] { DescribeRecording(log, {}, 8); }, {"no row below the header"});
 }
 
+// Twenty touches with their times are no log; a log in ms is one where somebody says so.
+TEST(RecordingInfoTest, RowsThatAreSecondsApartAreNoLogUnlessAUnitIsGiven) {
+  const ScratchFolder folder;
+  std::string text = "t,hip\n";
+  for (int i = 0; i < 20; ++i) text += std::to_string(10 * i) + ",0.5\n";
+  const std::string file = folder.Write("table.csv", text);
+  const RecordingInfo info = DescribeRecording(file, {}, 8);
+  ASSERT_EQ(info.file.format, "table (CSV)");
+  EXPECT_NE(info.file.notes.front().find("most rows are 10 apart by the column 't'"),
+            std::string::npos);
+  ExpectInputError([&] { ConvertRecording(file, {}, RecordingPart::kOnlyOne, ""); },
+                   {"nor a joint log", "--time-unit"});
+  const RecordingInfo log = DescribeRecording(file, {.time_unit = "ms"}, 8);
+  EXPECT_EQ(log.file.format, "joint log (CSV)");
+  EXPECT_NEAR(log.log_rate_hz, 100.0, 1e-9);
+}
+
 TEST(RecordingInfoTest, KnowsAPostureTableByItsColumns) {
   const ScratchFolder folder;
   const std::string header = "t,A_x,A_y,A_z,hip,knee,B_x,B_y,B_z,C_x\n";
@@ -109,8 +126,11 @@ TEST(RecordingInfoTest, ConvertsOnePartOfABag) {
   const ConvertedRecording joints = ConvertRecording(bag, {}, RecordingPart::kJoints, "");
   EXPECT_EQ(joints.text.substr(0, joints.text.find('\n')), "t,elbow,wrist");
   EXPECT_EQ(joints.warnings.size(), 1u);  // one message has no efforts
-  const MarkerTrajectories body =
-      ParseQtmTsv(ConvertRecording(bag, {}, RecordingPart::kMarkers, "z").text, "converted");
+  const ConvertedRecording markers = ConvertRecording(bag, {}, RecordingPart::kMarkers, "z");
+  ASSERT_EQ(markers.warnings.size(), 1u);  // that the clock in common is lost
+  EXPECT_NE(markers.warnings[0].find("expected_lag_s: -1.7e+09"), std::string::npos)
+      << markers.warnings[0];
+  const MarkerTrajectories body = ParseQtmTsv(markers.text, "converted");
   EXPECT_EQ(body.frame_count(), 20);
   EXPECT_TRUE(std::isnan(body.positions(7, 0)));
   EXPECT_NEAR(body.positions(3, 0), 1.03, 1e-9);

@@ -303,6 +303,40 @@ TEST(BagsTest, WhatIsLeftOfOtherBagsIsReadWhereAsked) {
   EXPECT_EQ(left.salvaged.size(), 1u);
 }
 
+// SQLite reads zeros where the last page ends: messages without numbers, or joints at zero.
+TEST(BagsTest, ADatabaseThatIsCutWithinItsLastPageIsNamed) {
+  const std::string whole = ReadFile(SourceFile("tests/recordings/bag.db3"));
+  const RecordingFile all = ReadBag(whole);
+  const ScratchFolder folder;
+  for (const std::size_t missing : {20u, 733u}) {
+    const std::string cut = whole.substr(0, whole.size() - missing);
+    folder.Write("bag.db3", cut);
+    ExpectInputError([&] { ReadBag(cut); }, {"bag: the database", "cut off", "--salvage"});
+    ExpectInputError([&] { ReadRecordingFile(folder.path() / "bag.db3", {}); }, {"cut off"});
+    for (const RecordingFile& left :
+         {ReadBag(cut, {.salvage = true}),
+          ReadRecordingFile(folder.path() / "bag.db3", {.salvage = true})}) {
+      EXPECT_EQ(left.salvaged.size(), 1u);
+      const Eigen::Index samples = left.joints->sample_count();
+      EXPECT_GT(samples, 5);
+      EXPECT_EQ(left.joints->positions, all.joints->positions.topRows(samples));
+    }
+  }
+}
+
+// A recorder that writes ahead leaves its last messages in a file of their own until it is closed.
+TEST(BagsTest, ADatabaseWithoutItsFileWalSaysSoAndLeavesNothingBesideIt) {
+  std::string bytes = ReadFile(SourceFile("tests/recordings/bag.db3"));
+  bytes[18] = bytes[19] = 2;
+  const ScratchFolder folder;
+  folder.Write("bag.db3", bytes);
+  const RecordingFile read = ReadRecordingFile(folder.path() / "bag.db3", {});
+  EXPECT_EQ(read.joints->positions,
+            ReadRecordingFile(SourceFile("tests/recordings/bag.db3"), {}).joints->positions);
+  EXPECT_NE(read.notes.front().find("the last messages are missing"), std::string::npos);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
 TEST(BagsTest, DamageIsNamedWithItsPlace) {
   const std::string good = McapBytes(SomeLog());
   ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 45)); }, {"bag: byte", "cut off"});

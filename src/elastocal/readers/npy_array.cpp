@@ -9,6 +9,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/utf8.hpp"
+#include "elastocal/readers/times.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -22,6 +23,7 @@ struct NpyType {
   bool big_endian = false;
   char kind = 0;          ///< f, i, u, b, U or S
   std::size_t width = 0;  ///< bytes of an element
+  std::string unit;       ///< of times, which are of kind i
 };
 
 /// A field of records; without a name: bytes that mean nothing.
@@ -53,6 +55,7 @@ class NpyReader {
     }
     if (wanted && *wanted != array.shape) return array;
     array.is_text = header.type.kind == 'U' || header.type.kind == 'S';
+    array.unit = header.type.unit;
     std::size_t count = 1;
     for (const std::size_t length : header.shape) {
       if (length != 0 && count > kMostNumbers / length) Fail("more than 2^27 elements");
@@ -191,9 +194,19 @@ class NpyReader {
     return Trim(text.substr(colon + 1));
   }
 
+  /// "M8[ns]" and "m8[ns]" are 8-byte integers that count a unit.
+  static bool ParseTimes(std::string_view text, NpyType& type) {
+    if (!text.starts_with("M8[") && !text.starts_with("m8[")) return false;
+    type.unit = text.substr(3, text.find(']') - 3);
+    type.kind = 'i';
+    type.width = 8;
+    return SecondsIn(type.unit) > 0.0;
+  }
+
   NpyType ParseType(std::string_view text) const {
     NpyType type;
     type.big_endian = text[0] == '>';
+    if (ParseTimes(text.substr(1), type)) return type;
     type.kind = text[1];
     const double width = ParseNumber(text.substr(2)).value_or(0.0);
     const auto is = [&](std::string_view kinds, std::initializer_list<double> widths) {
@@ -205,7 +218,7 @@ class NpyReader {
     if (text.size() < 3 || std::string_view("<>|=").find(text[0]) == std::string_view::npos ||
         (!is("f", {4, 8}) && !is("iu", {1, 2, 4, 8}) && !is("b", {1}) && !text_type && !padding)) {
       Fail("its elements are of type " + Quote(text) +
-           "; floats of 4 or 8 bytes, integers or texts were expected");
+           "; floats of 4 or 8 bytes, integers, texts or times in s, ms, us or ns were expected");
     }
     type.width = static_cast<std::size_t>(width) * (type.kind == 'U' ? 4 : 1);
     return type;
@@ -219,6 +232,7 @@ class NpyReader {
       fields[f].shape = header.shape;
       fields[f].shape.insert(fields[f].shape.end(), field.shape.begin(), field.shape.end());
       fields[f].is_text = field.type.kind == 'U' || field.type.kind == 'S';
+      fields[f].unit = field.type.unit;
     }
     std::vector<char> record(header.type.width);
     for (std::size_t i = 0; i < count && !record.empty(); ++i) {

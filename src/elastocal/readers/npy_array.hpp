@@ -16,6 +16,7 @@ struct NpyArray {
   std::vector<double> numbers;
   std::vector<std::string> texts;
   bool is_text = false;
+  std::string unit;  ///< of times (datetime64, timedelta64): "s", "ns"; empty: NumPy states none
   std::vector<std::string> field_names;  ///< of an array of records
   std::vector<NpyArray> fields;          ///< likewise; shape: that of the array, and of the field
 
@@ -25,11 +26,11 @@ struct NpyArray {
 /// Bytes one after the other; gives how many there were.
 using ReadBytes = std::function<std::size_t(std::span<char> to)>;
 
-/// Reads an array in NumPy's format (.npy): floats of 4 and 8 bytes, integers, booleans, texts;
-/// either byte order, rows or columns first; lists of records of these. Throws InputError, whose
-/// message begins with `place`: another kind of data (objects), a shape that the bytes do not hold,
-/// more than 2^27 numbers. Of an array of another shape than `wanted`, where that is given, only
-/// the shape is read, and the names of fields.
+/// Reads an array in NumPy's format (.npy): floats of 4 and 8 bytes, integers, booleans, texts,
+/// times; either byte order, rows or columns first; lists of records of these. Throws InputError,
+/// whose message begins with `place`: another kind of data (objects), a shape that the bytes do not
+/// hold, more than 2^27 numbers. Of an array of another shape than `wanted`, where that is given,
+/// only the shape is read, and the names of fields.
 NpyArray ReadNpy(const ReadBytes& read, const std::string& place,
                  const std::vector<std::size_t>* wanted = nullptr);
 

@@ -10,6 +10,7 @@
 #include "elastocal/readers/formats.hpp"
 #include "elastocal/readers/joint_columns.hpp"
 #include "elastocal/readers/npy_array.hpp"
+#include "elastocal/readers/times.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -84,7 +85,8 @@ class ZipArchive {
 /// array of its own, or a field of records.
 class NpzReader {
  public:
-  explicit NpzReader(const ByteSource& source) : source_(source), archive_(source) {}
+  NpzReader(const ByteSource& source, std::string time_unit)
+      : source_(source), time_unit_(std::move(time_unit)), archive_(source) {}
 
   RecordingFile Read() {
     if (archive_.count() > kMostArrays) {
@@ -99,13 +101,17 @@ class NpzReader {
     RecordingFile file;
     TakeRecords();
     file.why_no_markers = "an .npz file has joint positions only";
-    const auto time = Take({"t", "time"});
+    std::string stated;
+    auto time = TakeTime(stated);
     if (!time) {
-      file.why_no_joints = "it has no array of the time in s, 't' or 'time'";
+      file.why_no_joints =
+          "it has no array of the time, 't' or 'time' in s (or 't_ms', 'time_ns': the unit "
+          "at the end)";
     } else {
       if (time->is_text || time->shape.size() != 1) Fail("'t' is no list of numbers");
       if (time->count() > kMostLogSamples) Fail("more than 1000000 samples");
       if (time->count() == 0) Fail("no sample");
+      ToSeconds(stated, time_unit_, source_.name(), time->numbers);
       file.joints = ReadLog(time->numbers);
     }
     for (const auto& [name, i] : entries_)
@@ -157,6 +163,18 @@ class NpzReader {
       NpyArray array = archive_.Read(entry->second);
       entries_.erase(entry);
       return array;
+    }
+    return std::nullopt;
+  }
+
+  /// The time, and its unit as the type of its numbers or its name states it.
+  std::optional<NpyArray> TakeTime(std::string& stated) {
+    for (const char* name :
+         {"t", "time", "t_s", "time_s", "t_ms", "time_ms", "t_us", "time_us", "t_ns", "time_ns"}) {
+      std::optional<NpyArray> time = Take({name});
+      if (!time) continue;
+      stated = time->unit.empty() ? *TimeUnitOfName(name) : time->unit;
+      return time;
     }
     return std::nullopt;
   }
@@ -220,6 +238,7 @@ class NpzReader {
   }
 
   const ByteSource& source_;
+  const std::string time_unit_;  ///< that the user gives; empty: the file states it, or s
   ZipArchive archive_;
   std::map<std::string, NpyArray> fields_;      ///< of records, that are not used yet, by name
   std::map<std::string, std::size_t> entries_;  ///< arrays that are not read yet, by name
@@ -230,8 +249,8 @@ class NpzReader {
 
 bool IsNpz(std::string_view head) { return head.starts_with("PK\x03\x04"); }
 
-RecordingFile ReadNpz(const ByteSource& source, const ReaderOptions&) {
-  return NpzReader(source).Read();
+RecordingFile ReadNpz(const ByteSource& source, const ReaderOptions& options) {
+  return NpzReader(source, options.time_unit).Read();
 }
 
 }  // namespace elastocal

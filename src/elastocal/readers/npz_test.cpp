@@ -12,8 +12,8 @@
 namespace elastocal {
 namespace {
 
-RecordingFile ReadArchive(const std::string& bytes) {
-  return ReadRecordingFile(ByteSource::OfMemory(bytes, "log"), {});
+RecordingFile ReadArchive(const std::string& bytes, const ReaderOptions& options = {}) {
+  return ReadRecordingFile(ByteSource::OfMemory(bytes, "log"), options);
 }
 
 std::string Numpy(const std::string& name) { return SourceFile("tests/recordings/" + name); }
@@ -75,6 +75,35 @@ TEST(NpzTest, HandMadeArchive) {
   const JointLog log = ReadArchive(NpzBytes({{"t", t}, {"elbow", q}})).joints.value();
   EXPECT_EQ(log.time_s, t);
   EXPECT_EQ(log.positions.col(0), q);
+}
+
+// The unit of the time is stated by the name of the array, or is asked for.
+TEST(NpzTest, TimeIsInTheUnitThatIsStated) {
+  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(21, 5.0, 7.0),
+                        q = Eigen::VectorXd::Random(21);
+  const auto read = [&](const std::string& name, double unit, const std::string& given = "") {
+    const auto bytes = NpzBytes({{name, t / unit}, {"elbow", q}});
+    return ReadArchive(bytes, {.time_unit = given}).joints.value().time_s;
+  };
+  EXPECT_LT((read("time_ns", 1e-9) - t).norm(), 1e-12);
+  EXPECT_LT((read("t_ms", 1e-3) - t).norm(), 1e-12);
+  EXPECT_LT((read("t", 1e-6, "us") - t).norm(), 1e-12);
+  for (const double unit : {1e-9, 1e-6, 1e-3}) {
+    ExpectInputError([&] { read("t", unit); },
+                     {"log: most samples would be", "joints_time_unit", "--time-unit"});
+  }
+  ExpectInputError([&] { read("t_ms", 1e-3, "us"); }, {"log: states", "'ms', not 'us'"});
+  ExpectInputError([&] { read("t", 1.0, "min"); }, {"'min'", "s, ms, us or ns"});
+}
+
+// numpy.datetime64, as pandas has its times, and numpy.timedelta64 have a unit of their own.
+TEST(NpzTest, TimesOfNumpy) {
+  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(4, 0.0, 0.3);
+  for (const char* name : {"joints_datetime.npz", "joints_timedelta.npz"}) {
+    const JointLog log = ReadRecordingFile(Numpy(name), {}).joints.value();
+    EXPECT_LT(((log.time_s.array() - log.time_s[0]).matrix() - t).norm(), 1e-6) << name;
+  }
+  EXPECT_NEAR(ReadRecordingFile(Numpy("joints_datetime.npz"), {}).joints->time_s[0], 1.7e9, 1e-6);
 }
 
 TEST(NpzTest, MistakesAreNamed) {

@@ -13,9 +13,11 @@ namespace elastocal {
 
 /// What a file of somebody else's format does not say by itself.
 struct ReaderOptions {
-  std::string unit = {};          ///< of lengths: mm, cm, m, in; empty: the file has to say
-  std::string joints_topic = {};  ///< of a bag with several topics of joint states
-  std::string tf_frame = {};      ///< of a bag's tf: the cameras' frame
+  std::string unit = {};  ///< of lengths: mm, cm, m, in; empty: the file has to say
+  /// Of the time of a joint log that does not state it: s, ms, us, ns; empty: s, if that can be.
+  std::string time_unit = {};
+  std::string joints_topic = {};            ///< of a bag with several topics of joint states
+  std::string tf_frame = {};                ///< of a bag's tf: the cameras' frame
   std::vector<std::string> tf_bodies = {};  ///< frames that are bodies; empty: all that move in it
   /// A bag that was not closed or was cut off is read up to where it ends.
   bool salvage = false;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/readers/formats.hpp"
@@ -17,18 +21,71 @@ constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 constexpr const char* kCutOff =
     "the database is damaged or was cut off (`elastocal convert --salvage` takes what is before)";
 
+/// What the first bytes of a database say.
+struct DatabaseHead {
+  std::uint64_t page = 0;     ///< bytes; the file has whole pages
+  bool writes_ahead = false;  ///< to a file -wal beside it
+};
+
+constexpr std::uint64_t kWriteVersion = 18, kReadVersion = 19;  // bytes of the head
+
+DatabaseHead ReadHead(const ByteSource& source) {
+  std::array<char, 32> head{};
+  source.ReadAll(0, head, "the head of the database");
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(head[i]); };
+  const unsigned page = 256u * byte(16) + byte(17);
+  return {page == 1 ? 65536u : page, byte(kReadVersion) == 2};
+}
+
+/// A file of a database that writes ahead, without the file that it writes to.
+bool LacksWal(const ByteSource& source, const DatabaseHead& head) {
+  std::error_code error;
+  return head.writes_ahead && !source.path().empty() &&
+         !std::filesystem::exists(source.path().string() + "-wal", error);
+}
+
+/// A file as it would be in memory; pages that are not read take none.
+class MappedFile {
+ public:
+  explicit MappedFile(const ByteSource& source) : size_(source.size()) {
+    const int descriptor = open(source.path().c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) source.Fail(0, "cannot be read");
+    // What is changed in memory is not changed in the file.
+    void* const mapped = mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE, descriptor, 0);
+    close(descriptor);
+    if (mapped == MAP_FAILED) source.Fail(0, "cannot be read");
+    bytes_ = static_cast<unsigned char*>(mapped);
+  }
+  ~MappedFile() { munmap(bytes_, size_); }
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  unsigned char* bytes() const { return bytes_; }
+
+ private:
+  std::uint64_t size_;
+  unsigned char* bytes_ = nullptr;
+};
+
 /// The database of a bag, open for reading.
 class Database {
  public:
   Database(const ByteSource& source, bool salvage) : source_(source) {
+    const DatabaseHead head = ReadHead(source);
+    const std::uint64_t rest = head.page > 0 ? source.size() % head.page : 0;
+    // SQLite would read zeros where the last page ends.
+    if (rest != 0 && !salvage) throw InputError(source.name() + ": " + kCutOff);
     const bool file = !source.path().empty();
+    // SQLite would leave files beside it.
+    const bool mapped = file && (rest != 0 || LacksWal(source, head));
     sqlite3* opened = nullptr;
     const int result =
-        sqlite3_open_v2(file ? source.path().c_str() : ":memory:", &opened,
-                        file ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE, nullptr);
+        sqlite3_open_v2(file && !mapped ? source.path().c_str() : ":memory:", &opened,
+                        file && !mapped ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE, nullptr);
     database_.reset(opened);
     if (result != SQLITE_OK) Fail("the database cannot be opened");
-    if (!file) Load();
+    if (mapped) Map(source.size() - rest);
+    if (!file) Load(source.size() - rest);
     // Without this, SQLite reads nothing of a file that is shorter than its head says.
     if (salvage) sqlite3_exec(opened, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
     sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, 512 << 20);
@@ -84,30 +141,38 @@ class Database {
   }
 
  private:
-  /// Bytes in memory, as a database that can be read.
-  void Load() {
-    const std::string_view bytes = source_.memory();
-    auto* const copy = static_cast<unsigned char*>(sqlite3_malloc64(bytes.size()));
+  /// The first bytes of what is in memory, as a database that can be read.
+  void Load(std::uint64_t size) {
+    auto* const copy = static_cast<unsigned char*>(sqlite3_malloc64(size));
     if (!copy) Fail("the database cannot be opened");
-    std::memcpy(copy, bytes.data(), bytes.size());
-    const auto size = static_cast<sqlite3_int64>(bytes.size());
-    if (sqlite3_deserialize(database_.get(), "main", copy, size, size,
-                            SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY) !=
-        SQLITE_OK) {
+    std::memcpy(copy, source_.memory().data(), size);
+    Deserialize(copy, size, SQLITE_DESERIALIZE_FREEONCLOSE);
+  }
+
+  /// The first bytes of a file alone, whatever stands beside it.
+  void Map(std::uint64_t size) {
+    mapped_ = std::make_unique<MappedFile>(source_);
+    // Nothing is written ahead of it any more.
+    if (size > kReadVersion) mapped_->bytes()[kWriteVersion] = mapped_->bytes()[kReadVersion] = 1;
+    Deserialize(mapped_->bytes(), size, 0);
+  }
+
+  void Deserialize(unsigned char* bytes, std::uint64_t size, unsigned flags) {
+    const auto count = static_cast<sqlite3_int64>(size);
+    if (sqlite3_deserialize(database_.get(), "main", bytes, count, count,
+                            flags | SQLITE_DESERIALIZE_READONLY) != SQLITE_OK) {
       Fail("the database cannot be opened");
     }
   }
 
   const ByteSource& source_;
+  std::unique_ptr<MappedFile> mapped_;
   std::unique_ptr<sqlite3, decltype(&sqlite3_close)> database_{nullptr, sqlite3_close};
 };
 
 /// Adds what one file of a bag holds; with `salvage`, up to where it is damaged. That, in words, or
 /// nothing.
 std::string ReadDatabase(const ByteSource& source, bool salvage, RosMessages& messages) {
-  // A file that was cut off is shorter than its head says; SQLite would notice only later.
-  std::array<char, 32> head{};
-  source.ReadAll(0, head, "the head of the database");
   const Database database(source, salvage);
   messages.BeginPiece();
   std::string wanted;
@@ -143,12 +208,19 @@ bool IsRosbag2Db3(std::string_view head) { return head.starts_with(kSqliteMagic)
 
 RecordingFile ReadRosbag2Db3(const ByteSource& source, const ReaderOptions& options) {
   RosMessages messages(source.name(), options);
-  std::vector<std::string> salvaged;
+  std::vector<std::string> salvaged, notes;
   ForEachPiece(source, [&](const ByteSource& piece) {
+    if (LacksWal(piece, ReadHead(piece))) {
+      notes.push_back(
+          piece.name() +
+          " was written with a file -wal beside it, which is not there: if its recorder "
+          "was not closed, the last messages are missing");
+    }
     const std::string end = ReadDatabase(piece, options.salvage, messages);
     if (!end.empty()) salvaged.push_back(end);
   });
   RecordingFile file = messages.Take();
+  file.notes.insert(file.notes.begin(), notes.begin(), notes.end());
   file.notes.insert(file.notes.begin(), salvaged.begin(), salvaged.end());
   file.salvaged = std::move(salvaged);
   return file;
