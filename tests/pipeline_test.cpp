@@ -313,6 +313,12 @@ TEST_F(Pipeline, MistakesAreUndoneOnRequest) {
   ASSERT_EQ(mistakes.size(), 1u);
   EXPECT_EQ(mistakes[0].name, "sign:" + joint);
   EXPECT_EQ(mistakes[0].after, 0.1);
+  std::vector<double> told;
+  FindMistakesBy(project_, measured.calibration, 1.0, error_of, [&](const Recording&, double left) {
+    told.push_back(left);
+    return std::vector<LogSuspicion>();
+  });
+  EXPECT_EQ(told, (std::vector<double>{1.0, 0.1}));
   const std::vector<std::string> undone = AcceptMistakes(project_, {"sign:" + joint}, measured);
   EXPECT_EQ(undone.size(), 2u);
   EXPECT_EQ(measured.calibration.q, q);

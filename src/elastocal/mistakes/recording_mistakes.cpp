@@ -245,7 +245,9 @@ std::vector<RecordingMistake> FindMistakesBy(
   while (mistakes.size() < kMostMistakes) {
     std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
     if (more) {
-      for (const LogSuspicion& one : more(current)) AddUndone(one, project.tree, current, tried);
+      for (const LogSuspicion& one : more(current, error)) {
+        AddUndone(one, project.tree, current, tried);
+      }
     }
     // A joint that rests while another limb is measured looks frozen where that limb is wrong.
     std::stable_partition(tried.begin(), tried.end(),
@@ -312,10 +314,14 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
   Refitting refitting(project, seed, measured);
   // Once one mistake is undone, what remains is not worth a fit for each joint.
   bool unexplained = result.marker_sd > project.calibration.plausible_marker_sd;
-  const auto signs = [&](const Recording& recording) {
-    std::vector<LogSuspicion> all;
-    if (std::exchange(unexplained, false)) all = AllSigns(project.tree, recording);
-    return all.empty() ? SignsOfTurnedAxes(result, recording) : all;
+  const auto signs = [&](const Recording& recording, double error) {
+    std::vector<LogSuspicion> suspected;
+    if (std::exchange(unexplained, false)) suspected = AllSigns(project.tree, recording);
+    // A robot that explains a recording has no turned axes.
+    if (suspected.empty() && !(error < MostLeft(project.tree))) {
+      suspected = SignsOfTurnedAxes(result, recording);
+    }
+    return suspected;
   };
   return Explained(
       project.tree,
