@@ -18,6 +18,7 @@
 #include "elastocal/calibration/turned_axes.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/suspected_signs.hpp"
 
@@ -39,12 +40,17 @@ constexpr double kLikeTheMost = 0.95;  // of the widest prior
 
 /// A suspicion of any kind.
 struct TriedCorrection {
-  std::string name, what;
+  std::string name, what;  ///< no name: it is to be mended where it comes from
   Recording corrected;
   std::vector<int> left_out = {};  ///< postures that `corrected` is without, ascending
   /// It takes postures out and corrects none: whatever is wrong with them is gone, too.
   bool only_leaves_out = false;
 };
+
+/// m.
+double MostLeft(const RobotTree& tree) {
+  return std::min(kExplained, kExplainedShare * RobotSize(tree));
+}
 
 std::string NameOf(const LabelSuspicion& suspicion) {
   return "labels:" + std::min(suspicion.a, suspicion.b) + "," + std::max(suspicion.a, suspicion.b);
@@ -92,6 +98,9 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
     tried.push_back({fmt::format("rows:{:+d}", shift->rows), DescribeShift(*shift, recording),
                      WithoutShift(recording, *shift), WithoutPartner(*shift, recording)});
   }
+  if (!recording.trials.empty() && LooksMirrored(nominal, recording, MostLeft(project.tree))) {
+    tried.insert(tried.begin(), {"", kLeftHanded, Mirrored(recording)});
+  }
   return tried;
 }
 
@@ -133,6 +142,7 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
     const TriedCorrection* next = nullptr;
     const std::vector<TriedCorrection> tried = Suspicions(project, nominal, recording, kMostUndone);
     for (const TriedCorrection& one : tried) {
+      if (one.name.empty()) continue;
       shown.insert(one.name);
       const bool wanted = std::find(names.begin(), names.end(), one.name) != names.end();
       if (wanted && next == nullptr) next = &one;
@@ -198,11 +208,6 @@ class Refitting {
   std::optional<ErrorModel> model_;
   std::optional<BaseParameters> base_;
 };
-
-/// m.
-double MostLeft(const RobotTree& tree) {
-  return std::min(kExplained, kExplainedShare * RobotSize(tree));
-}
 
 /// None where too much is left in the end.
 std::vector<RecordingMistake> Explained(const RobotTree& tree,
@@ -355,16 +360,16 @@ std::vector<std::string> AcceptMistakes(const Project& project,
 std::string DescribeUndone(const std::string& what) { return "corrected on request: " + what; }
 
 std::string DescribeMistake(const RecordingMistake& mistake) {
+  const std::string remedy =
+      mistake.name.empty() ? "" : fmt::format(" (--accept {} corrects it)", mistake.name);
   if (std::isinf(mistake.before)) {
     return fmt::format(
         "{}; without that the recording is explained to {:.3g} mm, with it only by errors that no "
-        "robot has (--accept {} corrects it)",
-        mistake.what, 1e3 * mistake.after, mistake.name);
+        "robot has{}",
+        mistake.what, 1e3 * mistake.after, remedy);
   }
-  return fmt::format(
-      "{}; without that the error of the fit falls from {:.3g} to {:.3g} mm (--accept {} corrects "
-      "it)",
-      mistake.what, 1e3 * mistake.before, 1e3 * mistake.after, mistake.name);
+  return fmt::format("{}; without that the error of the fit falls from {:.3g} to {:.3g} mm{}",
+                     mistake.what, 1e3 * mistake.before, 1e3 * mistake.after, remedy);
 }
 
 }  // namespace elastocal
