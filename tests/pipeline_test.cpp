@@ -9,6 +9,7 @@
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/find_contradictions.hpp"
+#include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
@@ -284,6 +285,28 @@ TEST_F(Pipeline, OfCorrectionsWithoutWhichNoRobotFitsTheBestIsNamed) {
   EXPECT_EQ(mistakes[0].name, "frozen:" + project_.tree.joints[4].name);
 }
 
+// Cameras whose export has one axis the other way.
+TEST_F(Pipeline, MarkersOfTheOppositeHandAreNamed) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const Recording right = MakeSyntheticRecording(
+      model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40});
+  for (int axis = 0; axis < 3; ++axis) {
+    Recording wrong = right;
+    wrong.trials = {{"swing", TrialKind::kCalibration, {project_.chains.front().name}}};
+    wrong.trial.assign(40, 0);
+    for (int m = 0; m < wrong.marker_count(); ++m) wrong.markers.col(3 * m + axis) *= -1.0;
+    const auto error_of = [&](const Recording& corrected) {
+      return corrected.markers == Mirrored(wrong).markers ? 1e-4 : 0.05;
+    };
+    const std::vector<RecordingMistake> mistakes =
+        FindMistakesBy(project_, wrong, std::numeric_limits<double>::infinity(), error_of);
+    ASSERT_EQ(mistakes.size(), 1u);
+    EXPECT_EQ(mistakes[0].what, kLeftHanded);
+    EXPECT_EQ(DescribeMistake(mistakes[0]).find("--accept"), std::string::npos);
+  }
+  EXPECT_FALSE(LooksMirrored(model, right, 1e-3));
+}
+
 // A mistake that was named is undone by its name, in all trials, and by no other.
 TEST_F(Pipeline, MistakesAreUndoneOnRequest) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
@@ -313,6 +336,12 @@ TEST_F(Pipeline, MistakesAreUndoneOnRequest) {
   ASSERT_EQ(mistakes.size(), 1u);
   EXPECT_EQ(mistakes[0].name, "sign:" + joint);
   EXPECT_EQ(mistakes[0].after, 0.1);
+  std::vector<double> told;
+  FindMistakesBy(project_, measured.calibration, 1.0, error_of, [&](const Recording&, double left) {
+    told.push_back(left);
+    return std::vector<LogSuspicion>();
+  });
+  EXPECT_EQ(told, (std::vector<double>{1.0, 0.1}));
   const std::vector<std::string> undone = AcceptMistakes(project_, {"sign:" + joint}, measured);
   EXPECT_EQ(undone.size(), 2u);
   EXPECT_EQ(measured.calibration.q, q);

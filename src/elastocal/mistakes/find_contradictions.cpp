@@ -108,12 +108,13 @@ std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
   std::string what, names;
   for (const RecordingMistake& one : mistakes) {
     what += (what.empty() ? "" : "; ") + one.what;
-    names += " " + one.name;
+    if (!one.name.empty()) names += " " + one.name;
   }
   return fmt::format(
       "in trials for validation {}; without that the calibrated robot errs by {:.3g} mm on them, "
-      "with it by {:.3g} mm (--accept{} corrects it)",
-      what, 1e3 * mistakes.back().after, 1e3 * before, names);
+      "with it by {:.3g} mm{}",
+      what, 1e3 * mistakes.back().after, 1e3 * before,
+      names.empty() ? "" : " (--accept" + names + " corrects it)");
 }
 
 /// At most `count` postures. Motions are sampled far more densely than postures are held.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/mistakes/clusters_beside.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
@@ -208,52 +210,76 @@ class FaultExplanation {
     const Recording undone = Undone();
     double least = times * MarkerError(Fit(undone), undone, general_.options);
     std::string found;
-    ErrorModel best_model;
-    Recording best;
     int found_at = 0;
-    const int count = general_.recording.posture_count();
-    const std::vector<LabelCluster> clusters = SeenClusters(project_, general_.recording);
-    std::vector<std::pair<int, int>> stretches;
-    for (const RecordingFault& one : faults_) {
-      if (one.kind == first.kind) stretches.push_back(StretchOf(one));
-    }
-    std::sort(stretches.begin(), stretches.end());
-    stretches.erase(std::unique(stretches.begin(), stretches.end()), stretches.end());
-    for (std::size_t k = 0; k < clusters.size() * stretches.size(); ++k) {
-      const LabelCluster& cluster = clusters[k / stretches.size()];
-      const auto [begin, end] = stretches[k % stretches.size()];
-      std::vector<int> markers = cluster.markers;
-      std::erase_if(markers, [&, from = begin, to = end](int m) {
-        return !SeenWithin(m, from, to) || !(SeenWithin(m, 0, from) || SeenWithin(m, to, count));
-      });
-      if (markers.empty()) continue;
-      ErrorModel model = general_.model;
-      Recording split = general_.recording;
-      std::vector<Knock> knocks;
-      for (const int posture : {begin, end}) {
-        if (posture > 0 && posture < count) {
-          knocks.push_back({.cluster = cluster.name, .markers = markers, .posture = posture});
-        }
+    SplitRecording best;
+    for (const auto& [begin, end] : Stretches(first.kind)) {
+      for (const LabelCluster& cluster : MovableClusters(first.kind, begin, end)) {
+        SplitRecording split = SplitWithin(cluster, begin, end);
+        const CalibrationResult fit = Fit(split.model, BaseOf(split.model), split.recording);
+        const double left = MarkerError(fit, split.recording, general_.options);
+        if (!(left < least)) continue;
+        least = left;
+        found = cluster.name;
+        found_at = begin;
+        best = std::move(split);
       }
-      SplitMarkers(knocks, model, split);
-      const double left = MarkerError(Fit(model, BaseOf(model), split), split, general_.options);
-      if (!(left < least)) continue;
-      least = left;
-      found = cluster.name;
-      found_at = begin;
-      best_model = std::move(model);
-      best = std::move(split);
     }
     if (found.empty()) return "";
     // Another robot moves other clusters as well.
-    if (!FindRecordingFaults(Fit(best_model, BaseOf(best_model), best), best, general_.options)
-             .empty()) {
-      return "";
-    }
+    const CalibrationResult fit = Fit(best.model, BaseOf(best.model), best.recording);
+    if (!FindRecordingFaults(fit, best.recording, general_.options).empty()) return "";
     return fmt::format(
         "cluster {}: its markers seem to be elsewhere on their link from {} on (knocked, or glued "
         "on again?). Calibrate the postures before and after apart",
         found, DescribePosture(general_.recording, found_at));
+  }
+
+  struct SplitRecording {
+    ErrorModel model;
+    Recording recording;
+  };
+
+  /// With the markers of a cluster as two sets, within the postures and beside them.
+  SplitRecording SplitWithin(const LabelCluster& cluster, int begin, int end) const {
+    SplitRecording split{general_.model, general_.recording};
+    std::vector<Knock> knocks;
+    for (const int posture : {begin, end}) {
+      if (posture > 0 && posture < general_.recording.posture_count()) {
+        knocks.push_back({.cluster = cluster.name, .markers = cluster.markers, .posture = posture});
+      }
+    }
+    SplitMarkers(knocks, split.model, split.recording);
+    return split;
+  }
+
+  std::set<std::pair<int, int>> Stretches(FaultKind kind) const {
+    std::set<std::pair<int, int>> stretches;
+    for (const RecordingFault& one : faults_) {
+      if (one.kind == kind) stretches.insert(StretchOf(one));
+    }
+    return stretches;
+  }
+
+  /// Those, with the markers that are seen within these postures and beside them, whose
+  /// displacement may look like faults of that kind.
+  std::vector<LabelCluster> MovableClusters(FaultKind kind, int begin, int end) const {
+    std::vector<LabelCluster> clusters = SeenClusters(project_, general_.recording);
+    const int count = general_.recording.posture_count();
+    for (LabelCluster& cluster : clusters) {
+      std::erase_if(cluster.markers, [&](int m) { return !SeenWithin(m, begin, end); });
+    }
+    std::erase_if(clusters, [](const LabelCluster& one) { return one.markers.empty(); });
+    std::vector<int> coordinates;
+    for (const RecordingFault& one : faults_) {
+      if (one.kind == kind) coordinates.push_back(one.coordinate);
+    }
+    clusters = ClustersBeside(coordinates, clusters, general_.model);
+    for (LabelCluster& cluster : clusters) {
+      std::erase_if(cluster.markers,
+                    [&](int m) { return !SeenWithin(m, 0, begin) && !SeenWithin(m, end, count); });
+    }
+    std::erase_if(clusters, [](const LabelCluster& one) { return one.markers.empty(); });
+    return clusters;
   }
 
   BaseParameters BaseOf(const ErrorModel& model) const {

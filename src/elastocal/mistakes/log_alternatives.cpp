@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "elastocal/calibration/log_check.hpp"
+#include "elastocal/calibration/placed_misfit.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
@@ -66,11 +68,27 @@ std::vector<LogAlternative> OtherColumns(const Recording& recording, const Robot
       }
     }
   }
-  Recording mirrored = recording;
-  for (int m = 0; m < recording.marker_count(); ++m) mirrored.markers.col(3 * m) *= -1.0;
-  others.push_back({"the markers are in a left-handed frame (one axis has the wrong sign)", "",
-                    std::move(mirrored)});
+  others.push_back({kLeftHanded, "", Mirrored(recording)});
   return others;
+}
+
+Recording Mirrored(Recording recording) {
+  int axis = 0;
+  recording.gravity.cwiseAbs().minCoeff(&axis);
+  for (int m = 0; m < recording.marker_count(); ++m) recording.markers.col(3 * m + axis) *= -1.0;
+  return recording;
+}
+
+bool LooksMirrored(const ErrorModel& nominal, const Recording& recording, double far) {
+  constexpr double kMuchNearer = 0.5;
+  Recording placed = recording;
+  placed.free_root = HasPoseByPosture(recording);
+  try {
+    const double given = PlacedMisfit(nominal, placed);
+    return given > far && PlacedMisfit(nominal, Mirrored(placed)) < kMuchNearer * given;
+  } catch (const InputError&) {  // rods that do not close
+    return false;
+  }
 }
 
 std::vector<LogAlternative> BestPair(const Recording& recording, const RobotTree& tree,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastocal/measurement/recording.hpp"
+#include "elastocal/robot/error_model.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
 namespace elastocal {
@@ -21,6 +22,17 @@ struct LogAlternative {
 /// that moved; less, or plus, those of its neighbour; and with markers of the opposite hand.
 std::vector<LogAlternative> OtherColumns(const Recording& recording, const RobotTree& tree,
                                          const std::vector<int>& joints);
+
+inline constexpr const char* kLeftHanded =
+    "the markers are in a left-handed frame (one axis has the wrong sign)";
+
+/// With the markers of the opposite hand: one axis reversed, which is level where gravity is along
+/// an axis.
+Recording Mirrored(Recording recording);
+
+/// Whether the nominal robot, with its root link where the markers have it (of trials in which that
+/// moves, in each posture), is far from the markers and much nearer to those of the opposite hand.
+bool LooksMirrored(const ErrorModel& nominal, const Recording& recording, double far);
 
 /// Of all pairs of mistakes of the log (PossibleLogMistakes; of many joints, signs alone) the one
 /// that leaves the least `misfit`, one beside the other. Neither need show by itself, and three

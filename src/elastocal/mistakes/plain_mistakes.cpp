@@ -135,19 +135,19 @@ class PlainSearch {
   }
 
  private:
-  std::vector<LogSuspicion> SignsIn(const Recording& recording) const {
-    std::vector<LogSuspicion> signs = PossibleLogMistakes(recording, project_.tree);
-    std::erase_if(signs, [](const auto& one) { return one.kind != LogContradiction::kSign; });
-    return signs;
-  }
-
   std::vector<Alternative> FindInTable() const {
+    const auto misfit = [&](const Recording& corrected) {
+      return MisfitOf(given_.model, corrected);
+    };
+    const auto signs = [&](const Recording& recording, double) {
+      std::vector<LogSuspicion> all = PossibleLogMistakes(recording, project_.tree);
+      std::erase_if(all, [](const auto& one) { return one.kind != LogContradiction::kSign; });
+      return all;
+    };
     std::vector<Alternative> found;
     std::size_t told = 0;  // the last one that explains most of what is left
-    for (RecordingMistake& one : FindMistakesBy(
-             project_, given_.recording, misfit_,
-             [&](const Recording& corrected) { return MisfitOf(given_.model, corrected); },
-             [&](const Recording& recording) { return SignsIn(recording); }, kLeftByOneOfSeveral)) {
+    for (RecordingMistake& one :
+         FindMistakesBy(project_, given_.recording, misfit_, misfit, signs, kLeftByOneOfSeveral)) {
       found.push_back({one.what, one.name, given_.model, std::move(one.corrected)});
       if (one.after < kLeftOfMisfit * one.before) told = found.size();
     }

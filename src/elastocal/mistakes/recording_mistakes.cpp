@@ -18,6 +18,7 @@
 #include "elastocal/calibration/turned_axes.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/suspected_signs.hpp"
 
@@ -39,12 +40,17 @@ constexpr double kLikeTheMost = 0.95;  // of the widest prior
 
 /// A suspicion of any kind.
 struct TriedCorrection {
-  std::string name, what;
+  std::string name, what;  ///< no name: it is to be mended where it comes from
   Recording corrected;
   std::vector<int> left_out = {};  ///< postures that `corrected` is without, ascending
   /// It takes postures out and corrects none: whatever is wrong with them is gone, too.
   bool only_leaves_out = false;
 };
+
+/// m.
+double MostLeft(const RobotTree& tree) {
+  return std::min(kExplained, kExplainedShare * RobotSize(tree));
+}
 
 std::string NameOf(const LabelSuspicion& suspicion) {
   return "labels:" + std::min(suspicion.a, suspicion.b) + "," + std::max(suspicion.a, suspicion.b);
@@ -92,6 +98,9 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
     tried.push_back({fmt::format("rows:{:+d}", shift->rows), DescribeShift(*shift, recording),
                      WithoutShift(recording, *shift), WithoutPartner(*shift, recording)});
   }
+  if (!recording.trials.empty() && LooksMirrored(nominal, recording, MostLeft(project.tree))) {
+    tried.insert(tried.begin(), {"", kLeftHanded, Mirrored(recording)});
+  }
   return tried;
 }
 
@@ -133,6 +142,7 @@ void Accept(const Project& project, const std::vector<std::string>& names, Recor
     const TriedCorrection* next = nullptr;
     const std::vector<TriedCorrection> tried = Suspicions(project, nominal, recording, kMostUndone);
     for (const TriedCorrection& one : tried) {
+      if (one.name.empty()) continue;
       shown.insert(one.name);
       const bool wanted = std::find(names.begin(), names.end(), one.name) != names.end();
       if (wanted && next == nullptr) next = &one;
@@ -199,11 +209,6 @@ class Refitting {
   std::optional<BaseParameters> base_;
 };
 
-/// m.
-double MostLeft(const RobotTree& tree) {
-  return std::min(kExplained, kExplainedShare * RobotSize(tree));
-}
-
 /// None where too much is left in the end.
 std::vector<RecordingMistake> Explained(const RobotTree& tree,
                                         std::vector<RecordingMistake> mistakes) {
@@ -245,7 +250,9 @@ std::vector<RecordingMistake> FindMistakesBy(
   while (mistakes.size() < kMostMistakes) {
     std::vector<TriedCorrection> tried = Suspicions(project, nominal, current, kMostTried);
     if (more) {
-      for (const LogSuspicion& one : more(current)) AddUndone(one, project.tree, current, tried);
+      for (const LogSuspicion& one : more(current, error)) {
+        AddUndone(one, project.tree, current, tried);
+      }
     }
     // A joint that rests while another limb is measured looks frozen where that limb is wrong.
     std::stable_partition(tried.begin(), tried.end(),
@@ -312,10 +319,14 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
   Refitting refitting(project, seed, measured);
   // Once one mistake is undone, what remains is not worth a fit for each joint.
   bool unexplained = result.marker_sd > project.calibration.plausible_marker_sd;
-  const auto signs = [&](const Recording& recording) {
-    std::vector<LogSuspicion> all;
-    if (std::exchange(unexplained, false)) all = AllSigns(project.tree, recording);
-    return all.empty() ? SignsOfTurnedAxes(result, recording) : all;
+  const auto signs = [&](const Recording& recording, double error) {
+    std::vector<LogSuspicion> suspected;
+    if (std::exchange(unexplained, false)) suspected = AllSigns(project.tree, recording);
+    // A robot that explains a recording has no turned axes.
+    if (suspected.empty() && !(error < MostLeft(project.tree))) {
+      suspected = SignsOfTurnedAxes(result, recording);
+    }
+    return suspected;
   };
   return Explained(
       project.tree,
@@ -349,16 +360,16 @@ std::vector<std::string> AcceptMistakes(const Project& project,
 std::string DescribeUndone(const std::string& what) { return "corrected on request: " + what; }
 
 std::string DescribeMistake(const RecordingMistake& mistake) {
+  const std::string remedy =
+      mistake.name.empty() ? "" : fmt::format(" (--accept {} corrects it)", mistake.name);
   if (std::isinf(mistake.before)) {
     return fmt::format(
         "{}; without that the recording is explained to {:.3g} mm, with it only by errors that no "
-        "robot has (--accept {} corrects it)",
-        mistake.what, 1e3 * mistake.after, mistake.name);
+        "robot has{}",
+        mistake.what, 1e3 * mistake.after, remedy);
   }
-  return fmt::format(
-      "{}; without that the error of the fit falls from {:.3g} to {:.3g} mm (--accept {} corrects "
-      "it)",
-      mistake.what, 1e3 * mistake.before, 1e3 * mistake.after, mistake.name);
+  return fmt::format("{}; without that the error of the fit falls from {:.3g} to {:.3g} mm{}",
+                     mistake.what, 1e3 * mistake.before, 1e3 * mistake.after, remedy);
 }
 
 }  // namespace elastocal

@@ -17,7 +17,7 @@ namespace elastocal {
 
 /// A mistake in a recording that was tried: undone, the recording fits far better.
 struct RecordingMistake {
-  std::string name;     ///< short, for AcceptMistakes: "sign:arm_left_7_joint"
+  std::string name;     ///< short, for AcceptMistakes: "sign:arm_left_7_joint"; empty: none
   std::string what;     ///< in words
   double before = 0.0;  ///< rms distance of all markers from the fit, m; infinite: no robot fits
   double after = 0.0;   ///< the same once it is undone
@@ -34,20 +34,22 @@ double FitError(const CalibrationResult& result, const Recording& recording,
                 const CalibrationOptions& options);
 
 /// Mistakes of a recording that a fit proves. Suspicions come from the nominal robot
-/// (FindLogSuspicions, FindLabelSuspicions; of a table FindTableSuspicions, FindRowShift), and from
-/// axes that `result` has turned by more than a right angle: the sign of their joints and of those
-/// before; of all joints, where markers would have an implausible noise. Each is undone, the robot
-/// is calibrated again, and it is a mistake if the error falls to less than half (that of `result`
-/// on the recording `fitted`) and, in the end, to less than 20 mm. Then the next is sought in the
-/// corrected recording, at most three in all. Without suspicions, which no clean recording has,
-/// nothing is fitted. `measured` as recorded.
+/// (FindLogSuspicions, FindLabelSuspicions, LooksMirrored; of a table FindTableSuspicions,
+/// FindRowShift), and from axes that `result` has turned by more than a right angle: the sign of
+/// their joints and of those before, until a robot explains what is left; of all joints, where
+/// markers would have an implausible noise. Each is undone, the robot is calibrated again, and it
+/// is a mistake if the error falls to less than half (that of `result` on the recording `fitted`)
+/// and, in the end, to less than 20 mm. Then the next is sought in the corrected recording, at most
+/// three in all. Without suspicions, which no clean recording has, nothing is fitted. `measured` as
+/// recorded.
 std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     std::optional<std::uint64_t> seed,
                                                     const Measurements& measured,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result);
 
-using FurtherSuspicions = std::function<std::vector<LogSuspicion>(const Recording&)>;
+/// Of a recording with this error, m.
+using FurtherSuspicions = std::function<std::vector<LogSuspicion>(const Recording&, double error)>;
 
 /// The same by any figure of how well a recording is explained, m: `error_of`, infinite where it is
 /// not explained at all. `error`: of the recording itself; `more`: further suspicions of it and of

@@ -30,6 +30,23 @@ std::string PerCent(Eigen::Index part, Eigen::Index whole) {
   return std::to_string(100 * part / std::max<Eigen::Index>(1, whole)) + " %";
 }
 
+void JudgeAxes(const CalibrationResult& result, Verdict& verdict) {
+  const std::vector<int> turned = TurnedAxes(result);
+  if (turned.empty()) return;
+  const std::vector<Joint>& joints = result.model.tree.joints;
+  const int before = joints[turned.front()].parent_body - 1;
+  std::string names;
+  for (const int joint : turned) names += (names.empty() ? "" : ", ") + joints[joint].name;
+  std::string check = "Check the sign of its positions";
+  if (before >= 0) check += " and of those of " + joints[before].name;
+  if (turned.size() > 1) {
+    check = "Check the signs of their positions and of those of the joints before them";
+  }
+  verdict.objections.push_back(
+      (turned.size() > 1 ? "the axes of " + names + " seem" : "the axis of " + names + " seems") +
+      " to be turned by more than a right angle, which is not an error of a robot. " + check + ".");
+}
+
 void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options,
               Verdict& verdict) {
   if (result.termination != Termination::kConverged) {
@@ -53,15 +70,7 @@ void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options
         "of a robot." +
         kAdvice);
   }
-  for (const int joint : TurnedAxes(result)) {
-    const std::vector<Joint>& joints = result.model.tree.joints;
-    const int before = joints[joint].parent_body - 1;
-    verdict.objections.push_back(
-        "the axis of " + joints[joint].name +
-        " seems to be turned by more than a right angle, which is not an error of a robot. Check "
-        "the sign of its positions" +
-        (before < 0 ? "." : " and of those of " + joints[before].name + "."));
-  }
+  JudgeAxes(result, verdict);
 }
 
 /// Names the joint parameter that is furthest from nominal in units of its prior.

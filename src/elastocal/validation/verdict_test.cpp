@@ -85,6 +85,15 @@ TEST_F(VerdictTest, AnAxisTurnedByHalfATurnIsNoRobots) {
   EXPECT_NE(Judged().objections[0].find("leg_2"), std::string::npos) << Judged().objections[0];
 }
 
+// One reversed sign turns all axes behind it: one sentence.
+TEST_F(VerdictTest, TurnedAxesAreOneObjection) {
+  CalibrationResult& result = comparison_.results[2];
+  result.delta[FindParameter(result.model.parameters, "leg_3.alpha")] = 3.1;
+  result.delta[FindParameter(result.model.parameters, "leg_4.alpha")] = -3.1;
+  ExpectObjection("the axes of leg_3, leg_4 seem to be turned");
+  ExpectObjection("Check the signs of their positions and of those of the joints before them.");
+}
+
 TEST_F(VerdictTest, ParametersThatLeanOnThePriorAlone) {
   excitation_.parameters = {6, 7, 8, 9};
   excitation_.parameter_sd = Eigen::Vector4d(0.1, 0.1, 1e-4, 1e-4);
