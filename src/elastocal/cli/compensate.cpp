@@ -144,7 +144,7 @@ void AddCompensate(CLI::App& app, Action& action) {
       ->add_option("--most-left-mm", options->most_left_mm,
                    "Refuse a motion where limits leave more at the end of a limb of six joints or "
                    "more; a degree counts 5.2 mm")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(InBounds("compensate --most-left-mm"))
       ->capture_default_str();
   AddOutputOptions(*command, options->common);
   command->footer(

@@ -188,6 +188,7 @@ std::vector<Bound> MakeBounds() {
       {"plan --velocity-share", "", 0.01, 1, "a share"},
       {"plan --floor-friction", "", 0, 10, "rubber has 1"},
       {"plan --leg-geometry-scale", "", 0, 100, "a factor on errors of millimetres"},
+      {"compensate --most-left-mm", "mm", 0, 1e3, "an arm"},
   };
   list.insert(list.end(), rest.begin(), rest.end());
   return list;
