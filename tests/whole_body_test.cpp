@@ -247,6 +247,14 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   recording.torques.col(knee) *= 1000.0;
   only(recording, knee, TorqueContradiction::kScaled);
   recording = clean;
+  recording.torques.col(knee) *= 1.7;  // alone in its leg
+  only(recording, knee, TorqueContradiction::kScaled);
+  recording = clean;
+  for (int joint : robot_.model.legs[1].joints) recording.torques.col(joint) *= 1.7;
+  for (const auto& one : FindContradictoryTorques(robot_.model, recording, 1e-3)) {
+    EXPECT_NE(one.kind, TorqueContradiction::kScaled) << one.joint;  // masses may be
+  }
+  recording = clean;
   recording.torques.col(hip).array() += 40.0;
   only(recording, hip, TorqueContradiction::kBiased);
   recording = clean;

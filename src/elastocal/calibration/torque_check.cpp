@@ -26,6 +26,7 @@ constexpr double kLeftOfExchange = 0.25;  // of the squares
 constexpr double kLeftOfReversal = 0.25;  // of the squares of all sensors
 constexpr std::size_t kManySensors = 3;   // that are wrong in the same way
 constexpr double kLeastCommon = 1.5;      // factor of all sensors, or its inverse
+constexpr double kLeastAlone = 1.5;       // the same of one among others that are right
 constexpr double kAlike = 1.25;           // factor between a sensor's slope and the common one
 constexpr double kFollows = 0.9;          // correlation of sensors whose slope counts
 
@@ -55,7 +56,45 @@ std::optional<TorqueLine> FitLine(const Pairs& pairs) {
                     .correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0};
 }
 
-std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs) {
+bool IsWithin(double slope, double factor) { return slope < factor && slope * factor > 1.0; }
+
+/// By joint, of those that follow statics.
+std::vector<std::optional<TorqueLine>> FollowingLines(const std::vector<Pairs>& pairs) {
+  std::vector<std::optional<TorqueLine>> lines;
+  for (const Pairs& of : pairs) {
+    lines.push_back(FitLine(of));
+    if (lines.back() && !(lines.back()->correlation > kFollows)) lines.back().reset();
+  }
+  return lines;
+}
+
+/// The nearest joint towards the root whose sensor follows statics; -1: none.
+int NextTowardsRoot(const RobotTree& tree, const std::vector<std::optional<TorqueLine>>& lines,
+                    int joint) {
+  do {
+    joint = tree.joints[joint].parent_body - 1;  // joint k carries body k + 1
+  } while (joint >= 0 && !lines[joint]);
+  return joint;
+}
+
+/// Whether the sensor of a joint is off by a factor that those next to it on its limb do not have.
+/// They bear much of the same load, so a wrong mass would show in them, too.
+bool IsScaledAlone(const RobotTree& tree, const std::vector<std::optional<TorqueLine>>& lines,
+                   int joint) {
+  if (!lines[joint] || IsWithin(lines[joint]->slope, kLeastAlone)) return false;
+  bool any = false;
+  for (int other = 0; other < static_cast<int>(lines.size()); ++other) {
+    const bool beside = lines[other] && (other == NextTowardsRoot(tree, lines, joint) ||
+                                         joint == NextTowardsRoot(tree, lines, other));
+    if (!beside) continue;
+    const double ratio = lines[joint]->slope / lines[other]->slope;
+    if (!IsWithin(lines[other]->slope, kLeastAlone) || IsWithin(ratio, kLeastAlone)) return false;
+    any = true;
+  }
+  return any;
+}
+
+std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs, bool is_scaled_alone) {
   const auto count = static_cast<Eigen::Index>(pairs.expected.size());
   if (pairs.expected.size() < kLeastPairs) return std::nullopt;
   const Eigen::Map<const Eigen::ArrayXd> expected(pairs.expected.data(), count);
@@ -69,7 +108,7 @@ std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs) {
       return found;
     }
     if (line->correlation < kLeastCorrelation) return found;  // unrelated
-    if (found.slope < kLeastSlope || found.slope > kMostSlope) {
+    if (found.slope < kLeastSlope || found.slope > kMostSlope || is_scaled_alone) {
       found.kind = TorqueContradiction::kScaled;
       return found;
     }
@@ -151,10 +190,9 @@ std::optional<double> CommonFactor(const std::vector<Pairs>& pairs) {
   const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
   std::nth_element(slopes.begin(), middle, slopes.end());
   const double factor = *middle;
-  if (factor < kLeastCommon && factor * kLeastCommon > 1.0) return std::nullopt;
-  const auto alike = std::count_if(slopes.begin(), slopes.end(), [&](double slope) {
-    return slope < kAlike * factor && slope * kAlike > factor;
-  });
+  if (IsWithin(factor, kLeastCommon)) return std::nullopt;
+  const auto alike = std::count_if(slopes.begin(), slopes.end(),
+                                   [&](double slope) { return IsWithin(slope / factor, kAlike); });
   if (4 * alike < 3 * std::ssize(slopes)) return std::nullopt;
   return factor;
 }
@@ -231,9 +269,11 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
       }
     }
   }
-  for (std::size_t k = 0; k < joints; ++k) {
+  const std::vector<std::optional<TorqueLine>> lines = FollowingLines(pairs);
+  for (int k = 0; k < static_cast<int>(joints); ++k) {
     if (exchanged[k] != 0) continue;
-    if (const auto one = Judge(static_cast<int>(k), pairs[k])) found.push_back(*one);
+    const bool scaled = IsScaledAlone(model.tree, lines, k);
+    if (const auto one = Judge(k, pairs[k], scaled)) found.push_back(*one);
   }
   return found;
 }

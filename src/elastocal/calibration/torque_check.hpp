@@ -26,16 +26,17 @@ struct ContradictoryTorque {
 };
 
 /// Torque sensors that contradict statics in the postures of a recording of trials, by far more
-/// than masses of links, friction and deflection could make them: a slope below 0.5 or above 2, a
-/// bias of more than 10 N.m (N) and a quarter of the largest torque, a correlation below a half; or
-/// two sensors that fit each other's statics far better than their own (a quarter of the squares).
-/// Where all sensors together fit far better with the opposite sign, all are reversed: of those
-/// whose load varies little, none by itself would be found. So are all scaled where three quarters
-/// of three sensors and more have one factor of 1.5 and more, or its inverse, within a quarter:
-/// masses are not all off by as much. Statics of the joints of a leg on one foot, of the others in
-/// any posture, at nominal geometry; the waist as its markers have it. Only sensors whose static
-/// torque varies by 5 N.m (N) or more (sd; for a bias: any) in five postures or more are judged;
-/// none where the robot description has no masses.
+/// than masses of links, friction and deflection could make them: a slope below 0.5 or above 2 (1.5
+/// where the sensors next to it on its limb have none, and all follow), a bias of more than 10 N.m
+/// (N) and a quarter of the largest torque, a correlation below a half; or two sensors that fit
+/// each other's statics far better than their own (a quarter of the squares). Where all sensors
+/// together fit far better with the opposite sign, all are reversed: of those whose load varies
+/// little, none by itself would be found. So are all scaled where three quarters of three sensors
+/// and more have one factor of 1.5 and more, or its inverse, within a quarter: masses are not all
+/// off by as much. Statics of the joints of a leg on one foot, of the others in any posture, at
+/// nominal geometry; the waist as its markers have it. Only sensors whose static torque varies by 5
+/// N.m (N) or more (sd; for a bias: any) in five postures or more are judged; none where the robot
+/// description has no masses.
 std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& model,
                                                           const Recording& recording,
                                                           double slip_m);
